@@ -1,0 +1,26 @@
+"""The errors a user can cause, and can cure: each message is one sentence that says how."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+class InputError(ValueError):
+    """Bad input: the message names the bad thing, lists the good ones, says the next step."""
+
+
+class DivergenceError(InputError):
+    """A simulation left the finite numbers: the model, its values or its step are wrong."""
+
+
+class GraphicsError(InputError):
+    """No OpenGL context could be made; everything that does not draw still works."""
+
+
+def unknown_name(what: str, name: str, known: Iterable[str]) -> InputError:
+    """An `InputError` for a misspelt name, with the likely one first and all good ones listed."""
+    names = sorted(known)
+    close = get_close_matches(name, names, n=1)
+    hint = f" did you mean {close[0]!r}?" if close else ""
+    return InputError(f"unknown {what} {name!r};{hint} known: {', '.join(names)}")

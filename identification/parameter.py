@@ -1,0 +1,95 @@
+"""A parameter is one frozen record; a set of them is a frozen mapping from name to record."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import inf, isfinite
+
+from identification.errors import InputError, unknown_name
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number of a model: what it is, how large it may be, and where it goes.
+
+    Attributes:
+        name: canonical name, as in JSON, TOML and on the command line.
+        value: value in `unit`.
+        unit: SI unit, "" when dimensionless.
+        where: path in the MuJoCo model (see `identification.paths`), or "start" for an
+            initial condition.
+        lower: smallest admissible value [unit].
+        upper: largest admissible value [unit].
+        symbol: letter in the equations; `name` when not given.
+        about: what it is, in words.
+        source: table, data sheet or paper the value was taken from.
+
+    Raises:
+        InputError: the bounds are in the wrong order, or the value is outside them.
+    """
+
+    name: str
+    value: float
+    unit: str
+    where: str
+    lower: float = -inf
+    upper: float = inf
+    symbol: str = ""
+    about: str = ""
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.lower < self.upper:
+            raise InputError(
+                f"parameter {self.name!r}: lower bound {self.lower:g} must be less than "
+                f"upper bound {self.upper:g}"
+            )
+        if not (isfinite(self.value) and self.lower <= self.value <= self.upper):
+            raise InputError(
+                f"parameter {self.name!r} = {self.value:g} {self.unit}".rstrip()
+                + f" is outside its range [{self.lower:g}, {self.upper:g}];"
+                " give a value inside it (SI units)"
+            )
+
+
+@dataclass(frozen=True)
+class ParameterSet:
+    """Parameters by name, in a fixed order; `with_values` returns a new set.
+
+    Raises:
+        InputError: a name occurs twice.
+    """
+
+    name: str
+    records: tuple[Parameter, ...]
+
+    def __post_init__(self) -> None:
+        names = [p.name for p in self.records]
+        twice = sorted({n for n in names if names.count(n) > 1})
+        if twice:
+            raise InputError(f"parameter set {self.name!r} names {', '.join(twice)} twice")
+
+    def __getitem__(self, name: str) -> Parameter:
+        for parameter in self.records:
+            if parameter.name == name:
+                return parameter
+        raise unknown_name("parameter", name, (p.name for p in self.records))
+
+    def __iter__(self) -> Iterator[Parameter]:
+        return iter(self.records)
+
+    def values(self) -> dict[str, float]:
+        """The values by name, each in its parameter's unit."""
+        return {p.name: p.value for p in self.records}
+
+    def with_values(self, values: Mapping[str, float]) -> ParameterSet:
+        """The same set with some values replaced.
+
+        Raises:
+            InputError: a name is unknown, or a value is outside its parameter's bounds.
+        """
+        for name in values:
+            self[name]
+        records = tuple(replace(p, value=float(values.get(p.name, p.value))) for p in self)
+        return replace(self, records=records)

@@ -1,0 +1,117 @@
+"""Where the cables leave the frame and where they meet the platform.
+
+The thesis lost its coordinates. These are ASSUMED: a flat SPIDAR-G cross, two cables on each
+of four connectors, chosen because its unpowered equilibrium is stable, it has wrench closure,
+and a 4 N pretension rests it at z = 1.43 m. A file of the user's own replaces them.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from identification.errors import InputError
+
+DRIVES = 8
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Anchors of the eight cables.
+
+    Attributes:
+        exits: exit points A_i in the frame O (on the floor, centre, z up) [m], 8 rows of 3.
+        connectors: connectors B_i in the platform frame P (at its centre of mass) [m], 8 of 3.
+        assumed: True while nobody has measured them; shown wherever they are.
+        source: where the numbers come from.
+
+    Raises:
+        InputError: not 8 rows of 3 finite numbers, or fewer than 6 directions of wrench.
+    """
+
+    exits: tuple[tuple[float, float, float], ...]
+    connectors: tuple[tuple[float, float, float], ...]
+    assumed: bool
+    source: str
+
+    def __post_init__(self) -> None:
+        for name in ("exits", "connectors"):
+            try:
+                rows = np.array(getattr(self, name), float)
+            except (TypeError, ValueError):
+                rows = np.empty(0)
+            if rows.shape != (DRIVES, 3) or not np.isfinite(rows).all():
+                raise InputError(
+                    f"geometry: {name} must be {DRIVES} rows of 3 finite numbers [m],"
+                    " as in examples/geometry.toml"
+                )
+
+    @property
+    def A(self) -> np.ndarray:
+        """Exit points A_i in O, shape (8, 3) [m]."""
+        return np.array(self.exits)
+
+    @property
+    def B(self) -> np.ndarray:
+        """Connectors B_i in P, shape (8, 3) [m]."""
+        return np.array(self.connectors)
+
+
+INCA = Geometry(
+    exits=(
+        (1.5, 1.5, 0.1),
+        (-1.5, 1.5, 0.1),
+        (-1.5, -1.5, 0.1),
+        (1.5, -1.5, 0.1),
+        (1.5, 1.5, 3.0),
+        (-1.5, 1.5, 3.0),
+        (-1.5, -1.5, 3.0),
+        (1.5, -1.5, 3.0),
+    ),
+    connectors=(
+        (0.0, 0.05, 0.0),
+        (0.0, 0.05, 0.0),
+        (0.0, -0.05, 0.0),
+        (0.0, -0.05, 0.0),
+        (0.075, 0.0, 0.0),
+        (-0.075, 0.0, 0.0),
+        (-0.075, 0.0, 0.0),
+        (0.075, 0.0, 0.0),
+    ),
+    assumed=True,
+    source="assumed: flat SPIDAR-G cross; the thesis' own coordinates are lost",
+)
+
+
+def read_geometry(path: str | Path) -> Geometry:
+    """Read a geometry from TOML: `exits`, `connectors` (8 rows of 3) [m], `assumed`, `source`.
+
+    Raises:
+        InputError: the file is missing, is not TOML, or does not hold such rows.
+    """
+    path = Path(path)
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError(f"no geometry file {path}; examples/geometry.toml shows one") from None
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise InputError(f"geometry file {path} is not TOML: {error}") from None
+    extra = sorted(set(table) - {"exits", "connectors", "assumed", "source"})
+    if extra:
+        raise InputError(
+            f"geometry file {path}: unknown key {extra[0]!r};"
+            " known: exits, connectors, assumed, source"
+        )
+    rows = {}
+    for name in ("exits", "connectors"):
+        if not isinstance(table.get(name), list):
+            raise InputError(f"geometry file {path} lacks {name}, {DRIVES} rows of 3 numbers [m]")
+        rows[name] = tuple(tuple(r) if isinstance(r, list) else r for r in table[name])
+    return Geometry(
+        **rows,
+        assumed=bool(table.get("assumed", False)),
+        source=str(table.get("source", path.name)),
+    )
