@@ -1,0 +1,94 @@
+"""Where a parameter goes: a path such as `joint/motor_*.damping` or `body/platform.inertia[0]`.
+
+A path is `kind/name.attribute` or `kind/name.attribute[column]`; a `*` in the name takes all
+objects that match, and the parameter then writes the same number to each (a tie).
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError, unknown_name
+
+_PATH = re.compile(r"(?P<kind>\w+)/(?P<name>[^.]+)\.(?P<attribute>\w+)(\[(?P<column>\d+)\])?")
+_KINDS = {
+    "body": ("nbody", mujoco.mjtObj.mjOBJ_BODY),
+    "joint": ("njnt", mujoco.mjtObj.mjOBJ_JOINT),
+    "site": ("nsite", mujoco.mjtObj.mjOBJ_SITE),
+    "geom": ("ngeom", mujoco.mjtObj.mjOBJ_GEOM),
+    "tendon": ("ntendon", mujoco.mjtObj.mjOBJ_TENDON),
+    "actuator": ("nactuator", mujoco.mjtObj.mjOBJ_ACTUATOR),
+}
+_DOF = ("damping", "armature", "frictionloss")  # of a joint, kept per degree of freedom
+
+
+@dataclass(frozen=True)
+class Slot:
+    """Entries of one mjModel array.
+
+    Attributes:
+        field: name of the mjModel array, as `Batch.expand` takes it.
+        rows: rows of the array that the path names, shape (k,).
+        column: column, None for an array of one dimension.
+    """
+
+    field: str
+    rows: tuple[int, ...]
+    column: int | None
+
+    def index(self) -> tuple[list[int], int] | list[int]:
+        """The numpy index of these entries in the array."""
+        return list(self.rows) if self.column is None else (list(self.rows), self.column)
+
+
+def resolve(model: mujoco.MjModel, path: str) -> Slot:
+    """Find the entries of mjModel that a path names.
+
+    Raises:
+        InputError: the path is malformed, or names a kind, object, attribute or column that
+            the model does not have.
+    """
+    match = _PATH.fullmatch(path)
+    if match is None:
+        raise InputError(
+            f"{path!r} is no model path; write kind/name.attribute or kind/name.attribute[column],"
+            " e.g. joint/slider.damping"
+        )
+    kind, attribute = match["kind"], match["attribute"]
+    if kind not in _KINDS:
+        raise unknown_name("kind of object", kind, _KINDS)
+    count, kind_id = _KINDS[kind]
+    names = [mujoco.mj_id2name(model, kind_id, i) or "" for i in range(getattr(model, count))]
+    ids = [i for i, name in enumerate(names) if fnmatchcase(name, match["name"])]
+    if not ids:
+        raise unknown_name(kind, match["name"], (n for n in names if n))
+    field = f"{'jnt' if kind == 'joint' else kind}_{attribute}"
+    if kind == "joint" and attribute in _DOF:
+        field, ids = f"dof_{attribute}", [int(model.jnt_dofadr[i]) for i in ids]
+    array = getattr(model, field, None)
+    if not isinstance(array, np.ndarray):
+        raise InputError(f"{path!r}: MuJoCo's model has no {field}; see mjModel in its manual")
+    column = None if match["column"] is None else int(match["column"])
+    width = array.shape[1] if array.ndim == 2 else None
+    if (column is None) != (width is None) or (width is not None and column >= width):
+        raise InputError(
+            f"{path!r}: {field} is one number, write no [column]"
+            if width is None
+            else f"{path!r}: {field} has columns 0 to {width - 1}, write one as [0]"
+        )
+    return Slot(field, tuple(ids), column)
+
+
+def write(model: mujoco.MjModel, slot: Slot, value: float) -> None:
+    """Write a value to all entries of a slot of a model, in place."""
+    getattr(model, slot.field)[slot.index()] = value
+
+
+def read(model: mujoco.MjModel, slot: Slot) -> float:
+    """The value that a slot holds; its entries are equal when one parameter wrote them."""
+    return float(getattr(model, slot.field)[slot.index()][0])

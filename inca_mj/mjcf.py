@@ -1,0 +1,165 @@
+"""The MJCF of the INCA 6D, built from parameters and geometry.
+
+Bodies `platform` (free) and `drum_1..8` (hinge `motor_i`), tendons `cable_1..8` from the exit
+points to the platform, actuators `current_1..8`, sensors, a keyframe `start`. MuJoCo does the
+rigid bodies, K_t i (gear), b_v (joint damping), J (armature) and the cable lengths; the tension,
+the no-load length, the drum spring and the Coulomb friction are `inca_mj.law`'s, whose numbers
+the builder puts into `actuator_user` and `tendon_user`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from identification.parameter import ParameterSet
+from inca_mj import law
+from inca_mj.appearance import dress_drum, dress_platform, dress_world
+from inca_mj.geometry import DRIVES, Geometry
+from inca_mj.kinematics import quaternion
+from inca_mj.parameters import GRAVITY
+from inca_mj.statics import start
+
+TIMESTEP = 1e-3  # [s]; RK4 at 1 ms follows the reference to a few microradians
+ROTOR = 1e-14  # inertia MuJoCo demands of the drum's body beside the armature [kg m^2]
+
+_TENSION, _NO_LOAD_LENGTH = 1, 2  # see inca_mj.native
+
+
+def build(parameters: ParameterSet, geometry: Geometry) -> mujoco.MjSpec:
+    """The robot at its pretensioned start, as an editable `MjSpec`.
+
+    Raises:
+        InputError: the start pose admits no pretension (see `inca_mj.statics.pretension`).
+    """
+    spec = mujoco.MjSpec()
+    spec.modelname = "inca6d"
+    spec.comment = (
+        f"INCA 6D, parameter set {parameters.name}; geometry: {geometry.source}."
+        " Needs the law of inca_mj (inca_mj.native.install) for its cables to pull."
+    )
+    _settings(spec)
+    dress_world(spec, geometry)
+    _platform(spec, parameters, geometry)
+    for k in range(1, DRIVES + 1):
+        _drive(spec, k, parameters, geometry)
+    _sensors(spec)
+    _keyframe(spec, parameters, geometry)
+    return spec
+
+
+def _settings(spec: mujoco.MjSpec) -> None:
+    spec.compiler.degree = False
+    spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
+    spec.option.timestep = TIMESTEP
+    spec.option.gravity = [0, 0, -GRAVITY]
+    # Every other integrator adds inertia to custom forces or drops part of them.
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    spec.option.disableflags = (
+        mujoco.mjtDisableBit.mjDSBL_CONTACT
+        | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+        | mujoco.mjtDisableBit.mjDSBL_AUTORESET  # a divergence must be seen, not restarted
+    )
+    spec.nuser_actuator = law.ACTUATOR_COLUMNS
+    spec.nuser_tendon = law.TENDON_COLUMNS
+    spec.nuser_sensor = 1
+
+
+def _platform(spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry) -> None:
+    p = parameters.values()
+    body = spec.worldbody.add_body(name="platform", pos=[p["x"], p["y"], p["z"]])
+    body.quat = quaternion(p["roll"], p["pitch"], p["yaw"])
+    body.add_freejoint(name="platform")
+    _weigh(body, p["m"], [p["I_x"], p["I_y"], p["I_z"]])
+    body.add_site(name="platform", pos=[0, 0, 0], size=[0.004, 0.004, 0.004])
+    for k, connector in enumerate(geometry.connectors, 1):
+        body.add_site(name=f"connector_{k}", pos=connector, size=[0.006, 0.006, 0.006])
+    dress_platform(body, geometry)
+
+
+def _weigh(body: Any, mass: float, inertia: list[float]) -> None:
+    """Mass [kg] and principal inertia [kg m^2] about the body's own frame."""
+    body.explicitinertial = True
+    body.mass, body.inertia, body.ipos = mass, inertia, [0, 0, 0]
+
+
+def _drive(spec: mujoco.MjSpec, k: int, parameters: ParameterSet, geometry: Geometry) -> None:
+    """Drum, motor, cable and current actuator of drive k."""
+    p = parameters.values()
+    exit_point = np.array(geometry.exits[k - 1])
+    spec.worldbody.add_site(name=f"exit_{k}", pos=exit_point, size=[0.012, 0.012, 0.012])
+
+    # The roller turns beside the exit point: its place is for the eye, its inertia is J.
+    outward = np.array([exit_point[0], exit_point[1], 0.0])
+    outward = outward / np.linalg.norm(outward) if outward.any() else np.array([1.0, 0.0, 0.0])
+    drum = spec.worldbody.add_body(name=f"drum_{k}", pos=exit_point + 0.08 * outward)
+    _weigh(drum, ROTOR, [ROTOR, ROTOR, ROTOR])
+    axis = [-outward[1], outward[0], 0.0]
+    drum.add_joint(
+        name=f"motor_{k}",
+        type=mujoco.mjtJoint.mjJNT_HINGE,
+        axis=axis,
+        armature=p["J"],
+        damping=p["b_v"],
+    )
+    dress_drum(drum, axis)
+
+    cable = spec.add_tendon(name=f"cable_{k}", width=0.0025, rgba=[0.2, 0.2, 0.22, 1])
+    cable.wrap_site(f"exit_{k}")
+    cable.wrap_site(f"connector_{k}")
+    cable_row = np.zeros(law.TENDON_COLUMNS)
+    cable_row[[law.TENDON_TAG, law.LAMBDA, law.B]] = law.TAG, p["lambda"], p["b"]
+    cable.userdata = cable_row
+
+    row = np.zeros(law.ACTUATOR_COLUMNS)
+    row[law.ACTUATOR_TAG], row[law.CABLE] = law.TAG, k - 1
+    row[[law.R, law.R_S, law.K_S]] = p["R"], p["R_s"], p["k_s"]
+    row[[law.B_C, law.BETA]] = p["b_c"], p["beta"]
+    row[law.T_0] = start(parameters, geometry).tension[k - 1]
+    spec.add_actuator(
+        name=f"current_{k}",
+        target=f"motor_{k}",
+        trntype=mujoco.mjtTrn.mjTRN_JOINT,
+        gear=[p["K_t"], 0, 0, 0, 0, 0],
+        dyntype=mujoco.mjtDyn.mjDYN_USER,  # activation: the no-load length d₀
+        actdim=1,
+        gaintype=mujoco.mjtGain.mjGAIN_FIXED,
+        gainprm=[0.0] * 10,
+        biastype=mujoco.mjtBias.mjBIAS_USER,  # force: the current
+        userdata=row,
+    )
+
+
+def _sensors(spec: mujoco.MjSpec) -> None:
+    sensor, of = mujoco.mjtSensor, mujoco.mjtObj
+    per_drive = (
+        ("angle", sensor.mjSENS_JOINTPOS, of.mjOBJ_JOINT, "motor", None),
+        ("rate", sensor.mjSENS_JOINTVEL, of.mjOBJ_JOINT, "motor", None),
+        ("length", sensor.mjSENS_TENDONPOS, of.mjOBJ_TENDON, "cable", None),
+        ("tension", sensor.mjSENS_USER, of.mjOBJ_ACTUATOR, "current", _TENSION),
+        ("no_load_length", sensor.mjSENS_USER, of.mjOBJ_ACTUATOR, "current", _NO_LOAD_LENGTH),
+    )
+    for name, kind, object_type, target, shown in per_drive:
+        for k in range(1, DRIVES + 1):
+            added = spec.add_sensor(
+                name=f"{name}_{k}", type=kind, objtype=object_type, objname=f"{target}_{k}"
+            )
+            if shown is not None:
+                added.dim, added.userdata = 1, [shown]
+                added.needstage = mujoco.mjtStage.mjSTAGE_VEL
+                added.datatype = mujoco.mjtDataType.mjDATATYPE_REAL
+    for name, kind in (
+        ("position", sensor.mjSENS_FRAMEPOS),
+        ("orientation", sensor.mjSENS_FRAMEQUAT),
+        ("velocity", sensor.mjSENS_FRAMELINVEL),
+        ("angular_velocity", sensor.mjSENS_FRAMEANGVEL),
+    ):
+        spec.add_sensor(name=name, type=kind, objtype=of.mjOBJ_SITE, objname="platform")
+
+
+def _keyframe(spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry) -> None:
+    at = start(parameters, geometry)
+    qpos = np.concatenate([at.pose[:3], quaternion(*at.pose[3:]), np.zeros(DRIVES)])
+    spec.add_key(name="start", qpos=qpos, act=at.no_load_length)

@@ -1,0 +1,72 @@
+"""The pretensioned start: tensions that hold the platform at rest, and the no-load lengths.
+
+    W T = w,   W = [-s_i ; -(R b_i × s_i)]        wrench of the cables on the platform, 6 × 8
+    T(0) = t₀ + W⁺ (w - W t₀)                     nearest (least squares) to t₀ = 4 N each
+    d₀(0) = λ d/(λ + T(0))                        (thesis 2.24, 2.25 at rest)
+
+w = (0, 0, m g, 0, 0, 0) is the weight to carry.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.parameter import ParameterSet
+from inca_mj.geometry import Geometry
+from inca_mj.kinematics import cables, length_jacobian, rotation
+from inca_mj.parameters import GRAVITY, PRETENSION
+
+
+@dataclass(frozen=True)
+class Start:
+    """A robot at rest, all angles zero: where a log begins.
+
+    Attributes:
+        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
+        tension: T(0), shape (8,) [N].
+        no_load_length: d₀(0), shape (8,) [m].
+    """
+
+    pose: np.ndarray
+    tension: np.ndarray
+    no_load_length: np.ndarray
+
+
+def pretension(pose: np.ndarray, geometry: Geometry, m: float) -> np.ndarray:
+    """Tensions T(0), shape (8,) [N], nearest to 4 N each that hold a platform of mass m [kg].
+
+    Raises:
+        InputError: some cable would have to push, or the cables cannot hold the platform.
+    """
+    W = -length_jacobian(pose[:3], rotation(*pose[3:]), geometry).T
+    w = np.array([0, 0, m * GRAVITY, 0, 0, 0])
+    t_0 = np.full(len(geometry.exits), PRETENSION)
+    T = t_0 + np.linalg.pinv(W) @ (w - W @ t_0)
+    if np.abs(W @ T - w).max() > 1e-9 * max(1.0, m * GRAVITY):
+        raise InputError(
+            f"the cables cannot hold the platform at pose {np.round(pose, 4).tolist()}:"
+            f" their wrench matrix has rank {np.linalg.matrix_rank(W)} of 6;"
+            " move the start pose or the connectors"
+        )
+    if T.min() <= 0:
+        raise InputError(
+            f"cable {T.argmin() + 1} would have to push ({T.min():.3g} N) to hold the platform at"
+            f" pose {np.round(pose, 4).tolist()}; move the start pose towards the middle"
+        )
+    return T
+
+
+def start(parameters: ParameterSet, geometry: Geometry) -> Start:
+    """The start that parameters and geometry imply: T(0) and d₀(0) follow from pose, m and λ.
+
+    Raises:
+        InputError: as `pretension`.
+    """
+    values = parameters.values()
+    pose = np.array([values[name] for name in ("x", "y", "z", "roll", "pitch", "yaw")])
+    T = pretension(pose, geometry, values["m"])
+    d, _ = cables(pose[:3], rotation(*pose[3:]), geometry)
+    return Start(pose, T, values["lambda"] * d / (values["lambda"] + T))

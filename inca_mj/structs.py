@@ -1,0 +1,101 @@
+"""Where MuJoCo's C structs keep their fields, for compiled callbacks that get bare pointers.
+
+Offsets come from the declarations shipped with MuJoCo (`mujoco.introspect.structs`), laid out
+by ctypes with the platform's C rules, and are checked against live pointers before use.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from functools import cache
+
+import mujoco
+import numpy as np
+from mujoco.introspect import ast_nodes, structs
+
+_C_TYPES: dict[str, type] = {
+    "int": ctypes.c_int,
+    "unsigned int": ctypes.c_uint,
+    "char": ctypes.c_char,
+    "unsigned char": ctypes.c_ubyte,
+    "float": ctypes.c_float,
+    "double": ctypes.c_double,
+    "size_t": ctypes.c_size_t,
+    "uintptr_t": ctypes.c_size_t,
+    "int64_t": ctypes.c_int64,
+    "uint64_t": ctypes.c_uint64,
+    "mjtNum": ctypes.c_double,
+    "mjtSize": ctypes.c_int64,
+    "mjtByte": ctypes.c_ubyte,
+    "mjtBool": ctypes.c_bool,
+}
+
+
+def _c_type(declared: ast_nodes.ValueType) -> type:
+    if isinstance(declared, ast_nodes.PointerType):
+        return ctypes.c_void_p
+    if isinstance(declared, ast_nodes.ArrayType):
+        array = _c_type(declared.inner_type)
+        for extent in reversed(declared.extents):
+            array = array * extent
+        return array
+    if isinstance(declared, ast_nodes.AnonymousStructDecl):
+        fields = [(f.name, _c_type(f.type)) for f in declared.fields]
+        return type("anonymous", (ctypes.Structure,), {"_fields_": fields})
+    name = declared.name.removeprefix("struct ").rstrip("_")
+    if name in _C_TYPES:
+        return _C_TYPES[name]
+    if name in structs.STRUCTS:
+        return layout(name)
+    if name.startswith("mjt"):  # an enumeration
+        return ctypes.c_int
+    raise NotImplementedError(f"C type {name} of MuJoCo {mujoco.__version__}")
+
+
+@cache
+def layout(struct: str) -> type[ctypes.Structure]:
+    """The ctypes layout of a MuJoCo struct, e.g. "mjModel"."""
+    fields = [(f.name, _c_type(f.type)) for f in structs.STRUCTS[struct].fields]
+    return type(struct, (ctypes.Structure,), {"_fields_": fields})
+
+
+def word(struct: str, field: str) -> int:
+    """Offset of a pointer or size field in 8-byte words."""
+    offset = getattr(layout(struct), field).offset
+    if offset % 8:
+        raise NotImplementedError(f"{struct}.{field} is at byte {offset}, not on a word")
+    return offset // 8
+
+
+def check(model: mujoco.MjModel, data: mujoco.MjData) -> set[str]:
+    """Compare every offset that live objects show with the declared one.
+
+    Returns:
+        The names of the fields that agreed.
+
+    Raises:
+        RuntimeError: a field lies elsewhere; compiled callbacks would read foreign memory.
+    """
+    agreed = set()
+    for struct, live in (("mjModel", model), ("mjData", data)):
+        for field in structs.STRUCTS[struct].fields:
+            seen = getattr(live, field.name, None)
+            at = live._address + getattr(layout(struct), field.name).offset
+            if isinstance(seen, np.ndarray) and isinstance(field.type, ast_nodes.PointerType):
+                pointer = ctypes.c_void_p.from_address(at).value
+                if not seen.size or pointer is None:  # None: in the arena, not allocated yet
+                    continue
+                right = pointer == seen.ctypes.data
+            elif isinstance(seen, int) and not isinstance(seen, bool):
+                if not isinstance(field.type, ast_nodes.ValueType):
+                    continue
+                right = _c_type(field.type).from_address(at).value == seen  # type: ignore[attr-defined]
+            else:
+                continue
+            if not right:
+                raise RuntimeError(
+                    f"{struct}.{field.name} of MuJoCo {mujoco.__version__} is not where its"
+                    " declaration puts it; install the mujoco version of the lock file"
+                )
+            agreed.add(field.name)
+    return agreed

@@ -1,0 +1,106 @@
+"""The twin: a compiled MuJoCo model of the robot together with the values that made it."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from identification.export import write_xml
+from identification.parameter import ParameterSet
+from identification.paths import resolve, write
+from identification.rollout import State
+from inca_mj import law, native
+from inca_mj.geometry import INCA, Geometry
+from inca_mj.kinematics import quaternion
+from inca_mj.mjcf import TIMESTEP, build
+from inca_mj.parameters import parameters as parameter_set
+from inca_mj.statics import Start, start
+
+
+@dataclass(frozen=True)
+class Twin:
+    """A robot that can be simulated; `twin()` makes one.
+
+    Attributes:
+        parameters: every number of the robot, with unit and source.
+        geometry: where its cables begin and end.
+        model: the compiled model; treat it as read-only.
+    """
+
+    parameters: ParameterSet
+    geometry: Geometry
+    model: mujoco.MjModel
+
+    @property
+    def start(self) -> Start:
+        """The pretensioned start that the parameters imply."""
+        return start(self.parameters, self.geometry)
+
+    def state(self) -> State:
+        """The start as a MuJoCo state."""
+        return start_state(self.start)
+
+    def with_values(self, values: Mapping[str, float]) -> Twin:
+        """The twin with other values, without compiling again.
+
+        Raises:
+            InputError: a name is unknown, a value out of bounds, or the start has no pretension.
+        """
+        parameters = self.parameters.with_values(values)
+        model = copy.copy(self.model)
+        write_values(model, parameters)
+        begin = start(parameters, self.geometry)
+        model.actuator_user[:, law.T_0] = begin.tension
+        state = start_state(begin)
+        model.qpos0[:] = model.key("start").qpos[:] = state.qpos
+        model.key("start").act[:] = state.act
+        mujoco.mj_setConst(model, mujoco.MjData(model))
+        return replace(self, parameters=parameters, model=model)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the model as MJCF, exact to the last bit; returns the path."""
+        spec = build(self.parameters, self.geometry)
+        spec.option.timestep = self.model.opt.timestep
+        return write_xml(spec, path)
+
+
+def twin(
+    parameters: ParameterSet | None = None,
+    geometry: Geometry = INCA,
+    *,
+    timestep: float = TIMESTEP,
+) -> Twin:
+    """Build and compile the robot, and install the law of its cables in this process.
+
+    Args:
+        parameters: the values; the thesis' Table 3.2 when None.
+        geometry: anchors of the cables; assumed ones by default.
+        timestep: of the RK4 integrator [s].
+
+    Raises:
+        InputError: the start has no pretension, or another library holds MuJoCo's callbacks.
+    """
+    parameters = parameters or parameter_set()
+    native.install()
+    spec = build(parameters, geometry)
+    spec.option.timestep = timestep
+    return Twin(parameters, geometry, spec.compile())
+
+
+def write_values(model: mujoco.MjModel, parameters: ParameterSet) -> None:
+    """Write all model parameters into mjModel, in place; the start's follow in `Twin`."""
+    for parameter in parameters:
+        if parameter.where != "start":
+            write(model, resolve(model, parameter.where), parameter.value)
+
+
+def start_state(begin: Start) -> State:
+    """A start as a MuJoCo state: qpos (15,), qvel (14,), act (8,)."""
+    drives = len(begin.tension)
+    qpos = np.concatenate([begin.pose[:3], quaternion(*begin.pose[3:]), np.zeros(drives)])
+    return State(qpos, np.zeros(6 + drives), begin.no_load_length)
