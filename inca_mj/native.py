@@ -31,7 +31,8 @@ TENSION, NO_LOAD_LENGTH = 1, 2  # what a user sensor shows: its sensor_user[0]
 def _offsets(struct: str, names: str) -> Any:
     """Word offsets of fields, frozen into the compiled code as constants."""
     fields = names.split()
-    return namedtuple(struct, fields)._make(structs.word(struct, n) for n in fields)
+    kind: Any = namedtuple(struct, fields)
+    return kind(*(structs.word(struct, n) for n in fields))
 
 
 _M = _offsets(

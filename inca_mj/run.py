@@ -1,4 +1,4 @@
-"""A run: what the twin did under some currents; it can be saved, replayed, and turned into a log."""
+"""A run: what the twin did under some currents; it can be saved and replayed."""
 
 from __future__ import annotations
 
