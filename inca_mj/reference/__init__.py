@@ -1,0 +1,18 @@
+"""The INCA 6D as the thesis writes it: 36 states, body axes, Euler angles. The twin's oracle.
+
+It shares parameters and geometry with the MuJoCo twin, and no physics code. Names from here are
+the public ones.
+"""
+
+from inca_mj.reference.energy import Energy as Energy
+from inca_mj.reference.energy import Power as Power
+from inca_mj.reference.energy import energy as energy
+from inca_mj.reference.energy import power as power
+from inca_mj.reference.equations import derivative as derivative
+from inca_mj.reference.integrate import simulate_reference as simulate_reference
+from inca_mj.reference.numbers import pack as pack
+from inca_mj.reference.outputs import Outputs as Outputs
+from inca_mj.reference.outputs import outputs as outputs
+from inca_mj.reference.run import ReferenceRun as ReferenceRun
+from inca_mj.reference.statics import Rest as Rest
+from inca_mj.reference.statics import rest as rest
