@@ -1,0 +1,43 @@
+"""What can be wrong with a file before a byte of it is read."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from pathlib import Path
+
+from identification.errors import InputError
+
+MAX_BYTES = 512 * 2**20  # hours at 1 kHz; more would fill the memory before it failed
+
+
+def read_bytes(path: Path, largest: int = MAX_BYTES) -> bytes:
+    """The bytes of a regular file of a sane size.
+
+    Raises:
+        InputError: there is no such file, it is something else, too large, or cannot be read.
+    """
+    try:
+        if not path.exists():
+            raise InputError(_missing(path))
+        if path.is_dir():
+            raise InputError(f"{path} is a folder; name a log file in it, such as log.csv")
+        if not path.is_file():
+            raise InputError(f"{path} is not a regular file; give a .csv or .mat file")
+        size = path.stat().st_size
+        if size > largest:
+            raise InputError(
+                f"{path} has {size / 2**20:.0f} MB, more than the {largest / 2**20:.0f} MB that "
+                "are read at once; cut it into shorter logs"
+            )
+        return path.read_bytes()
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise InputError(f"cannot read {path}: {reason}; check its name and permissions") from error
+
+
+def _missing(path: Path) -> str:
+    if not path.parent.is_dir():
+        return f"no such folder: {path.parent}; check the path of {path.name}"
+    near = get_close_matches(path.name, [f.name for f in path.parent.iterdir()], n=3)
+    hint = f"did you mean {', '.join(near)}" if near else "check its name and folder"
+    return f"no such file: {path}; {hint}"
