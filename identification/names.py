@@ -43,11 +43,11 @@ def listed(names: Iterable[str]) -> str:
     return shown + (f" and {len(every) - _LISTED} more" if len(every) > _LISTED else "")
 
 
-def quoted(text: str) -> str:
+def quoted(text: str, longest: int = 40) -> str:
     """Text from a file for a message: as it is when it is a plain name, else escaped and cut."""
-    if text.isprintable() and 0 < len(text) <= 40 and text == text.strip():
+    if text.isprintable() and 0 < len(text) <= longest and text == text.strip():
         return text
-    return repr(text if len(text) <= 40 else text[:37] + "...")
+    return repr(text if len(text) <= longest else text[: longest - 3] + "...")
 
 
 def check_column_names(names: Iterable[str]) -> None:

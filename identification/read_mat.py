@@ -25,7 +25,7 @@ def parse_mat(
 ) -> Table:
     """The table in a `.mat` file of version 7 or older.
 
-    Optional columns are vectors of their own name.
+    Optional columns are vectors of their own name; one that is called `u` or `y` cannot be given.
 
     Raises:
         InputError: the file cannot be read, lacks `u` or `y`, or their shapes do not fit.
@@ -43,7 +43,9 @@ def parse_mat(
     n = _samples(arrays, wanted, path)
     parts = [a if a.shape == (n, len(wanted[k])) else a.T for k, a in arrays.items()]
     names = [*inputs, *outputs]
-    for name in (name for name in optional if name in content):
+    for name in optional:
+        if name not in content or name in wanted:
+            continue
         extra = _numeric(content[name], name, path).reshape(-1, 1)
         if len(extra) != n:
             raise InputError(

@@ -56,7 +56,7 @@ def read_sidecar(path: Path) -> Sidecar:
     try:
         content = tomllib.loads(raw.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
-        reason = quoted(str(error).partition("\n")[0]) if str(error) else "nested too deeply"
+        reason = quoted(str(error), 120) if str(error) else "nested too deeply"
         raise InputError(f"{path} is not TOML ({reason}); correct it there") from error
     values = {}
     for key, value in content.items():

@@ -66,16 +66,20 @@ def check_columns(
         slip = f" (is {missing[0]} its column {quoted(close[0])}?)" if close else ""
         time = ", or give sampling_time" if "time" in missing else ""
         raise InputError(
-            f"{table.path} lacks {listed(missing)}{slip}; it has {listed(table.names)}; correct "
+            f"{table.path} lacks {_columns(missing)}{slip}; it has {listed(table.names)}; correct "
             f"its names or map them under [columns]{time} in {sidecar.path}"
         )
     if unknown:
         close = get_close_matches(unknown[0], good, n=1)
         slip = f" (is {quoted(unknown[0])} meant to be {close[0]}?)" if close else ""
         raise InputError(
-            f"{table.path} has unknown {listed(unknown)}{slip}; good names are {listed(good)}; "
+            f"{table.path} has unknown {_columns(unknown)}{slip}; good names are {listed(good)}; "
             f"remove the others or list them under 'ignore' in {sidecar.path}"
         )
+
+
+def _columns(names: Sequence[str]) -> str:
+    return ("column " if len(names) == 1 else "columns ") + listed(names)
 
 
 def check_finite(table: Table) -> None:
