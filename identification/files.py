@@ -1,18 +1,54 @@
-"""Files are written whole or not at all."""
+"""Files are refused before they are read, and written whole or not at all."""
 
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from difflib import get_close_matches
 from pathlib import Path
+from uuid import uuid4
 
 from identification.errors import InputError
 
+MAX_BYTES = 512 * 2**20  # hours at 1 kHz; more would fill the memory before it failed
+
+
+def read_bytes(path: Path, largest: int = MAX_BYTES) -> bytes:
+    """The bytes of a regular file of a sane size.
+
+    Raises:
+        InputError: there is no such file, it is something else, too large, or cannot be read.
+    """
+    try:
+        if not path.exists():
+            raise InputError(_missing(path))
+        if path.is_dir():
+            raise InputError(f"{path} is a folder; name a log file in it, such as log.csv")
+        if not path.is_file():
+            raise InputError(f"{path} is not a regular file; give a .csv or .mat file")
+        size = path.stat().st_size
+        if size > largest:
+            raise InputError(
+                f"{path} has {size / 2**20:.0f} MB, more than the {largest / 2**20:.0f} MB that "
+                "are read at once; cut it into shorter logs"
+            )
+        return path.read_bytes()
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise InputError(f"cannot read {path}: {reason}; check its name and permissions") from error
+
+
+def _missing(path: Path) -> str:
+    if not path.parent.is_dir():
+        return f"no such folder: {path.parent}; check the path of {path.name}"
+    near = get_close_matches(path.name, [f.name for f in path.parent.iterdir()], n=3)
+    hint = f"did you mean {', '.join(near)}" if near else "check its name and folder"
+    return f"no such file: {path}; {hint}"
+
 
 @contextmanager
-def whole_file(path: str | Path) -> Iterator[Path]:
+def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
     """A temporary path beside `path` that becomes `path` when the block ends well.
 
     Raises:
@@ -20,28 +56,22 @@ def whole_file(path: str | Path) -> Iterator[Path]:
     """
     path = Path(path)
     if not path.parent.is_dir():
-        raise InputError(f"no folder {path.parent} to write {path.name} in; create it first")
+        raise InputError(f"no such folder: {path.parent}; make it before {path.name} is written")
+    draft = path.with_name(f".{uuid4().hex}{path.suffix}")
     try:
-        handle, name = tempfile.mkstemp(prefix=".", suffix=path.suffix, dir=path.parent)
+        yield draft
+        draft.replace(path)
     except OSError as error:
-        raise InputError(f"cannot write to folder {path.parent}: {error.strerror}") from None
-    os.close(handle)
-    try:
-        yield Path(name)
-        os.chmod(name, 0o666 & ~_umask())
-        os.replace(name, path)
+        reason = error.strerror or type(error).__name__
+        raise InputError(
+            f"cannot write {path}: {reason}; choose a folder with room and permission"
+        ) from error
     finally:
-        Path(name).unlink(missing_ok=True)
+        draft.unlink(missing_ok=True)
 
 
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
-
-
-def write_text(path: str | Path, text: str) -> Path:
+def write_text(path: str | os.PathLike[str], text: str) -> Path:
     """Write UTF-8 text to a file, whole or not at all; returns its path."""
     with whole_file(path) as draft:
-        draft.write_text(text, encoding="utf-8")
+        draft.write_text(text, encoding="utf-8", newline="")
     return Path(path)

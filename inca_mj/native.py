@@ -31,7 +31,7 @@ TENSION, NO_LOAD_LENGTH = 1, 2  # what a user sensor shows: its sensor_user[0]
 def _offsets(struct: str, names: str) -> Any:
     """Word offsets of fields, frozen into the compiled code as constants."""
     fields = names.split()
-    kind: Any = namedtuple(struct, fields)
+    kind: Any = namedtuple(struct, fields)  # type: ignore[misc]
     return kind(*(structs.word(struct, n) for n in fields))
 
 

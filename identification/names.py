@@ -1,0 +1,69 @@
+"""A column is known by its own name or by its group: `angle_3` belongs to the group `angle`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import TypeVar
+
+from identification.errors import InputError, unknown_name
+
+Value = TypeVar("Value")
+
+_NUMBER = re.compile(r"_\d+$")
+_LISTED = 24  # names in one message: enough for a robot's log, short enough for one sentence
+
+
+def group(name: str) -> str:
+    """The name without its trailing number: `angle` of `angle_3`, `x` of `x`."""
+    return _NUMBER.sub("", name)
+
+
+def lookup(table: Mapping[str, Value], name: str) -> Value | None:
+    """What `table` says of a column: under its own name first, else under its group."""
+    return table.get(name, table.get(group(name)))
+
+
+def check_keys(what: str, keys: Iterable[str], columns: Iterable[str]) -> None:
+    """Refuse a key that is neither a column nor a group: it would silently do nothing.
+
+    Raises:
+        InputError: a key is unknown.
+    """
+    known = {n for column in columns for n in (column, group(column))}
+    for key in keys:
+        if key not in known:
+            raise unknown_name(what, key, known)
+
+
+def listed(names: Iterable[str]) -> str:
+    """Names for a message, on one line whatever they hold, and cut when there are too many."""
+    every = list(names)
+    shown = ", ".join(quoted(n) for n in every[:_LISTED])
+    return shown + (f" and {len(every) - _LISTED} more" if len(every) > _LISTED else "")
+
+
+def quoted(text: str, longest: int = 40) -> str:
+    """Text from a file for a message: as it is when it is a plain name, else escaped and cut."""
+    if text.isprintable() and 0 < len(text) <= longest and text == text.strip():
+        return text
+    return repr(text if len(text) <= longest else text[: longest - 3] + "...")
+
+
+def check_column_names(names: Iterable[str]) -> None:
+    """Refuse names that a CSV header could not hold, and names that occur twice.
+
+    Raises:
+        InputError: a name is empty, `time`, twice there, or holds a comma, a quote or a line break.
+    """
+    every = list(names)
+    for name in every:
+        plain = name.isprintable() and name == name.strip() and not set(name) & set(',"')
+        if not name or not plain or name.startswith("#") or name == "time":
+            raise InputError(
+                f"{name!r} cannot name a column of a log; use printable text without commas or "
+                "quotes, other than 'time'"
+            )
+    twice = sorted({n for n in every if every.count(n) > 1})
+    if twice:
+        raise InputError(f"the log names {listed(twice)} twice; give each column a name of its own")

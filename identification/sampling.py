@@ -1,0 +1,116 @@
+"""Constant sampling: t_k = t_0 + k h, as exactly as the digits of a file can say it.
+
+A predictor steps over a regular grid, so what matters is how far each time stamp lies from that
+grid, not how much neighbouring steps differ (small differences that add up are a drift).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from identification.errors import InputError
+
+FloatArray = NDArray[np.float64]
+
+MIN_ROWS = 3  # two intervals: the least that can show that sampling is constant
+
+# A joint at 50 rad/s moves 0.5 mrad, the noise of its encoder, in 1e-3 of a 10 ms step.
+_JITTER = 1e-3
+# Rounding of the printed stamps is forgiven up to this part of a step ...
+_ROUNDING = 0.02
+# ... or this, when the user has said what the sampling time is.
+_ROUNDING_DECLARED = 0.5
+
+
+def sampling_time(time: FloatArray) -> float:
+    """The mean step [s], in which the rounding of single stamps has averaged out.
+
+    Twelve digits drop the last bits that the division leaves: 0.01 is 0.01.
+    """
+    return float(f"{(float(time[-1]) - float(time[0])) / (len(time) - 1):.12g}")
+
+
+def grid(start: float, step: float, n: int) -> FloatArray:
+    """The n stamps start + k step [s]; those beyond the largest float are infinite."""
+    with np.errstate(over="ignore"):
+        return start + step * np.arange(n, dtype=np.float64)
+
+
+def rows_between(time: FloatArray, start: float, end: float) -> tuple[int, int]:
+    """First row of [start, end) [s] and the row after its last.
+
+    Stamps carry rounding, so a sample begins a tenth of a step before its stamp.
+    """
+    early = 0.1 * sampling_time(time)
+    first, last = np.searchsorted(time, [start - early, end - early])
+    return int(first), int(last)
+
+
+def check_time(
+    time: FloatArray, place: Callable[[int], str], declared: float | None = None
+) -> None:
+    """Refuse time stamps that are not a regular grid.
+
+    Args:
+        time: stamps (n,) [s], finite.
+        place: says in words where a row is, for messages.
+        declared: the sampling time the user gave [s]; None to find it from the stamps.
+
+    Raises:
+        InputError: too few rows, time does not increase, or it is not evenly spaced.
+    """
+    if len(time) < MIN_ROWS:
+        raise InputError(
+            f"{place(0)}: a log needs at least {MIN_ROWS} rows, and this one has {len(time)}; "
+            "record for longer, or take a wider part"
+        )
+    # Stamps near the largest float overflow in here, and are then refused as uneven.
+    with np.errstate(over="ignore", invalid="ignore"):
+        _check_increasing(time, place)
+        _check_even(time, place, declared)
+
+
+def _check_increasing(time: FloatArray, place: Callable[[int], str]) -> None:
+    stuck = np.flatnonzero(time[1:] <= time[:-1])
+    if stuck.size:
+        row = int(stuck[0]) + 1
+        raise InputError(
+            f"{place(row)}: time does not increase ({time[row]:.9g} s follows "
+            f"{time[row - 1]:.9g} s); sort the rows and drop repeated ones"
+        )
+
+
+def _check_even(time: FloatArray, place: Callable[[int], str], declared: float | None) -> None:
+    step = declared or (float(time[-1]) - float(time[0])) / (len(time) - 1)
+    off = np.abs(time - grid(time[0], step, len(time)))
+    forgiven = _ROUNDING_DECLARED if declared else _ROUNDING
+    rounding = min(_printed_resolution(time), forgiven * step)
+    if np.all(off <= _JITTER * step + rounding + np.spacing(np.abs(time).max())):
+        return
+    row = int(np.argmax(off))
+    size = f"{off[row]:.3g} s, {100 * off[row] / step:.2g} % of the {step:.6g} s step,"
+    if declared:
+        raise InputError(
+            f"{place(row)}: time is {size} away from what sampling_time says; "
+            "correct sampling_time, or leave it out"
+        )
+    raise InputError(
+        f"{place(row)}: sampling is not even: time is {size} off a regular grid (allowed: "
+        f"{100 * _JITTER:g} %); resample the log to a constant step"
+    )
+
+
+def _printed_resolution(time: FloatArray) -> float:
+    """Size of the last decimal [s] that the larger stamps were printed with; 0 if too small to see.
+
+    "%g" gives the largest stamps the fewest decimals, so the coarser half decides.
+    """
+    late = time[np.abs(time) >= 0.5 * np.abs(time).max()]
+    for decimals in range(10):
+        scaled = late * 10.0**decimals
+        if np.all(np.abs(scaled - np.rint(scaled)) <= 1e-6):
+            return float(10.0**-decimals)
+    return 0.0
