@@ -9,6 +9,7 @@ w = (0, 0, m g, 0, 0, 0) is the weight to carry.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,7 +66,11 @@ def start(parameters: ParameterSet, geometry: Geometry) -> Start:
     Raises:
         InputError: as `pretension`.
     """
-    values = parameters.values()
+    return start_from(parameters.values(), geometry)
+
+
+def start_from(values: Mapping[str, float], geometry: Geometry) -> Start:
+    """`start` from plain values by name, in SI units."""
     pose = np.array([values[name] for name in ("x", "y", "z", "roll", "pitch", "yaw")])
     T = pretension(pose, geometry, values["m"])
     d, _ = cables(pose[:3], rotation(*pose[3:]), geometry)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,14 +12,15 @@ import numpy as np
 
 from identification.export import write_xml
 from identification.parameter import ParameterSet
-from identification.paths import resolve, write
+from identification.paths import Slot, resolve, write
+from identification.predictor import Numbers
 from identification.rollout import State
 from inca_mj import law, native
 from inca_mj.geometry import INCA, Geometry
 from inca_mj.kinematics import quaternion
 from inca_mj.mjcf import TIMESTEP, build
 from inca_mj.parameters import parameters as parameter_set
-from inca_mj.statics import Start, start
+from inca_mj.statics import Start, start, start_from
 
 
 @dataclass(frozen=True)
@@ -61,6 +62,37 @@ class Twin:
         model.key("start").act[:] = state.act
         mujoco.mj_setConst(model, mujoco.MjData(model))
         return replace(self, parameters=parameters, model=model)
+
+    def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:
+        """Initial states and model numbers of n value sets, for `identification.Predictor`.
+
+        The start closes the loop that the thesis could not: T(0) follows from pose and m, d₀(0)
+        from T(0), pose and λ.
+
+        Args:
+            names: parameters that differ from the twin's own.
+            values: their values, shape (n, p), in their units.
+
+        Raises:
+            InputError: a start has no pretension.
+        """
+        own = self.parameters.values()
+        starts = [
+            start_from({**own, **dict(zip(names, row, strict=True))}, self.geometry)
+            for row in values
+        ]
+        tensions = np.array([begin.tension for begin in starts])
+        numbers = [
+            (resolve(self.model, self.parameters[name].where), column)
+            for name, column in zip(names, values.T, strict=True)
+            if self.parameters[name].where != "start"
+        ]
+        numbers += [
+            (Slot("actuator_user", (i,), law.T_0), column) for i, column in enumerate(tensions.T)
+        ]
+        states = [start_state(begin) for begin in starts]
+        rows = (np.array([getattr(s, field) for s in states]) for field in ("qpos", "qvel", "act"))
+        return State(*rows), numbers
 
     def save(self, path: str | Path) -> Path:
         """Write the model as MJCF, exact to the last bit; returns the path."""

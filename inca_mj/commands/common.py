@@ -126,7 +126,9 @@ def _plain(value: Any) -> Any:
 def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
     """A plain text table, numbers to the right."""
     widths = [max(len(r[i]) for r in [head, *rows]) for i in range(len(head))]
-    lines = ("  ".join(cell.rjust(w) for cell, w in zip(r, widths, strict=True)) for r in [head, *rows])
+    lines = (
+        "  ".join(cell.rjust(w) for cell, w in zip(r, widths, strict=True)) for r in [head, *rows]
+    )
     return "\n".join(lines)
 
 

@@ -73,7 +73,9 @@ def summary(result: CrossCheck) -> str:
             str(row["case"]),
             f"{1e3 * row['step']:g}",
             *(
-                "diverged" if row[f"max_{what}_error"] is None else f"{row[f'max_{what}_error']:.2e}"
+                "diverged"
+                if row[f"max_{what}_error"] is None
+                else f"{row[f'max_{what}_error']:.2e}"
                 for what in ("angle", "position", "tension")
             ),
         )

@@ -1,0 +1,73 @@
+"""Parameters as the optimiser sees them: numbers of order one without units.
+
+    q = ln(value)       where the value is positive and may not change sign (a mass, a stiffness)
+    q = value           otherwise, in SI units (a position, an angle)
+
+A step in q is then a relative change, or metres and radians, of similar weight.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.parameter import ParameterSet
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """A change of variables for p parameters.
+
+    Attributes:
+        names: the parameters, p of them.
+        logarithmic: which have q = ln(value), shape (p,).
+        lower: bounds of q, shape (p,).
+        upper: bounds of q, shape (p,).
+    """
+
+    names: tuple[str, ...]
+    logarithmic: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+
+    def encode(self, values: np.ndarray) -> np.ndarray:
+        """Values to q, shape (..., p)."""
+        return np.where(self.logarithmic, np.log(np.where(self.logarithmic, values, 1.0)), values)
+
+    def decode(self, q: np.ndarray) -> np.ndarray:
+        """The values of q, shape (..., p)."""
+        return np.where(self.logarithmic, np.exp(np.where(self.logarithmic, q, 0.0)), q)
+
+    def slope(self, q: np.ndarray) -> np.ndarray:
+        """d value/d q, shape (..., p): a std in q times this is a std of the value."""
+        return np.where(self.logarithmic, self.decode(q), 1.0)
+
+
+def coordinates(parameters: ParameterSet, names: Sequence[str], start: np.ndarray) -> Coordinates:
+    """Coordinates of some parameters of a set, fit for a search from `start`.
+
+    Raises:
+        InputError: nothing is free, a name occurs twice, or a start lies outside its bounds.
+    """
+    if not names:
+        raise InputError("no parameter is free; name at least one to estimate")
+    twice = sorted({n for n in names if list(names).count(n) > 1})
+    if twice:
+        raise InputError(f"parameter {twice[0]!r} is named twice; name each once")
+    records = [parameters[name] for name in names]
+    for record, value in zip(records, start, strict=True):
+        if not record.lower < value < record.upper:
+            raise InputError(
+                f"the start of {record.name} = {value:g} {record.unit}".rstrip()
+                + f" must lie inside ({record.lower:g}, {record.upper:g}); a search that starts"
+                " on a bound stays there"
+            )
+    logarithmic = np.array([r.lower >= 0 and v > 0 for r, v in zip(records, start, strict=True)])
+    lower, upper = (np.array([getattr(r, side) for r in records]) for side in ("lower", "upper"))
+    with np.errstate(divide="ignore"):
+        low = np.where(logarithmic, np.log(np.where(logarithmic, lower, 1.0)), lower)
+        high = np.where(logarithmic, np.log(np.where(logarithmic, upper, 1.0)), upper)
+    return Coordinates(tuple(names), logarithmic, low, high)

@@ -1,0 +1,49 @@
+"""Sensitivities of the predicted outputs, all columns in one batch of simulations.
+
+    ∂ŷ/∂q_j ≈ (ŷ(q + h e_j) - ŷ(q - h e_j))/(2 h)
+
+Central differences err by h² ŷ‴/6 and by round-off over h: at h = 1e-4 both stay near 1e-8.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from identification.coordinates import Coordinates
+from identification.errors import InputError
+from identification.predictor import Predictor
+
+STEP = 1e-4  # of q: relative for a logarithmic coordinate, m or rad for another
+
+
+def sensitivity(
+    predictor: Predictor,
+    space: Coordinates,
+    q: np.ndarray,
+    samples: int | None = None,
+    step: float = STEP,
+) -> np.ndarray:
+    """∂ŷ/∂q, shape (samples, ny, p), from 2 p simulations."""
+    moves = step * np.eye(len(q))
+    values = space.decode(np.concatenate([q + moves, q - moves]))
+    ahead, behind = np.split(predictor.predict(values, samples), 2)
+    return np.moveaxis((ahead - behind) / (2 * step), 0, -1)
+
+
+def refuse_without_effect(J: np.ndarray, names: tuple[str, ...], outputs: tuple[str, ...]) -> None:
+    """Refuse parameters that no output feels: a fit would stop at once and say it converged.
+
+    Args:
+        J: sensitivities, shape (samples, ny, p).
+        names: the parameters.
+        outputs: the outputs, for the message.
+
+    Raises:
+        InputError: a column is zero.
+    """
+    dead = [n for n, column in zip(names, np.moveaxis(J, -1, 0), strict=True) if not column.any()]
+    if dead:
+        raise InputError(
+            f"{', '.join(dead)} ha{'s' if len(dead) == 1 else 've'} no effect on"
+            f" {outputs[0]} … {outputs[-1]}; leave it fixed, or check where it goes in the model"
+        )
