@@ -53,7 +53,7 @@ class Options:
     criterion: Literal["trace", "det"] = "trace"
     loss: str = "linear"
     horizons: tuple[float, ...] = HORIZONS
-    tolerance: float = 1e-10
+    tolerance: float = 1e-8
     max_evaluations: int = 60
     priors: Mapping[str, float] = field(default_factory=dict)
 

@@ -1,8 +1,9 @@
 """The noise of a measurement, seen in the measurement alone.
 
 A smooth signal vanishes in differences of high order; white noise of std σ grows to
-σ √C(2n, n) in differences of order n (von Neumann 1941, for n = 1). The median of their sizes
-forgets the few samples after a jump of the input, where the signal is not smooth.
+σ √C(2n, n) in differences of order n (von Neumann 1941, for n = 1). The largest fifth of them is
+left out, and the rest scaled up as for a Gaussian: a few samples after a jump of the input, where
+the signal is not smooth, then do not count.
 """
 
 from __future__ import annotations
@@ -10,20 +11,23 @@ from __future__ import annotations
 from math import comb
 
 import numpy as np
+from scipy.stats import norm
 
 ORDER = 4
-_MEDIAN = 0.6744897501960817  # of |N(0, 1)|
+KEPT = 0.8  # share of the differences that counts
 
 
 def noise_floor(y: np.ndarray, order: int = ORDER) -> np.ndarray:
     """Std of the white noise on each channel, shape (n, ny) -> (ny,), in the unit of `y`.
 
-    An upper bound where the signal itself is rough at the sampling rate; encoder steps count as
+    An upper bound where the signal itself is rough at the sampling rate; encoder steps Δ count as
     noise of Δ/√12 as long as the signal crosses some of them.
     """
-    rough = np.diff(y, n=min(order, len(y) - 1), axis=0)
-    scale = _MEDIAN * np.sqrt(comb(2 * order, order))
-    return np.median(np.abs(rough), axis=0) / scale
+    rough = np.sort(np.diff(y, n=min(order, len(y) - 1), axis=0) ** 2, axis=0)
+    kept = rough[: max(1, round(KEPT * len(rough)))].mean(axis=0)
+    z = norm.ppf((1 + KEPT) / 2)
+    share = 1 - 2 * z * norm.pdf(z) / KEPT  # variance of a Gaussian cut at ±z
+    return np.sqrt(kept / share / comb(2 * order, order))
 
 
 def whitener_of(residual: np.ndarray) -> np.ndarray:

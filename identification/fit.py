@@ -1,0 +1,148 @@
+"""A fit: estimated values with their uncertainty, how well they explain, and what they mean.
+
+    cov(q) = A⁺ B A⁺,   A = Σ_k S_kᵀ S_k,   B = Σ_blocks g_b g_bᵀ,   g_b = Σ_{k in b} S_kᵀ C ε_k
+
+The sandwich (White 1980, with blocks for coloured noise) stays right when the noise is not equal
+everywhere, as in the thesis' trial 4 where it is 5 % of each sample.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.errors import DivergenceError
+from identification.estimate import Estimate
+from identification.identifiability import (
+    BLIND,
+    Combination,
+    Identifiability,
+    identifiability,
+    known_combinations,
+)
+from identification.log import Log
+from identification.metrics import fit_percent, loss, rms
+from identification.noise import noise_floor
+from identification.predictor import Predictor
+from identification.residuals import ResidualTests, correlation_time, residual_tests
+from identification.sensitivity import sensitivity
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The result of an estimation.
+
+    Attributes:
+        estimate: where the search ended.
+        std: of the values, infinite where the log cannot say, shape (p,).
+        correlation: of the estimates, shape (p, p).
+        at_bound: which values lie on a bound, shape (p,).
+        found: the directions that the log shows.
+        combinations: what can be known of parameters that cannot, with value and std.
+        residual: y - ŷ, shape (n, ny).
+        fit_percent: on the log, shape (ny,) [%].
+        validation_fit_percent: on data that the fit has not seen, shape (ny,) [%], or None.
+        validation_rms: there, over all outputs, or None.
+        floor: noise seen in the measurement alone, shape (ny,).
+        tests: of the residual.
+    """
+
+    estimate: Estimate
+    std: np.ndarray
+    correlation: np.ndarray
+    at_bound: np.ndarray
+    found: Identifiability
+    combinations: tuple[tuple[Combination, float, float], ...]
+    residual: np.ndarray
+    fit_percent: np.ndarray
+    validation_fit_percent: np.ndarray | None
+    validation_rms: float | None
+    floor: np.ndarray
+    tests: ResidualTests
+
+    @property
+    def rms(self) -> float:
+        """Of the residual over all outputs."""
+        return float(np.sqrt(np.mean(self.residual**2)))
+
+    @property
+    def loss(self) -> float:
+        """The thesis' loss function (3.5)."""
+        return loss(self.residual)
+
+
+def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
+    """What an estimate is worth.
+
+    Args:
+        estimate: where a search ended.
+        validation: the whole log of which the estimation used the beginning; what lies beyond is
+            data that the fit has not seen. None when there is none.
+    """
+    predictor, space, q = estimate.predictor, estimate.space, estimate.q
+    log = predictor.log
+    predicted = predictor.predict(space.decode(q))[0]
+    residual = log.outputs - predicted
+    J = sensitivity(predictor, space, q)
+    S = np.einsum("ij,njp->nip", estimate.whitener, J)
+    found = identifiability(S.reshape(-1, len(q)), space.names)
+    covariance = _sandwich(S, residual @ estimate.whitener.T, found)
+    std_q = np.where(found.undetermined, np.inf, np.sqrt(np.diag(covariance)))
+    scale = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
+    near = 1e-6 * np.maximum(1.0, np.abs(q))
+    fit, error = _beyond(estimate, validation)
+    return Fit(
+        estimate,
+        std_q * space.slope(q),
+        covariance / np.outer(scale, scale),
+        (q - space.lower < near) | (space.upper - q < near),
+        found,
+        _combinations(found, estimate, covariance),
+        residual,
+        fit_percent(log.outputs, predicted),
+        fit,
+        error,
+        noise_floor(log.outputs),
+        residual_tests(residual, log.inputs),
+    )
+
+
+def _sandwich(S: np.ndarray, error: np.ndarray, found: Identifiability) -> np.ndarray:
+    """Covariance of q along the directions that are felt, shape (p, p)."""
+    n, ny, p = S.shape
+    length = min(int(np.ceil(3 * correlation_time(error) - 2)), max(1, n // 30))
+    scores = np.einsum("nip,ni->np", S, error)
+    blocks = np.add.reduceat(scores, np.arange(0, n, length), axis=0)
+    felt = found.strengths >= BLIND * found.strengths[0]
+    inverse = (found.directions[felt].T / found.strengths[felt] ** 2) @ found.directions[felt]
+    freedom = n * ny / max(1, n * ny - p)
+    return freedom * inverse @ (blocks.T @ blocks) @ inverse
+
+
+def _combinations(
+    found: Identifiability, estimate: Estimate, covariance: np.ndarray
+) -> tuple[tuple[Combination, float, float], ...]:
+    """Products of parameters with value and std (of the product)."""
+    out = []
+    for combination in known_combinations(found, estimate.space.logarithmic):
+        powers = np.array([float(combination.exponents.get(n, 0)) for n in found.names])
+        value = combination.value(estimate.values)
+        out.append((combination, value, value * float(np.sqrt(powers @ covariance @ powers))))
+    return tuple(out)
+
+
+def _beyond(estimate: Estimate, whole: Log | None) -> tuple[np.ndarray | None, float | None]:
+    """Fit % and rms on the samples after the fitted ones, by a free run from the start."""
+    n = len(estimate.predictor.log)
+    if whole is None or len(whole) <= n + 2:
+        return None, None
+    p = estimate.predictor
+    try:
+        predicted = Predictor(p.plant, whole, p.names, p.fixed).predict(
+            estimate.space.decode(estimate.q)
+        )[0][n:]
+    except DivergenceError:
+        return np.full(whole.outputs.shape[1], -np.inf), np.inf
+    measured = whole.outputs[n:]
+    return fit_percent(measured, predicted), float(np.sqrt(np.mean(rms(measured - predicted) ** 2)))

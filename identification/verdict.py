@@ -1,0 +1,88 @@
+"""What a fit means, in sentences a person can act on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from identification.identifiability import in_words
+
+if TYPE_CHECKING:
+    from identification.fit import Fit
+
+LEVEL = 0.01  # of the residual's tests: one false alarm in a hundred
+
+
+def verdict(fit: Fit) -> list[str]:
+    """Sentences: did it converge, what can be known, is the model enough, does it hold unseen."""
+    return [*_search(fit), *_identifiable(fit), *_enough(fit), *_unseen(fit)]
+
+
+def _search(fit: Fit) -> list[str]:
+    said = {
+        "converged": "The search converged.",
+        "iterations": "The search ran out of iterations; start nearer, or allow more.",
+        "stopped": "The search was stopped; these are the best values it had seen.",
+    }[fit.estimate.status]
+    bound = [n for n, at in zip(fit.found.names, fit.at_bound, strict=True) if at]
+    if bound:
+        return [said, f"At a bound: {', '.join(bound)}; widen it or fix the parameter."]
+    return [said]
+
+
+def _identifiable(fit: Fit) -> list[str]:
+    found = fit.found
+    if not len(found.blind):
+        values = np.array(list(fit.estimate.values.values()))
+        relative = fit.std / np.where(fit.estimate.space.logarithmic, np.abs(values), np.inf)
+        weak = [n for n, r in zip(found.names, relative, strict=True) if r > 0.5]
+        said = f"All {len(found.names)} directions of the parameters are felt by the outputs."
+        if weak:
+            said += f" Too weakly for this noise: {', '.join(weak)}, whose std is half the value."
+        return [said]
+    unknown = [n for n, u in zip(found.names, found.undetermined, strict=True) if u]
+    sentences = [
+        f"{found.rank} of {len(found.names)} directions are felt: {' and '.join(unknown)} trade off"
+        f" along ({'; '.join(in_words(d, found.names) for d in found.blind)}) without any output"
+        " feeling it."
+    ]
+    for combination, value, std in fit.combinations:
+        sentences.append(
+            f"Of {' and '.join(combination.exponents)} only {combination} can be known from this"
+            f" log: {value:.6g} ± {std:.2g}; fix one of them."
+        )
+    return sentences
+
+
+def _enough(fit: Fit) -> list[str]:
+    floor = float(np.sqrt(np.mean(fit.floor**2)))
+    ratio = fit.rms / floor if floor > 0 else np.inf
+    sentences = [f"The residual is {fit.rms:.3g} rms, {ratio:.2f} of the noise floor {floor:.3g}."]
+    dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
+    coloured = int((fit.tests.white < LEVEL / len(fit.tests.white)).sum())
+    if dependent:
+        sentences.append(
+            f"{dependent} outputs' residuals depend on the input: the model lacks something."
+        )
+    elif coloured:
+        sentences.append(
+            f"{coloured} outputs' residuals are coloured, none depends on the input: noise that is"
+            " not white, or an effect that the input does not excite."
+        )
+    else:
+        sentences.append("The residual is white and independent of the input: the model suffices.")
+    return sentences
+
+
+def _unseen(fit: Fit) -> list[str]:
+    if fit.validation_rms is None:
+        return ["There is no unseen data to confirm it on."]
+    ratio = fit.validation_rms / fit.rms if fit.rms > 0 else np.inf
+    held = (
+        "it holds" if ratio < 1.2 else "it does not hold: too many parameters, or an effect missing"
+    )
+    return [
+        f"On unseen data the residual is {fit.validation_rms:.3g} rms,"
+        f" {ratio:.2f} times the fitted one: {held}."
+    ]
