@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -126,8 +127,43 @@ def _plain(value: Any) -> Any:
 def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
     """A plain text table, numbers to the right."""
     widths = [max(len(r[i]) for r in [head, *rows]) for i in range(len(head))]
-    lines = ("  ".join(cell.rjust(w) for cell, w in zip(r, widths, strict=True)) for r in [head, *rows])
+    lines = (
+        "  ".join(cell.rjust(w) for cell, w in zip(r, widths, strict=True)) for r in [head, *rows]
+    )
     return "\n".join(lines)
+
+
+def cannot_draw() -> str:
+    """Settle the OpenGL backend before MuJoCo is imported: "" or why nothing can be drawn."""
+    from identification.errors import GraphicsError
+    from inca_mj.graphics import choose_backend
+
+    try:
+        choose_backend()
+    except GraphicsError as error:
+        do_not_draw()
+        return str(error)
+    return ""
+
+
+def do_not_draw() -> None:
+    """Keep OpenGL out of a command that does not draw: a bad MUJOCO_GL breaks MuJoCo's import."""
+    os.environ["MUJOCO_GL"] = "disable"
+
+
+def bar(what: str) -> Callable[[int, int], None]:
+    """A progress bar on stderr, silent where stderr is no terminal: call it with done, total."""
+    from tqdm import tqdm
+
+    meter = tqdm(desc=what, disable=None, leave=False)
+
+    def update(done: int, total: int) -> None:
+        meter.total = total
+        meter.update(done - meter.n)
+        if done >= total:
+            meter.close()
+
+    return update
 
 
 robot_field: Any = field(default_factory=Robot)
