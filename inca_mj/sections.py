@@ -1,4 +1,4 @@
-"""What the reports of the commands say: a section each for a comparison, a run, a check, a model."""
+"""What reports say: a section each for a comparison, a run, a check, a film, a model."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 def compare_verdict(result: Comparison) -> list[str]:
     """What the comparison means, in sentences."""
     fit, error = result.fit_percent, 1e3 * float(result.rms.mean())
+    cable = error * result.run.twin.parameters["R"].value
     worst = int(np.nanargmin(fit))
     return [
         f"The twin explains {np.nanmean(fit):.1f} % of the motor angles' motion (mean fit);"
         f" drive {worst + 1} is worst with {fit[worst]:.1f} %.",
-        f"The difference is {error:.1f} mrad rms, {error * result.run.twin.parameters['R'].value:.2f}"
-        " mm of cable.",
+        f"The difference is {error:.1f} mrad rms, {cable:.2f} mm of cable.",
     ]
 
 

@@ -126,11 +126,12 @@ def _plain(value: Any) -> Any:
 
 def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
     """A plain text table, numbers to the right."""
-    widths = [max(len(r[i]) for r in [head, *rows]) for i in range(len(head))]
-    lines = (
-        "  ".join(cell.rjust(w) for cell, w in zip(r, widths, strict=True)) for r in [head, *rows]
+    lines = [head, *rows]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    return "\n".join(
+        "  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True))
+        for line in lines
     )
-    return "\n".join(lines)
 
 
 def cannot_draw() -> str:

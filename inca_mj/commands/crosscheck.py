@@ -77,13 +77,12 @@ def summary(result: CrossCheck) -> str:
         (
             str(row["case"]),
             f"{1e3 * row['step']:g}",
-            *(
-                "diverged"
-                if row[f"max_{what}_error"] is None
-                else f"{row[f'max_{what}_error']:.2e}"
-                for what in ("angle", "position", "tension")
-            ),
+            *(_error(row[f"max_{what}_error"]) for what in ("angle", "position", "tension")),
         )
         for row in result.rows
     ]
     return table(head, rows) + "\n" + "\n".join(result.sentences)
+
+
+def _error(value: float | None) -> str:
+    return "diverged" if value is None else f"{value:.2e}"
