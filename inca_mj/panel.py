@@ -42,9 +42,10 @@ class Panel:
             ax.spines[["top", "right"]].set_visible(False)
             ax.spines[["left", "bottom"]].set_color(GREY)
             ax.set_xlim(time[0], time[-1])
+        inch = dpi / size[1]  # in parts of the height
         figure.suptitle("motor angles [rad] over time [s]", fontsize=8.5, color=INK, va="center",
-                        y=1 - 0.14 * dpi / size[1])  # fmt: skip
-        figure.subplots_adjust(left=0.08, right=0.97, top=1 - 0.45 * dpi / size[1], bottom=0.26 * dpi / size[1],
+                        y=1 - 0.14 * inch)  # fmt: skip
+        figure.subplots_adjust(left=0.08, right=0.97, top=1 - 0.45 * inch, bottom=0.26 * inch,
                                hspace=0.5, wspace=0.18)  # fmt: skip
         canvas.draw()
         self._still = np.asarray(canvas.buffer_rgba())[..., :3].copy()
