@@ -123,13 +123,17 @@ def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float) -> Figure
             (("angle", "rad"), ("position", "m"), ("tension", "N")),
             strict=True,
         ):
+            error = f"max_{kind}_error"
             for number, case in enumerate(cases):
-                points = sorted((r["step"], r[f"max_{kind}_error"]) for r in rows
+                # No error at all has no place on a logarithmic axis: a gap.
+                points = sorted((r["step"], r[error] or np.nan) for r in rows
                                 if str(r["case"]) == case)  # fmt: skip
                 ax.plot(*zip(*points, strict=True), color=SERIES[number % len(SERIES)],
                         marker=_MARKERS[number % len(_MARKERS)], ms=4.5, label=case)  # fmt: skip
-            _slope(ax, rows, f"max_{kind}_error")
-            ax.set(xscale="log", yscale="log", xlabel="step [ms]")
+            _slope(ax, rows, error)
+            ax.set(xscale="log", xlabel="step [ms]")
+            if any(row[error] > 0 for row in rows):
+                ax.set_yscale("log")
             steps = sorted({row["step"] for row in rows})
             ax.set_xticks(steps, [f"{1e3 * step:g}" for step in steps])
             ax.minorticks_off()

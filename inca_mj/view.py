@@ -19,8 +19,8 @@ from inca_mj.graphics import renderer
 CAMERAS = ("front", "side", "handle")
 
 _GHOST_RGB = np.array(to_rgb(MEASURED))
-_GHOST_BODY, _GHOST_CABLE = 0.40, 0.35  # opacity
-_HALO, _THREAD = 1.2, 0.6  # the ghost is a halo where it agrees; its cables do not hide colours
+_GHOST_BODY, _GHOST_CABLE = 0.24, 0.35  # opacity
+_HALO, _THREAD = 1.3, 0.6  # the ghost is a halo where it agrees; its cables do not hide colours
 _SAMPLES = 4  # antialiasing; software OpenGL knows 0 and 4, and 0 breaks cables into dots
 _WIDE = 1.15  # width to height that a camera is made for
 _DYNAMIC = mujoco.mjtCatBit.mjCAT_DYNAMIC
