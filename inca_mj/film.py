@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -68,10 +68,10 @@ def film(
     with (
         _stage(run, measured, measured_pose, camera, size, plots) as stage,
         whole_file(path) as draft,
-        closing(_encoder(draft, size, fps)) as encoder,
+        _encoder(draft, size, fps) as send,
     ):
         for done, time in enumerate(times, 1):
-            encoder.send(stage.frame(time))
+            send(stage.frame(time))
             if progress is not None:
                 progress(done, len(times))
     return path
@@ -191,19 +191,29 @@ def _between(time: np.ndarray, values: np.ndarray, at: float) -> np.ndarray:
     return (1 - part) * first + part * last
 
 
-def _encoder(path: Path, size: tuple[int, int], fps: float) -> Generator[None, np.ndarray, None]:
-    """A generator that is sent frames; closing it ends the file."""
+@contextmanager
+def _encoder(
+    path: Path, size: tuple[int, int], fps: float
+) -> Iterator[Callable[[np.ndarray | None], None]]:
+    """A function that takes frames (height, width, 3); the file is complete when the block ends."""
     import imageio_ffmpeg
 
-    try:
-        writer = imageio_ffmpeg.write_frames(
-            str(path), size, fps=fps, codec="libx264", quality=None, macro_block_size=2,
-            ffmpeg_log_level="error",
-            output_params=["-crf", "20", "-preset", "veryfast", "-movflags", "+faststart"],
-        )  # fmt: skip
-        writer.send(None)
-    except RuntimeError as error:
-        raise InputError(
-            f"no ffmpeg for the film ({error}); set IMAGEIO_FFMPEG_EXE to its program"
-        ) from error
-    return writer
+    writer = imageio_ffmpeg.write_frames(
+        str(path), size, fps=fps, codec="libx264", quality=None, macro_block_size=2,
+        ffmpeg_log_level="error",
+        output_params=["-crf", "20", "-preset", "veryfast", "-movflags", "+faststart"],
+    )  # fmt: skip
+
+    def send(frame: np.ndarray | None) -> None:
+        try:
+            writer.send(frame)
+        except (OSError, RuntimeError) as error:  # it died, its disk is full, or there is none
+            reason = [line for line in str(error).splitlines() if line.strip()][-1:]
+            raise InputError(
+                f"ffmpeg cannot write the film ({' '.join(reason).strip()}); make room for it, or"
+                " set IMAGEIO_FFMPEG_EXE to a working ffmpeg"
+            ) from error
+
+    with closing(writer):
+        send(None)  # starts the program
+        yield send

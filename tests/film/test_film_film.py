@@ -112,6 +112,15 @@ def test_a_film_that_fails_leaves_nothing(tmp_path, short_run):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # imageio-ffmpeg's pipes
+@pytest.mark.parametrize("program", ["/bin/false", "/no/such/ffmpeg"])
+def test_an_ffmpeg_that_does_not_work_is_one_sentence(tmp_path, short_run, monkeypatch, program):
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", program)
+    with pytest.raises(InputError, match=r"ffmpeg cannot write the film.*IMAGEIO_FFMPEG_EXE"):
+        film(short_run, tmp_path / "run.mp4", size=SMALL)
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize(
     ("how", "says"),
     [
