@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +12,7 @@ import numpy as np
 from identification.errors import InputError
 from identification.files import whole_file
 from inca_mj.colours import TensionScale, tension_scale
+from inca_mj.encoder import encoder
 from inca_mj.ghost import ghost_positions
 from inca_mj.panel import Panel
 from inca_mj.picture import BACKGROUND, Layout, Lettering, layout, paste
@@ -68,7 +69,7 @@ def film(
     with (
         _stage(run, measured, measured_pose, camera, size, plots) as stage,
         whole_file(path) as draft,
-        _encoder(draft, size, fps) as send,
+        encoder(draft, size, fps) as send,
     ):
         for done, time in enumerate(times, 1):
             send(stage.frame(time))
@@ -189,31 +190,3 @@ def _between(time: np.ndarray, values: np.ndarray, at: float) -> np.ndarray:
     if values.shape[1] == 15 and first[3:7] @ last[3:7] < 0:
         last[3:7] *= -1  # the same rotation, the short way round
     return (1 - part) * first + part * last
-
-
-@contextmanager
-def _encoder(
-    path: Path, size: tuple[int, int], fps: float
-) -> Iterator[Callable[[np.ndarray | None], None]]:
-    """A function that takes frames (height, width, 3); the file is complete when the block ends."""
-    import imageio_ffmpeg
-
-    writer = imageio_ffmpeg.write_frames(
-        str(path), size, fps=fps, codec="libx264", quality=None, macro_block_size=2,
-        ffmpeg_log_level="error",
-        output_params=["-crf", "20", "-preset", "veryfast", "-movflags", "+faststart"],
-    )  # fmt: skip
-
-    def send(frame: np.ndarray | None) -> None:
-        try:
-            writer.send(frame)
-        except (OSError, RuntimeError) as error:  # it died, its disk is full, or there is none
-            reason = [line for line in str(error).splitlines() if line.strip()][-1:]
-            raise InputError(
-                f"ffmpeg cannot write the film ({' '.join(reason).strip()}); make room for it, or"
-                " set IMAGEIO_FFMPEG_EXE to a working ffmpeg"
-            ) from error
-
-    with closing(writer):
-        send(None)  # starts the program
-        yield send

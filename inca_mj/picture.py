@@ -109,7 +109,7 @@ class Lettering:
         colours = np.round(255 * shade(np.linspace(0, 1, width))).astype(np.uint8)
         image.paste(Image.fromarray(np.tile(colours, (height, 1, 1)), "RGBA"), (left, top))
         font = self._font(0.7)
-        pen.text((left, top - em // 4), "cable tension [N]", INK, font, anchor="ls")
+        pen.text((left, top - em // 4), "tension [N]; grey: slack", INK, font, anchor="ls")
         y = top + height + em // 4
         for part, anchor in ((0.0, "la"), (0.5, "ma"), (1.0, "ra")):
             value = scale.low + part * (scale.high - scale.low)
