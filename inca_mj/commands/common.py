@@ -103,17 +103,24 @@ def say_json(result: Mapping[str, Any]) -> None:
 
 def write_result(path: Path, command: Any, result: Mapping[str, Any]) -> None:
     """Write result.json: the result, the resolved configuration and the versions that made it."""
-    from importlib.metadata import version
-
     from identification.files import write_text
 
     packages = ("inca-mj", "mujoco", "numpy", "scipy", "numba")
     record = {
         **result,
         "configuration": _plain(asdict(command)) if is_dataclass(command) else {},  # type: ignore[arg-type]
-        "versions": {"python": sys.version.split()[0], **{p: version(p) for p in packages}},
+        "versions": {"python": sys.version.split()[0], **{p: _version(p) for p in packages}},
     }
     write_text(path, json.dumps(record, indent=1, allow_nan=False) + "\n")
+
+
+def _version(package: str) -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version(package)
+    except PackageNotFoundError:  # run from a source tree
+        return "not installed"
 
 
 def _plain(value: Any) -> Any:
