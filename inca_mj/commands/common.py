@@ -156,7 +156,8 @@ def cannot_draw() -> str:
 
 def do_not_draw() -> None:
     """Keep OpenGL out of a command that does not draw: a bad MUJOCO_GL breaks MuJoCo's import."""
-    os.environ["MUJOCO_GL"] = "disable"
+    if "mujoco" not in sys.modules:
+        os.environ["MUJOCO_GL"] = "disable"
 
 
 def bar(what: str) -> Callable[[int, int], None]:
