@@ -155,9 +155,16 @@ def cannot_draw() -> str:
 
 
 def do_not_draw() -> None:
-    """Keep OpenGL out of a command that does not draw: a bad MUJOCO_GL breaks MuJoCo's import."""
-    if "mujoco" not in sys.modules:
-        os.environ["MUJOCO_GL"] = "disable"
+    """Import MuJoCo without OpenGL, for commands that do not draw: a bad MUJOCO_GL breaks it."""
+    before = os.environ.get("MUJOCO_GL")
+    os.environ["MUJOCO_GL"] = "disable"
+    try:
+        import mujoco  # noqa: F401
+    finally:
+        if before is None:
+            del os.environ["MUJOCO_GL"]
+        else:
+            os.environ["MUJOCO_GL"] = before
 
 
 def bar(what: str) -> Callable[[int, int], None]:
