@@ -15,12 +15,16 @@ from inca_mj.commands.compare import Compare
 from inca_mj.commands.crosscheck import Crosscheck
 from inca_mj.commands.demo import Demo
 from inca_mj.commands.film import Film
+from inca_mj.commands.identify import Identify
 from inca_mj.commands.simulate import Simulate
+from inca_mj.commands.trials import Trials
 
 Command = (
     Annotated[Simulate, tyro.conf.subcommand("simulate")]
     | Annotated[Compare, tyro.conf.subcommand("compare")]
     | Annotated[Crosscheck, tyro.conf.subcommand("crosscheck")]
+    | Annotated[Identify, tyro.conf.subcommand("identify")]
+    | Annotated[Trials, tyro.conf.subcommand("trials")]
     | Annotated[Film, tyro.conf.subcommand("film")]
     | Annotated[Demo, tyro.conf.subcommand("demo")]
 )
@@ -29,7 +33,7 @@ Command = (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
     command = tyro.cli(
-        Command,  # type: ignore[arg-type]
+        Command,
         prog="inca",
         description="The digital twin of the INCA 6D cable robot, and what it lacks.",
         args=arguments,

@@ -1,0 +1,94 @@
+"""inca trials: the thesis' Tables 3.3 to 3.6, its numbers beside ours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from inca_mj.commands.common import (
+    Output,
+    do_not_draw,
+    folder,
+    note,
+    output_field,
+    say,
+    say_json,
+    table,
+    write_result,
+)
+
+if TYPE_CHECKING:
+    from inca_mj.trials import TrialResult
+
+
+@dataclass(frozen=True)
+class Trials:
+    """Run the thesis' four identification trials from its own starts."""
+
+    trial: tuple[int, ...] = (1, 2, 3, 4)
+    """Which trials."""
+    seed: int = 0
+    """Seed of the noise of trial 4."""
+    monte_carlo: int = 0
+    """Repeat trial 4 with so many seeds: bias, std and coverage of the 95 %% intervals."""
+    single: bool = False
+    """One free-run fit over all data, as the thesis did, instead of a growing horizon."""
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+
+    def run(self) -> int:
+        """Run, say, keep."""
+        do_not_draw()
+        from identification.errors import unknown_name
+        from identification.estimate import Options
+        from inca_mj.trials import TRIALS, monte_carlo, run_trial
+
+        for number in self.trial:
+            if number not in range(1, len(TRIALS) + 1):
+                raise unknown_name("trial", str(number), map(str, range(1, len(TRIALS) + 1)))
+        options = Options(horizons=(1.0,)) if self.single else None
+        results = []
+        for number in self.trial:
+            note(f"trial {number}")
+            results.append(
+                run_trial(TRIALS[number - 1], seed=self.seed, options=options, progress=note)
+            )
+        record: dict[str, object] = {"trials": [r.to_json() for r in results]}
+        if self.monte_carlo:
+            record["monte_carlo"] = monte_carlo(self.monte_carlo, progress=note)
+        if self.output.out is not None:
+            write_result(folder(self.output.out) / "result.json", self, record)
+        if self.output.json:
+            say_json(record)
+        else:
+            say("\n\n".join(summary(r) for r in results))
+            if self.monte_carlo:
+                say(str(record["monte_carlo"]))
+        return 0
+
+
+def summary(result: TrialResult) -> str:
+    """A trial as the thesis' table with a column of ours."""
+    from identification.verdict import verdict
+
+    shown = result.to_json()
+    rows = [
+        (
+            name,
+            f"{p['true']:.6g}",
+            f"{p['initial']:.6g}",
+            f"{p['thesis']:.6g}",
+            f"{p['estimated']:.8g}",
+            "-" if p["fit_percent"] is None else f"{p['fit_percent']:.5f}",
+        )
+        for name, p in shown["parameters"].items()
+    ]
+    return (
+        f"trial {result.trial.number}: output fit {result.output_fit_percent.mean():.5f} %"
+        f" (thesis {result.trial.thesis_fit} %), loss {result.loss:.3g},"
+        f" {result.fit.estimate.seconds:.1f} s\n"
+        + table(("parameter", "true", "start", "thesis", "ours", "fit [%]"), rows)
+        + "\n"
+        + "\n".join(verdict(result.fit))
+    )
