@@ -133,13 +133,6 @@ def _plain(value: Any) -> Any:
 
 def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
     """A plain text table, numbers to the right."""
-<<<<<<< HEAD
-    widths = [max(len(r[i]) for r in [head, *rows]) for i in range(len(head))]
-    lines = (
-        "  ".join(cell.rjust(w) for cell, w in zip(r, widths, strict=True)) for r in [head, *rows]
-    )
-    return "\n".join(lines)
-=======
     lines = [head, *rows]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     return "\n".join(
@@ -187,7 +180,6 @@ def bar(what: str) -> Callable[[int, int], None]:
             meter.close()
 
     return update
->>>>>>> main
 
 
 robot_field: Any = field(default_factory=Robot)

@@ -77,16 +77,7 @@ def summary(result: CrossCheck) -> str:
         (
             str(row["case"]),
             f"{1e3 * row['step']:g}",
-<<<<<<< HEAD
-            *(
-                "diverged"
-                if row[f"max_{what}_error"] is None
-                else f"{row[f'max_{what}_error']:.2e}"
-                for what in ("angle", "position", "tension")
-            ),
-=======
             *(_error(row[f"max_{what}_error"]) for what in ("angle", "position", "tension")),
->>>>>>> main
         )
         for row in result.rows
     ]
