@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +66,17 @@ class Run:
     def motor_rate(self) -> np.ndarray:
         """Motor rates ω, shape (N, 8) [rad/s]."""
         return self.qvel[:, 6:]
+
+    def until(self, end: float) -> Run:
+        """The samples up to `end` [s].
+
+        Raises:
+            InputError: fewer than two samples are left.
+        """
+        n = int(np.searchsorted(self.time, end, side="right"))
+        if n < 2:
+            raise InputError(f"{end:g} s holds less than two samples; give a longer time")
+        return replace(self, **{name: getattr(self, name)[:n] for name in _ARRAYS})
 
 
 def simulate(

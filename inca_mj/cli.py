@@ -1,0 +1,56 @@
+"""The program `inca`: one command a file in `inca_mj.commands`; heavy imports wait until needed.
+
+Exit code 0: done; 1: the check failed; 2: bad input, said in one sentence.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Annotated
+
+import tyro
+
+from inca_mj.commands.compare import Compare
+from inca_mj.commands.crosscheck import Crosscheck
+from inca_mj.commands.demo import Demo
+from inca_mj.commands.film import Film
+from inca_mj.commands.simulate import Simulate
+
+Command = (
+    Annotated[Simulate, tyro.conf.subcommand("simulate")]
+    | Annotated[Compare, tyro.conf.subcommand("compare")]
+    | Annotated[Crosscheck, tyro.conf.subcommand("crosscheck")]
+    | Annotated[Film, tyro.conf.subcommand("film")]
+    | Annotated[Demo, tyro.conf.subcommand("demo")]
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit code."""
+    command = tyro.cli(
+        Command,  # type: ignore[arg-type]
+        prog="inca",
+        description="The digital twin of the INCA 6D cable robot, and what it lacks.",
+        args=arguments,
+        config=(tyro.conf.AvoidSubcommands,),
+    )
+    try:
+        return command.run()
+    except ValueError as error:
+        from identification.errors import InputError
+
+        if not isinstance(error, InputError):
+            raise
+        sys.stderr.write(f"inca: {error}\n")
+        return 2
+    except BrokenPipeError:  # the reader of stdout has gone, e.g. `| head`
+        sys.stderr.close()
+        return 0
+    except KeyboardInterrupt:
+        sys.stderr.write("inca: stopped\n")
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

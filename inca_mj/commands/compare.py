@@ -1,0 +1,85 @@
+"""inca compare LOG: measured against simulated."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from inca_mj.commands.common import (
+    Output,
+    Robot,
+    folder,
+    note,
+    output_field,
+    robot_field,
+    say,
+    say_json,
+    table,
+    write_result,
+)
+
+if TYPE_CHECKING:
+    from inca_mj.compare import Comparison
+
+
+@dataclass(frozen=True)
+class Compare:
+    """Lay a measured log over the twin's prediction from the same currents."""
+
+    log: Annotated[Path, tyro.conf.Positional]
+    """Log to explain: CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts."""
+    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+
+    def run(self) -> int:
+        """Compare, say and keep the result; 0 unless the input is bad."""
+        from inca_mj.compare import compare
+        from inca_mj.logs import read_inca_log
+
+        result = compare(read_inca_log(self.log), self.robot.parameters(), self.robot.place())
+        if self.output.out is not None:
+            out = folder(self.output.out)
+            keep(result, out)
+            write_result(out / "result.json", self, result.to_json())
+            note(f"figure, report, model and result.json are in {out}")
+        if self.output.json:
+            say_json(result.to_json())
+        else:
+            say(summary(result))
+        return 0
+
+
+def summary(result: Comparison) -> str:
+    """The comparison as a text table."""
+    rows = [
+        (name, f"{fit:.2f}", f"{1e3 * error:.2f}")
+        for name, fit, error in zip(
+            result.log.output_names, result.fit_percent, result.rms, strict=True
+        )
+    ]
+    mean = ("mean", f"{result.fit_percent.mean():.2f}", f"{1e3 * result.rms.mean():.2f}")
+    head = f"{result.log.name}: {len(result.log)} samples, {result.log.duration:g} s simulated"
+    return head + "\n" + table(("output", "fit [%]", "rms [mrad]"), [*rows, mean])
+
+
+def keep(result: Comparison, out: Path) -> None:
+    """Write the figure, the one-file report, the model and the run into a folder."""
+    from inca_mj.figures import save_png
+    from inca_mj.report import write_report
+    from inca_mj.run import save_run
+    from inca_mj.sections import compare_section, compare_verdict, model_section
+
+    section = compare_section(result)
+    for name, figure in section.figures.items():
+        save_png(figure, out / f"{name}.png")
+    result.run.twin.save(out / "model.xml")
+    save_run(result.run, out / "run.npz")
+    write_report(
+        out / "report.html",
+        f"{result.log.name}: measured against simulated",
+        compare_verdict(result),
+        [section, model_section(result.run.twin)],
+    )

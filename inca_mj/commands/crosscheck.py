@@ -1,0 +1,82 @@
+"""inca crosscheck: two models of one robot that share no code must agree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from inca_mj.commands.common import (
+    Output,
+    Robot,
+    folder,
+    note,
+    output_field,
+    robot_field,
+    say,
+    say_json,
+    table,
+    write_result,
+)
+
+if TYPE_CHECKING:
+    from inca_mj.crosscheck import CrossCheck
+
+
+@dataclass(frozen=True)
+class Crosscheck:
+    """Compare the MuJoCo twin with the reference ODE; exit 1 when they disagree."""
+
+    duration: float = 10.0
+    """Length of each run [s]."""
+    states: int = 10_000
+    """Random states at which accelerations are compared."""
+    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+
+    def run(self) -> int:
+        """Check, say, keep; 0 when they agree, 1 when not."""
+        from inca_mj.crosscheck import crosscheck
+
+        result = crosscheck(
+            self.robot.parameters(),
+            self.robot.place(),
+            duration=self.duration,
+            states=self.states,
+            progress=note,
+        )
+        if self.output.out is not None:
+            from inca_mj.figures import save_png
+            from inca_mj.report import write_report
+            from inca_mj.sections import crosscheck_section
+
+            out = folder(self.output.out)
+            section = crosscheck_section(result)
+            for name, figure in section.figures.items():
+                save_png(figure, out / f"{name}.png")
+            title = "Two independent models of one robot"
+            write_report(out / "report.html", title, list(result.sentences), [section])
+            write_result(out / "result.json", self, result.to_json())
+        if self.output.json:
+            say_json(result.to_json())
+        else:
+            say(summary(result))
+        return 0 if result.passed else 1
+
+
+def summary(result: CrossCheck) -> str:
+    """The cross-check as a text table and its verdict."""
+    head = ("case", "step [ms]", "angle [rad]", "position [m]", "tension [N]")
+    rows = [
+        (
+            str(row["case"]),
+            f"{1e3 * row['step']:g}",
+            *(
+                "diverged" if row[f"max_{what}_error"] is None else f"{row[f'max_{what}_error']:.2e}"
+                for what in ("angle", "position", "tension")
+            ),
+        )
+        for row in result.rows
+    ]
+    return table(head, rows) + "\n" + "\n".join(result.sentences)

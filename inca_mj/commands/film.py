@@ -1,0 +1,80 @@
+"""inca film LOG|RUN: a film of the robot, drawn without a screen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import tyro
+
+from inca_mj.commands.common import Output, Robot, folder, robot_field, say, say_json
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from inca_mj.run import Run
+
+
+@dataclass(frozen=True)
+class Film:
+    """Film a log (measured as ghost, simulated in colour) or a saved run."""
+
+    source: Annotated[Path, tyro.conf.Positional]
+    """A log (.csv, .mat), or a run (.npz) that inca simulate or inca compare saved."""
+    seconds: float | None = None
+    """Film only so many seconds from the start."""
+    camera: Literal["front", "side", "handle"] = "front"
+    """Where to look from."""
+    plots: bool = True
+    """Draw the motor angles beside the picture."""
+    still: tuple[float, ...] = ()
+    """Times [s] at which to write a PNG of the picture too."""
+    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
+        default_factory=lambda: Output(out=Path("out/film"))
+    )
+
+    def run(self) -> int:
+        """Draw film.mp4 and stills."""
+        from inca_mj.graphics import choose_backend
+
+        choose_backend()  # before MuJoCo is imported
+        from tqdm import tqdm
+
+        from inca_mj.film import film, stills
+
+        run, measured = self._scene()
+        out = folder(self.output.out or Path("out/film"))
+        path = film(
+            run,
+            out / "film.mp4",
+            measured=measured,
+            camera=self.camera,
+            plots=self.plots,
+            progress=tqdm,
+        )
+        pictures = stills(
+            run, out, self.still, measured=measured, camera=self.camera, plots=self.plots
+        )
+        files = [str(path), *map(str, pictures)]
+        if self.output.json:
+            say_json({"film": files[0], "stills": files[1:], "seconds": float(run.time[-1])})
+        else:
+            say("\n".join(files))
+        return 0
+
+    def _scene(self) -> tuple[Run, np.ndarray | None]:
+        """The run to film, and the measured angles of a log."""
+        from inca_mj.compare import compare
+        from inca_mj.logs import read_inca_log
+        from inca_mj.run import load_run
+
+        end = float("inf") if self.seconds is None else self.seconds
+        if self.source.suffix == ".npz":
+            return load_run(self.source).until(end), None
+        log = read_inca_log(self.source)
+        if end < log.duration:
+            log = log.between(float("-inf"), end)
+        result = compare(log, self.robot.parameters(), self.robot.place())
+        return result.run, log.outputs

@@ -1,0 +1,125 @@
+"""inca simulate: run the twin and write its log."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from inca_mj.commands.common import (
+    Output,
+    Robot,
+    folder,
+    robot_field,
+    say,
+    say_json,
+    table,
+    write_result,
+)
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from inca_mj.run import Run
+
+
+@dataclass(frozen=True)
+class Simulate:
+    """Run the twin and write log.csv (states and tensions), run.npz, figures and a report."""
+
+    input: Annotated[str, tyro.conf.arg(metavar="step|prbs|multisine|zero|FILE")] = "step"
+    """Currents: 2 A in motor 1 (step), the thesis' PRBS, a multisine, none, or those of a log."""
+    duration: float = 10.0
+    """Length of the run [s]; a FILE has its own."""
+    seed: int = 0
+    """Seed of the PRBS' and the multisine's phases."""
+    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
+        default_factory=lambda: Output(out=Path("out/simulate"))
+    )
+
+    def run(self) -> int:
+        """Simulate, write, say."""
+        from inca_mj.compare import timestep_for
+        from inca_mj.run import simulate
+        from inca_mj.twin import twin
+
+        currents, sampling_time, hold = self._currents()
+        parameters, place = self.robot.parameters(), self.robot.place()
+        robot = twin(parameters, place, timestep=timestep_for(sampling_time))
+        result = simulate(robot, currents, sampling_time, hold_kind=hold)
+        summary = {
+            "samples": len(result.time),
+            "seconds_simulated": float(result.time[-1]),
+            "tension_min": float(result.tension.min()),
+            "tension_max": float(result.tension.max()),
+            "position_end": result.position[-1].tolist(),
+        }
+        out = self.output.out
+        if out is not None:
+            keep(result, folder(out), f"input {self.input}, seed {self.seed}")
+            write_result(out / "result.json", self, summary)
+        if self.output.json:
+            say_json(summary)
+        else:
+            say(_text(result))
+            say(f"log.csv, run.npz, figures, model.xml and report.html are in {out}")
+        return 0
+
+    def _currents(self) -> tuple[np.ndarray, float, str]:
+        from identification.errors import InputError
+        from inca_mj.inputs import INPUTS, make_input
+        from inca_mj.logs import read_inca_log
+
+        if self.input in INPUTS:
+            return make_input(self.input, self.duration, seed=self.seed), 0.01, "zoh"
+        if not Path(self.input).suffix:
+            raise InputError(
+                f"unknown input {self.input!r}; known: {', '.join(INPUTS)}, or a log file"
+            )
+        log = read_inca_log(self.input)
+        return log.inputs, log.sampling_time, log.hold
+
+
+def _text(result: Run) -> str:
+    rows = [
+        (str(k + 1), f"{angle:.3f}", f"{low:.2f}", f"{high:.2f}")
+        for k, (angle, low, high) in enumerate(
+            zip(
+                result.motor_angle[-1],
+                result.tension.min(axis=0),
+                result.tension.max(axis=0),
+                strict=True,
+            )
+        )
+    ]
+    place = ", ".join(f"{x:.4f}" for x in result.position[-1])
+    return (
+        table(("drive", "angle at end [rad]", "least tension [N]", "largest [N]"), rows)
+        + f"\nplatform after {result.time[-1]:g} s at ({place}) m"
+    )
+
+
+def keep(result: Run, out: Path, notes: str) -> None:
+    """Write log, run, model, the thesis' four figures and the report into a folder."""
+    from identification import write_log
+    from inca_mj.figures import save_png
+    from inca_mj.logs import run_to_log
+    from inca_mj.report import write_report
+    from inca_mj.run import save_run
+    from inca_mj.sections import model_section, run_section
+
+    write_log(run_to_log(result, notes=f"simulated by inca simulate: {notes}"), out / "log.csv")
+    save_run(result, out / "run.npz")
+    result.twin.save(out / "model.xml")
+    section = run_section(result)
+    for name, figure in section.figures.items():
+        save_png(figure, out / f"{name}.png")
+    write_report(
+        out / "report.html",
+        "A run of the twin",
+        [f"{result.time[-1]:g} s simulated, {notes}."],
+        [section, model_section(result.twin)],
+    )
