@@ -23,7 +23,7 @@ from inca_mj.parameters import GRAVITY
 from inca_mj.statics import start
 
 TIMESTEP = 1e-3  # [s]; RK4 at 1 ms follows the reference to a few microradians
-ROTOR = 1e-14  # inertia MuJoCo demands of the drum's body beside the armature [kg m^2]
+ROTOR = 2e-15  # inertia MuJoCo demands of the drum's body beside the armature [kg m^2]
 
 _TENSION, _NO_LOAD_LENGTH = 1, 2  # see inca_mj.native
 

@@ -45,7 +45,7 @@ class DerivativeErrors:
         linear: of the platform's linear acceleration.
         angular: of its angular acceleration.
         motor: of the motors' accelerations. MuJoCo demands an inertia of the drum's body beside
-            the armature J; that share of J (3e-10 of the thesis') is seen here.
+            the armature J; that share of J (7e-11 of the thesis') is seen here.
         no_load: of the rates of the no-load lengths.
         tension: of the tensions.
         states: number of states.

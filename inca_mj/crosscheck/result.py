@@ -37,7 +37,7 @@ class CrossCheck:
         """Order of the angle error on the PRBS over the steps where RK4's own error leads.
 
         `inca_mj.crosscheck.order` says what leads at smaller steps; `orders` are over all.
-        None when the PRBS was not run at two such steps.
+        None when the PRBS was not run at three steps or more.
         """
         return leading_slope(*self._errors("prbs", "max_angle_error"))
 
