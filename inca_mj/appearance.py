@@ -9,11 +9,13 @@ import numpy as np
 
 from inca_mj.geometry import Geometry
 
-ALUMINIUM = [0.72, 0.74, 0.77, 1.0]
+ALUMINIUM = [0.60, 0.62, 0.66, 1.0]
 STEEL = [0.30, 0.32, 0.36, 1.0]
 MOTOR = [0.12, 0.12, 0.13, 1.0]
 HANDLE = [0.93, 0.45, 0.13, 1.0]
-FLOOR = [0.93, 0.93, 0.94, 1.0]
+
+# The handle is 15 cm in a frame of 3 m: its camera stays with it, at a fixed direction [m].
+HANDLE_EYE, HANDLE_TARGET = [0.18, -0.50, 0.12], [0.0, 0.0, -0.035]
 
 _BOX, _CYLINDER = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CYLINDER
 _CAPSULE, _SPHERE = mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_SPHERE
@@ -27,16 +29,17 @@ def dress_world(spec: mujoco.MjSpec, geometry: Geometry) -> None:
     """Floor, aluminium frame around the exit points, one light, cameras, frame size of films."""
     spec.visual.global_.offwidth, spec.visual.global_.offheight = 1920, 1080
     spec.visual.quality.shadowsize = 0  # shadows cost a CPU renderer most of its frame rate
-    spec.visual.headlight.ambient = [0.45, 0.45, 0.45]
-    spec.visual.headlight.diffuse = [0.45, 0.45, 0.45]
+    spec.visual.headlight.ambient = [0.55, 0.55, 0.55]
+    spec.visual.headlight.diffuse = [0.35, 0.35, 0.35]
+    spec.visual.rgba.haze = [0.925, 0.945, 0.965, 1.0]
     spec.visual.headlight.specular = [0.1, 0.1, 0.1]
     spec.stat.center, spec.stat.extent = [0, 0, 1.5], 3.0
     spec.add_texture(
         name="sky",
         type=mujoco.mjtTexture.mjTEXTURE_SKYBOX,
         builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT,
-        rgb1=[0.98, 0.99, 1.0],
-        rgb2=[0.80, 0.85, 0.90],
+        rgb1=[0.97, 0.98, 0.99],
+        rgb2=[0.88, 0.91, 0.94],
         width=256,
         height=1536,
     )
@@ -44,28 +47,32 @@ def dress_world(spec: mujoco.MjSpec, geometry: Geometry) -> None:
         name="floor",
         type=mujoco.mjtTexture.mjTEXTURE_2D,
         builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
-        rgb1=[0.90, 0.91, 0.92],
-        rgb2=[0.84, 0.85, 0.87],
+        rgb1=[0.93, 0.94, 0.95],
+        rgb2=[0.895, 0.905, 0.915],
         width=256,
         height=256,
     )
-    floor = spec.add_material(name="floor", texrepeat=[8, 8], reflectance=0.0)
+    floor = spec.add_material(name="floor", texrepeat=[1, 1], texuniform=True, reflectance=0.0)
     floor.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "floor"
 
     world = spec.worldbody
-    world.add_light(pos=[0, 0, 5], dir=[0.2, 0.3, -1], diffuse=[0.5, 0.5, 0.5], castshadow=False)
+    world.add_light(
+        type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
+        dir=[0.3, 0.5, -1],
+        diffuse=[0.35, 0.35, 0.35],
+        castshadow=False,
+    )
     world.add_geom(
-        type=mujoco.mjtGeom.mjGEOM_PLANE, size=[4, 4, 0.1], material="floor",
+        type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 0.1], material="floor",
         contype=0, conaffinity=0,
     )  # fmt: skip
     _frame(world, geometry)
     cameras = {
-        "front": ([0.55, -5.6, 2.1], [0.0, 0.0, 1.45]),
-        "side": ([5.4, -1.9, 1.9], [0.0, 0.0, 1.45]),
-        "handle": ([0.30, -0.85, 1.70], [0.0, 0.0, 1.43]),
+        "front": ([1.2, -6.7, 2.3], [0.0, 0.0, 1.5]),
+        "side": ([6.4, -2.4, 2.3], [0.0, 0.0, 1.5]),
     }
     for name, (eye, target) in cameras.items():
-        world.add_camera(name=name, pos=eye, xyaxes=_look(eye, target), fovy=42)
+        world.add_camera(name=name, pos=eye, xyaxes=_look(eye, target), fovy=38)
 
 
 def _frame(world: Any, geometry: Geometry) -> None:
@@ -94,7 +101,14 @@ def dress_drum(drum: Any, axis: list[float]) -> None:
 
 
 def dress_platform(platform: Any, geometry: Geometry) -> None:
-    """A hub, an arm to each connector, and the handle."""
+    """A hub, an arm to each connector, the handle, and a camera that travels with it."""
+    platform.add_camera(
+        name="handle",
+        pos=HANDLE_EYE,
+        xyaxes=_look(HANDLE_EYE, HANDLE_TARGET),
+        fovy=38,
+        mode=mujoco.mjtCamLight.mjCAMLIGHT_TRACK,
+    )
     _add(platform, _SPHERE, STEEL, pos=[0, 0, 0], size=[0.014, 0, 0])
     for connector in np.unique(geometry.B, axis=0):
         _add(platform, _CAPSULE, ALUMINIUM, fromto=[0, 0, 0, *connector], size=[0.005, 0, 0])

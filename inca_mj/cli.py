@@ -29,7 +29,7 @@ Command = (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
     command = tyro.cli(
-        Command,  # type: ignore[arg-type]
+        Command,
         prog="inca",
         description="The digital twin of the INCA 6D cable robot, and what it lacks.",
         args=arguments,

@@ -7,6 +7,7 @@ import numpy as np
 from identification.errors import InputError, unknown_name
 from inca_mj.geometry import DRIVES
 
+LONGEST = 3600.0  # an hour of all states at every step is a gigabyte [s]
 INPUTS = ("zero", "step", "prbs", "multisine")
 
 
@@ -23,16 +24,16 @@ def make_input(
         seed: of the generator's phases.
 
     Raises:
-        InputError: the kind is unknown, or the duration shorter than two samples.
+        InputError: the kind is unknown, or the duration shorter than two samples or over an hour.
     """
     if kind not in INPUTS:
         raise unknown_name("input", kind, INPUTS)
-    n = round(duration / sampling_time) + 1
-    if not (np.isfinite(duration) and n >= 3):
+    if not 2 * sampling_time <= duration <= LONGEST:
         raise InputError(
-            f"a duration of {duration:g} s is less than two samples of {sampling_time:g} s;"
-            " give a longer one"
+            f"a duration of {duration:g} s is not between two samples of {sampling_time:g} s and"
+            f" {LONGEST:g} s; give one that is"
         )
+    n = round(duration / sampling_time) + 1
     if kind == "zero":
         return np.zeros((n, DRIVES))
     if kind == "step":

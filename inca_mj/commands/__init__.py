@@ -1,1 +1,1 @@
-"""The commands of `inca`, one a module; importing one is cheap, running it imports what it needs."""
+"""The commands of `inca`, one a module; heavy imports wait until a command runs."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -102,17 +103,24 @@ def say_json(result: Mapping[str, Any]) -> None:
 
 def write_result(path: Path, command: Any, result: Mapping[str, Any]) -> None:
     """Write result.json: the result, the resolved configuration and the versions that made it."""
-    from importlib.metadata import version
-
     from identification.files import write_text
 
     packages = ("inca-mj", "mujoco", "numpy", "scipy", "numba")
     record = {
         **result,
         "configuration": _plain(asdict(command)) if is_dataclass(command) else {},  # type: ignore[arg-type]
-        "versions": {"python": sys.version.split()[0], **{p: version(p) for p in packages}},
+        "versions": {"python": sys.version.split()[0], **{p: _version(p) for p in packages}},
     }
     write_text(path, json.dumps(record, indent=1, allow_nan=False) + "\n")
+
+
+def _version(package: str) -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version(package)
+    except PackageNotFoundError:  # run from a source tree
+        return "not installed"
 
 
 def _plain(value: Any) -> Any:
@@ -125,9 +133,53 @@ def _plain(value: Any) -> Any:
 
 def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
     """A plain text table, numbers to the right."""
-    widths = [max(len(r[i]) for r in [head, *rows]) for i in range(len(head))]
-    lines = ("  ".join(cell.rjust(w) for cell, w in zip(r, widths, strict=True)) for r in [head, *rows])
-    return "\n".join(lines)
+    lines = [head, *rows]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    return "\n".join(
+        "  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True))
+        for line in lines
+    )
+
+
+def cannot_draw() -> str:
+    """Settle the OpenGL backend before MuJoCo is imported: "" or why nothing can be drawn."""
+    from identification.errors import GraphicsError
+    from inca_mj.graphics import choose_backend
+
+    try:
+        choose_backend()
+    except GraphicsError as error:
+        do_not_draw()
+        return str(error)
+    return ""
+
+
+def do_not_draw() -> None:
+    """Import MuJoCo without OpenGL, for commands that do not draw: a bad MUJOCO_GL breaks it."""
+    before = os.environ.get("MUJOCO_GL")
+    os.environ["MUJOCO_GL"] = "disable"
+    try:
+        import mujoco  # noqa: F401
+    finally:
+        if before is None:
+            del os.environ["MUJOCO_GL"]
+        else:
+            os.environ["MUJOCO_GL"] = before
+
+
+def bar(what: str) -> Callable[[int, int], None]:
+    """A progress bar on stderr, silent where stderr is no terminal: call it with done, total."""
+    from tqdm import tqdm
+
+    meter = tqdm(desc=what, disable=None, leave=False)
+
+    def update(done: int, total: int) -> None:
+        meter.total = total
+        meter.update(done - meter.n)
+        if done >= total:
+            meter.close()
+
+    return update
 
 
 robot_field: Any = field(default_factory=Robot)

@@ -11,6 +11,7 @@ import tyro
 from inca_mj.commands.common import (
     Output,
     Robot,
+    do_not_draw,
     folder,
     note,
     output_field,
@@ -22,7 +23,7 @@ from inca_mj.commands.common import (
 )
 
 if TYPE_CHECKING:
-    from inca_mj.compare import Comparison
+    from inca_mj.comparison import Comparison
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,8 @@ class Compare:
 
     def run(self) -> int:
         """Compare, say and keep the result; 0 unless the input is bad."""
-        from inca_mj.compare import compare
+        do_not_draw()
+        from inca_mj.comparison import compare
         from inca_mj.logs import read_inca_log
 
         result = compare(read_inca_log(self.log), self.robot.parameters(), self.robot.place())
@@ -54,7 +56,7 @@ class Compare:
 
 def summary(result: Comparison) -> str:
     """The comparison as a text table."""
-    rows = [
+    rows: list[tuple[str, ...]] = [
         (name, f"{fit:.2f}", f"{1e3 * error:.2f}")
         for name, fit, error in zip(
             result.log.output_names, result.fit_percent, result.rms, strict=True
@@ -67,19 +69,17 @@ def summary(result: Comparison) -> str:
 
 def keep(result: Comparison, out: Path) -> None:
     """Write the figure, the one-file report, the model and the run into a folder."""
-    from inca_mj.figures import save_png
     from inca_mj.report import write_report
     from inca_mj.run import save_run
-    from inca_mj.sections import compare_section, compare_verdict, model_section
+    from inca_mj.sections import compare_section, compare_verdict, model_section, save_figures
 
-    section = compare_section(result)
-    for name, figure in section.figures.items():
-        save_png(figure, out / f"{name}.png")
+    sections = [compare_section(result), model_section(result.run.twin)]
+    save_figures(sections, out)
     result.run.twin.save(out / "model.xml")
     save_run(result.run, out / "run.npz")
     write_report(
         out / "report.html",
         f"{result.log.name}: measured against simulated",
         compare_verdict(result),
-        [section, model_section(result.run.twin)],
+        sections,
     )

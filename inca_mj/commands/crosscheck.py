@@ -10,6 +10,7 @@ import tyro
 from inca_mj.commands.common import (
     Output,
     Robot,
+    do_not_draw,
     folder,
     note,
     output_field,
@@ -37,6 +38,7 @@ class Crosscheck:
 
     def run(self) -> int:
         """Check, say, keep; 0 when they agree, 1 when not."""
+        do_not_draw()
         from inca_mj.crosscheck import crosscheck
 
         result = crosscheck(
@@ -47,16 +49,19 @@ class Crosscheck:
             progress=note,
         )
         if self.output.out is not None:
-            from inca_mj.figures import save_png
             from inca_mj.report import write_report
-            from inca_mj.sections import crosscheck_section
+            from inca_mj.sections import crosscheck_section, save_figures
 
             out = folder(self.output.out)
-            section = crosscheck_section(result)
-            for name, figure in section.figures.items():
-                save_png(figure, out / f"{name}.png")
-            title = "Two independent models of one robot"
-            write_report(out / "report.html", title, list(result.sentences), [section])
+            sections = [crosscheck_section(result)]
+            save_figures(sections, out)
+            write_report(
+                out / "report.html",
+                "The twin against the reference",
+                result.sentences,
+                sections,
+                good=result.passed,
+            )
             write_result(out / "result.json", self, result.to_json())
         if self.output.json:
             say_json(result.to_json())
@@ -68,15 +73,16 @@ class Crosscheck:
 def summary(result: CrossCheck) -> str:
     """The cross-check as a text table and its verdict."""
     head = ("case", "step [ms]", "angle [rad]", "position [m]", "tension [N]")
-    rows = [
+    rows: list[tuple[str, ...]] = [
         (
             str(row["case"]),
             f"{1e3 * row['step']:g}",
-            *(
-                "diverged" if row[f"max_{what}_error"] is None else f"{row[f'max_{what}_error']:.2e}"
-                for what in ("angle", "position", "tension")
-            ),
+            *(_error(row[f"max_{what}_error"]) for what in ("angle", "position", "tension")),
         )
         for row in result.rows
     ]
     return table(head, rows) + "\n" + "\n".join(result.sentences)
+
+
+def _error(value: float | None) -> str:
+    return "diverged" if value is None else f"{value:.2e}"

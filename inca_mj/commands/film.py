@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
-from inca_mj.commands.common import Output, Robot, folder, robot_field, say, say_json
+from inca_mj.commands.common import (
+    Output,
+    Robot,
+    bar,
+    cannot_draw,
+    folder,
+    robot_field,
+    say,
+    say_json,
+)
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,6 +35,8 @@ class Film:
     """Film only so many seconds from the start."""
     camera: Literal["front", "side", "handle"] = "front"
     """Where to look from."""
+    speed: float = 1.0
+    """Seconds of the run in a second of film; 0.25 is slow motion."""
     plots: bool = True
     """Draw the motor angles beside the picture."""
     still: tuple[float, ...] = ()
@@ -37,25 +48,33 @@ class Film:
 
     def run(self) -> int:
         """Draw film.mp4 and stills."""
-        from inca_mj.graphics import choose_backend
+        blind = cannot_draw()  # before MuJoCo is imported
+        if blind:
+            from identification.errors import GraphicsError
 
-        choose_backend()  # before MuJoCo is imported
-        from tqdm import tqdm
-
+            raise GraphicsError(blind)
         from inca_mj.film import film, stills
 
-        run, measured = self._scene()
+        run, measured, pose = self._scene()
         out = folder(self.output.out or Path("out/film"))
         path = film(
             run,
             out / "film.mp4",
             measured=measured,
+            measured_pose=pose,
             camera=self.camera,
             plots=self.plots,
-            progress=tqdm,
+            speed=self.speed,
+            progress=bar("film"),
         )
         pictures = stills(
-            run, out, self.still, measured=measured, camera=self.camera, plots=self.plots
+            run,
+            out,
+            self.still,
+            measured=measured,
+            measured_pose=pose,
+            camera=self.camera,
+            plots=self.plots,
         )
         files = [str(path), *map(str, pictures)]
         if self.output.json:
@@ -64,17 +83,17 @@ class Film:
             say("\n".join(files))
         return 0
 
-    def _scene(self) -> tuple[Run, np.ndarray | None]:
-        """The run to film, and the measured angles of a log."""
-        from inca_mj.compare import compare
-        from inca_mj.logs import read_inca_log
+    def _scene(self) -> tuple[Run, np.ndarray | None, np.ndarray | None]:
+        """The run to film, and the measured angles and pose of a log."""
+        from inca_mj.comparison import compare
+        from inca_mj.logs import pose_of, read_inca_log
         from inca_mj.run import load_run
 
         end = float("inf") if self.seconds is None else self.seconds
         if self.source.suffix == ".npz":
-            return load_run(self.source).until(end), None
+            return load_run(self.source).until(end), None, None
         log = read_inca_log(self.source)
         if end < log.duration:
             log = log.between(float("-inf"), end)
         result = compare(log, self.robot.parameters(), self.robot.place())
-        return result.run, log.outputs
+        return result.run, log.outputs, pose_of(log)

@@ -11,6 +11,7 @@ import tyro
 from inca_mj.commands.common import (
     Output,
     Robot,
+    do_not_draw,
     folder,
     robot_field,
     say,
@@ -42,7 +43,8 @@ class Simulate:
 
     def run(self) -> int:
         """Simulate, write, say."""
-        from inca_mj.compare import timestep_for
+        do_not_draw()
+        from inca_mj.comparison import timestep_for
         from inca_mj.run import simulate
         from inca_mj.twin import twin
 
@@ -84,7 +86,7 @@ class Simulate:
 
 
 def _text(result: Run) -> str:
-    rows = [
+    rows: list[tuple[str, ...]] = [
         (str(k + 1), f"{angle:.3f}", f"{low:.2f}", f"{high:.2f}")
         for k, (angle, low, high) in enumerate(
             zip(
@@ -105,21 +107,19 @@ def _text(result: Run) -> str:
 def keep(result: Run, out: Path, notes: str) -> None:
     """Write log, run, model, the thesis' four figures and the report into a folder."""
     from identification import write_log
-    from inca_mj.figures import save_png
     from inca_mj.logs import run_to_log
     from inca_mj.report import write_report
     from inca_mj.run import save_run
-    from inca_mj.sections import model_section, run_section
+    from inca_mj.sections import model_section, run_section, save_figures
 
     write_log(run_to_log(result, notes=f"simulated by inca simulate: {notes}"), out / "log.csv")
     save_run(result, out / "run.npz")
     result.twin.save(out / "model.xml")
-    section = run_section(result)
-    for name, figure in section.figures.items():
-        save_png(figure, out / f"{name}.png")
+    sections = [run_section(result), model_section(result.twin)]
+    save_figures(sections, out)
     write_report(
         out / "report.html",
         "A run of the twin",
         [f"{result.time[-1]:g} s simulated, {notes}."],
-        [section, model_section(result.twin)],
+        sections,
     )

@@ -1,0 +1,50 @@
+"""Colours that stay apart for the colour-blind (Okabe and Ito), and the scale of the tensions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, floor
+
+import numpy as np
+
+SIMULATED = "#D55E00"  # vermilion, as the handle
+MEASURED = "#0072B2"  # blue, as the ghost
+INK, GREY = "#22262B", "#8A9099"
+SERIES = (
+    "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A5195", "#22262B",
+)  # fmt: skip
+
+SLACK = (0.62, 0.64, 0.66, 1.0)
+# Plasma is perceptually uniform; its last tenth, a bright yellow, is lost on a light background.
+_COLORMAP, _END = "plasma", 0.88
+
+
+def shade(where: np.ndarray) -> np.ndarray:
+    """Colours of numbers in 0..1 on the tension scale, shape (..., 4) [0..1]."""
+    from matplotlib import colormaps
+
+    return np.asarray(colormaps[_COLORMAP](_END * np.clip(where, 0.0, 1.0)))
+
+
+@dataclass(frozen=True)
+class TensionScale:
+    """Tension to colour, from `low` to `high` [N]; a slack cable is grey."""
+
+    low: float
+    high: float
+
+    def __call__(self, tension: np.ndarray) -> np.ndarray:
+        """Colours of tensions [N], shape (n,) -> (n, 4)."""
+        tension = np.asarray(tension, float)
+        colours = shade((tension - self.low) / (self.high - self.low))
+        colours[tension <= 0] = SLACK
+        return colours
+
+
+def tension_scale(tension: np.ndarray) -> TensionScale:
+    """The scale of whole newtons that holds all tensions [N] of the cables that pull."""
+    pulling = tension[tension > 0]
+    if not len(pulling):
+        return TensionScale(0.0, 1.0)
+    low, high = floor(pulling.min()), ceil(pulling.max())
+    return TensionScale(float(low), float(max(high, low + 1)))

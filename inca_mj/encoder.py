@@ -1,0 +1,48 @@
+"""Frames to an mp4 file, by the ffmpeg that imageio-ffmpeg brings along."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from identification.errors import InputError
+
+
+@contextmanager
+def encoder(
+    path: Path, size: tuple[int, int], fps: float
+) -> Iterator[Callable[[np.ndarray | None], None]]:
+    """A function that takes frames (height, width, 3); the file is complete when the block ends.
+
+    Args:
+        path: of the mp4 file.
+        size: width and height, even numbers [px].
+        fps: frames per second.
+
+    Raises:
+        InputError: ffmpeg is missing or fails.
+    """
+    import imageio_ffmpeg
+
+    writer = imageio_ffmpeg.write_frames(
+        str(path), size, fps=fps, codec="libx264", quality=None, macro_block_size=2,
+        ffmpeg_log_level="error",
+        output_params=["-crf", "20", "-preset", "veryfast", "-movflags", "+faststart"],
+    )  # fmt: skip
+
+    def send(frame: np.ndarray | None) -> None:
+        try:
+            writer.send(frame)
+        except (OSError, RuntimeError) as error:  # it died, its disk is full, or there is none
+            reason = [line for line in str(error).splitlines() if line.strip()][-1:]
+            raise InputError(
+                f"ffmpeg cannot write the film ({' '.join(reason).strip()}); make room for it, or"
+                " set IMAGEIO_FFMPEG_EXE to a working ffmpeg"
+            ) from error
+
+    with closing(writer):
+        send(None)  # starts the program
+        yield send

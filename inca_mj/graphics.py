@@ -1,0 +1,113 @@
+"""OpenGL without a display: which backend draws, and one sentence when none can.
+
+MuJoCo reads MUJOCO_GL while it is imported, and with some values the import itself dies. So this
+module imports it inside functions only, and a command that draws calls `choose_backend` first.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import ctypes.util
+import os
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from identification.errors import GraphicsError
+
+if TYPE_CHECKING:
+    import mujoco
+
+_OFF = ("disable", "disabled", "off", "false", "0")
+_WINDOW = ("", "enable", "enabled", "on", "true", "1", "glfw", "glx")
+_LIBRARY = {"egl": "EGL", "osmesa": "OSMesa"}
+_FIX = (
+    "apt-get install libegl1 libgl1-mesa-dri, or set MUJOCO_GL to egl, osmesa or glfw;"
+    " everything that does not draw still works"
+)
+
+# A second context after a failed one aborts the process inside MuJoCo: the first answer stands.
+_failed: list[str] = []
+
+
+def choose_backend() -> str:
+    """Settle MUJOCO_GL before MuJoCo is imported; call it in commands that draw.
+
+    On Linux without a display the unset variable becomes "egl". When MuJoCo is imported already,
+    its context class is exchanged instead.
+
+    Returns:
+        The value of MUJOCO_GL in force, "" where MuJoCo's own choice is right.
+
+    Raises:
+        GraphicsError: the value is unknown or off, or its library is not on this machine.
+    """
+    backend = os.environ.get("MUJOCO_GL", "").lower().strip()
+    if backend in _OFF:
+        raise GraphicsError(f"MUJOCO_GL={backend} switches drawing off; unset it or set it to egl")
+    if not sys.platform.startswith("linux"):
+        return backend
+    if backend not in (*_WINDOW, *_LIBRARY):
+        raise GraphicsError(f"MUJOCO_GL={backend} is no OpenGL backend; set egl, osmesa or glfw")
+    if not backend and not _display():
+        backend = os.environ["MUJOCO_GL"] = "egl"
+    if backend in _LIBRARY:
+        _require(_LIBRARY[backend])
+    elif not _display():
+        raise GraphicsError(f"MUJOCO_GL={backend} needs a display and there is none; set egl")
+    if "mujoco" in sys.modules and backend in _LIBRARY:
+        _rebind(backend)
+    return backend
+
+
+@contextmanager
+def renderer(model: mujoco.MjModel, width: int, height: int) -> Iterator[mujoco.Renderer]:
+    """An offscreen renderer of width x height pixels, freed when the block ends.
+
+    Raises:
+        GraphicsError: no OpenGL context can be made here.
+    """
+    choose_backend()
+    if _failed:
+        raise GraphicsError(_failed[0])
+    import mujoco
+
+    try:
+        with warnings.catch_warnings():  # GLFW warns of what the sentence below says
+            warnings.simplefilter("ignore")
+            made = mujoco.Renderer(model, height, width)
+    except Exception as error:  # PyOpenGL, GLFW and MuJoCo each have errors of their own
+        reason = str(error).strip().splitlines() or [type(error).__name__]
+        _failed.append(f"no OpenGL for the film ({reason[0][:80]}): {_FIX}")
+        raise GraphicsError(_failed[0]) from error
+    with made:
+        yield made
+
+
+def _display() -> bool:
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def _require(library: str) -> None:
+    found = ctypes.util.find_library(library)
+    try:
+        if found is None:
+            raise OSError
+        ctypes.CDLL(found)
+    except OSError:
+        raise GraphicsError(f"no OpenGL for the film (lib{library} is missing): {_FIX}") from None
+
+
+def _rebind(backend: str) -> None:
+    from mujoco.rendering.classic import gl_context
+
+    try:
+        if backend == "egl":
+            from mujoco.egl import GLContext
+        else:
+            from mujoco.osmesa import GLContext
+    except (ImportError, AttributeError) as error:
+        raise GraphicsError(f"no OpenGL for the film ({error}): {_FIX}") from error
+    gl_context.GLContext = GLContext

@@ -1,0 +1,164 @@
+"""Bad input: one clear sentence on stderr, exit code 2, nothing written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from inca_mj.cli import main
+
+LOG = Path(__file__).parents[2] / "examples" / "log.csv"
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
+    """Run a command that must be refused; returns its sentence."""
+    code = main([str(a) for a in arguments])
+    said = capsys.readouterr()
+    assert code == 2
+    assert said.out == ""
+    assert said.err.startswith("inca: ")
+    assert said.err.count("\n") == 1, said.err
+    return said.err
+
+
+def rows(n: int = 100) -> list[str]:
+    return LOG.read_text().splitlines()[: n + 1]
+
+
+def changed(lines: list[str], line: int, column: str, value: str) -> list[str]:
+    at = lines[0].split(",").index(column)
+    cells = lines[line].split(",")
+    cells[at] = value
+    return [*lines[:line], ",".join(cells), *lines[line + 1 :]]
+
+
+def scaled(lines: list[str], group: str, factor: float) -> list[str]:
+    head = lines[0].split(",")
+    out = [lines[0]]
+    for line in lines[1:]:
+        cells = line.split(",")
+        out.append(",".join(repr(float(c) * factor) if head[i].startswith(group) else c
+                            for i, c in enumerate(cells)))  # fmt: skip
+    return out
+
+
+def every_time(lines: list[str], stamp) -> list[str]:
+    return [lines[0], *(",".join([repr(stamp(k)), *line.split(",")[1:]])
+                        for k, line in enumerate(lines[1:]))]  # fmt: skip
+
+
+BAD = {
+    "missing column": (lambda r: [x.rsplit(",", 1)[0] for x in r], "angle_8"),
+    "extra column": (lambda r: [x + (",humidity" if i == 0 else ",1") for i, x in enumerate(r)],
+                     "humidity"),
+    "NaN": (lambda r: changed(r, 7, "angle_3", "nan"), "angle_3"),
+    "a word": (lambda r: changed(r, 7, "current_2", "high"), "current_2"),
+    "time that stands": (lambda r: changed(r, 7, "time", "0.05"), "time"),
+    "jitter": (lambda r: every_time(r, lambda k: 0.01 * k + 0.002 * (k % 3)), "time"),
+    "degrees": (lambda r: scaled(r, "angle", 57.3), "deg"),
+    "milliamperes": (lambda r: scaled(r, "current", 1e3), "mA"),
+    "one row": (lambda r: r[:2], "row"),
+    "header only": (lambda r: r[:1], ""),
+    "a start in motion": (lambda r: [r[0], *every_time(["", *r[60:]], lambda k: 0.01 * k)[1:]],
+                          "begins"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", BAD)
+def test_bad_logs(kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    change, names = BAD[kind]
+    path = tmp_path / "bad.csv"
+    path.write_text("\n".join(change(rows())) + "\n")
+    assert names in refused(capsys, "compare", path, "--out", tmp_path / "out")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["bad.csv"]
+
+
+@pytest.mark.parametrize(
+    ("content", "names"), [(b"", "empty"), (bytes(range(256)) * 40, "text")]
+)  # fmt: skip
+def test_empty_and_binary(
+    content: bytes, names: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "bad.csv"
+    path.write_bytes(content)
+    assert "bad.csv" in refused(capsys, "compare", path)
+
+
+def test_two_gigabytes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "huge.csv"
+    with path.open("wb") as stream:
+        stream.truncate(2 * 2**30)
+    assert "MB" in refused(capsys, "compare", path)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "names"),
+    [
+        (("--param", "lamda=1"), "did you mean 'lambda'"),
+        (("--param", "R=-0.0175"), "outside its range"),
+        (("--param", "m"), "NAME=VALUE"),
+        (("--param", "m=heavy"), "NAME=VALUE"),
+        (("--param", "x=1.3"), "move the start pose"),
+        (("--geometry", "nowhere.toml"), "examples/geometry.toml"),
+    ],
+)
+def test_bad_values(
+    arguments: tuple[str, ...], names: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert names in refused(capsys, "compare", LOG, *arguments)
+
+
+def test_a_model_that_diverges(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    # cables a hundred times stiffer need a step ten times smaller than the twin's
+    assert "diverged" in refused(
+        capsys, "simulate", "--param", "lambda=5e6", "b=0", "--out", tmp_path / "out"
+    )
+    assert list(tmp_path.iterdir()) == []  # no folder, no MUJOCO_LOG.TXT
+
+
+@pytest.mark.parametrize("name", ["log_that_is_not_there.csv", "run_that_is_not_there.npz"])
+def test_nothing_to_film(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert name in refused(capsys, "film", name)
+
+
+def test_a_run_that_is_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "run.npz"
+    np.savez(path, something=np.zeros(3))
+    assert "inca simulate" in refused(capsys, "film", path)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "names"),
+    [
+        (("--input", "prsb"), "known: zero, step, prbs, multisine"),
+        (("--duration", "0"), "duration"),
+        (("--duration", "-3"), "duration"),
+        (("--duration", "nan"), "duration"),
+        (("--duration", "1e9"), "duration"),
+    ],
+)
+def test_bad_simulations(
+    arguments: tuple[str, ...], names: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert names in refused(capsys, "simulate", *arguments)
+
+
+def test_a_folder_that_cannot_be_made(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "file").write_text("in the way")
+    said = refused(capsys, "compare", LOG, "--out", tmp_path / "file")
+    assert "cannot make folder" in said
+
+
+@pytest.mark.parametrize("arguments", [(), ("compere", "x.csv"), ("compare",)])
+def test_a_wrong_command_is_told_the_right_ones(
+    arguments: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(list(arguments))
+    assert stop.value.code == 2
+    assert "compare" in capsys.readouterr().err

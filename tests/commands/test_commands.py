@@ -1,0 +1,106 @@
+"""The program as a user meets it: JSON keys, files, exit codes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from identification import read_log
+from inca_mj.cli import main
+from inca_mj.logs import ANGLES, CURRENTS, OPTIONAL, read_inca_log
+from inca_mj.run import load_run, simulate
+
+LOG = Path(__file__).parents[2] / "examples" / "log.csv"
+PRACTICE = Path(__file__).parents[3] / "shared" / "data" / "practice_prbs"
+
+
+def run(*arguments: object) -> int:
+    return main([str(a) for a in arguments])
+
+
+def last_json(capsys: pytest.CaptureFixture[str]) -> dict:
+    out = capsys.readouterr().out
+    assert out.count("\n") == 1, "one JSON object on stdout and nothing else"
+    return json.loads(out)
+
+
+def test_compare_says_the_contract(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("compare", LOG, "--json") == 0
+    result = last_json(capsys)
+    assert set(result) == {"fit_percent", "rms", "samples", "seconds_simulated"}
+    assert len(result["fit_percent"]) == len(result["rms"]) == 8
+    assert result["samples"] == 2000
+    assert result["seconds_simulated"] == pytest.approx(19.99)
+    assert 70 < min(result["fit_percent"]) < max(result["fit_percent"]) < 100
+
+
+def test_a_simulated_log_is_explained_to_the_last_bit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "run"
+    values = ("--param", "m=0.2", "x=0.01", "yaw=0.05")
+    assert run("simulate", "--input", "multisine", "--duration", 1, *values, "--out", out) == 0
+    capsys.readouterr()
+    assert run("compare", out / "log.csv", *values, "--json") == 0
+    result = last_json(capsys)
+    assert result["rms"] == [0.0] * 8
+    assert result["fit_percent"] == [100.0] * 8
+
+
+def test_simulate_keeps_states_tensions_figures_model_and_report(tmp_path: Path) -> None:
+    out = tmp_path / "a" / "b"
+    assert run("simulate", "--input", "prbs", "--duration", 0.5, "--out", out) == 0
+    names = {p.name for p in out.iterdir()}
+    assert {"log.csv", "log.toml", "run.npz", "model.xml", "report.html", "result.json"} <= names
+    assert len([n for n in names if n.endswith(".png")]) == 4  # thesis Figure 2.16
+    log = read_log(out / "log.csv", CURRENTS, ANGLES, OPTIONAL)
+    assert set(log.extras) == set(OPTIONAL)
+    again = load_run(out / "run.npz")
+    replay = simulate(again.twin, again.currents)
+    np.testing.assert_array_equal(replay.qpos, again.qpos)
+    np.testing.assert_array_equal(log.extras["tension_3"], again.tension[:, 2])
+    record = json.loads((out / "result.json").read_text())
+    assert record["configuration"]["input"] == "prbs"
+    assert {"mujoco", "numpy", "inca-mj"} <= set(record["versions"])
+
+
+def test_simulate_takes_the_currents_of_a_log(tmp_path: Path) -> None:
+    assert run("simulate", "--input", LOG, "--out", tmp_path) == 0
+    written = read_inca_log(tmp_path / "log.csv")
+    np.testing.assert_array_equal(written.inputs, read_inca_log(LOG).inputs)
+
+
+def test_compare_keeps_a_report_that_needs_no_network(tmp_path: Path) -> None:
+    assert run("compare", LOG, "--out", tmp_path) == 0
+    page = (tmp_path / "report.html").read_text()
+    assert "mean fit" in page
+    assert 'src="http' not in page
+    assert 'href="http' not in page
+    assert (tmp_path / "measured-and-simulated-motor-angles.png").stat().st_size > 10_000
+
+
+def test_crosscheck_disagrees_aloud(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A twin with another law must fail the check, with exit code 1."""
+    from inca_mj import crosscheck as package
+    from inca_mj.parameters import parameters
+
+    real = package.crosscheck
+
+    def wrong(given: object, *a: object, **k: object) -> object:
+        return real(parameters("trial"), *a, **k, reference=parameters("trial", {"b_c": 0.006}))
+
+    monkeypatch.setattr(package, "crosscheck", wrong)
+    assert run("crosscheck", "--duration", 1, "--states", 50, "--json") == 1
+    assert last_json(capsys)["passed"] is False
+
+
+@pytest.mark.skipif(not PRACTICE.is_dir(), reason="no practice logs beside this checkout")
+@pytest.mark.parametrize("name", ["log_000.csv", "log_030.csv", "log_060.csv"])
+def test_compare_reads_the_practice_logs(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("compare", PRACTICE / name, "--json") == 0
+    assert min(last_json(capsys)["fit_percent"]) > 50
