@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -123,17 +123,13 @@ class CrossCheck:
                 " step only: MuJoCo's RK4 turns the handle by averaged angular velocities, which"
                 " is exact to second order for rotations that do not commute."
             )
-        why: dict[str, Callable[[float], str]] = {
-            "step": lambda n: f"Step: order {n:.1f} over all steps; smooth, no cable turns slack.",
-            "prbs": lambda n: f"PRBS: order {n:.1f} over all steps, of both terms together.",
-            "drop": lambda n: (
-                f"Drop: order {n:.1f}; cables turn taut within a step, a kink that no step meets."
-            ),
-            "spin": lambda n: (
-                f"Spin: order {n:.1f}; the quaternion's second order leads when the handle turns."
-            ),
+        why = {
+            "step": "all steps together, RK4's order and the quaternion's",
+            "prbs": "all steps together, RK4's order and the quaternion's",
+            "drop": "cables turn taut within a step, a kink that costs RK4 its order",
+            "spin": "the handle turns, and the quaternion's second order leads",
         }
         for case in CASES:
             order = self.orders.get(case)
             if order is not None:
-                yield why[case](order)
+                yield f"Order over all steps, {case}: {order:.1f} ({why[case]})."

@@ -113,3 +113,10 @@ def test_what_cannot_be_checked_is_refused_at_once(asked, message, monkeypatch):
     monkeypatch.setattr(check, "compare_derivatives", lambda *_: pytest.fail("began"))
     with pytest.raises(InputError, match=message):
         crosscheck(parameters(), INCA, **asked)
+
+
+def test_a_diverged_run_and_an_unknown_order_can_be_drawn():
+    from inca_mj.sections import crosscheck_section
+
+    rows = (row("prbs", 2e-3, None), row("prbs", 1e-3, 1e-6), row("drop", 2e-3, None))
+    assert crosscheck_section(CrossCheck(GOOD, rows)).figures
