@@ -1,0 +1,19 @@
+import mujoco
+import pytest
+
+from identification.errors import InputError
+from inca_mj.files import model_path
+from inca_mj.twin import twin
+
+
+def test_the_model_file_is_the_twin():
+    built, read = twin().model, mujoco.MjModel.from_xml_path(str(model_path()))
+    for field in ("actuator_user", "tendon_user", "actuator_gear", "dof_armature", "dof_damping",
+                  "body_mass", "body_inertia", "site_pos", "key_qpos", "key_act"):  # fmt: skip
+        assert (getattr(built, field) == getattr(read, field)).all(), field
+    assert read.opt.timestep == built.opt.timestep
+
+
+def test_a_missing_model_says_where_it_was_looked_for():
+    with pytest.raises(InputError, match=r"none\.xml is in neither .*models.* install"):
+        model_path("none.xml")
