@@ -4,6 +4,7 @@
 
 Tasks: `hold` keeps the handle where it starts while a hand pulls at it with a constant force
 that is not observed; `reach` brings it to a target. Needs dm_control: pip install inca-mj[control].
+To draw without a display, set MUJOCO_GL=egl before anything of MuJoCo is imported.
 """
 
 from __future__ import annotations
@@ -25,8 +26,8 @@ from inca_mj.statics import start
 from inca_mj.twin import start_state
 
 with warnings.catch_warnings():
-    # Without a display GLFW only warns and is chosen; an error sends dm_control on to EGL.
-    warnings.filterwarnings("error", ".*DISPLAY")
+    # dm_control tries GLFW while it is imported, which complains where there is no display.
+    warnings.filterwarnings("ignore", ".*DISPLAY")
     from dm_control import mujoco as dm_mujoco
     from dm_control.rl import control
     from dm_control.utils import rewards

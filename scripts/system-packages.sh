@@ -9,7 +9,11 @@ PATH=$PATH:/usr/sbin:/sbin
 missing=
 has() { for path in "$@"; do [ -e "$path" ] && return 0; done; return 1; }
 
-ldconfig -p 2>/dev/null | grep -q 'libEGL\.so\.1 ' || missing="$missing libegl1"
+libraries=$(ldconfig -p 2>/dev/null)
+found() { printf '%s\n' "$libraries" | grep -q "$1"; }
+found 'libEGL\.so\.1 ' || missing="$missing libegl1"
+# PyOpenGL asks for GL functions beside EGL's, and dies of a NoneType without either library.
+found 'libOpenGL\.so\.0 ' || found 'libGL\.so\.1 ' || missing="$missing libopengl0"
 # Mesa's drivers are one file each up to release 24, one library from then on.
 has /usr/lib/*/dri/*_dri.so /usr/lib*/dri/*_dri.so /usr/lib/*/libgallium-*.so \
     /usr/lib/*/libEGL_nvidia.so.0 || missing="$missing libgl1-mesa-dri"
@@ -27,7 +31,7 @@ echo "Installing the system packages$missing ..."
 export DEBIAN_FRONTEND=noninteractive
 # shellcheck disable=SC2086 # a list of words
 if ! { apt-get update -qq && apt-get install -qq -y --no-install-recommends $missing; } \
-    >/dev/null </dev/null; then
+    >/dev/null 2>&1 </dev/null; then
     echo "apt-get could not install$missing; going on without, films may not be drawn." >&2
 fi
 exit 0
