@@ -86,7 +86,7 @@ class Simulate:
 
 
 def _text(result: Run) -> str:
-    rows: list[tuple[str, ...]] = [
+    rows = [
         (str(k + 1), f"{angle:.3f}", f"{low:.2f}", f"{high:.2f}")
         for k, (angle, low, high) in enumerate(
             zip(
