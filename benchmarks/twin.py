@@ -25,7 +25,7 @@ from inca_mj import native
 from inca_mj.geometry import INCA
 from inca_mj.inputs import prbs
 from inca_mj.reference import simulate_reference
-from inca_mj.twin import Twin, twin
+from inca_mj.twin import Twin, build_twin
 
 ROOT = Path(__file__).resolve().parents[1]
 BURST = 50  # steps from the same moving state, so that both sides turn the same quaternions
@@ -146,7 +146,7 @@ def entry(value: float | None, goal: float | None = None, *, most: bool = True, 
 def main() -> None:
     """Measure everything and print it."""
     begin = time.perf_counter()
-    robot = twin()
+    robot = build_twin()
     compiled = time.perf_counter() - begin
     (burst,) = least([stepper(robot)], 200)
     help_time, help_why = cold_start("--help")

@@ -13,12 +13,12 @@ from inca_mj import law
 from inca_mj.control import CONTROL_TIMESTEP, load
 from inca_mj.geometry import INCA
 from inca_mj.kinematics import euler, length_jacobian, rotation
-from inca_mj.parameters import GRAVITY, parameters
+from inca_mj.parameters import GRAVITY, parameter_set
 from inca_mj.statics import start
 
-p = parameters().values()
+p = parameter_set().values()
 WEIGHT = np.array([0, 0, p["m"] * GRAVITY, 0, 0, 0])
-SPRING_BALANCE = start(parameters(), INCA).tension  # T(0) of the drum springs [N]
+SPRING_BALANCE = start(parameter_set(), INCA).tension  # T(0) of the drum springs [N]
 T_0 = 7.0  # tension to stay near to [N]: above the springs' 4 N, so that all motors pull
 K_P = np.array([150.0] * 3 + [0.5] * 3)  # [N/m, N m/rad]
 K_I = np.array([250.0] * 3 + [0.5] * 3)  # [N/(m s), N m/(rad s)]

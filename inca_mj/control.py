@@ -21,7 +21,7 @@ from identification.errors import unknown_name
 from inca_mj import law, native
 from inca_mj.files import model_path
 from inca_mj.geometry import DRIVES, INCA
-from inca_mj.parameters import parameters
+from inca_mj.parameters import parameter_set
 from inca_mj.statics import start
 from inca_mj.twin import start_state
 
@@ -96,7 +96,7 @@ class Handle(control.Task):
 
     def initialize_episode(self, physics: Physics) -> None:
         """Put the robot at rest near its nominal start, its pretension as the pose demands."""
-        nominal = parameters()
+        nominal = parameter_set()
         names = ("x", "y", "z", "roll", "pitch", "yaw")
         shift = self.random.uniform(-START_SPREAD, START_SPREAD)
         values = {n: nominal[n].value + s for n, s in zip(names, shift, strict=True)}
@@ -168,7 +168,7 @@ class Reach(Handle):
 
     def draw_target(self, begin: np.ndarray) -> np.ndarray:
         """Somewhere in a box about the nominal start."""
-        nominal = parameters()
+        nominal = parameter_set()
         centre = np.array([nominal[n].value for n in "xyz"])
         return centre + self.random.uniform(-REACH, REACH)
 

@@ -34,9 +34,9 @@ class Robot:
         Raises:
             InputError: a value is malformed, unknown or out of bounds.
         """
-        from inca_mj.parameters import parameters
+        from inca_mj.parameters import parameter_set
 
-        return parameters(self.set, dict(_assignment(text) for text in self.param))
+        return parameter_set(self.set, dict(_assignment(text) for text in self.param))
 
     def place(self) -> Geometry:
         """The geometry.

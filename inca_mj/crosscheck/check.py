@@ -19,7 +19,7 @@ from inca_mj.crosscheck.trajectories import (
     run_reference,
 )
 from inca_mj.geometry import INCA, Geometry
-from inca_mj.parameters import parameters as parameter_set
+from inca_mj.parameters import parameter_set
 
 STEPS = (2e-3, 1e-3, 5e-4, 2.5e-4)  # [s]
 

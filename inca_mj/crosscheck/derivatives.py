@@ -25,10 +25,10 @@ from identification.parameter import ParameterSet
 from identification.rollout import threads
 from inca_mj.crosscheck.states import random_states, to_mujoco
 from inca_mj.geometry import DRIVES, INCA, Geometry
-from inca_mj.parameters import GRAVITY, PRETENSION, SETS, parameters
+from inca_mj.parameters import GRAVITY, PRETENSION, SETS, parameter_set
 from inca_mj.reference import layout as at
 from inca_mj.reference import outputs, pack
-from inca_mj.twin import Twin, twin
+from inca_mj.twin import Twin, build_twin
 
 RANDOM_SETS = 6  # parameter sets of random values, beside the two of the thesis
 _SPREAD = 1.5  # random values lie within this factor of the nominal ones
@@ -85,8 +85,10 @@ def compare_derivatives(
         geometry: anchors of the cables.
     """
     rng = np.random.default_rng(seed)
-    base = base or parameters()
-    robots = [twin(parameters(name), geometry) for name in SETS] + [twin(base, geometry)]
+    base = base or parameter_set()
+    robots = [build_twin(parameter_set(name), geometry) for name in SETS] + [
+        build_twin(base, geometry)
+    ]
     robots += [robots[-1].with_values(_random_values(base, rng)) for _ in range(RANDOM_SETS)]
     # One state at least under each set, so that a small n leaves none unseen.
     counts = [len(part) for part in np.array_split(np.arange(max(n, len(robots))), len(robots))]
@@ -102,6 +104,9 @@ def compare_derivatives(
 def _random_values(base: ParameterSet, rng: np.random.Generator) -> dict[str, float]:
     factor = np.exp(rng.uniform(-np.log(_SPREAD), np.log(_SPREAD), len(_VARIED)))
     values = {name: base[name].value * f for name, f in zip(_VARIED, factor, strict=True)}
+    inertias = [name for name in values if name.startswith("I_")]
+    while inertias and max(values[n] for n in inertias) > 0.5 * sum(values[n] for n in inertias):
+        values |= {n: base[n].value * _SPREAD ** rng.uniform(-1, 1) for n in inertias}
     return {k: float(np.clip(v, base[k].lower, base[k].upper)) for k, v in values.items()}
 
 

@@ -25,7 +25,7 @@ from inca_mj.inputs import prbs, step
 from inca_mj.reference import ReferenceRun, rest, simulate_reference
 from inca_mj.reference import layout as at
 from inca_mj.run import simulate
-from inca_mj.twin import twin
+from inca_mj.twin import build_twin
 
 SAMPLING_TIME = 0.01  # [s]
 CASES = ("step", "prbs", "drop", "spin")
@@ -110,7 +110,7 @@ def compare_runs(
         The row, its errors None when a model diverged, and then a sentence that says so.
     """
     row: Row = {"case": case.name, "step": timestep, **dict.fromkeys(ERRORS)}
-    robot = twin(parameters, geometry, timestep=timestep)
+    robot = build_twin(parameters, geometry, timestep=timestep)
     try:
         run = simulate(robot, case.currents, SAMPLING_TIME, start=to_mujoco(case.start))
         exact = reference()

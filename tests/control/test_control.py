@@ -15,9 +15,9 @@ from inca_mj.control import (
     TASKS,
     load,
 )
-from inca_mj.parameters import parameters
+from inca_mj.parameters import parameter_set
 from inca_mj.run import simulate
-from inca_mj.twin import twin
+from inca_mj.twin import build_twin
 
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 
@@ -35,8 +35,8 @@ def test_it_moves_in_lockstep_with_the_twin():
     seen = [step.observation for step in drive(env, currents)]
 
     spread = np.random.default_rng(seed).uniform(-START_SPREAD, START_SPREAD)
-    nominal = parameters().values()
-    robot = twin().with_values({n: nominal[n] + s for n, s in zip(POSE, spread, strict=True)})
+    nominal = parameter_set().values()
+    robot = build_twin().with_values({n: nominal[n] + s for n, s in zip(POSE, spread, strict=True)})
     run = simulate(robot, np.vstack([currents, currents[-1:]]), CONTROL_TIMESTEP)
 
     for name, expected in {

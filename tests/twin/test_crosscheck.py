@@ -11,8 +11,8 @@ from inca_mj.crosscheck import CASES, CrossCheck, DerivativeErrors, compare_deri
 from inca_mj.crosscheck.check import STEPS
 from inca_mj.crosscheck.order import crossing, leading_slope, slope
 from inca_mj.geometry import INCA
-from inca_mj.parameters import SETS, parameters
-from inca_mj.twin import twin
+from inca_mj.parameters import SETS, parameter_set
+from inca_mj.twin import build_twin
 
 GOOD = DerivativeErrors(0, 0, 0, 0, 0, states=1, slack=0.5)
 
@@ -33,13 +33,13 @@ def test_a_wrong_number_in_one_model_is_seen(name, monkeypatch):
     from inca_mj.crosscheck import derivatives
 
     def wrong(p, geometry):
-        return twin(p.with_values({name: p[name].value * (1 + 1e-6)}), geometry)
+        return build_twin(p.with_values({name: p[name].value * (1 + 1e-6)}), geometry)
 
     def pack_right(p, geometry):
         return pack(p.with_values({name: p[name].value / (1 + 1e-6)}), geometry)
 
     pack = derivatives.pack
-    monkeypatch.setattr(derivatives, "twin", wrong)
+    monkeypatch.setattr(derivatives, "build_twin", wrong)
     monkeypatch.setattr(derivatives, "pack", pack_right)
     assert compare_derivatives(300).largest > 1e-9
 
@@ -48,7 +48,7 @@ def test_a_wrong_number_in_one_model_is_seen(name, monkeypatch):
 def test_one_second_passes(name):
     said = []
     result = crosscheck(
-        parameters(name), duration=1.0, steps=STEPS, states=200, progress=said.append
+        parameter_set(name), duration=1.0, steps=STEPS, states=200, progress=said.append
     )
     assert result.passed, result.sentences
     assert [(r["case"], r["step"]) for r in result.rows] == [
@@ -112,7 +112,7 @@ def test_the_order_tells_two_terms_apart():
 def test_what_cannot_be_checked_is_refused_at_once(asked, message, monkeypatch):
     monkeypatch.setattr(check, "compare_derivatives", lambda *_: pytest.fail("began"))
     with pytest.raises(InputError, match=message):
-        crosscheck(parameters(), INCA, **asked)
+        crosscheck(parameter_set(), INCA, **asked)
 
 
 def test_a_diverged_run_and_an_unknown_order_can_be_drawn():

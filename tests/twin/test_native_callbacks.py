@@ -14,7 +14,7 @@ from identification.rollout import State
 from inca_mj import law, native, structs
 from inca_mj.inputs import make_input
 from inca_mj.run import simulate
-from inca_mj.twin import twin
+from inca_mj.twin import build_twin
 
 # User actuators, tendons and sensors with user data wide enough to be mistaken for the robot's.
 ORDINARY = f"""<mujoco>
@@ -108,7 +108,7 @@ def test_a_foreign_callback_is_refused_and_left_in_place(name):
 
 
 def test_the_declared_layout_is_where_live_fields_are():
-    model = twin().model
+    model = build_twin().model
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     assert {"actuator_user", "tendon_user", "ten_J", "act", "qfrc_passive"} <= structs.check(
@@ -131,7 +131,7 @@ def test_a_field_elsewhere_is_caught(moved, monkeypatch):
         return type(struct, (ctypes.Structure,),
                     {"_fields_": entries[:cut] + padded + entries[cut:]})  # fmt: skip
 
-    model = twin().model
+    model = build_twin().model
     data = mujoco.MjData(model)
     monkeypatch.setattr(structs, "layout", shifted)
     with pytest.raises(RuntimeError, match="is not where its"):
@@ -140,7 +140,7 @@ def test_a_field_elsewhere_is_caught(moved, monkeypatch):
 
 def test_nan_is_an_error_not_silence(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    robot = twin()
+    robot = build_twin()
     at = robot.state()
     act = at.act.copy()
     act[2] = np.nan
@@ -150,7 +150,7 @@ def test_nan_is_an_error_not_silence(tmp_path, monkeypatch):
 
 
 def test_a_rollout_runs_without_the_interpreters_lock():
-    robot = twin()
+    robot = build_twin()
     batch = Batch(robot.model, 2, 2)
     at = robot.state()
     batch.bind("qpos")[:], batch.bind("act")[:] = at.qpos, at.act

@@ -11,11 +11,11 @@ from identification.paths import resolve
 from identification.rollout import rollout
 from inca_mj import law
 from inca_mj.inputs import prbs
-from inca_mj.parameters import SETS, parameters
+from inca_mj.parameters import SETS, parameter_set
 from inca_mj.run import simulate
-from inca_mj.twin import twin
+from inca_mj.twin import build_twin
 
-NOMINAL = twin()
+NOMINAL = build_twin()
 START = {"x": 0.03, "y": -0.02, "z": 1.45, "roll": 0.05, "pitch": 0.02, "yaw": -0.1}
 
 # Where a free body stands and how long its cables are when the model was compiled: the state
@@ -27,7 +27,7 @@ UNREAD = {"body_pos", "body_quat", "qpos_spring", "tendon_lengthspring"}
 @given(laws)
 def test_new_values_equal_a_new_compilation(values):
     values = values | START
-    written, compiled = NOMINAL.with_values(values), twin(parameters("trial", values))
+    written, compiled = NOMINAL.with_values(values), build_twin(parameter_set("trial", values))
     assert differing(written.model, compiled.model) <= UNREAD
     currents = prbs(21, 0.01)
     ours, theirs = simulate(written, currents), simulate(compiled, currents)
@@ -36,7 +36,7 @@ def test_new_values_equal_a_new_compilation(values):
 
 
 def test_new_values_leave_the_old_twin_alone():
-    before = twin()
+    before = build_twin()
     NOMINAL.with_values({"lambda": 1e5, "m": 0.3, "z": 1.5})
     assert differing(before.model, NOMINAL.model) == set()
 
@@ -95,7 +95,7 @@ def test_threads_change_no_bit():
 
 @pytest.mark.parametrize("name", SETS)
 def test_a_batch_is_a_loop_over_single_simulations(name):
-    robot = twin(parameters(name))
+    robot = build_twin(parameter_set(name))
     batch = Batch(robot.model, 3, 2)
     starts = [moving(seed) for seed in range(3)]
     for field in ("qpos", "qvel", "act"):

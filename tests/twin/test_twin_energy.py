@@ -6,8 +6,8 @@ from scipy.integrate import simpson
 from twin_cases import every_step, forward, moving
 
 from identification.rollout import State
-from inca_mj.parameters import GRAVITY, parameters
-from inca_mj.twin import twin
+from inca_mj.parameters import GRAVITY, parameter_set
+from inca_mj.twin import build_twin
 
 STEP = 2.5e-4
 CURRENT = np.array([1.0, 0.5, 1.0, 0.5, 0.5, 1.0, 1.0, 0.5])
@@ -15,7 +15,7 @@ CURRENT = np.array([1.0, 0.5, 1.0, 0.5, 0.5, 1.0, 1.0, 0.5])
 
 def ledger(p, start, T_0, steps=800):
     """Stored energy (N,), powers (5, N) and tensions (N, 8) along a run of the twin."""
-    robot = twin(p, timestep=STEP)
+    robot = build_twin(p, timestep=STEP)
     currents = np.tile(CURRENT, (steps + 1, 1))
     at = State(**every_step(robot, start, currents))
     d, d_rate, sensors = forward(
@@ -50,8 +50,8 @@ def ledger(p, start, T_0, steps=800):
 
 @pytest.mark.parametrize("losses", [False, True])
 def test_the_balance_closes(losses):
-    p = parameters("trial", {} if losses else {"b": 0.0, "b_v": 0.0, "b_c": 0.0})
-    stored, powers, T = ledger(p, moving(4), twin(p).start.tension)
+    p = parameter_set("trial", {} if losses else {"b": 0.0, "b_v": 0.0, "b_c": 0.0})
+    stored, powers, T = ledger(p, moving(4), build_twin(p).start.tension)
     work = simpson(powers, dx=STEP, axis=1)
     exchanged = simpson(np.abs(powers).sum(axis=0), dx=STEP)
     assert T.min() > 0
@@ -64,9 +64,9 @@ def test_the_balance_closes(losses):
 
 
 def test_the_balance_closes_while_cables_turn_slack_and_taut():
-    p, start = parameters(), twin().state()
+    p, start = parameter_set(), build_twin().state()
     start.qvel[:3] = 0.5, 0.3, 0.4
-    stored, powers, T = ledger(p, start, twin(p).start.tension, steps=400)
+    stored, powers, T = ledger(p, start, build_twin(p).start.tension, steps=400)
     work = simpson(powers, dx=STEP, axis=1).sum()
     assert (T == 0).any(axis=0).sum() >= 2
     # A kink within a step costs RK4 and Simpson their order.

@@ -12,9 +12,9 @@ from twin_cases import arrays, differing, laws, seeds
 from identification.export import to_xml
 from inca_mj.geometry import INCA
 from inca_mj.mjcf import build
-from inca_mj.parameters import parameters
+from inca_mj.parameters import parameter_set
 from inca_mj.run import simulate
-from inca_mj.twin import Twin, twin
+from inca_mj.twin import Twin, build_twin
 
 SHIPPED = Path(__file__).parents[2] / "models" / "inca6d.xml"
 START = {"x": 0.02, "y": 0.03, "z": 1.41, "roll": 0.04, "pitch": -0.06, "yaw": 0.1}
@@ -22,13 +22,13 @@ START = {"x": 0.02, "y": 0.03, "z": 1.41, "roll": 0.04, "pitch": -0.06, "yaw": 0
 
 def test_the_shipped_model_is_the_builders():
     text = SHIPPED.read_text(encoding="utf-8")
-    assert text == to_xml(build(parameters(), INCA)), "write it anew: twin().save(...)"
-    shipped, built = mujoco.MjModel.from_xml_path(str(SHIPPED)), twin().model
+    assert text == to_xml(build(parameter_set(), INCA)), "write it anew: build_twin().save(...)"
+    shipped, built = mujoco.MjModel.from_xml_path(str(SHIPPED)), build_twin().model
     assert differing(shipped, built) == set()
 
 
 def test_the_shipped_model_looks_like_the_builders():
-    ours, theirs = arrays(mujoco.MjModel.from_xml_path(str(SHIPPED))), arrays(twin().model)
+    ours, theirs = arrays(mujoco.MjModel.from_xml_path(str(SHIPPED))), arrays(build_twin().model)
     for name in ours:
         if name.startswith(("cam_", "geom_", "light_", "mat_")):
             np.testing.assert_allclose(ours[name], theirs[name], atol=1e-5, err_msg=name)
@@ -44,13 +44,13 @@ def test_an_exported_model_reloads_to_the_bit(values, seed):
         connectors=tuple(map(tuple, INCA.B + 0.1 * shift[1])),
         source="moved",
     )
-    p = parameters("trial", values | START)
+    p = parameter_set("trial", values | START)
     model = mujoco.MjModel.from_xml_string(to_xml(build(p, geometry)))
-    assert differing(model, twin(p, geometry).model) == set()
+    assert differing(model, build_twin(p, geometry).model) == set()
 
 
 def test_a_saved_twin_runs_the_same(tmp_path):
-    robot = twin(parameters("simulation", START), timestep=5e-4)
+    robot = build_twin(parameter_set("simulation", START), timestep=5e-4)
     path = robot.save(tmp_path / "robot.xml")
     again = Twin(robot.parameters, robot.geometry, mujoco.MjModel.from_xml_path(str(path)))
     assert again.model.opt.timestep == 5e-4
@@ -59,5 +59,5 @@ def test_a_saved_twin_runs_the_same(tmp_path):
 
 
 def test_a_text_that_does_not_change_is_not_changed_by_a_round_trip():
-    text = to_xml(build(parameters(), INCA))
+    text = to_xml(build(parameter_set(), INCA))
     assert to_xml(mujoco.MjSpec.from_string(text)) == pytest.approx(text)

@@ -4,10 +4,10 @@ import numpy as np
 from hypothesis import given, settings
 from twin_cases import forward, laws, random_state, seeds, sets
 
-from inca_mj.parameters import parameters
-from inca_mj.twin import twin
+from inca_mj.parameters import parameter_set
+from inca_mj.twin import build_twin
 
-ROBOT = twin()
+ROBOT = build_twin()
 
 
 def slow_law(v, T_0, at, d, d_rate, J):
@@ -56,7 +56,7 @@ def test_the_callbacks_are_the_equations(seed, values):
 @settings(deadline=None, max_examples=20)
 @given(seeds, sets)
 def test_a_cable_never_pushes(seed, name):
-    robot = ROBOT.with_values(parameters(name).values())
+    robot = ROBOT.with_values(parameter_set(name).values())
     at, ctrl = random_state(seed, 100)
     (sensors,) = forward(robot.model, at, ctrl, ("sensordata",))
     first = robot.model.sensor("tension_1").adr[0]
@@ -67,7 +67,7 @@ def test_a_cable_never_pushes(seed, name):
 
 def test_the_control_range_clamps_the_current():
     at, _ = random_state(1)
-    limited = twin()
+    limited = build_twin()
     limited.model.actuator_ctrllimited[:] = 1
     limited.model.actuator_ctrlrange[:] = -1.5, 1.5
     ctrl = np.linspace(-3, 3, 8)[None]

@@ -8,8 +8,8 @@ from identification.errors import InputError
 from identification.paths import read, resolve
 from identification.rollout import State
 from inca_mj import law
-from inca_mj.parameters import SETS, parameters
-from inca_mj.twin import twin
+from inca_mj.parameters import SETS, parameter_set
+from inca_mj.twin import build_twin
 
 # Thesis Tables 2.1 and 3.2, typed from the page.
 TABLES = {
@@ -26,7 +26,7 @@ TABLES = {
 
 @pytest.mark.parametrize("name", SETS)
 def test_the_compiled_model_holds_the_tables(name):
-    model, table = twin(parameters(name)).model, TABLES[name]
+    model, table = build_twin(parameter_set(name)).model, TABLES[name]
     for k in range(1, 9):
         drive = model.actuator(f"current_{k}")
         row, cable = drive.user, model.tendon_user[model.tendon(f"cable_{k}").id]
@@ -46,12 +46,12 @@ def test_the_compiled_model_holds_the_tables(name):
     np.testing.assert_array_equal(model.key("start").qpos[:7], [0, 0, 1.43, 1, 0, 0, 0])
 
 
-ALL = [p for p in parameters()]
+ALL = [p for p in parameter_set()]
 
 
 @pytest.mark.parametrize("parameter", ALL, ids=lambda p: p.name)
 def test_every_parameter_has_an_effect(parameter):
-    robot = twin()
+    robot = build_twin()
     shift = 1e-2 * (parameter.value or 1.0)
     other = robot.with_values({parameter.name: parameter.value + shift})
     ours, theirs = (
@@ -63,7 +63,7 @@ def test_every_parameter_has_an_effect(parameter):
 
 @pytest.mark.parametrize("parameter", [p for p in ALL if p.where != "start"], ids=lambda p: p.name)
 def test_every_path_resolves_to_its_value(parameter):
-    model = twin().model
+    model = build_twin().model
     slot = resolve(model, parameter.where)
     assert read(model, slot) == parameter.value
     assert len(slot.rows) == (1 if "platform" in parameter.where else 8)
@@ -85,4 +85,4 @@ def test_every_path_resolves_to_its_value(parameter):
 )
 def test_a_path_that_leads_nowhere_is_refused(path, message):
     with pytest.raises(InputError, match=message):
-        resolve(twin().model, path)
+        resolve(build_twin().model, path)

@@ -7,7 +7,7 @@ from twin_cases import moving
 from identification.rollout import State
 from inca_mj.inputs import prbs
 from inca_mj.run import simulate
-from inca_mj.twin import twin
+from inca_mj.twin import build_twin
 
 # The sign of a polar vector's entries, and where each drive lands.
 MIRRORS = {
@@ -30,7 +30,7 @@ def mirrored(at, sign, drives):
 @pytest.mark.parametrize("axis", MIRRORS)
 def test_a_mirrored_start_and_input_give_the_mirrored_run(axis):
     sign, drives = MIRRORS[axis]
-    robot, start, currents = twin(), moving(3), prbs(101, 0.01, seed=5)
+    robot, start, currents = build_twin(), moving(3), prbs(101, 0.01, seed=5)
     run = simulate(robot, currents, start=start)
     image = simulate(robot, currents[:, drives], start=mirrored(start, sign, drives))
     expected = mirrored(State(run.qpos, run.qvel, run.act), sign, drives)

@@ -8,8 +8,8 @@ from mujoco.batch import Batch
 from identification.rollout import State, rollout
 from inca_mj.crosscheck.states import random_states, to_mujoco
 from inca_mj.geometry import INCA
-from inca_mj.parameters import parameters
-from inca_mj.twin import twin
+from inca_mj.parameters import parameter_set
+from inca_mj.twin import build_twin
 
 STEP = 1e-3  # [s]
 
@@ -29,7 +29,7 @@ def near(name: str, value: float) -> st.SearchStrategy[float]:
 
 
 laws = st.fixed_dictionaries(
-    {p.name: near(p.name, p.value) for p in parameters() if p.where != "start"}
+    {p.name: near(p.name, p.value) for p in parameter_set() if p.where != "start"}
 )
 
 
@@ -42,7 +42,7 @@ def random_state(seed: int, n: int = 1) -> tuple[State, np.ndarray]:
 def moving(seed: int) -> State:
     """Near rest, moving, every cable taut."""
     rng = np.random.default_rng(seed)
-    at = twin().state()
+    at = build_twin().state()
     speed = np.concatenate([rng.normal(0, 0.02, 3), rng.normal(0, 0.2, 3), rng.normal(0, 0.5, 8)])
     return State(at.qpos, speed, at.act)
 
