@@ -45,7 +45,7 @@ def value_sets(n):
     rng = np.random.default_rng(7)
     names = [p.name for p in NOMINAL.parameters if p.where != "start"]
     return [
-        {name: NOMINAL.parameters[name].value * rng.uniform(0.8, 1.25) for name in names}
+        {name: NOMINAL.parameters[name].value * rng.uniform(0.92, 1.08) for name in names}
         for _ in range(n)
     ]
 
