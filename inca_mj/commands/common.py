@@ -89,6 +89,7 @@ def folder(path: Path) -> Path:
 def say(text: str) -> None:
     """One line of result on stdout."""
     sys.stdout.write(text + "\n")
+    sys.stdout.flush()
 
 
 def note(text: str) -> None:
