@@ -13,7 +13,7 @@ from identification.parameter import ParameterSet
 from inca_mj.geometry import INCA, Geometry
 from inca_mj.mjcf import TIMESTEP
 from inca_mj.run import Run, simulate
-from inca_mj.twin import twin
+from inca_mj.twin import build_twin
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def compare(
         InputError: the start has no pretension.
         DivergenceError: the simulation left the finite numbers.
     """
-    robot = twin(parameters, geometry, timestep=timestep_for(log.sampling_time))
+    robot = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time))
     run = simulate(robot, log.inputs, log.sampling_time, hold_kind=log.hold)
     predicted = run.motor_angle
     return Comparison(

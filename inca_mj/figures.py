@@ -107,13 +107,13 @@ def compare_figure(
     return figure
 
 
-def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float) -> Figure:
+def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) -> Figure:
     """Largest difference of the two models over the step, with the slope of a 4th-order method.
 
     Args:
         rows: one of each case and step: `case`, `step` [s], `max_angle_error` [rad],
             `max_position_error` [m], `max_tension_error` [N].
-        order: the order of convergence observed.
+        order: the order of convergence observed; None when it could not be.
     """
     cases = list(dict.fromkeys(str(row["case"]) for row in rows))
     with matplotlib.rc_context(_STYLE):
@@ -132,14 +132,14 @@ def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float) -> Figure
                         marker=_MARKERS[number % len(_MARKERS)], ms=4.5, label=case)  # fmt: skip
             _slope(ax, rows, error)
             ax.set(xscale="log", xlabel="step [ms]")
-            if any(row[error] > 0 for row in rows):
+            if any(row[error] for row in rows):
                 ax.set_yscale("log")
             steps = sorted({row["step"] for row in rows})
             ax.set_xticks(steps, [f"{1e3 * step:g}" for step in steps])
             ax.minorticks_off()
             ax.set_title(f"largest {kind} error [{unit}]", loc="left", color=INK)
-        figure.suptitle(f"twin against reference: observed order {order:.2f}", color=INK,
-                        fontsize=10.5)  # fmt: skip
+        observed = "" if order is None else f": observed order {order:.2f}"
+        figure.suptitle(f"twin against reference{observed}", color=INK, fontsize=10.5)
         handles, labels = ax.get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=min(5, len(labels)))
     return figure
@@ -180,7 +180,7 @@ def _over_time(time: np.ndarray, label: str, values: np.ndarray, names: list[str
 def _slope(ax: Axes, rows: Sequence[Mapping[str, Any]], error: str) -> None:
     """A dashed line error ~ step⁴ just below the largest errors."""
     steps = np.array(sorted({row["step"] for row in rows}))
-    largest = max((row[error] for row in rows if row["step"] == steps[-1]), default=0.0)
+    largest = max((row[error] or 0.0 for row in rows if row["step"] == steps[-1]), default=0.0)
     if largest > 0:
         guide = 0.4 * largest * (steps / steps[-1]) ** 4
         ax.plot(steps, guide, color=GREY, ls="--", lw=1, label="slope 4")

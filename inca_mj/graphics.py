@@ -24,7 +24,7 @@ _OFF = ("disable", "disabled", "off", "false", "0")
 _WINDOW = ("", "enable", "enabled", "on", "true", "1", "glfw", "glx")
 _LIBRARY = {"egl": "EGL", "osmesa": "OSMesa"}
 _FIX = (
-    "apt-get install libegl1 libgl1-mesa-dri, or set MUJOCO_GL to egl, osmesa or glfw;"
+    "apt-get install libegl1 libopengl0 libgl1-mesa-dri, or set MUJOCO_GL to egl, osmesa or glfw;"
     " everything that does not draw still works"
 )
 

@@ -15,7 +15,7 @@ from identification.fit import Fit, assess
 from identification.parameter import ParameterSet
 from inca_mj.comparison import timestep_for
 from inca_mj.geometry import INCA, Geometry
-from inca_mj.twin import twin
+from inca_mj.twin import build_twin
 
 MECHANICS = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t", "m")
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -64,7 +64,7 @@ def identify(
         InputError: a name is unknown or has no effect, or a start has no pretension.
         DivergenceError: the nominal values cannot be simulated.
     """
-    plant = twin(parameters, geometry, timestep=timestep_for(log.sampling_time))
+    plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time))
     fitted = log.part("estimation")
 
     def step(names: Sequence[str], start: dict[str, float]) -> Fit:

@@ -9,11 +9,13 @@ the builder puts into `actuator_user` and `tendon_user`.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import mujoco
 import numpy as np
 
+from identification.errors import InputError
 from identification.parameter import ParameterSet
 from inca_mj import law
 from inca_mj.appearance import dress_drum, dress_platform, dress_world
@@ -23,7 +25,7 @@ from inca_mj.parameters import GRAVITY
 from inca_mj.statics import start
 
 TIMESTEP = 1e-3  # [s]; RK4 at 1 ms follows the reference to a few microradians
-ROTOR = 1e-14  # inertia MuJoCo demands of the drum's body beside the armature [kg m^2]
+ROTOR = 2e-15  # inertia MuJoCo demands of the drum's body beside the armature [kg m^2]
 
 _TENSION, _NO_LOAD_LENGTH = 1, 2  # see inca_mj.native
 
@@ -69,6 +71,7 @@ def _settings(spec: mujoco.MjSpec) -> None:
 
 def _platform(spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry) -> None:
     p = parameters.values()
+    check_inertia(p)
     body = spec.worldbody.add_body(name="platform", pos=[p["x"], p["y"], p["z"]])
     body.quat = quaternion(p["roll"], p["pitch"], p["yaw"])
     body.add_freejoint(name="platform")
@@ -77,6 +80,22 @@ def _platform(spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry)
     for k, connector in enumerate(geometry.connectors, 1):
         body.add_site(name=f"connector_{k}", pos=connector, size=[0.006, 0.006, 0.006])
     dress_platform(body, geometry)
+
+
+def check_inertia(values: Mapping[str, float]) -> None:
+    """Refuse principal inertias that no body has: one exceeds the sum of the other two.
+
+    Raises:
+        InputError: it does.
+    """
+    I = {name: values[name] for name in ("I_x", "I_y", "I_z")}
+    largest = max(I, key=I.__getitem__)
+    rest = sum(I.values()) - I[largest]
+    if I[largest] > rest:
+        raise InputError(
+            f"no body has {largest} = {I[largest]:g} kg m^2, more than the {rest:g} kg m^2 of the"
+            " other two inertias together; make it smaller, or them larger"
+        )
 
 
 def _weigh(body: Any, mass: float, inertia: list[float]) -> None:

@@ -23,7 +23,14 @@ from numba import cfunc, njit, types
 
 from identification.errors import InputError
 from inca_mj import law, structs
-from inca_mj.memory import load_byte, load_double, load_int, load_word, store_double
+from inca_mj.memory import (
+    load_byte,
+    load_constant,
+    load_double,
+    load_int,
+    load_word,
+    store_double,
+)
 
 TENSION, NO_LOAD_LENGTH = 1, 2  # what a user sensor shows: its sensor_user[0]
 
@@ -56,7 +63,7 @@ def _word(struct, at):  # type: ignore[no-untyped-def]
 
 @njit
 def _double(struct, at, i):  # type: ignore[no-untyped-def]
-    return load_double(load_word(struct + 8 * at) + 8 * i)
+    return load_constant(load_word(struct + 8 * at) + 8 * i)
 
 
 @njit

@@ -74,7 +74,7 @@ _TRIAL = {"lambda": 25000.0, "b": 8.0, "J": 8e-5, "b_v": 2e-4, "K_t": 0.08}
 SETS = ("simulation", "trial")
 
 
-def parameters(name: str = "trial", values: Mapping[str, float] | None = None) -> ParameterSet:
+def parameter_set(name: str = "trial", values: Mapping[str, float] | None = None) -> ParameterSet:
     """A named parameter set, with some values replaced.
 
     Args:

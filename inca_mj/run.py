@@ -16,8 +16,8 @@ from identification.files import whole_file
 from identification.rollout import State, rollout
 from inca_mj.geometry import DRIVES, Geometry
 from inca_mj.kinematics import euler
-from inca_mj.parameters import parameters
-from inca_mj.twin import Twin, twin
+from inca_mj.parameters import parameter_set
+from inca_mj.twin import Twin, build_twin
 
 _STAGE = mujoco.mjtStage.mjSTAGE_VEL
 _ARRAYS = ("time", "currents", "qpos", "qvel", "act", "tension", "length")
@@ -159,8 +159,8 @@ def load_run(path: str | Path) -> Run:
     geometry = {k: v for k, v in header["geometry"].items() if k in names}
     for name in ("exits", "connectors"):
         geometry[name] = tuple(tuple(row) for row in geometry[name])
-    robot = twin(
-        parameters(header["set"], header["values"]),
+    robot = build_twin(
+        parameter_set(header["set"], header["values"]),
         Geometry(**geometry),
         timestep=header["timestep"],
     )

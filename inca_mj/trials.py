@@ -20,9 +20,9 @@ from identification.fit import Fit, assess
 from identification.metrics import fit_percent, loss
 from inca_mj.inputs import make_input
 from inca_mj.logs import run_to_log
-from inca_mj.parameters import parameters
+from inca_mj.parameters import parameter_set
 from inca_mj.run import simulate
-from inca_mj.twin import Twin, twin
+from inca_mj.twin import Twin, build_twin
 
 DURATION = 5.0  # of the data [s]
 NOISE = 0.05  # largest error of a sample, relative to it
@@ -93,7 +93,7 @@ class TrialResult:
 
     def to_json(self) -> dict[str, Any]:
         """The numbers as plain values."""
-        true = parameters("trial").values()
+        true = parameter_set("trial").values()
         values = self.fit.estimate.values
         return {
             "trial": self.trial.number,
@@ -147,7 +147,7 @@ def run_trial(
         options: how to search; `Options(horizons=(1.0,))` is the thesis' single free-run fit.
         progress: is told one line per accepted step.
     """
-    robot = twin(parameters("trial"))
+    robot = build_twin(parameter_set("trial"))
     clean = trial_data(robot)
     data = with_noise(clean, seed) if trial.noisy else clean
     fit = assess(estimate(robot, data, tuple(trial.start), trial.start, options, progress))
@@ -164,7 +164,7 @@ def monte_carlo(seeds: int, progress: Callable[[str], None] | None = None) -> di
         By parameter: relative bias and std of the estimates, the mean std that the fits claimed,
         and the share of seeds whose 95 % interval holds the truth.
     """
-    true = parameters("trial").values()
+    true = parameter_set("trial").values()
     trial = TRIALS[3]
     names = tuple(trial.start)
     found, claimed = np.empty((seeds, len(names))), np.empty((seeds, len(names)))

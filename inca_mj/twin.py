@@ -18,14 +18,14 @@ from identification.rollout import State
 from inca_mj import law, native
 from inca_mj.geometry import INCA, Geometry
 from inca_mj.kinematics import quaternion
-from inca_mj.mjcf import TIMESTEP, build
-from inca_mj.parameters import parameters as parameter_set
+from inca_mj.mjcf import TIMESTEP, build, check_inertia
+from inca_mj.parameters import parameter_set
 from inca_mj.statics import Start, start, start_from
 
 
 @dataclass(frozen=True)
 class Twin:
-    """A robot that can be simulated; `twin()` makes one.
+    """A robot that can be simulated; `build_twin()` makes one.
 
     Attributes:
         parameters: every number of the robot, with unit and source.
@@ -53,6 +53,7 @@ class Twin:
             InputError: a name is unknown, a value out of bounds, or the start has no pretension.
         """
         parameters = self.parameters.with_values(values)
+        check_inertia(parameters.values())
         model = copy.copy(self.model)
         write_values(model, parameters)
         begin = start(parameters, self.geometry)
@@ -101,7 +102,7 @@ class Twin:
         return write_xml(spec, path)
 
 
-def twin(
+def build_twin(
     parameters: ParameterSet | None = None,
     geometry: Geometry = INCA,
     *,

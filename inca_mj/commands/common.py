@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -34,9 +34,9 @@ class Robot:
         Raises:
             InputError: a value is malformed, unknown or out of bounds.
         """
-        from inca_mj.parameters import parameters
+        from inca_mj.parameters import parameter_set
 
-        return parameters(self.set, dict(_assignment(text) for text in self.param))
+        return parameter_set(self.set, dict(_assignment(text) for text in self.param))
 
     def place(self) -> Geometry:
         """The geometry.
@@ -89,6 +89,7 @@ def folder(path: Path) -> Path:
 def say(text: str) -> None:
     """One line of result on stdout."""
     sys.stdout.write(text + "\n")
+    sys.stdout.flush()
 
 
 def note(text: str) -> None:
@@ -131,7 +132,7 @@ def _plain(value: Any) -> Any:
     return str(value) if isinstance(value, Path) else value
 
 
-def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+def table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
     """A plain text table, numbers to the right."""
     lines = [head, *rows]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]

@@ -56,7 +56,7 @@ class Compare:
 
 def summary(result: Comparison) -> str:
     """The comparison as a text table."""
-    rows: list[tuple[str, ...]] = [
+    rows = [
         (name, f"{fit:.2f}", f"{1e3 * error:.2f}")
         for name, fit, error in zip(
             result.log.output_names, result.fit_percent, result.rms, strict=True

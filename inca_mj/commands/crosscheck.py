@@ -73,7 +73,7 @@ class Crosscheck:
 def summary(result: CrossCheck) -> str:
     """The cross-check as a text table and its verdict."""
     head = ("case", "step [ms]", "angle [rad]", "position [m]", "tension [N]")
-    rows: list[tuple[str, ...]] = [
+    rows = [
         (
             str(row["case"]),
             f"{1e3 * row['step']:g}",

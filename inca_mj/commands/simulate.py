@@ -46,11 +46,11 @@ class Simulate:
         do_not_draw()
         from inca_mj.comparison import timestep_for
         from inca_mj.run import simulate
-        from inca_mj.twin import twin
+        from inca_mj.twin import build_twin
 
         currents, sampling_time, hold = self._currents()
         parameters, place = self.robot.parameters(), self.robot.place()
-        robot = twin(parameters, place, timestep=timestep_for(sampling_time))
+        robot = build_twin(parameters, place, timestep=timestep_for(sampling_time))
         result = simulate(robot, currents, sampling_time, hold_kind=hold)
         summary = {
             "samples": len(result.time),
@@ -86,7 +86,7 @@ class Simulate:
 
 
 def _text(result: Run) -> str:
-    rows: list[tuple[str, ...]] = [
+    rows = [
         (str(k + 1), f"{angle:.3f}", f"{low:.2f}", f"{high:.2f}")
         for k, (angle, low, high) in enumerate(
             zip(

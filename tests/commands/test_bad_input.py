@@ -98,6 +98,7 @@ def test_two_gigabytes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
     [
         (("--param", "lamda=1"), "did you mean 'lambda'"),
         (("--param", "R=-0.0175"), "outside its range"),
+        (("--param", "I_x=1"), "no body has I_x"),
         (("--param", "m"), "NAME=VALUE"),
         (("--param", "m=heavy"), "NAME=VALUE"),
         (("--param", "x=1.3"), "move the start pose"),

@@ -85,16 +85,13 @@ def test_compare_keeps_a_report_that_needs_no_network(tmp_path: Path) -> None:
 def test_crosscheck_disagrees_aloud(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A twin with another law must fail the check, with exit code 1."""
-    from inca_mj import crosscheck as package
-    from inca_mj.parameters import parameters
+    """A reference of another robot must fail the check, with exit code 1."""
+    from inca_mj.crosscheck import check
 
-    real = package.crosscheck
-
-    def wrong(given: object, *a: object, **k: object) -> object:
-        return real(parameters("trial"), *a, **k, reference=parameters("trial", {"b_c": 0.006}))
-
-    monkeypatch.setattr(package, "crosscheck", wrong)
+    right = check.run_reference
+    monkeypatch.setattr(
+        check, "run_reference", lambda c, p, g: right(c, p.with_values({"b_c": 0.0051}), g)
+    )
     assert run("crosscheck", "--duration", 1, "--states", 50, "--json") == 1
     assert last_json(capsys)["passed"] is False
 

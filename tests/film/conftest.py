@@ -6,7 +6,7 @@ from identification.errors import GraphicsError
 from inca_mj.graphics import renderer
 from inca_mj.inputs import make_input
 from inca_mj.run import simulate
-from inca_mj.twin import twin
+from inca_mj.twin import build_twin
 
 
 @pytest.fixture(scope="session")
@@ -20,9 +20,9 @@ def opengl():
 
 @pytest.fixture(scope="session")
 def short_run():
-    return simulate(twin(), make_input("prbs", 1.0))
+    return simulate(build_twin(), make_input("prbs", 1.0))
 
 
 @pytest.fixture(scope="session")
 def pulled_run():
-    return simulate(twin(), np.tile([2.0] + 7 * [0.0], (61, 1)))
+    return simulate(build_twin(), np.tile([2.0] + 7 * [0.0], (61, 1)))

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from identification.parameter import ParameterSet
 from inca_mj.geometry import INCA
-from inca_mj.parameters import SETS, parameters
+from inca_mj.parameters import SETS, parameter_set
 from inca_mj.reference import layout as at
 from inca_mj.reference import rest
 
@@ -39,7 +39,7 @@ def plain_rotation(euler: np.ndarray) -> np.ndarray:
 def taut(seed: int) -> np.ndarray:
     """A start state near rest, moving, every cable taut."""
     rng = np.random.default_rng(seed)
-    x = rest(parameters(), INCA).state.copy()
+    x = rest(parameter_set(), INCA).state.copy()
     x[at.VELOCITY] = rng.normal(0, 0.02, 3)
     x[at.RATES] = rng.normal(0, 0.2, 3)
     x[at.SPEEDS] = rng.normal(0, 0.5, 8)
@@ -47,7 +47,7 @@ def taut(seed: int) -> np.ndarray:
 
 
 def without_losses() -> ParameterSet:
-    return parameters("trial", {"b": 0.0, "b_v": 0.0, "b_c": 0.0})
+    return parameter_set("trial", {"b": 0.0, "b_v": 0.0, "b_c": 0.0})
 
 
 seeds = st.integers(0, 2**32 - 1)

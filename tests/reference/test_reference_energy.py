@@ -7,7 +7,7 @@ from reference_cases import FORCE, FORCE_AT, currents, sets, states, taut, witho
 from scipy.integrate import solve_ivp
 
 from inca_mj.geometry import INCA
-from inca_mj.parameters import parameters
+from inca_mj.parameters import parameter_set
 from inca_mj.reference import derivative, energy, pack, power, rest
 from inca_mj.reference import layout as at
 from inca_mj.reference.equations import cables
@@ -16,7 +16,7 @@ from inca_mj.reference.equations import cables
 @settings(deadline=None)
 @given(states, currents, sets)
 def test_energy_changes_at_the_power_at_any_state(x, i, name):
-    q = pack(parameters(name), INCA, force=FORCE, force_at=FORCE_AT)
+    q = pack(parameter_set(name), INCA, force=FORCE, force_at=FORCE_AT)
     rate = derivative(x, i, q)
     # Rounding of E limits short steps and curvature long ones; E is smooth through slackness.
     h = 1e-5 / np.abs(rate[at.SPEEDS]).max()
@@ -45,7 +45,7 @@ CURRENT = np.array([1.0, 0.5, 1.0, 0.5, 0.5, 1.0, 1.0, 0.5])
 
 @pytest.mark.parametrize("losses", [False, True])
 def test_the_balance_closes_over_a_taut_trajectory(losses):
-    p = parameters() if losses else without_losses()
+    p = parameter_set() if losses else without_losses()
     stored, terms, exchanged, tension = balance(p, taut(4), CURRENT, 0.2)
     assert tension.min() > 0
     motor, viscous, coulomb, damper, wound = terms
@@ -60,15 +60,15 @@ def test_the_balance_closes_over_a_taut_trajectory(losses):
 
 
 def test_the_balance_closes_while_cables_turn_slack_and_taut():
-    x = rest(parameters(), INCA).state.copy()
+    x = rest(parameter_set(), INCA).state.copy()
     x[at.VELOCITY] = 0.5, 0.3, 0.4
-    stored, terms, exchanged, tension = balance(parameters(), x, CURRENT, 0.1)
+    stored, terms, exchanged, tension = balance(parameter_set(), x, CURRENT, 0.1)
     assert (tension == 0).any(axis=0).sum() >= 2
     assert stored == pytest.approx(terms.sum(), abs=1e-9 * exchanged)
 
 
 def test_a_spent_drum_spring_holds_a_constant_energy():
-    q, x = pack(parameters(), INCA), rest(parameters(), INCA).state.copy()
+    q, x = pack(parameter_set(), INCA), rest(parameter_set(), INCA).state.copy()
     springs = []
     for φ in (130.0, 200.0):
         x[at.ANGLES] = φ
@@ -77,7 +77,7 @@ def test_a_spent_drum_spring_holds_a_constant_energy():
 
 
 def test_a_spring_without_stiffness_pulls_with_a_constant_force():
-    p = parameters("trial", {"k_s": 0.0})
+    p = parameter_set("trial", {"k_s": 0.0})
     q, x = pack(p, INCA), rest(p, INCA).state.copy()
     x[at.ANGLES] = 2.0
     assert energy(x, q).spring == pytest.approx(-2.0 * 0.0175 * rest(p, INCA).tension.sum())

@@ -15,7 +15,7 @@ from reference_cases import (
 )
 
 from inca_mj.geometry import INCA
-from inca_mj.parameters import parameters
+from inca_mj.parameters import parameter_set
 from inca_mj.reference import derivative, outputs, pack, rest
 from inca_mj.reference import layout as at
 from inca_mj.reference.equations import cables
@@ -65,7 +65,7 @@ def obvious(x, i, value, T_0, G, b_G):
 @settings(deadline=None)
 @given(states, currents, sets)
 def test_the_compiled_equations_are_the_obvious_ones(x, i, name):
-    p = parameters(name)
+    p = parameter_set(name)
     q = pack(p, INCA, force=FORCE, force_at=FORCE_AT)
     expected = obvious(x, i, p.values(), rest(p, INCA).tension, np.array(FORCE), FORCE_AT)
     np.testing.assert_allclose(derivative(x, i, q), expected, rtol=1e-9, atol=1e-7)
@@ -98,9 +98,9 @@ def mirrored(x, sign, drives):
 @given(states, currents)
 def test_the_equations_commute_with_a_mirror(axis, x, i):
     sign, drives = MIRRORS[axis]
-    q = pack(parameters(), INCA, force=FORCE, force_at=FORCE_AT)
+    q = pack(parameter_set(), INCA, force=FORCE, force_at=FORCE_AT)
     q_mirror = pack(
-        parameters(), INCA, force=sign * np.array(FORCE), force_at=sign * np.array(FORCE_AT)
+        parameter_set(), INCA, force=sign * np.array(FORCE), force_at=sign * np.array(FORCE_AT)
     )
     rate = derivative(mirrored(x, sign, drives), i[drives], q_mirror)
     expected = mirrored(derivative(x, i, q), sign, drives)
@@ -110,7 +110,7 @@ def test_the_equations_commute_with_a_mirror(axis, x, i):
 @settings(deadline=None)
 @given(states, sets)
 def test_a_cable_never_pushes(x, name):
-    assert cables(x, pack(parameters(name), INCA))[0].min() >= 0
+    assert cables(x, pack(parameter_set(name), INCA))[0].min() >= 0
 
 
 @settings(deadline=None)
@@ -118,16 +118,16 @@ def test_a_cable_never_pushes(x, name):
 def test_with_slack_cables_the_platform_falls_freely(seed):
     x = random_state(seed)
     x[at.NO_LOAD] *= 2
-    free = outputs(x, np.zeros(8), pack(parameters(), INCA))
+    free = outputs(x, np.zeros(8), pack(parameter_set(), INCA))
     np.testing.assert_array_equal(free.tension, 0)
     np.testing.assert_allclose(free.acceleration, [0, 0, -9.81], atol=1e-12)
 
 
 def test_a_force_acts_once_and_at_its_point():
-    x = rest(parameters(), INCA).state.copy()
+    x = rest(parameter_set(), INCA).state.copy()
     x[at.NO_LOAD] *= 2
     x[at.EULER] = 0.3, -0.4, 0.5
-    q = pack(parameters(), INCA, force=(0, 0, 0.1725 * 9.81), force_at=(0, 0.02, 0))
+    q = pack(parameter_set(), INCA, force=(0, 0, 0.1725 * 9.81), force_at=(0, 0.02, 0))
     held = outputs(x, np.zeros(8), q)
     np.testing.assert_allclose(held.acceleration, 0, atol=1e-12)
     R_AB = plain_rotation(x[at.EULER])
@@ -136,7 +136,7 @@ def test_a_force_acts_once_and_at_its_point():
 
 
 def test_current_winds_in_and_the_drum_spring_cannot_push():
-    x, q = rest(parameters(), INCA).state.copy(), pack(parameters(), INCA)
+    x, q = rest(parameter_set(), INCA).state.copy(), pack(parameter_set(), INCA)
     wound = derivative(x, np.ones(8), q)[at.SPEEDS]
     np.testing.assert_allclose(wound, 0.08 / 8e-5, rtol=1e-9)
     # F_s = (R/R_s) T(0) − k_s R_s φ is zero from φ = 118 to 126 rad on.

@@ -6,7 +6,7 @@ from reference_cases import taut
 
 from identification.errors import DivergenceError, InputError
 from inca_mj.geometry import INCA
-from inca_mj.parameters import SETS, parameters
+from inca_mj.parameters import SETS, parameter_set
 from inca_mj.reference import kinematics, rest, simulate_reference
 from inca_mj.reference import layout as at
 
@@ -23,7 +23,7 @@ def flat_out(t, amperes=1.0):
 @pytest.mark.parametrize("name", SETS)
 def test_at_rest_it_stays(method, name):
     t = samples(0.5)
-    run = simulate_reference(parameters(name), INCA, t, flat_out(t, 0.0), method=method)
+    run = simulate_reference(parameter_set(name), INCA, t, flat_out(t, 0.0), method=method)
     assert np.abs(run.state - run.state[0]).max() < 1e-10
     assert np.abs(run.tension - run.tension[0]).max() < 1e-8
 
@@ -32,24 +32,26 @@ def test_a_current_holds_from_its_sample_to_the_next():
     t = samples(0.05)
     u = flat_out(t, 0.0)
     u[2] = 1.0
-    run = simulate_reference(parameters(), INCA, t, u)
+    run = simulate_reference(parameter_set(), INCA, t, u)
     assert np.abs(run.angles[:3]).max() < 1e-12
     assert np.abs(run.angles[3]).min() > 1e-4
     u[-1] = 100.0
-    np.testing.assert_array_equal(run.state, simulate_reference(parameters(), INCA, t, u).state)
+    np.testing.assert_array_equal(run.state, simulate_reference(parameter_set(), INCA, t, u).state)
 
 
 def test_sampling_changes_nothing_but_the_samples():
     coarse, fine = samples(0.2), samples(0.2, 1000)
-    few = simulate_reference(parameters(), INCA, coarse, flat_out(coarse), start=taut(2))
-    many = simulate_reference(parameters(), INCA, fine, flat_out(fine), start=taut(2))
+    few = simulate_reference(parameter_set(), INCA, coarse, flat_out(coarse), start=taut(2))
+    many = simulate_reference(parameter_set(), INCA, fine, flat_out(fine), start=taut(2))
     np.testing.assert_allclose(many.state[::10], few.state, atol=1e-11)
 
 
 def test_the_adaptive_method_agrees_with_its_own_tighter_tolerance():
     t = samples(0.1)
     loose, tight = (
-        simulate_reference(parameters(), INCA, t, flat_out(t), start=taut(3), rtol=r, atol=r / 10)
+        simulate_reference(
+            parameter_set(), INCA, t, flat_out(t), start=taut(3), rtol=r, atol=r / 10
+        )
         for r in (1e-11, 1e-13)
     )
     np.testing.assert_allclose(loose.angles, tight.angles, atol=1e-11)
@@ -58,11 +60,11 @@ def test_the_adaptive_method_agrees_with_its_own_tighter_tolerance():
 
 def test_rk4_is_of_order_4():
     t = samples(0.2)
-    exact = simulate_reference(parameters(), INCA, t, flat_out(t))
+    exact = simulate_reference(parameter_set(), INCA, t, flat_out(t))
     assert exact.tension.min() > 1
     errors = [
         np.abs(
-            simulate_reference(parameters(), INCA, t, flat_out(t), method="rk4", step=h).angles
+            simulate_reference(parameter_set(), INCA, t, flat_out(t), method="rk4", step=h).angles
             - exact.angles
         ).max()
         for h in (5e-4, 2.5e-4, 1.25e-4)
@@ -72,7 +74,7 @@ def test_rk4_is_of_order_4():
 
 
 def test_in_free_flight_momentum_is_conserved():
-    t, p = samples(0.3), parameters()
+    t, p = samples(0.3), parameter_set()
     x = rest(p, INCA).state.copy()
     x[at.NO_LOAD] *= 2
     x[at.VELOCITY], x[at.RATES] = (0.2, -0.1, 1.0), (2.0, -1.0, 3.0)
@@ -91,7 +93,7 @@ def test_a_slack_cable_is_no_trouble():
     t = samples(0.3)
     u = np.zeros((len(t), 8))
     u[:, 4] = -3.0  # pays out faster than the platform follows
-    run = simulate_reference(parameters(), INCA, t, u)
+    run = simulate_reference(parameter_set(), INCA, t, u)
     assert run.tension.min() == 0
     assert np.isfinite(run.state).all()
 
@@ -99,19 +101,19 @@ def test_a_slack_cable_is_no_trouble():
 def test_rounded_sample_times_are_no_trouble():
     t = np.round(samples(0.1, 300), 6)  # 3.333 and 3.334 ms
     u = flat_out(t)
-    fixed = simulate_reference(parameters(), INCA, t, u, method="rk4", step=1e-3 / 3)
+    fixed = simulate_reference(parameter_set(), INCA, t, u, method="rk4", step=1e-3 / 3)
     np.testing.assert_allclose(
-        fixed.angles, simulate_reference(parameters(), INCA, t, u).angles, atol=1e-6
+        fixed.angles, simulate_reference(parameter_set(), INCA, t, u).angles, atol=1e-6
     )
 
 
 def test_one_sample_is_the_start():
-    run = simulate_reference(parameters(), INCA, [0.0], np.zeros((1, 8)))
-    np.testing.assert_array_equal(run.state, [rest(parameters(), INCA).state])
+    run = simulate_reference(parameter_set(), INCA, [0.0], np.zeros((1, 8)))
+    np.testing.assert_array_equal(run.state, [rest(parameter_set(), INCA).state])
 
 
 def test_a_run_cannot_be_changed():
-    run = simulate_reference(parameters(), INCA, [0.0], np.zeros((1, 8)))
+    run = simulate_reference(parameter_set(), INCA, [0.0], np.zeros((1, 8)))
     with pytest.raises(ValueError, match="read-only"):
         run.angles[0, 0] = 1.0
 
@@ -119,24 +121,24 @@ def test_a_run_cannot_be_changed():
 def test_a_step_that_is_too_long_diverges_and_says_when():
     t = samples(1.0)
     with pytest.raises(DivergenceError, match=r"left the finite numbers at t = .* smaller step"):
-        simulate_reference(parameters(), INCA, t, flat_out(t), method="rk4", step=0.01)
+        simulate_reference(parameter_set(), INCA, t, flat_out(t), method="rk4", step=0.01)
 
 
 @pytest.mark.parametrize("method", ["adaptive", "rk4"])
 def test_a_pitch_of_90_degrees_is_refused(method):
     t = samples(0.5)
-    x = rest(parameters(), INCA).state.copy()
+    x = rest(parameter_set(), INCA).state.copy()
     x[at.NO_LOAD] *= 2
     x[at.RATES] = 0, 4, 0
     with pytest.raises(DivergenceError, match=r"pitch reached .*° at t = 0\.[34].* singular"):
-        simulate_reference(parameters(), INCA, t, flat_out(t, 0.0), start=x, method=method)
+        simulate_reference(parameter_set(), INCA, t, flat_out(t, 0.0), start=x, method=method)
 
 
 def test_an_adaptive_run_that_leaves_the_finite_numbers_says_when():
-    x = rest(parameters(), INCA).state.copy()
+    x = rest(parameter_set(), INCA).state.copy()
     x[at.NO_LOAD] = 1e-300
     with pytest.raises(DivergenceError, match="left the finite numbers at t = 0"):
-        simulate_reference(parameters(), INCA, samples(0.1), np.zeros((11, 8)), start=x)
+        simulate_reference(parameter_set(), INCA, samples(0.1), np.zeros((11, 8)), start=x)
 
 
 T = samples(0.1)
@@ -159,4 +161,4 @@ T = samples(0.1)
 def test_bad_input_is_refused_with_a_cure(changes, message):
     asked = {"time": T, "currents": flat_out(T)} | changes
     with pytest.raises(InputError, match=message):
-        simulate_reference(parameters(), INCA, **asked)
+        simulate_reference(parameter_set(), INCA, **asked)

@@ -5,7 +5,7 @@ import pytest
 from reference_cases import plain_rotation, taut
 
 from inca_mj.geometry import INCA
-from inca_mj.parameters import parameters
+from inca_mj.parameters import parameter_set
 from inca_mj.reference import kinematics, outputs, pack, simulate_reference
 from inca_mj.reference import layout as at
 
@@ -16,7 +16,7 @@ EULER = np.array([0.4, -0.7, 1.1])
 @pytest.fixture(scope="module")
 def run():
     t = H * np.arange(101)
-    return simulate_reference(parameters(), INCA, t, np.ones((101, 8)), start=taut(1))
+    return simulate_reference(parameter_set(), INCA, t, np.ones((101, 8)), start=taut(1))
 
 
 def rate_of(rows):
@@ -26,7 +26,7 @@ def rate_of(rows):
 
 def analyses(run):
     """Pose, velocity and acceleration analysis at every sample, and the outputs there."""
-    q = pack(parameters(), INCA)
+    q = pack(parameter_set(), INCA)
     for x in run.state:
         out = outputs(x, np.ones(8), q)
         R_AB = kinematics.rotation(x[at.EULER])

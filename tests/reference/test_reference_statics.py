@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from identification.errors import InputError
 from inca_mj.geometry import INCA
-from inca_mj.parameters import SETS, parameters
+from inca_mj.parameters import SETS, parameter_set
 from inca_mj.reference import derivative, kinematics, pack, rest
 from inca_mj.reference.statics import wrench_matrix
 
@@ -27,7 +27,7 @@ def imbalance(p):
 
 @pytest.mark.parametrize("name", SETS)
 def test_the_start_is_an_exact_equilibrium(name):
-    assert imbalance(parameters(name)) < 1e-14
+    assert imbalance(parameter_set(name)) < 1e-14
 
 
 offset = st.floats(-0.1, 0.1)
@@ -38,11 +38,11 @@ offset = st.floats(-0.1, 0.1)
 def test_so_is_a_start_off_the_nominal_pose(move, turn):
     pose = dict(zip(("x", "y", "z"), move + np.array([0, 0, 1.43]), strict=True))
     pose |= dict(zip(("roll", "pitch", "yaw"), turn, strict=True))
-    assert imbalance(parameters("trial", pose)) < 1e-14
+    assert imbalance(parameter_set("trial", pose)) < 1e-14
 
 
 def test_the_pretension_is_the_balanced_one_nearest_to_4_newton():
-    T = rest(parameters(), INCA).tension
+    T = rest(parameter_set(), INCA).tension
     W = wrench_matrix(kinematics.geometric(np.array([0, 0, 1.43]), np.eye(3), INCA))
     np.testing.assert_allclose(W @ T, [0, 0, 0.1725 * 9.81, 0, 0, 0], atol=1e-13)
     # Nearest: what was changed has no part along the tensions that balance each other.
@@ -51,29 +51,29 @@ def test_the_pretension_is_the_balanced_one_nearest_to_4_newton():
 
 
 def test_the_no_load_length_gives_the_pretension():
-    r = rest(parameters(), INCA)
+    r = rest(parameter_set(), INCA)
     np.testing.assert_allclose(25000 * (r.length - r.no_load) / r.no_load, r.tension, rtol=1e-11)
 
 
 def test_a_cable_that_would_push_is_named():
     with pytest.raises(InputError, match=r"drive [1-4] would need a tension of -.*lower m"):
-        rest(parameters("trial", {"m": 20.0}), INCA)
+        rest(parameter_set("trial", {"m": 20.0}), INCA)
 
 
 def test_a_cable_without_length_is_named():
     connector = (0.0, -0.05, 1.43)
     exits = (*INCA.exits[:2], connector, *INCA.exits[3:])
     with pytest.raises(InputError, match="cable 3 has no length"):
-        rest(parameters(), replace(INCA, exits=exits))
+        rest(parameter_set(), replace(INCA, exits=exits))
 
 
 def test_cables_in_a_plane_cannot_carry_the_weight():
     flat = tuple((x, y, 1.43) for x, y, _ in INCA.exits)
     with pytest.raises(InputError, match="no tensions of the cables hold the platform"):
-        rest(parameters(), replace(INCA, exits=flat))
+        rest(parameter_set(), replace(INCA, exits=flat))
 
 
 @pytest.mark.parametrize("force", [(1.0, 2.0), (0.0, 0.0, np.nan), "up"])
 def test_a_bad_force_is_refused(force):
     with pytest.raises(InputError, match="force must be 3 finite numbers"):
-        pack(parameters(), INCA, force=force)
+        pack(parameter_set(), INCA, force=force)

@@ -1,0 +1,52 @@
+# `make setup` once, then .venv/bin/inca. Nothing outside this folder changes, but for the system
+# packages that drawing needs (scripts/system-packages.sh). ARGS="..." goes to the program run.
+PYTHON_OF_VENV := .venv/bin/python
+INSTALL := -m pip install -qq --disable-pip-version-check --no-input --no-deps --no-build-isolation
+
+.PHONY: help setup demo test test-mujoco4 lint bench lock clean system-packages
+
+help:  ## list the targets
+	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1|\2/p' Makefile | awk -F'|' '{printf "%-20s %s\n", $$1, $$2}'
+
+setup: system-packages .venv/.complete  ## make .venv with the locked packages and .venv/bin/inca
+	@echo "Ready: .venv/bin/inca --help"
+
+demo: system-packages .venv/.complete  ## the whole work on one example, with report and film
+	@.venv/bin/inca demo $(ARGS)
+
+test: system-packages .venv/.complete  ## run the tests
+	@$(PYTHON_OF_VENV) -m pytest $(ARGS)
+
+test-mujoco4: system-packages .venv-mujoco4/.complete  ## run the tests with MuJoCo 4
+	@.venv-mujoco4/bin/python -m pytest $(ARGS)
+
+lint: .venv/.complete  ## check style, format and types
+	@.venv/bin/ruff check $(ARGS)
+	@.venv/bin/ruff format --check
+	@.venv/bin/mypy
+
+bench: .venv/.complete  ## measure the speed of the twin
+	@$(PYTHON_OF_VENV) benchmarks/twin.py $(ARGS)
+
+lock:  ## write the lock files anew; ARGS=--upgrade takes the newest packages
+	@sh scripts/lock.sh $(ARGS)
+
+clean:  ## remove environments, caches and builds
+	@rm -rf .venv .venv-* dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+system-packages:
+	@sh scripts/system-packages.sh
+
+# A stamp is written last, so that an interrupted environment is made again from nothing.
+.venv/.locked: requirements.lock
+	@sh scripts/environment.sh .venv requirements.lock
+	@touch $@
+
+.venv-mujoco4/.locked: requirements-mujoco4.lock
+	@sh scripts/environment.sh .venv-mujoco4 requirements-mujoco4.lock
+	@touch $@
+
+%/.complete: %/.locked pyproject.toml
+	@$*/bin/python $(INSTALL) --editable .
+	@touch $@

@@ -1,0 +1,112 @@
+"""One compiled model serves every value: written, expanded or compiled, the bits are the same."""
+
+import mujoco
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from mujoco.batch import Batch
+from twin_cases import differing, laws, moving
+
+from identification.paths import resolve
+from identification.rollout import rollout
+from inca_mj import law
+from inca_mj.inputs import prbs
+from inca_mj.parameters import SETS, parameter_set
+from inca_mj.run import simulate
+from inca_mj.twin import build_twin
+
+NOMINAL = build_twin()
+START = {"x": 0.03, "y": -0.02, "z": 1.45, "roll": 0.05, "pitch": 0.02, "yaw": -0.1}
+
+# Where a free body stands and how long its cables are when the model was compiled: the state
+# replaces the first, and springs of zero stiffness do not read the second.
+UNREAD = {"body_pos", "body_quat", "qpos_spring", "tendon_lengthspring"}
+
+
+@settings(deadline=None, max_examples=10)
+@given(laws)
+def test_new_values_equal_a_new_compilation(values):
+    values = values | START
+    written, compiled = NOMINAL.with_values(values), build_twin(parameter_set("trial", values))
+    assert differing(written.model, compiled.model) <= UNREAD
+    currents = prbs(21, 0.01)
+    ours, theirs = simulate(written, currents), simulate(compiled, currents)
+    np.testing.assert_array_equal(ours.qpos, theirs.qpos)
+    np.testing.assert_array_equal(ours.tension, theirs.tension)
+
+
+def test_new_values_leave_the_old_twin_alone():
+    before = build_twin()
+    NOMINAL.with_values({"lambda": 1e5, "m": 0.3, "z": 1.5})
+    assert differing(before.model, NOMINAL.model) == set()
+
+
+def value_sets(n):
+    rng = np.random.default_rng(7)
+    names = [p.name for p in NOMINAL.parameters if p.where != "start"]
+    return [
+        {name: NOMINAL.parameters[name].value * rng.uniform(0.92, 1.08) for name in names}
+        for _ in range(n)
+    ]
+
+
+def slots_of(robots):
+    """What `rollout` needs to give each simulation its own robot."""
+    model = NOMINAL.model
+    numbers = [
+        (resolve(model, p.where), np.array([r.parameters[p.name].value for r in robots]))
+        for p in NOMINAL.parameters
+        if p.where != "start"
+    ]
+    for k in range(8):
+        slot = resolve(model, f"actuator/current_{k + 1}.user[{law.T_0}]")
+        numbers.append((slot, np.array([r.start.tension[k] for r in robots])))
+    return numbers
+
+
+@pytest.mark.parametrize("nthread", [1, 2])
+def test_expanded_numbers_are_in_lockstep_with_single_models(nthread):
+    robots = [NOMINAL.with_values(values) for values in value_sets(5)]
+    start, currents = moving(1), prbs(11, 0.01)
+    together = rollout(
+        NOMINAL.model, start, currents, 0.01, numbers=slots_of(robots),
+        record=("qpos", "qvel", "act"), nthread=nthread,
+    )  # fmt: skip
+    for k, robot in enumerate(robots):
+        data = mujoco.MjData(robot.model)
+        data.qpos[:], data.qvel[:], data.act[:] = start.qpos, start.qvel, start.act
+        for sample, current in enumerate(currents[:-1], 1):
+            for _ in range(10):
+                data.ctrl[:] = current
+                mujoco.mj_step(robot.model, data)
+            for name in ("qpos", "qvel", "act"):
+                np.testing.assert_array_equal(together[name][k, sample], getattr(data, name))
+
+
+def test_threads_change_no_bit():
+    start, currents = moving(2), prbs(11, 0.01)
+    numbers = slots_of([NOMINAL.with_values(values) for values in value_sets(9)])
+    one, two = (
+        rollout(NOMINAL.model, start, currents, 0.01, numbers=numbers, nthread=n)["qpos"]
+        for n in (1, 2)
+    )
+    np.testing.assert_array_equal(one, two)
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_a_batch_is_a_loop_over_single_simulations(name):
+    robot = build_twin(parameter_set(name))
+    batch = Batch(robot.model, 3, 2)
+    starts = [moving(seed) for seed in range(3)]
+    for field in ("qpos", "qvel", "act"):
+        batch.bind(field)[:] = [getattr(s, field) for s in starts]
+    batch.bind("ctrl")[:] = 0.7
+    sensors = batch.bind("sensordata")
+    batch.step(nstep=50)
+    for k, at in enumerate(starts):
+        data = mujoco.MjData(robot.model)
+        data.qpos[:], data.qvel[:], data.act[:], data.ctrl[:] = at.qpos, at.qvel, at.act, 0.7
+        for _ in range(50):
+            mujoco.mj_step(robot.model, data)
+        np.testing.assert_array_equal(batch.bind("qpos")[k], data.qpos)
+        np.testing.assert_array_equal(sensors[k], data.sensordata)

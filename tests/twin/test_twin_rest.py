@@ -1,0 +1,28 @@
+"""The pretensioned start is a rest, and a run from it stays there."""
+
+import numpy as np
+import pytest
+
+from inca_mj.inputs import make_input
+from inca_mj.parameters import SETS, parameter_set
+from inca_mj.run import simulate
+from inca_mj.twin import build_twin
+
+OFF = {"x": 0.04, "y": -0.03, "z": 1.5, "roll": 0.1, "pitch": -0.05, "yaw": 0.15}
+
+
+@pytest.mark.parametrize("values", [{}, OFF], ids=["nominal", "off-nominal"])
+@pytest.mark.parametrize("name", SETS)
+def test_at_rest_it_stays_for_ten_seconds(name, values):
+    robot = build_twin(parameter_set(name, values))
+    run = simulate(robot, make_input("zero", 10.0))
+    assert np.abs(run.position - run.position[0]).max() < 1e-9
+    assert np.abs(run.motor_angle).max() < 1e-7
+    np.testing.assert_allclose(run.tension, np.tile(robot.start.tension, (1001, 1)), atol=1e-7)
+
+
+def test_the_pretension_is_near_four_newton_and_carries_the_weight():
+    tension = build_twin().start.tension
+    assert np.linalg.norm(tension - 4.0) < 1.0
+    # The upper cables carry the handle: they pull more than the lower ones.
+    assert tension[4:].min() > tension[:4].max()
