@@ -10,7 +10,7 @@
 Positive φ and positive i wind the cable in. Misprints of the thesis, and what stands here:
 2.40 has the load torque's sign reversed under "positive winds"; 2.41 has R_s/R where the static
 balance R T(0) = R_s F_s demands R/R_s. K_t i, b_v and J are MuJoCo's own (gear, joint damping,
-armature); the rest is added by `inca_mj.native`.
+armature); the rest is added by `inca_mj.callbacks`.
 
 All numbers live in mjModel arrays, so that `Batch.expand` gives every simulation its own:
 a cable's in its tendon's row of `tendon_user`, a drive's in its current actuator's row of
@@ -32,6 +32,8 @@ TENDON_COLUMNS = 3
 # columns of actuator_user, a row per drive; CABLE is the id of the tendon that it winds
 ACTUATOR_TAG, R, R_S, K_S, B_C, BETA, T_0, CABLE = 0, 1, 2, 3, 4, 5, 6, 7
 ACTUATOR_COLUMNS = 8
+
+TENSION, NO_LOAD_LENGTH = 1, 2  # what a user sensor on a drive shows: its sensor_user[0]
 
 
 @njit

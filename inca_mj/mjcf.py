@@ -27,8 +27,6 @@ from inca_mj.statics import start
 TIMESTEP = 1e-3  # [s]; RK4 at 1 ms follows the reference to a few microradians
 ROTOR = 2e-15  # inertia MuJoCo demands of the drum's body beside the armature [kg m^2]
 
-_TENSION, _NO_LOAD_LENGTH = 1, 2  # see inca_mj.native
-
 
 def build(parameters: ParameterSet, geometry: Geometry) -> mujoco.MjSpec:
     """The robot at its pretensioned start, as an editable `MjSpec`.
@@ -157,8 +155,8 @@ def _sensors(spec: mujoco.MjSpec) -> None:
         ("angle", sensor.mjSENS_JOINTPOS, of.mjOBJ_JOINT, "motor", None),
         ("rate", sensor.mjSENS_JOINTVEL, of.mjOBJ_JOINT, "motor", None),
         ("length", sensor.mjSENS_TENDONPOS, of.mjOBJ_TENDON, "cable", None),
-        ("tension", sensor.mjSENS_USER, of.mjOBJ_ACTUATOR, "current", _TENSION),
-        ("no_load_length", sensor.mjSENS_USER, of.mjOBJ_ACTUATOR, "current", _NO_LOAD_LENGTH),
+        ("tension", sensor.mjSENS_USER, of.mjOBJ_ACTUATOR, "current", law.TENSION),
+        ("no_load_length", sensor.mjSENS_USER, of.mjOBJ_ACTUATOR, "current", law.NO_LOAD_LENGTH),
     )
     for name, kind, object_type, target, shown in per_drive:
         for k in range(1, DRIVES + 1):
