@@ -23,7 +23,7 @@ from scipy.optimize import least_squares
 from identification.coordinates import Coordinates, coordinates
 from identification.errors import DivergenceError, InputError
 from identification.log import Log
-from identification.noise import noise_floor, whitener_of
+from identification.noise import noise_floor, relative_weight, whitener_of
 from identification.predictor import Plant, Predictor
 from identification.sensitivity import refuse_without_effect, sensitivity
 
@@ -43,6 +43,8 @@ class Options:
         horizons: growing fractions of the log, the last is 1; (1.0,) is a single free-run fit.
         tolerance: relative change of cost and of q at which a search stops.
         max_evaluations: of the outputs, per horizon.
+        relative_noise: std of a sample's noise over the sample itself, where noise grows with the
+            signal; each residual is then divided by that std, of the prediction.
         priors: std by name of q about the start (of ln(value) where q is a logarithm).
 
     Raises:
@@ -55,6 +57,7 @@ class Options:
     horizons: tuple[float, ...] = HORIZONS
     tolerance: float = 1e-8
     max_evaluations: int = 60
+    relative_noise: float = 0.0
     priors: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -76,6 +79,7 @@ class Estimate:
         start: starting values, shape (p,).
         q: the estimate, shape (p,).
         whitener: C of the criterion, shape (ny, ny).
+        weight: of each residual where the noise is relative, shape (n, ny); else ones.
         options: how it was searched.
         evaluations: how often the outputs were simulated.
         jacobians: how often their sensitivities were.
@@ -88,6 +92,7 @@ class Estimate:
     start: np.ndarray
     q: np.ndarray
     whitener: np.ndarray
+    weight: np.ndarray
     options: Options
     evaluations: int
     jacobians: int
@@ -143,7 +148,7 @@ def estimate(
     search.refuse_idle()
     status = search.run()
     return Estimate(
-        search.predictor, space, first, search.best, search.whitener, options,
+        search.predictor, space, first, search.best, search.whitener, search.weight, options,
         search.evaluations, search.jacobians, status, time.perf_counter() - began,
     )  # fmt: skip
 
@@ -168,7 +173,8 @@ class _Search:
         )
         self.first = self.best = q
         self.whitener = whitener
-        self.weight = np.array([1 / options.priors.get(n, np.inf) for n in space.names])
+        self.weight = relative_weight(predictor.log.outputs, options.relative_noise)
+        self.prior = np.array([1 / options.priors.get(n, np.inf) for n in space.names])
         self.evaluations = self.jacobians = 0
 
     def refuse_idle(self) -> None:
@@ -189,9 +195,13 @@ class _Search:
         try:
             for fraction in self.options.horizons:
                 status = self.solve(self.samples(fraction))
+            for _ in range(2 if self.options.relative_noise else 0):
+                predicted = self.predictor.predict(self.space.decode(self.best))[0]
+                self.weight = relative_weight(predicted, self.options.relative_noise)
+                status = self.solve(self.samples(1.0))
             for _ in range(8 if self.options.criterion == "det" else 0):
                 before = self.best
-                self.whitener = whitener_of(self.error(self.best, None))
+                self.whitener = whitener_of(self.weight * self.error(self.best, None))
                 status = self.solve(self.samples(1.0))
                 if np.abs(self.best - before).max() < 1e-6:
                     break
@@ -213,10 +223,10 @@ class _Search:
         def residual(q: np.ndarray) -> np.ndarray:
             nonlocal cost
             try:
-                weighed = self.error(q, samples) @ self.whitener.T
+                weighed = (self.weight[:samples] * self.error(q, samples)) @ self.whitener.T
             except DivergenceError:
                 weighed = np.full((samples, len(self.whitener)), np.inf)
-            r = np.concatenate([weighed.ravel(), (q - self.first) * self.weight])
+            r = np.concatenate([weighed.ravel(), (q - self.first) * self.prior])
             if (now := float(r @ r)) < cost:
                 cost, self.best = now, q.copy()
                 self._tell(samples, weighed)
@@ -225,8 +235,9 @@ class _Search:
         def jacobian(q: np.ndarray) -> np.ndarray:
             self.jacobians += 1
             J = sensitivity(self.predictor, self.space, q, samples)
+            J = self.weight[:samples, :, None] * J
             weighed = -np.einsum("ij,njp->nip", self.whitener, J).reshape(-1, len(q))
-            return np.concatenate([weighed, np.diag(self.weight)])
+            return np.concatenate([weighed, np.diag(self.prior)])
 
         bounded: dict[str, Any] = {}
         if self.options.method != "lm":
@@ -241,7 +252,7 @@ class _Search:
 
     def _tell(self, samples: int, weighed: np.ndarray) -> None:
         if self.progress is not None:
-            error = np.linalg.solve(self.whitener, weighed.T)
+            error = np.linalg.solve(self.whitener, weighed.T).T / self.weight[:samples]
             seconds = samples * self.predictor.log.sampling_time
             rms = float(np.sqrt(np.mean(error**2)))
             self.progress(f"horizon {seconds:.2f} s: rms {rms:.4g} after {self.evaluations} runs")

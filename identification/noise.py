@@ -36,3 +36,15 @@ def whitener_of(residual: np.ndarray) -> np.ndarray:
     level = np.trace(covariance) / len(covariance)
     floor = 1e-10 * level + np.finfo(float).tiny  # a channel without error must not weigh all
     return np.linalg.inv(np.linalg.cholesky(covariance + floor * np.eye(len(covariance))))
+
+
+def relative_weight(y: np.ndarray, relative: float) -> np.ndarray:
+    """Weights of residuals whose noise has the std `relative` |y|, shape (n, ny); ones for 0.
+
+    Scaled so that a sample of the size of the signal's rms weighs 1. A sample near zero has
+    almost no such noise; it counts as if it were 1 % of the rms.
+    """
+    if relative == 0:
+        return np.ones_like(y)
+    size = np.sqrt(np.mean(y**2, axis=0))
+    return size / np.hypot(y, 0.01 * size)

@@ -147,6 +147,9 @@ def run_trial(
         options: how to search; `Options(horizons=(1.0,))` is the thesis' single free-run fit.
         progress: is told one line per accepted step.
     """
+    options = options or Options()
+    if trial.noisy:
+        options = replace(options, relative_noise=NOISE / np.sqrt(3))  # std of the uniform error
     robot = build_twin(parameter_set("trial"))
     clean = trial_data(robot)
     data = with_noise(clean, seed) if trial.noisy else clean
