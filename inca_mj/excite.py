@@ -219,9 +219,7 @@ def standard_inputs(n: int) -> list[tuple[str, np.ndarray]]:
 
 def _samples(duration: float) -> int:
     if not 0.2 <= duration <= 120.0:
-        raise InputError(
-            f"an experiment of {duration:g} s cannot be designed; give 0.2 s to 120 s"
-        )
+        raise InputError(f"an experiment of {duration:g} s cannot be designed; give 0.2 s to 120 s")
     return round(duration / SAMPLING) + 1
 
 

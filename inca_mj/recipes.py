@@ -77,8 +77,10 @@ class Recipe:
             )  # fmt: skip
         fastest = min(s["highest tone [Hz]"], 0.45 / sampling_time)
         f = np.geomspace(s["lowest tone [Hz]"], fastest, TONES)
-        angle = 2 * np.pi * (
-            f * np.arange(n)[:, None, None] * sampling_time + phases.reshape(DRIVES, TONES)
+        angle = (
+            2
+            * np.pi
+            * (f * np.arange(n)[:, None, None] * sampling_time + phases.reshape(DRIVES, TONES))
         )
         waves = (f ** s["tilt"] * np.sin(angle)).sum(axis=-1)
         return s["mean [A]"] + s["amplitude [A]"] * waves / np.abs(waves).max(axis=0)
@@ -91,8 +93,8 @@ def draw(kind: Literal["multisine", "prbs"], rng: np.random.Generator) -> Recipe
 
 def changed(recipe: Recipe, rng: np.random.Generator, size: float, share: float = 0.3) -> Recipe:
     """A neighbour: about a share of the numbers moved by `size`; phases go round, levels stop."""
-    moves = size * rng.standard_normal(len(recipe.numbers)) * (
-        rng.random(len(recipe.numbers)) < share
+    moves = (
+        size * rng.standard_normal(len(recipe.numbers)) * (rng.random(len(recipe.numbers)) < share)
     )
     numbers = recipe.numbers + moves
     own = _OWN[recipe.kind]
