@@ -15,40 +15,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.errors import DivergenceError, InputError
-from identification.experiment import Experiment, Information, determinable, information
-from inca_mj.identify import POSE, UNKNOWN
-from inca_mj.inputs import multisine, prbs, step
-from inca_mj.limits import Extent, Limits, extent
-from inca_mj.logs import ANGLES
+from identification.errors import InputError
+from identification.information import determinable
+from inca_mj.bench import SAMPLING, Bench, Tried, standard_inputs
+from inca_mj.identify import UNKNOWN
+from inca_mj.limits import Limits
 from inca_mj.recipes import Recipe, changed, draw
-from inca_mj.run import Run, simulate
+from inca_mj.run import simulate
 from inca_mj.twin import Twin
 
-SAMPLING = 0.01  # of the robot [s]
-SCALES = (1.0, 0.7, 0.5, 0.35, 0.2)  # of a swing that breaks a limit
+MOVES = ((0.3, 0.1), (0.1, 0.1), (0.1, 0.3), (0.03, 0.5))  # size, and share of the numbers
 TRIES = 20  # cheap runs that a search may spend per evaluation of the information
 
 Progress = Callable[[str], None]
-
-
-@dataclass(frozen=True)
-class Tried:
-    """An input and what it is worth.
-
-    Attributes:
-        name: in words.
-        run: the simulated run.
-        extent: how far it went.
-        found: information on the parameters, the start pose being unknown.
-        allowed: whether it keeps the limits.
-    """
-
-    name: str
-    run: Run
-    extent: Extent
-    found: Information
-    allowed: bool
 
 
 @dataclass(frozen=True)
@@ -81,44 +60,7 @@ class Design:
     @property
     def worst_gain(self) -> float:
         """The same of the worst determined direction of each, √(E/E)."""
-        return float(np.sqrt(self.best.found.E / self.prbs.found.E))
-
-
-@dataclass(frozen=True)
-class Bench:
-    """Where inputs are tried.
-
-    Attributes:
-        robot: the twin at its nominal values.
-        sigma: std of the noise on each angle [rad].
-        names: parameters that are asked for; the start pose is unknown too.
-        limits: what an input may do.
-    """
-
-    robot: Twin
-    sigma: float
-    names: tuple[str, ...]
-    limits: Limits
-
-    def attempt(self, name: str, run: Run) -> Tried:
-        """What a run is worth, from 2 p simulations."""
-        pose = [n for n in POSE if n not in self.names]
-        sampling = float(run.time[1] - run.time[0])
-        trial = Experiment(self.robot, run.currents, sampling, ANGLES, self.sigma)
-        far = extent(run)
-        return Tried(name, run, far, information(trial, self.names, pose), far.within(self.limits))
-
-    def fitted(self, recipe: Recipe, n: int) -> tuple[Recipe, Run] | None:
-        """The recipe with as much swing as the limits let it have, and its run."""
-        for scale in SCALES:
-            smaller = replace(recipe, scale=scale)
-            try:
-                run = simulate(self.robot, smaller.currents(n, SAMPLING, self.limits), SAMPLING)
-            except DivergenceError:
-                continue
-            if extent(run).within(self.limits):
-                return smaller, run
-        return None
+        return float(np.sqrt(self.best.found.e_value / self.prbs.found.e_value))
 
 
 def design(
@@ -162,13 +104,13 @@ def design(
     thesis = replace(baseline, found=baseline.found.about(kept))
     others = [bench.attempt(name, simulate(robot, u, SAMPLING)) for name, u in rest]
     tried = (thesis, *others)
-    best = max((t for t in tried if t.allowed), key=lambda t: t.found.E, default=None)
+    best = max((t for t in tried if t.allowed), key=lambda t: t.found.e_value, default=None)
     settings: dict[str, float] = {}
     for count, (recipe, candidate) in enumerate(_search(bench, n, budget, seed), 1):
-        if best is None or candidate.found.E > best.found.E:
+        if best is None or candidate.found.e_value > best.found.e_value:
             best, settings = candidate, recipe.settings(limits)
             if progress is not None:
-                gain = np.sqrt(best.found.E / thesis.found.E)
+                gain = np.sqrt(best.found.e_value / thesis.found.e_value)
                 progress(f"{count} of {budget}: {recipe.kind}, worst direction {gain:.2f} times"
                          " better known than by the thesis' PRBS")  # fmt: skip
     if best is None:
@@ -183,38 +125,23 @@ def _search(bench: Bench, n: int, budget: int, seed: int) -> Iterator[tuple[Reci
     """Recipes that keep the limits, with their worth: half at random, half near the best."""
     rng = np.random.default_rng(seed)
     best: tuple[Recipe, float] | None = None
-    size, count = 0.2, 0
-    for _ in range(TRIES * budget):
+    count = 0
+    for attempt in range(TRIES * budget):
         if count == budget:
             return
-        if best is None or count < budget // 2:
+        if attempt == 0:
+            recipe = draw("multisine", rng, guess=True)
+        elif best is None or count < budget // 2:
             recipe = draw("multisine" if rng.random() < 0.5 else "prbs", rng)
         else:
-            recipe = changed(best[0], rng, size)
+            recipe = changed(best[0], rng, *rng.choice(MOVES))
         if (fit := bench.fitted(recipe, n)) is None:
             continue
         candidate = bench.attempt(f"designed {recipe.kind}", fit[1])
         count += 1
         yield fit[0], candidate
-        if best is None or candidate.found.E > best[1]:
-            best = fit[0], candidate.found.E
-        elif count > budget // 2:
-            size = max(0.02, 0.93 * size)
-
-
-def standard_inputs(n: int) -> list[tuple[str, np.ndarray]]:
-    """Inputs that people try, the thesis' PRBS first: names and currents, shape (n, 8) [A]."""
-    levels = [(0.5, 1.0, 0.25), (0.5, 1.0, 0.1), (0.5, 1.0, 0.05), (0.25, 1.25, 0.1), (0, 2, 0.1)]
-    return [
-        *(
-            (f"PRBS {a:g}-{b:g} A, {bit:g} s", prbs(n, SAMPLING, low=a, high=b, bit_time=bit))
-            for a, b, bit in levels
-        ),
-        ("multisine 0.5-1 A, to 5 Hz", multisine(n, SAMPLING)),
-        ("multisine 0-2 A, 0.1-40 Hz",
-         multisine(n, SAMPLING, mean=1.0, amplitude=1.0, band=(0.1, 40.0))),
-        ("step 2 A in motor 1", step(n)),
-    ]  # fmt: skip
+        if best is None or best[1] < candidate.found.e_value:
+            best = fit[0], candidate.found.e_value
 
 
 def _samples(duration: float) -> int:

@@ -24,6 +24,7 @@ SLOWEST, CORNER, FASTEST = 0.2, 3.0, 45.0
 BIT = (0.02, 0.5)  # shortest and longest bit [s]
 BITS = (4, 7)
 _OWN = {"multisine": 5, "prbs": 4}  # numbers before the phases
+_GUESS = {"multisine": (0.5, 1.0, 0.3, 0.95, 0.5), "prbs": (0.1, 0.5, 0.4, 1.0)}
 _PHASES = {"multisine": DRIVES * TONES, "prbs": DRIVES}
 
 
@@ -86,9 +87,14 @@ class Recipe:
         return s["mean [A]"] + s["amplitude [A]"] * waves / np.abs(waves).max(axis=0)
 
 
-def draw(kind: Literal["multisine", "prbs"], rng: np.random.Generator) -> Recipe:
-    """A recipe at random."""
-    return Recipe(kind, rng.random(_OWN[kind] + _PHASES[kind]))
+def draw(
+    kind: Literal["multisine", "prbs"], rng: np.random.Generator, *, guess: bool = False
+) -> Recipe:
+    """A recipe at random; as a guess only its phases are, the rest is broad and strong."""
+    numbers = rng.random(_OWN[kind] + _PHASES[kind])
+    if guess:
+        numbers[: _OWN[kind]] = _GUESS[kind]
+    return Recipe(kind, numbers)
 
 
 def changed(recipe: Recipe, rng: np.random.Generator, size: float, share: float = 0.3) -> Recipe:

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from identification.experiment import Information, determinable
 from identification.identifiability import in_words
-from inca_mj.excite import Design, Tried
+from identification.information import Information, determinable
+from inca_mj.bench import Tried
+from inca_mj.excite import Design
 from inca_mj.figures_information import std_figure
 from inca_mj.report import Section, Table
 
@@ -76,9 +77,9 @@ def information_json(found: Information) -> dict[str, Any]:
         "strengths": found.found.strengths.tolist(),
         "worst_direction": found.found.weakest(),
         "condition": finite(found.condition),
-        "E": found.E,
-        "D": finite(found.D),
-        "A": finite(found.A),
+        "E": found.e_value,
+        "D": finite(found.d_value),
+        "A": finite(found.a_value),
         "combinations": [str(c) for c in found.combinations],
         "verdict": information_verdict(found),
     }
@@ -146,15 +147,16 @@ def design_json(result: Design) -> dict[str, Any]:
             for name, a, b, g, r in rows
         },
         "worst_gain": result.worst_gain,
-        "E_prbs": result.prbs.found.E,
-        "E_designed": result.best.found.E,
+        "E_prbs": result.prbs.found.e_value,
+        "E_designed": result.best.found.e_value,
         "input": {"name": result.best.name, **result.settings},
         "tension_min": far.tension, "reach": far.reach, "turn": far.turn,
         "current_min": far.low, "current_max": far.high,
         "held": list(result.held),
         "evaluations": result.evaluations,
         "inputs": [
-            {"name": t.name, "E": t.found.E, "allowed": t.allowed, "tension_min": t.extent.tension}
+            {"name": t.name, "E": t.found.e_value, "allowed": t.allowed,
+             "tension_min": t.extent.tension}
             for t in (*result.standard, result.best)
         ],
         "verdict": design_verdict(result),
@@ -166,7 +168,7 @@ def _row(tried: Tried) -> tuple[object, ...]:
     return (
         tried.name, "yes" if tried.allowed else "no", float(tried.extent.tension),
         float(tried.extent.reach), *(100 * float(s) for s in found.std),
-        float(np.log10(found.E)) if found.E > 0 else "blind",
+        float(np.log10(found.e_value)) if found.e_value > 0 else "blind",
     )  # fmt: skip
 
 

@@ -59,8 +59,9 @@ class Excite:
         do_not_draw()
         from math import radians
 
+        from inca_mj.bench import SAMPLING
         from inca_mj.comparison import timestep_for
-        from inca_mj.excite import SAMPLING, design
+        from inca_mj.excite import design
         from inca_mj.limits import Limits
         from inca_mj.sections_information import design_json, design_verdict
         from inca_mj.twin import build_twin

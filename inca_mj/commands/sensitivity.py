@@ -24,7 +24,7 @@ from inca_mj.commands.common import (
 if TYPE_CHECKING:
     import numpy as np
 
-    from identification.experiment import Information
+    from identification.information import Information
 
 
 @dataclass(frozen=True)
