@@ -84,7 +84,8 @@ class Sensitivity:
             about = f"{self.duration:g} s of the thesis' PRBS, noise {sigma:.3g} rad."
             return make_input("prbs", self.duration), 0.01, "zoh", sigma, about
         log = read_inca_log(self.log)
-        sigma = self.noise or float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2)))
+        floor = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2)))
+        sigma = floor if self.noise is None else self.noise
         about = f"The currents of {log.name}, {log.duration:g} s, noise {sigma:.3g} rad."
         return log.inputs, log.sampling_time, log.hold, sigma, about
 
