@@ -93,7 +93,7 @@ def test_bad_designs_are_refused(robot: Twin) -> None:
 
 
 def test_excite_writes_what_simulate_replays(tmp_path: Path, capsys) -> None:
-    arguments = ["excite", "--duration", "0.4", "--budget", "2", "--free", "J", "b_v",
+    arguments = ["excite", "--duration", "0.3", "--budget", "1", "--free", "J", "b_v",
                  "--out", str(tmp_path), "--json"]  # fmt: skip
     assert main(arguments) == 0
     result = json.loads(capsys.readouterr().out)
