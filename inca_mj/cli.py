@@ -14,8 +14,10 @@ import tyro
 from inca_mj.commands.compare import Compare
 from inca_mj.commands.crosscheck import Crosscheck
 from inca_mj.commands.demo import Demo
+from inca_mj.commands.excite import Excite
 from inca_mj.commands.film import Film
 from inca_mj.commands.identify import Identify
+from inca_mj.commands.sensitivity import Sensitivity
 from inca_mj.commands.simulate import Simulate
 from inca_mj.commands.trials import Trials
 
@@ -24,6 +26,8 @@ Command = (
     | Annotated[Compare, tyro.conf.subcommand("compare")]
     | Annotated[Crosscheck, tyro.conf.subcommand("crosscheck")]
     | Annotated[Identify, tyro.conf.subcommand("identify")]
+    | Annotated[Sensitivity, tyro.conf.subcommand("sensitivity")]
+    | Annotated[Excite, tyro.conf.subcommand("excite")]
     | Annotated[Trials, tyro.conf.subcommand("trials")]
     | Annotated[Film, tyro.conf.subcommand("film")]
     | Annotated[Demo, tyro.conf.subcommand("demo")]

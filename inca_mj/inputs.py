@@ -59,11 +59,13 @@ def prbs(
     bit_time: float = 0.25,
     low: float = 0.5,
     high: float = 1.0,
+    phases: np.ndarray | None = None,
 ) -> np.ndarray:
     """Pseudo-random binary currents [A], shape (n, 8) (thesis section 3.2.1).
 
     A maximum-length sequence of 2^bits - 1 bits, each `bit_time` [s] long, between `low` and
-    `high` [A]; the drives get the same sequence at different phases, drawn from `seed`.
+    `high` [A]; the drives get the same sequence at different phases [bits], drawn
+    from `seed` unless given, shape (8,).
     """
     register, sequence = np.ones(bits, int), []
     taps = {2: (0, 1), 3: (1, 2), 4: (2, 3), 5: (2, 4), 6: (4, 5), 7: (5, 6)}
@@ -74,7 +76,8 @@ def prbs(
         register = np.concatenate([[register[taps[bits][0]] ^ register[taps[bits][1]]],
                                    register[:-1]])  # fmt: skip
     period = len(sequence)
-    phases = np.random.default_rng(seed).permutation(period)[np.arange(DRIVES) % period]
+    if phases is None:
+        phases = np.random.default_rng(seed).permutation(period)[np.arange(DRIVES) % period]
     # The small offset keeps a bit edge that falls on a sample on that sample.
     bit = np.floor(np.arange(n) * sampling_time / bit_time + 1e-9).astype(int)
     return low + (high - low) * np.array(sequence)[(bit[:, None] + phases) % period].astype(float)

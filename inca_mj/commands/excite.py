@@ -1,0 +1,116 @@
+"""inca excite: design the input of an experiment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from inca_mj.commands.common import (
+    Output,
+    Robot,
+    do_not_draw,
+    folder,
+    note,
+    output_field,
+    robot_field,
+    say,
+    say_json,
+    table,
+    write_result,
+)
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from inca_mj.excite import Design
+
+
+@dataclass(frozen=True)
+class Excite:
+    """Design currents that show the worst determined parameter best, inside the limits."""
+
+    duration: float = 5.0
+    """Length of the experiment [s]."""
+    noise: float = 6.7e-4
+    """Std of the noise on each motor angle [rad]."""
+    free: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME")] = (
+        "lambda", "b", "J", "b_v", "b_c", "beta",
+    )  # fmt: skip
+    """Parameters to determine; the start pose is taken as unknown too."""
+    budget: int = 60
+    """Inputs to evaluate, about a second each."""
+    seed: int = 0
+    """Seed of the search."""
+    current: tuple[float, float] = (0.0, 2.0)
+    """Smallest and largest current [A]."""
+    margin: float = 0.2
+    """Every cable keeps more tension than this [N]."""
+    reach: float = 0.35
+    """The platform stays so near its start along x, y, z [m]."""
+    turn: float = 60.0
+    """And turns no further from its start [deg]."""
+    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+
+    def run(self) -> int:
+        """Design, say, keep."""
+        do_not_draw()
+        from math import radians
+
+        from inca_mj.bench import SAMPLING
+        from inca_mj.comparison import timestep_for
+        from inca_mj.excite import design
+        from inca_mj.limits import Limits
+        from inca_mj.sections_information import design_json, design_verdict
+        from inca_mj.twin import build_twin
+
+        limits = Limits(*self.current, self.margin, self.reach, radians(self.turn))
+        robot = build_twin(
+            self.robot.parameters(), self.robot.place(), timestep=timestep_for(SAMPLING)
+        )
+        result = design(
+            robot, self.duration, self.noise, self.free, limits, self.budget, self.seed, note
+        )
+        record = design_json(result)
+        if self.output.out is not None:
+            out = folder(self.output.out)
+            keep(result, out)
+            write_result(out / "result.json", self, record)
+        if self.output.json:
+            say_json(record)
+        else:
+            say(summary(result) + "\n" + "\n".join(design_verdict(result)))
+            if self.output.out is not None:
+                say(f"inca simulate --input {self.output.out / 'excite.csv'} replays it")
+        return 0
+
+
+def summary(result: Design) -> str:
+    """Std of every parameter under the PRBS and the design."""
+    found = result.best.found
+    return table(
+        ("parameter", "std, PRBS", "std, designed", "gain"),
+        [
+            (name, f"{a:.3g}", f"{b:.3g}", f"{gain:.2f}")
+            for name, a, b, gain in zip(
+                found.names, result.prbs.found.std, found.std, result.gain, strict=False
+            )
+        ],
+    )
+
+
+def keep(result: Design, out: Path) -> None:
+    """Write the input as a log that the twin replays, and the report with its figures."""
+    from identification import write_log
+    from inca_mj.logs import run_to_log
+    from inca_mj.report import write_report
+    from inca_mj.sections import run_section, save_figures
+    from inca_mj.sections_information import design_section, design_verdict
+
+    notes = f"designed by inca excite: {result.best.name}, simulated"
+    write_log(run_to_log(result.best.run, "excite", notes), out / "excite.csv")
+    sections = [design_section(result), run_section(result.best.run)]
+    save_figures(sections, out)
+    write_report(out / "report.html", "An input to identify with", design_verdict(result), sections)

@@ -1,0 +1,119 @@
+"""The designed input keeps its limits, repeats itself, and is no worse than what people try."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from identification import InputError
+from inca_mj.cli import main
+from inca_mj.excite import design
+from inca_mj.inputs import prbs
+from inca_mj.limits import Limits, extent
+from inca_mj.recipes import changed, draw
+from inca_mj.run import simulate
+from inca_mj.twin import Twin, build_twin
+
+NAMES = ("b", "J", "b_v")
+
+
+@pytest.fixture(scope="module")
+def robot() -> Twin:
+    return build_twin()
+
+
+def test_the_design_keeps_its_limits_and_repeats(robot: Twin) -> None:
+    limits = Limits(0.2, 1.2, 2.0, 0.1, 0.3)
+    one, two = (design(robot, 0.3, names=NAMES, limits=limits, budget=3, seed=4) for _ in range(2))
+    assert np.array_equal(one.best.run.currents, two.best.run.currents)
+    assert one.best.found.e_value == two.best.found.e_value
+    again = simulate(robot, one.best.run.currents)
+    assert again.tension.min() > 2.0
+    assert np.abs(again.position - again.position[0]).max() <= 0.1
+    assert 0.2 <= again.currents.min() < again.currents.max() <= 1.2
+    assert one.best.allowed
+    assert all(one.best.found.e_value >= t.found.e_value for t in one.standard if t.allowed)
+    assert one.worst_gain >= 1
+
+
+def test_recipes_stay_inside_the_currents() -> None:
+    rng, limits = np.random.default_rng(0), Limits(0.3, 1.7)
+    for kind in ("multisine", "prbs"):
+        recipe = draw(kind, rng)
+        for _ in range(20):
+            recipe = changed(recipe, rng, 0.5)
+            u = recipe.currents(101, 0.01, limits)
+            assert u.shape == (101, 8)
+            assert 0.3 - 1e-12 <= u.min() <= u.max() <= 1.7 + 1e-12
+
+
+def test_the_prbs_of_given_phases() -> None:
+    u = prbs(40, 0.01, phases=np.zeros(8, int))
+    assert (u == u[:, :1]).all()
+    assert (prbs(40, 0.01, phases=np.arange(8)) != u).any()
+
+
+def test_the_extent_of_a_rest_is_nothing(robot: Twin) -> None:
+    far = extent(simulate(robot, np.zeros((11, 8))))
+    assert far.reach < 1e-6
+    assert far.turn < 1e-3
+    assert far.within(Limits())
+    assert not far.within(Limits(margin=3.99))
+
+
+@pytest.mark.parametrize(
+    ("limits", "word"),
+    [
+        (lambda: Limits(2.0, 1.0), "largest current"),
+        (lambda: Limits(margin=-1.0), "margin"),
+        (lambda: Limits(reach=0.0), "workspace"),
+        (lambda: Limits(turn=float("nan")), "workspace"),
+    ],
+)
+def test_a_bad_limit_is_one_sentence(limits, word: str) -> None:
+    with pytest.raises(InputError, match=word) as caught:
+        limits()
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_bad_designs_are_refused(robot: Twin) -> None:
+    for keywords, word in (
+        ({"duration": 0.01}, "cannot be designed"),
+        ({"budget": 0}, "budget"),
+        ({"limits": Limits(margin=50.0)}, "rests with"),
+        ({"names": ("lamda",), "duration": 0.3}, "did you mean"),
+    ):
+        with pytest.raises(InputError, match=word):
+            design(robot, **keywords)
+    with pytest.raises(InputError, match="keeps the limits"):
+        design(robot, 0.3, names=("J",), limits=Limits(reach=1e-9), budget=1)
+
+
+def test_excite_writes_what_simulate_replays(tmp_path: Path, capsys) -> None:
+    arguments = ["excite", "--duration", "0.3", "--budget", "1", "--free", "J", "b_v",
+                 "--out", str(tmp_path), "--json"]  # fmt: skip
+    assert main(arguments) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert set(result["parameters"]) == {"J", "b_v"}
+    assert (tmp_path / "report.html").exists()
+    assert (tmp_path / "result.json").exists()
+    replay = ["simulate", "--input", str(tmp_path / "excite.csv"), "--out", str(tmp_path / "again")]
+    assert main([*replay, "--json"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert again["tension_min"] == pytest.approx(result["tension_min"], rel=1e-9)
+
+
+def test_sensitivity_names_what_trades_off(tmp_path: Path, capsys) -> None:
+    arguments = ["sensitivity", "--duration", "0.5", "--free", "R_s", "k_s", "J"]
+    assert main([*arguments, "--json", "--out", str(tmp_path)]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert result["parameters"]["R_s"]["std"] is None
+    assert result["parameters"]["J"]["std"] > 0
+    assert result["E"] == 0
+    assert "R_s" in result["verdict"][0]
+    assert "k_s" in result["verdict"][0]
+    assert list(tmp_path.glob("*.png"))
+    assert main(["sensitivity", "--noise", "-1"]) == 2
