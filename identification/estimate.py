@@ -25,7 +25,7 @@ from identification.errors import DivergenceError, InputError
 from identification.log import Log
 from identification.noise import noise_floor, whitener_of
 from identification.predictor import Plant, Predictor
-from identification.sensitivity import refuse_without_effect, sensitivity
+from identification.sensitivity import forward_sensitivity, refuse_without_effect, sensitivity
 
 HORIZONS = (0.05, 0.2, 0.5, 1.0)
 Progress = Callable[[str], None]
@@ -170,6 +170,7 @@ class _Search:
         self.whitener = whitener
         self.weight = np.array([1 / options.priors.get(n, np.inf) for n in space.names])
         self.evaluations = self.jacobians = 0
+        self._last = np.full_like(q, np.nan), np.empty((0, 0))  # a point and its ŷ
 
     def refuse_idle(self) -> None:
         """Refuse parameters without effect; most show theirs on the first horizon."""
@@ -201,9 +202,17 @@ class _Search:
 
     def error(self, q: np.ndarray, samples: int | None) -> np.ndarray:
         """ε = y - ŷ, shape (samples, ny)."""
-        self.evaluations += 1
-        predicted = self.predictor.predict(self.space.decode(q), samples)[0]
-        return self.predictor.log.outputs[:samples] - predicted
+        return self.predictor.log.outputs[:samples] - self.predicted(q, samples)
+
+    def predicted(self, q: np.ndarray, samples: int | None) -> np.ndarray:
+        """ŷ, shape (samples, ny); the last one is kept, for the Jacobian at the same point."""
+        samples = samples or len(self.predictor.log)
+        at, known = self._last
+        if len(known) != samples or not np.array_equal(at, q):
+            self.evaluations += 1
+            known = self.predictor.predict(self.space.decode(q), samples)[0]
+            self._last = q.copy(), known
+        return known
 
     def solve(self, samples: int) -> Status:
         """Minimise the criterion over the first samples, from the best point."""
@@ -224,7 +233,7 @@ class _Search:
 
         def jacobian(q: np.ndarray) -> np.ndarray:
             self.jacobians += 1
-            J = sensitivity(self.predictor, self.space, q, samples)
+            J = forward_sensitivity(self.predictor, self.space, q, self.predicted(q, samples))
             weighed = -np.einsum("ij,njp->nip", self.whitener, J).reshape(-1, len(q))
             return np.concatenate([weighed, np.diag(self.weight)])
 
