@@ -28,6 +28,8 @@ from identification.predictor import Plant, Predictor
 from identification.sensitivity import forward_sensitivity, refuse_without_effect, sensitivity
 
 HORIZONS = (0.05, 0.2, 0.5, 1.0)
+ROUGH = 1e-3  # relative gain that ends a horizon which a longer one follows
+EXACT = 1e-11  # residual over outputs at which nothing but round-off is left
 Progress = Callable[[str], None]
 Status = Literal["converged", "iterations", "stopped"]
 
@@ -148,6 +150,10 @@ def estimate(
     )  # fmt: skip
 
 
+class _Settled(Exception):
+    """The next sensitivities would be the last, and not be used."""
+
+
 class _Search:
     """One search: what `least_squares` calls, and the best point it has seen."""
 
@@ -189,11 +195,12 @@ class _Search:
         status: Status = "converged"
         try:
             for fraction in self.options.horizons:
-                status = self.solve(self.samples(fraction))
+                rough = self.options.tolerance if fraction == 1 else ROUGH
+                status = self.solve(self.samples(fraction), max(rough, self.options.tolerance))
             for _ in range(8 if self.options.criterion == "det" else 0):
                 before = self.best
                 self.whitener = whitener_of(self.error(self.best, None))
-                status = self.solve(self.samples(1.0))
+                status = self.solve(self.samples(1.0), self.options.tolerance)
                 if np.abs(self.best - before).max() < 1e-6:
                     break
         except KeyboardInterrupt:
@@ -214,24 +221,33 @@ class _Search:
             self._last = q.copy(), known
         return known
 
-    def solve(self, samples: int) -> Status:
-        """Minimise the criterion over the first samples, from the best point."""
+    def solve(self, samples: int, tolerance: float) -> Status:
+        """Minimise the criterion over the first samples, from the best point.
+
+        `least_squares` asks for sensitivities where it ends, the dearest of a short search; a step
+        that gained too little to go on ends it before them.
+        """
         self.error(self.best, samples)  # a start that diverges is the caller's to know
-        cost = np.inf
+        measured = self.predictor.log.outputs[:samples] @ self.whitener.T
+        exact = EXACT**2 * float(np.sum(measured**2))
+        linear = self.options.loss == "linear"
+        cost = gain = np.inf
 
         def residual(q: np.ndarray) -> np.ndarray:
-            nonlocal cost
+            nonlocal cost, gain
             try:
                 weighed = self.error(q, samples) @ self.whitener.T
             except DivergenceError:
                 weighed = np.full((samples, len(self.whitener)), np.inf)
             r = np.concatenate([weighed.ravel(), (q - self.first) * self.weight])
             if (now := float(r @ r)) < cost:
-                cost, self.best = now, q.copy()
+                gain, cost, self.best = cost - now, now, q.copy()
                 self._tell(samples, weighed)
             return r
 
         def jacobian(q: np.ndarray) -> np.ndarray:
+            if linear and (gain <= tolerance * cost or cost <= exact):
+                raise _Settled
             self.jacobians += 1
             J = forward_sensitivity(self.predictor, self.space, q, self.predicted(q, samples))
             weighed = -np.einsum("ij,njp->nip", self.whitener, J).reshape(-1, len(q))
@@ -240,11 +256,14 @@ class _Search:
         bounded: dict[str, Any] = {}
         if self.options.method != "lm":
             bounded = {"bounds": (self.space.lower, self.space.upper)}
-        found = least_squares(
-            residual, self.best, jacobian, method=self.options.method, x_scale="jac",
-            loss=self.options.loss, ftol=self.options.tolerance, xtol=self.options.tolerance,
-            gtol=1e-15, max_nfev=self.options.max_evaluations, **bounded,
-        )  # fmt: skip
+        try:
+            found = least_squares(
+                residual, self.best, jacobian, method=self.options.method, x_scale="jac",
+                loss=self.options.loss, ftol=tolerance, xtol=self.options.tolerance,
+                gtol=1e-15, max_nfev=self.options.max_evaluations, **bounded,
+            )  # fmt: skip
+        except _Settled:
+            return "converged"
         self.best = found.x
         return "converged" if found.status > 0 else "iterations"
 
