@@ -10,9 +10,10 @@ simulated with parameters up to 10 % and a pose up to 1 cm and 1 degree away.
 from __future__ import annotations
 
 import json
+import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass, replace
 from unittest import mock
 
@@ -106,7 +107,8 @@ def sysid_seconds(robot: Twin, log: Log) -> tuple[float | None, str]:
         return found
 
     try:
-        values = from_sysid(sysid.optimize(parameters, watchful, verbose=False))
+        with redirect_stdout(sys.stderr):  # it prints its steps
+            values = from_sysid(sysid.optimize(parameters, watchful, verbose=False))
         end = "ended"
     except _OutOfPatienceError:
         values, end = min(seen, key=lambda pair: pair[0])[1], "was stopped, so at least this,"
