@@ -20,7 +20,7 @@ from identification.options import Options, Progress, Status
 from identification.predictor import Predictor
 from identification.sensitivity import forward_sensitivity, refuse_without_effect, sensitivity
 
-ROUGH = 1e-3  # relative gain that ends a horizon which a longer one follows
+ROUGH = 1e-2  # relative gain that ends a horizon which a longer one follows
 EXACT = 1e-11  # residual over outputs at which nothing but round-off is left
 
 
