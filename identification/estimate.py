@@ -13,60 +13,20 @@ result; a single fit over the whole log ends in a local minimum, as the thesis' 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, Literal
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from identification.coordinates import Coordinates, coordinates
-from identification.errors import DivergenceError, InputError
 from identification.log import Log
-from identification.noise import noise_floor, relative_weight, whitener_of
+from identification.noise import noise_floor
+from identification.options import HORIZONS as HORIZONS
+from identification.options import Options as Options
+from identification.options import Progress as Progress
+from identification.options import Status
 from identification.predictor import Plant, Predictor
-from identification.sensitivity import refuse_without_effect, sensitivity
-
-HORIZONS = (0.05, 0.2, 0.5, 1.0)
-Progress = Callable[[str], None]
-Status = Literal["converged", "iterations", "stopped"]
-
-
-@dataclass(frozen=True)
-class Options:
-    """How to search.
-
-    Attributes:
-        method: of `scipy.optimize.least_squares`; "lm" knows no bounds.
-        criterion: "trace" (least squares) or "det" (maximum likelihood, covariance estimated).
-        loss: robust loss of `least_squares`: "linear", "soft_l1", "huber", "cauchy", "arctan".
-        horizons: growing fractions of the log, the last is 1; (1.0,) is a single free-run fit.
-        tolerance: relative change of cost and of q at which a search stops.
-        max_evaluations: of the outputs, per horizon.
-        relative_noise: std of a sample's noise over the sample itself, where noise grows with the
-            signal; each residual is then divided by that std, of the prediction.
-        priors: std by name of q about the start (of ln(value) where q is a logarithm).
-
-    Raises:
-        InputError: the horizons do not grow to 1, or a prior's std is not positive.
-    """
-
-    method: Literal["trf", "lm", "dogbox"] = "trf"
-    criterion: Literal["trace", "det"] = "trace"
-    loss: str = "linear"
-    horizons: tuple[float, ...] = HORIZONS
-    tolerance: float = 1e-8
-    max_evaluations: int = 60
-    relative_noise: float = 0.0
-    priors: Mapping[str, float] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        h = self.horizons
-        if not h or h[0] <= 0 or h[-1] != 1 or any(np.diff(h) <= 0):
-            raise InputError(f"horizons {h} must grow to 1, such as {HORIZONS}")
-        for name, std in self.priors.items():
-            if not std > 0:
-                raise InputError(f"the prior of {name} has std {std:g}; give a positive one")
+from identification.search import Search
 
 
 @dataclass(frozen=True)
@@ -137,7 +97,7 @@ def estimate(
     first = np.array([own[name] for name in names])
     space = coordinates(plant.parameters, names, first)
     sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
-    search = _Search(
+    search = Search(
         Predictor(plant, log, tuple(names), dict(start or {})),
         space,
         space.encode(first),
@@ -151,108 +111,3 @@ def estimate(
         search.predictor, space, first, search.best, search.whitener, search.weight, options,
         search.evaluations, search.jacobians, status, time.perf_counter() - began,
     )  # fmt: skip
-
-
-class _Search:
-    """One search: what `least_squares` calls, and the best point it has seen."""
-
-    def __init__(
-        self,
-        predictor: Predictor,
-        space: Coordinates,
-        q: np.ndarray,
-        whitener: np.ndarray,
-        options: Options,
-        progress: Progress | None,
-    ) -> None:
-        self.predictor, self.space, self.options, self.progress = (
-            predictor,
-            space,
-            options,
-            progress,
-        )
-        self.first = self.best = q
-        self.whitener = whitener
-        self.weight = relative_weight(predictor.log.outputs, options.relative_noise)
-        self.prior = np.array([1 / options.priors.get(n, np.inf) for n in space.names])
-        self.evaluations = self.jacobians = 0
-
-    def refuse_idle(self) -> None:
-        """Refuse parameters without effect; most show theirs on the first horizon."""
-        for fraction in (self.options.horizons[0], 1.0):
-            J = sensitivity(self.predictor, self.space, self.best, self.samples(fraction))
-            if J.any(axis=(0, 1)).all():
-                return
-        refuse_without_effect(J, self.space.names, self.predictor.log.output_names)
-
-    def samples(self, fraction: float) -> int:
-        """Samples of a horizon."""
-        return max(3, round(fraction * len(self.predictor.log)))
-
-    def run(self) -> Status:
-        """All horizons, then the covariance of `det`."""
-        status: Status = "converged"
-        try:
-            for fraction in self.options.horizons:
-                status = self.solve(self.samples(fraction))
-            for _ in range(2 if self.options.relative_noise else 0):
-                predicted = self.predictor.predict(self.space.decode(self.best))[0]
-                self.weight = relative_weight(predicted, self.options.relative_noise)
-                status = self.solve(self.samples(1.0))
-            for _ in range(8 if self.options.criterion == "det" else 0):
-                before = self.best
-                self.whitener = whitener_of(self.weight * self.error(self.best, None))
-                status = self.solve(self.samples(1.0))
-                if np.abs(self.best - before).max() < 1e-6:
-                    break
-        except KeyboardInterrupt:
-            return "stopped"
-        return status
-
-    def error(self, q: np.ndarray, samples: int | None) -> np.ndarray:
-        """ε = y - ŷ, shape (samples, ny)."""
-        self.evaluations += 1
-        predicted = self.predictor.predict(self.space.decode(q), samples)[0]
-        return self.predictor.log.outputs[:samples] - predicted
-
-    def solve(self, samples: int) -> Status:
-        """Minimise the criterion over the first samples, from the best point."""
-        self.error(self.best, samples)  # a start that diverges is the caller's to know
-        cost = np.inf
-
-        def residual(q: np.ndarray) -> np.ndarray:
-            nonlocal cost
-            try:
-                weighed = (self.weight[:samples] * self.error(q, samples)) @ self.whitener.T
-            except DivergenceError:
-                weighed = np.full((samples, len(self.whitener)), np.inf)
-            r = np.concatenate([weighed.ravel(), (q - self.first) * self.prior])
-            if (now := float(r @ r)) < cost:
-                cost, self.best = now, q.copy()
-                self._tell(samples, weighed)
-            return r
-
-        def jacobian(q: np.ndarray) -> np.ndarray:
-            self.jacobians += 1
-            J = sensitivity(self.predictor, self.space, q, samples)
-            J = self.weight[:samples, :, None] * J
-            weighed = -np.einsum("ij,njp->nip", self.whitener, J).reshape(-1, len(q))
-            return np.concatenate([weighed, np.diag(self.prior)])
-
-        bounded: dict[str, Any] = {}
-        if self.options.method != "lm":
-            bounded = {"bounds": (self.space.lower, self.space.upper)}
-        found = least_squares(
-            residual, self.best, jacobian, method=self.options.method, x_scale="jac",
-            loss=self.options.loss, ftol=self.options.tolerance, xtol=self.options.tolerance,
-            gtol=1e-15, max_nfev=self.options.max_evaluations, **bounded,
-        )  # fmt: skip
-        self.best = found.x
-        return "converged" if found.status > 0 else "iterations"
-
-    def _tell(self, samples: int, weighed: np.ndarray) -> None:
-        if self.progress is not None:
-            error = np.linalg.solve(self.whitener, weighed.T).T / self.weight[:samples]
-            seconds = samples * self.predictor.log.sampling_time
-            rms = float(np.sqrt(np.mean(error**2)))
-            self.progress(f"horizon {seconds:.2f} s: rms {rms:.4g} after {self.evaluations} runs")

@@ -1,0 +1,199 @@
+"""How fast a fit is, alone and beside other ways to do it; prints one JSON object.
+
+    python benchmarks/estimation.py
+
+Every entry is {"value", "goal", "met", "how"}. The fit frees all eleven parameters of the mechanics
+and the start pose, from nominal values, on 10 s of PRBS with noise of 0.67 mrad (an encoder's),
+simulated with parameters up to 10 % and a pose up to 1 cm and 1 degree away.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stdout
+from dataclasses import dataclass, replace
+from unittest import mock
+
+import naive_fit
+import numpy as np
+from twin import BURST, least, stepper
+
+from identification import InputError, Log, predictor
+from identification.bridge_sysid import from_sysid, sysid_residual, to_sysid_parameters
+from identification.estimate import Estimate, estimate
+from identification.rollout import rollout, threads
+from inca_mj.identify import MECHANICS, POSE
+from inca_mj.inputs import make_input
+from inca_mj.logs import run_to_log
+from inca_mj.parameters import parameter_set
+from inca_mj.run import simulate
+from inca_mj.trials import TRIALS, run_trial
+from inca_mj.twin import Twin, build_twin
+
+FREE = (*MECHANICS, *POSE)
+DURATION, NOISE = 10.0, 6.7e-4  # [s], [rad]
+PATIENCE = 90.0  # longest wait for another program [s]
+
+
+@dataclass
+class Work:
+    """What the simulator was asked for."""
+
+    simulated: float = 0.0  # seconds of the robot, all columns together
+    inside: float = 0.0  # wall time there [s]
+    processor: float = 0.0  # time of all processors, there and elsewhere [s]
+
+
+@contextmanager
+def watched() -> Iterator[Work]:
+    """Counts what predictors simulate."""
+    work = Work()
+
+    def counted(model, start, inputs, sampling_time, **rest):
+        begin = time.perf_counter()
+        found = rollout(model, start, inputs, sampling_time, **rest)
+        work.inside += time.perf_counter() - begin
+        work.simulated += len(np.atleast_2d(start.qpos)) * (len(inputs) - 1) * sampling_time
+        return found
+
+    begin = time.process_time()
+    with mock.patch.object(predictor, "rollout", counted):
+        yield work
+    work.processor = time.process_time() - begin
+
+
+def practice(seed: int = 0) -> Log:
+    """The log to fit."""
+    rng, own = np.random.default_rng(seed), parameter_set("trial").values()
+    truth = {name: own[name] * np.exp(rng.uniform(-0.1, 0.1)) for name in MECHANICS}
+    reach = np.repeat([0.01, 0.0175], 3)
+    truth |= {n: own[n] + r * rng.uniform(-1, 1) for n, r in zip(POSE, reach, strict=True)}
+    robot = build_twin(parameter_set("trial", truth))
+    log = run_to_log(simulate(robot, make_input("prbs", DURATION)))
+    noisy = log.outputs + rng.normal(0, NOISE, log.outputs.shape)
+    return replace(log, outputs=noisy, extras={}, units={})
+
+
+def rms(robot: Twin, log: Log, values: dict[str, float]) -> float:
+    """Of the residual at some values [rad]."""
+    row = np.array(list(values.values()))
+    predicted = predictor.Predictor(robot, log, tuple(values)).predict(row)[0]
+    return float(np.sqrt(np.mean((log.outputs - predicted) ** 2)))
+
+
+class _OutOfPatienceError(Exception):
+    """The other program has had its time."""
+
+
+def sysid_seconds(robot: Twin, log: Log) -> tuple[float | None, str]:
+    """Wall time of `mujoco.sysid.optimize` [s] and how it went."""
+    try:
+        parameters = to_sysid_parameters(robot, FREE)
+        residual = sysid_residual(robot, log, FREE)
+    except InputError as error:
+        return None, str(error)
+    from mujoco import sysid
+
+    begin = time.perf_counter()
+    seen: list[tuple[float, dict[str, float]]] = []
+
+    def watchful(x, values):
+        if time.perf_counter() - begin > PATIENCE:
+            raise _OutOfPatienceError
+        found = residual(x, values)
+        if np.ndim(x) == 1 or x.shape[1] == 1:
+            cost = float(np.sum(np.asarray(found[0]) ** 2))
+            seen.append((cost, dict(zip(FREE, np.ravel(x).tolist(), strict=True))))
+        return found
+
+    try:
+        with redirect_stdout(sys.stderr):  # it prints its steps
+            values = from_sysid(sysid.optimize(parameters, watchful, verbose=False))
+        end = "ended"
+    except _OutOfPatienceError:
+        values, end = min(seen, key=lambda pair: pair[0])[1], "was stopped, so at least this,"
+    seconds = time.perf_counter() - begin
+    error = 1e3 * rms(robot, log, values)
+    return seconds, f"its default optimiser {end} after {seconds:.0f} s at {error:.4g} mrad"
+
+
+def naive_seconds(robot: Twin, log: Log, simulated: float) -> float:
+    """Wall time of the naive predictor [s] for as many seconds of the robot as our fit took."""
+    part = log.inputs[:51]
+    values = robot.parameters.values()
+    (once,) = least([lambda: naive_fit.predict(values, part, log.sampling_time)], 2)
+    return once / ((len(part) - 1) * log.sampling_time) * simulated
+
+
+def naive_error(robot: Twin, log: Log) -> float:
+    """Largest difference of the naive prediction from ours over half a second [rad]."""
+    part, values = log.inputs[:51], robot.parameters.values()
+    ours = simulate(robot, part, log.sampling_time).motor_angle
+    return float(np.abs(naive_fit.predict(values, part, log.sampling_time) - ours).max())
+
+
+def entry(value: float | None, goal: float | None, how: str, *, most: bool = True) -> dict:
+    """One measurement beside its goal: at most it, or at least it."""
+    met = None
+    if goal is not None:
+        met = value is not None and (value <= goal if most else value >= goal)
+    return {"value": None if value is None else round(value, 4), "goal": goal, "met": met,
+            "how": how}  # fmt: skip
+
+
+def profile(found: Estimate, work: Work, step: float) -> dict[str, dict]:
+    """Where the time of a fit went."""
+    steps = work.simulated / found.predictor.plant.model.opt.timestep
+    return {
+        "bare_fraction": entry(
+            steps * step / work.processor,
+            None,
+            f"columns × steps × bare step over processor time of the fit ({work.processor:.1f} s);"
+            f" the bare step takes {1e6 * step:.1f} us in a loop that does nothing else",
+        ),
+        "processors_used": entry(
+            work.processor / found.seconds,
+            None,
+            f"processor time over wall time, of {threads()}; other programs take the rest",
+        ),
+        "inside_simulator": entry(
+            work.inside / found.seconds, None, "share of wall time in batches of simulations"),
+        "simulated_seconds": entry(
+            work.simulated, None, f"of the robot, all columns; {found.evaluations} evaluations"
+            f" and {found.jacobians} Jacobians over growing horizons"),
+    }  # fmt: skip
+
+
+def main() -> None:
+    """Measure everything and print it."""
+    trial = run_trial(TRIALS[1])
+    robot, log = build_twin(parameter_set("trial")), practice()
+    (burst,) = least([stepper(robot)], 200)
+    with watched() as work:
+        found = estimate(robot, log, FREE)
+    error = 1e3 * rms(robot, log, found.values)
+    other, why = sysid_seconds(robot, log)
+    naive = naive_seconds(robot, log, work.simulated)
+    result = {
+        "trial_2_seconds": entry(trial.fit.estimate.seconds, 8.0, "six parameters, 5 s, no noise"),
+        "fit_seconds": entry(
+            found.seconds, 30.0,
+            f"{len(FREE)} parameters, {DURATION:g} s; it ended at {error:.4g} mrad"),
+        "sysid_over_fit": entry(
+            None if other is None else other / found.seconds, 3.0,
+            f"mujoco.sysid on the same data, start and native law, whole log: {why}", most=False),
+        "scipy_over_fit": entry(
+            naive / found.seconds, 50.0,
+            "least_squares with a 2-point Jacobian over solve_ivp and numpy; extrapolated: time of"
+            " 0.5 s simulated, times the seconds that our fit simulated, as if it needed no more;"
+            f" it agrees with ours to {naive_error(robot, log):.1e} rad", most=False),
+        **profile(found, work, burst / BURST),
+    }  # fmt: skip
+    print(json.dumps(result, indent=2, ensure_ascii=False))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,57 @@
+"""How a search is told to search, and how it says that it ended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from identification.errors import InputError
+
+HORIZONS = (0.05, 0.2, 0.5, 1.0)
+Progress = Callable[[str], None]
+Status = Literal["converged", "iterations", "stopped"]
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to search.
+
+    Attributes:
+        method: of `scipy.optimize.least_squares`; "lm" knows no bounds.
+        criterion: "trace" (least squares) or "det" (maximum likelihood, covariance estimated).
+        loss: robust loss of `least_squares`: "linear", "soft_l1", "huber", "cauchy", "arctan".
+        horizons: growing fractions of the log, the last is 1; (1.0,) is a single free-run fit.
+        tolerance: relative change of cost and of q at which a search stops.
+        max_evaluations: of the outputs, per horizon.
+        relative_noise: std of a sample's noise over the sample itself, where noise grows with the
+            signal; each residual is then divided by that std, of the prediction.
+        priors: std by name of q about the start (of ln(value) where q is a logarithm).
+
+    Raises:
+        InputError: the horizons do not grow to 1, or a prior's std is not positive.
+    """
+
+    method: Literal["trf", "lm", "dogbox"] = "trf"
+    criterion: Literal["trace", "det"] = "trace"
+    loss: str = "linear"
+    horizons: tuple[float, ...] = HORIZONS
+    tolerance: float = 1e-8
+    max_evaluations: int = 60
+    relative_noise: float = 0.0
+    priors: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        h = self.horizons
+        if not h or h[0] <= 0 or h[-1] != 1 or any(np.diff(h) <= 0):
+            raise InputError(f"horizons {h} must grow to 1, such as {HORIZONS}")
+        for name, std in self.priors.items():
+            if not std > 0:
+                raise InputError(f"the prior of {name} has std {std:g}; give a positive one")
+
+
+def prior_weight(options: Options, names: Sequence[str]) -> np.ndarray:
+    """1/std of the prior of each q, zero where there is none, shape (p,)."""
+    return np.array([1 / options.priors.get(name, np.inf) for name in names])
