@@ -22,6 +22,9 @@ from mujoco.batch import Batch
 from identification.errors import DivergenceError, InputError
 from identification.paths import Slot
 
+# From these entries MuJoCo derives nothing: writing them needs no mj_setConst.
+UNDERIVED = {"actuator_user", "tendon_user", "numeric_data", "dof_damping", "jnt_stiffness"}
+
 
 @dataclass(frozen=True)
 class State:
@@ -128,7 +131,7 @@ def _expand(batch: Batch, numbers: Sequence[tuple[Slot, np.ndarray]]) -> None:
         entries = batch.expand(slot.field)
         column = () if slot.column is None else (slot.column,)
         entries[(slice(None), list(slot.rows), *column)] = np.asarray(values)[:, None]
-    if any(slot.field.startswith("body_") for slot, _ in numbers):
+    if not all(slot.field in UNDERIVED for slot, _ in numbers):
         batch.set_const()
 
 
