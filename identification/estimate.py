@@ -7,7 +7,10 @@ last fit until it stays, which is maximum likelihood for Gaussian noise of unkno
 
 A free run of a stiff robot is a wild function of its parameters over seconds and a tame one over a
 quarter of a second. So the fit begins on a short horizon and lengthens it, each time from the last
-result; a single fit over the whole log ends in a local minimum, as the thesis' did.
+result; a single fit over the whole log ends in a local minimum, as the thesis' did. A horizon that
+is too short to say something of a parameter must not carry it away: before the last horizon each
+q is held to where it was by one noise std per unit (a factor e, or 1 m), which any information
+outweighs.
 """
 
 from __future__ import annotations
@@ -21,11 +24,11 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from identification.coordinates import Coordinates, coordinates
-from identification.errors import DivergenceError, InputError
+from identification.errors import InputError
 from identification.log import Log
 from identification.noise import noise_floor, whitener_of
 from identification.predictor import Plant, Predictor
-from identification.sensitivity import refuse_without_effect, sensitivity
+from identification.sensitivity import refuse_without_effect, sensitivity, without_effect
 
 HORIZONS = (0.05, 0.2, 0.5, 1.0)
 Progress = Callable[[str], None]
@@ -107,6 +110,7 @@ def estimate(
     start: Mapping[str, float] | None = None,
     options: Options | None = None,
     progress: Progress | None = None,
+    whitener: np.ndarray | None = None,
 ) -> Estimate:
     """Estimate parameters of a plant from a log, free-running from its first sample.
 
@@ -119,6 +123,7 @@ def estimate(
         start: starting values by name; the plant's own where not given.
         options: how to search.
         progress: is told one line per accepted step.
+        whitener: C of the `trace` criterion, shape (ny, ny); I/σ, σ the noise floor, when None.
 
     Raises:
         InputError: a name is unknown or has no effect on the outputs, or a start is out of bounds.
@@ -136,7 +141,7 @@ def estimate(
         Predictor(plant, log, tuple(names), dict(start or {})),
         space,
         space.encode(first),
-        np.eye(log.outputs.shape[1]) / sigma,
+        np.eye(log.outputs.shape[1]) / sigma if whitener is None else whitener,
         options,
         progress,
     )
@@ -175,9 +180,9 @@ class _Search:
         """Refuse parameters without effect; most show theirs on the first horizon."""
         for fraction in (self.options.horizons[0], 1.0):
             J = sensitivity(self.predictor, self.space, self.best, self.samples(fraction))
-            if J.any(axis=(0, 1)).all():
+            if not without_effect(J, self.predictor.log.outputs).any():
                 return
-        refuse_without_effect(J, self.space.names, self.predictor.log.output_names)
+        refuse_without_effect(J, self.space.names, self.predictor.log)
 
     def samples(self, fraction: float) -> int:
         """Samples of a horizon."""
@@ -208,15 +213,20 @@ class _Search:
     def solve(self, samples: int) -> Status:
         """Minimise the criterion over the first samples, from the best point."""
         self.error(self.best, samples)  # a start that diverges is the caller's to know
-        cost = np.inf
+        cost, origin = np.inf, self.best
+        short = samples < len(self.predictor.log)
+        hold = short * np.ones(len(origin)) / np.maximum(1.0, np.abs(origin))
+        hold[self.space.logarithmic] = short
 
         def residual(q: np.ndarray) -> np.ndarray:
             nonlocal cost
             try:
                 weighed = self.error(q, samples) @ self.whitener.T
-            except DivergenceError:
+            except InputError:  # it diverged, or has no start: the search must go elsewhere
                 weighed = np.full((samples, len(self.whitener)), np.inf)
-            r = np.concatenate([weighed.ravel(), (q - self.first) * self.weight])
+            r = np.concatenate(
+                [weighed.ravel(), (q - self.first) * self.weight, (q - origin) * hold]
+            )
             if (now := float(r @ r)) < cost:
                 cost, self.best = now, q.copy()
                 self._tell(samples, weighed)
@@ -226,7 +236,7 @@ class _Search:
             self.jacobians += 1
             J = sensitivity(self.predictor, self.space, q, samples)
             weighed = -np.einsum("ij,njp->nip", self.whitener, J).reshape(-1, len(q))
-            return np.concatenate([weighed, np.diag(self.weight)])
+            return np.concatenate([weighed, np.diag(self.weight), np.diag(hold)])
 
         bounded: dict[str, Any] = {}
         if self.options.method != "lm":
