@@ -8,9 +8,9 @@ last fit until it stays, which is maximum likelihood for Gaussian noise of unkno
 A free run of a stiff robot is a wild function of its parameters over seconds and a tame one over a
 quarter of a second. So the fit begins on a short horizon and lengthens it, each time from the last
 result; a single fit over the whole log ends in a local minimum, as the thesis' did. A horizon that
-is too short to say something of a parameter must not carry it away: before the last horizon each
-q is held to where it was by one noise std per unit (a factor e, or 1 m), which any information
-outweighs.
+is too short to say something of a parameter must not carry it away, nor may round-off carry it
+along a direction that no output feels: each q is held to where the horizon before left it, by one
+noise std per unit (a factor e, or 1 m), a tenth on the last, which any information outweighs.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from identification.predictor import Plant, Predictor
 from identification.sensitivity import refuse_without_effect, sensitivity, without_effect
 
 HORIZONS = (0.05, 0.2, 0.5, 1.0)
+HOLD = (1.0, 0.1)  # noise std per unit of q, on a short horizon and on the whole log
 Progress = Callable[[str], None]
 Status = Literal["converged", "iterations", "stopped"]
 
@@ -98,6 +99,11 @@ class Estimate:
     seconds: float
 
     @property
+    def prior(self) -> np.ndarray:
+        """1/std of the prior of each q, zero where there is none, shape (p,)."""
+        return prior_weight(self.options, self.space.names)
+
+    @property
     def values(self) -> dict[str, float]:
         """The estimated values by name, in their units."""
         return dict(zip(self.space.names, self.space.decode(self.q).tolist(), strict=True))
@@ -153,6 +159,11 @@ def estimate(
     )  # fmt: skip
 
 
+def prior_weight(options: Options, names: Sequence[str]) -> np.ndarray:
+    """1/std of the prior of each q, zero where there is none, shape (p,)."""
+    return np.array([1 / options.priors.get(name, np.inf) for name in names])
+
+
 class _Search:
     """One search: what `least_squares` calls, and the best point it has seen."""
 
@@ -173,7 +184,7 @@ class _Search:
         )
         self.first = self.best = q
         self.whitener = whitener
-        self.weight = np.array([1 / options.priors.get(n, np.inf) for n in space.names])
+        self.weight = prior_weight(options, space.names)
         self.evaluations = self.jacobians = 0
 
     def refuse_idle(self) -> None:
@@ -214,9 +225,8 @@ class _Search:
         """Minimise the criterion over the first samples, from the best point."""
         self.error(self.best, samples)  # a start that diverges is the caller's to know
         cost, origin = np.inf, self.best
-        short = samples < len(self.predictor.log)
-        hold = short * np.ones(len(origin)) / np.maximum(1.0, np.abs(origin))
-        hold[self.space.logarithmic] = short
+        size = np.where(self.space.logarithmic, 1.0, np.maximum(1.0, np.abs(origin)))
+        hold = HOLD[samples == len(self.predictor.log)] / size
 
         def residual(q: np.ndarray) -> np.ndarray:
             nonlocal cost

@@ -49,6 +49,11 @@ def test_a_product_is_named_where_a_product_counts():
     assert "only" in " ".join(verdict(fit))
 
 
+def test_round_off_does_not_carry_a_search_along_what_is_not_felt():
+    found = estimate(slider(x0=0.0), LOG, ALL, options=Options(horizons=(1.0,)))
+    assert found.values["gear"] == pytest.approx(5.0, rel=0.2)
+
+
 def test_fixing_one_of_them_makes_the_rest_known():
     fit = assess(estimate(slider(x0=0.0, **{**OFF, "gear": 5.0}), LOG, ALL[:3]))
     assert fit.found.rank == 3

@@ -1,4 +1,4 @@
-"""A profile agrees with the std where the cost is a parabola, and is flat where nothing is known."""
+"""A profile agrees with the std on a parabola, and is flat where nothing is known."""
 
 import numpy as np
 import pytest
