@@ -13,7 +13,7 @@ from identification.noise import whitener_of
 
 NAMES = ("damping", "stiffness")
 START = {"damping": 2.3, "stiffness": 25.0}
-DET = Options(criterion="det", horizons=(1.0,))
+DET = Options(criterion="det", horizons=(1.0,), tolerance=1e-6)
 
 
 def uneven(seed, scale=1.0, levels=(1e-3, 1e-1), n=80):
