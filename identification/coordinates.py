@@ -16,6 +16,8 @@ import numpy as np
 from identification.errors import InputError
 from identification.parameter import ParameterSet
 
+FARTHEST = 700.0  # of a logarithm: beyond, exp overflows
+
 
 @dataclass(frozen=True)
 class Coordinates:
@@ -39,7 +41,11 @@ class Coordinates:
 
     def decode(self, q: np.ndarray) -> np.ndarray:
         """The values of q, shape (..., p)."""
-        return np.where(self.logarithmic, np.exp(np.where(self.logarithmic, q, 0.0)), q)
+        return np.where(
+            self.logarithmic,
+            np.exp(np.clip(np.where(self.logarithmic, q, 0.0), -FARTHEST, FARTHEST)),
+            q,
+        )
 
     def slope(self, q: np.ndarray) -> np.ndarray:
         """d value/d q, shape (..., p): a std in q times this is a std of the value."""

@@ -7,7 +7,10 @@ last fit until it stays, which is maximum likelihood for Gaussian noise of unkno
 
 A free run of a stiff robot is a wild function of its parameters over seconds and a tame one over a
 quarter of a second. So the fit begins on a short horizon and lengthens it, each time from the last
-result; a single fit over the whole log ends in a local minimum, as the thesis' did.
+result; a single fit over the whole log ends in a local minimum, as the thesis' did. A horizon that
+is too short to say something of a parameter must not carry it away, nor may round-off carry it
+along a direction that no output feels: each q is held to where the horizon before left it, by one
+noise std per unit (a factor e, or 1 m), a tenth on the last, which any information outweighs.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ from identification.noise import noise_floor
 from identification.options import HORIZONS as HORIZONS
 from identification.options import Options as Options
 from identification.options import Progress as Progress
-from identification.options import Status
+from identification.options import Status, prior_weight
 from identification.predictor import Plant, Predictor
 from identification.search import Search
 
@@ -60,6 +63,11 @@ class Estimate:
     seconds: float
 
     @property
+    def prior(self) -> np.ndarray:
+        """1/std of the prior of each q, zero where there is none, shape (p,)."""
+        return prior_weight(self.options, self.space.names)
+
+    @property
     def values(self) -> dict[str, float]:
         """The estimated values by name, in their units."""
         return dict(zip(self.space.names, self.space.decode(self.q).tolist(), strict=True))
@@ -72,6 +80,7 @@ def estimate(
     start: Mapping[str, float] | None = None,
     options: Options | None = None,
     progress: Progress | None = None,
+    whitener: np.ndarray | None = None,
 ) -> Estimate:
     """Estimate parameters of a plant from a log, free-running from its first sample.
 
@@ -84,6 +93,7 @@ def estimate(
         start: starting values by name; the plant's own where not given.
         options: how to search.
         progress: is told one line per accepted step.
+        whitener: C of the `trace` criterion, shape (ny, ny); I/σ, σ the noise floor, when None.
 
     Raises:
         InputError: a name is unknown or has no effect on the outputs, or a start is out of bounds.
@@ -101,7 +111,7 @@ def estimate(
         Predictor(plant, log, tuple(names), dict(start or {})),
         space,
         space.encode(first),
-        np.eye(log.outputs.shape[1]) / sigma,
+        np.eye(log.outputs.shape[1]) / sigma if whitener is None else whitener,
         options,
         progress,
     )

@@ -95,6 +95,7 @@ def information(
         )
     predictor = Predictor(experiment.plant, log, every, dict(experiment.fixed))
     J = sensitivity(predictor, space, space.encode(start))
-    refuse_without_effect(J, every, experiment.outputs)
+    felt = replace(log, outputs=predictor.predict(start)[0])  # what would be measured
+    refuse_without_effect(J, every, felt)
     S = J.reshape(-1, len(every)) / experiment.sigma
     return Information(every, len(names), space.logarithmic, root_of(S))

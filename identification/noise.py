@@ -33,9 +33,11 @@ def noise_floor(y: np.ndarray, order: int = ORDER) -> np.ndarray:
 def whitener_of(residual: np.ndarray) -> np.ndarray:
     """Rows C with Cᵀ C = Λ⁻¹, Λ the covariance of a residual (n, ny), shape (ny, ny)."""
     covariance = residual.T @ residual / len(residual)
-    level = np.trace(covariance) / len(covariance)
-    floor = 1e-10 * level + np.finfo(float).tiny  # a channel without error must not weigh all
-    return np.linalg.inv(np.linalg.cholesky(covariance + floor * np.eye(len(covariance))))
+    variance = np.diag(covariance)
+    # A channel without error must not weigh all; one in another unit must not weigh otherwise.
+    size = np.sqrt(np.maximum(variance, 1e-16 * variance.max() + np.finfo(float).tiny))
+    correlation = covariance / np.outer(size, size) + 1e-10 * np.eye(len(size))
+    return np.linalg.inv(np.linalg.cholesky(correlation)) / size
 
 
 def relative_weight(y: np.ndarray, relative: float) -> np.ndarray:

@@ -22,6 +22,9 @@ from mujoco.batch import Batch
 from identification.errors import DivergenceError, InputError
 from identification.paths import Slot
 
+# From these entries MuJoCo derives nothing: writing them needs no mj_setConst.
+UNDERIVED = {"actuator_user", "tendon_user", "numeric_data", "dof_damping", "jnt_stiffness"}
+
 
 @dataclass(frozen=True)
 class State:
@@ -85,7 +88,8 @@ def rollout(
     Args:
         model: the model; its timestep divides `sampling_time`.
         start: initial states; the number of rows, or of `numbers`' entries, sets n.
-        inputs: shape (N, nu), in the units of the model's controls.
+        inputs: shape (N, nu) for all, or (n, N, nu) for each its own, in the units of the
+            model's controls.
         sampling_time: time between samples [s].
         numbers: model entries that differ: slot and its values, shape (n,).
         record: MjData fields of the state (qpos, qvel, act).
@@ -100,12 +104,15 @@ def rollout(
         DivergenceError: a simulation left the finite numbers.
     """
     inputs = np.asarray(inputs, float)
-    if inputs.ndim != 2 or inputs.shape[1] != model.nu:
+    if inputs.ndim not in (2, 3) or inputs.shape[-1] != model.nu:
         raise InputError(f"inputs have shape {inputs.shape}; the model takes (N, {model.nu})")
     rows = [np.atleast_2d(x) for x in (start.qpos, start.qvel, start.act)]
     n = max([len(r) for r in rows] + [len(values) for _, values in numbers])
     every = substeps(sampling_time, model.opt.timestep)
-    controls = hold(inputs, every, hold_kind)
+    own = inputs[None] if inputs.ndim == 2 else inputs
+    controls = np.stack([hold(u, every, hold_kind) for u in own])
+    if len(own) not in (1, n):
+        raise InputError(f"{len(own)} input sequences for {n} simulations; give one, or one each")
 
     batch = Batch(model, n, nthread or min(threads(), n))
     _expand(batch, numbers)
@@ -113,10 +120,10 @@ def rollout(
         if row.shape[1]:
             batch.bind(field)[:] = row
     first = {field: np.array(batch.bind(field)) for field in record}
-    shared = np.broadcast_to(controls, (n, *controls.shape))
+    shared = np.broadcast_to(controls, (n, *controls.shape[1:]))
     with _quiet():
-        steps = batch.rollout(len(controls), shared, record=tuple(record))
-    _check_finished(batch, len(controls) * model.opt.timestep)
+        steps = batch.rollout(shared.shape[1], shared, record=tuple(record))
+    _check_finished(batch, shared.shape[1] * model.opt.timestep)
     return {
         field: np.concatenate([first[field][:, None], steps[field][:, every - 1 :: every]], axis=1)
         for field in record
@@ -128,7 +135,7 @@ def _expand(batch: Batch, numbers: Sequence[tuple[Slot, np.ndarray]]) -> None:
         entries = batch.expand(slot.field)
         column = () if slot.column is None else (slot.column,)
         entries[(slice(None), list(slot.rows), *column)] = np.asarray(values)[:, None]
-    if any(slot.field.startswith("body_") for slot, _ in numbers):
+    if not all(slot.field in UNDERIVED for slot, _ in numbers):
         batch.set_const()
 
 

@@ -14,10 +14,12 @@ import numpy as np
 
 from identification.coordinates import Coordinates
 from identification.errors import InputError
+from identification.log import Log
 from identification.predictor import Predictor
 
 STEP = 1e-4  # of q: relative for a logarithmic coordinate, m or rad for another
 FORWARD_STEP = 1e-6  # of q, as above
+ROUND_OFF = 1e-9  # of an output: differences of two simulations, over the step, err by this
 
 
 def sensitivity(
@@ -55,20 +57,28 @@ def forward_sensitivity(
     return np.moveaxis((ahead - predicted) / step, 0, -1)
 
 
-def refuse_without_effect(J: np.ndarray, names: tuple[str, ...], outputs: tuple[str, ...]) -> None:
+def without_effect(J: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+    """Which columns of J (samples, ny, p) are nothing but round-off of the outputs, shape (p,)."""
+    size = np.abs(outputs).max(axis=0)
+    return (np.abs(J).max(axis=0) <= ROUND_OFF * size[:, None]).all(axis=0)
+
+
+def refuse_without_effect(J: np.ndarray, names: tuple[str, ...], log: Log) -> None:
     """Refuse parameters that no output feels: a fit would stop at once and say it converged.
 
     Args:
         J: sensitivities, shape (samples, ny, p).
         names: the parameters.
-        outputs: the outputs, for the message.
+        log: what was measured.
 
     Raises:
-        InputError: a column is zero.
+        InputError: a column is zero but for round-off.
     """
-    dead = [n for n, column in zip(names, np.moveaxis(J, -1, 0), strict=True) if not column.any()]
+    dead = [n for n, idle in zip(names, without_effect(J, log.outputs), strict=True) if idle]
+    first, *others = log.output_names
+    seen = f"{first} … {others[-1]}" if others else first
     if dead:
         raise InputError(
             f"{', '.join(dead)} ha{'s' if len(dead) == 1 else 've'} no effect on"
-            f" {outputs[0]} … {outputs[-1]}; leave it fixed, or check where it goes in the model"
+            f" {seen}; leave it fixed, or check where it goes in the model"
         )

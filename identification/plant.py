@@ -1,0 +1,109 @@
+"""Any MuJoCo model as a plant: every parameter is a path into the model or into its start.
+
+    θ_j -> mjModel entry              where = "joint/slide.damping", "body/cart.mass", …
+    θ_j -> entry of x₀                where = "qpos[0]", "qvel[3]", "act[1]"
+
+Nothing else follows from the values. A plant whose start depends on its masses, or whose inertia on
+its shape, implements `identification.predictor.Plant` itself.
+"""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError
+from identification.parameter import ParameterSet
+from identification.paths import resolve, write
+from identification.predictor import Numbers
+from identification.rollout import State
+
+_START = re.compile(r"(?P<field>qpos|qvel|act)\[(?P<index>\d+)\]")
+
+
+@dataclass(frozen=True)
+class ModelPlant:
+    """A compiled model whose parameters are paths.
+
+    The model is copied and the parameters' values are written into the copy.
+
+    Attributes:
+        model: the compiled model.
+        parameters: what can be moved, with nominal values.
+        start: the initial state; the model's own (qpos0, at rest) when None.
+
+    Raises:
+        InputError: a path names nothing in the model, or two parameters name the same path.
+    """
+
+    model: mujoco.MjModel
+    parameters: ParameterSet
+    start: State | None = None
+
+    def __post_init__(self) -> None:
+        model, state = copy.copy(self.model), self.start or own_start(self.model)
+        start = {f: np.array(getattr(state, f), float).ravel() for f in ("qpos", "qvel", "act")}
+        paths = [p.where for p in self.parameters]
+        twice = [p for p in self.parameters if paths.count(p.where) > 1]
+        if twice:
+            raise InputError(
+                f"{' and '.join(p.name for p in twice)} all go to {twice[0].where!r};"
+                " give each parameter a place of its own"
+            )
+        for parameter in self.parameters:
+            place = start_place(parameter.where, model)
+            if place is None:
+                write(model, resolve(model, parameter.where), parameter.value)
+            else:
+                start[place[0]][place[1]] = parameter.value
+        mujoco.mj_setConst(model, mujoco.MjData(model))
+        object.__setattr__(self, "model", model)
+        object.__setattr__(self, "start", State(**start))
+
+    def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:
+        """Initial states (n rows) and model numbers of n value sets; see `Plant`.
+
+        Args:
+            names: parameters that differ from the plant's own, p of them.
+            values: their values, shape (n, p), in their units.
+
+        Raises:
+            InputError: a name is unknown.
+        """
+        start = self.start or own_start(self.model)
+        rows = {f: np.tile(getattr(start, f), (len(values), 1)) for f in ("qpos", "qvel", "act")}
+        numbers = []
+        for name, column in zip(names, values.T, strict=True):
+            where = self.parameters[name].where
+            place = start_place(where, self.model)
+            if place is None:
+                numbers.append((resolve(self.model, where), column))
+            else:
+                rows[place[0]][:, place[1]] = column
+        return State(**rows), numbers
+
+
+def own_start(model: mujoco.MjModel) -> State:
+    """The state in which a model is reset: qpos0, at rest."""
+    return State(np.array(model.qpos0), np.zeros(model.nv), np.zeros(model.na))
+
+
+def start_place(where: str, model: mujoco.MjModel) -> tuple[str, int] | None:
+    """Field and index of a path such as `qpos[2]`; None for a path into the model.
+
+    Raises:
+        InputError: the state has no such entry.
+    """
+    match = _START.fullmatch(where)
+    if match is None:
+        return None
+    field, index = match["field"], int(match["index"])
+    size = {"qpos": model.nq, "qvel": model.nv, "act": model.na}[field]
+    if index >= size:
+        raise InputError(f"{where!r}: the model's {field} has {size} entries, counted from 0")
+    return field, index

@@ -1,0 +1,141 @@
+"""What a log cannot say is said in words; what it can is not called unknown."""
+
+import mujoco
+import numpy as np
+import pytest
+from estimation_plants import positive, record, slider
+
+from identification import DivergenceError, InputError, Parameter, ParameterSet
+from identification.estimate import Options, estimate
+from identification.fit import assess
+from identification.plant import ModelPlant
+from identification.verdict import verdict
+
+ALL = ("mass", "damping", "stiffness", "gear")
+OFF = {"mass": 2.4, "damping": 2.5, "stiffness": 17.0, "gear": 6.0}
+LOG = record(slider(x0=0.0), ("position",), noise=1e-3)
+
+
+def parameters(*records):
+    return ParameterSet("p", records)
+
+
+def test_a_common_factor_of_all_forces_is_named_as_quotients():
+    fit = assess(estimate(slider(x0=0.0, **OFF), LOG, ALL))
+    assert fit.found.rank == 3
+    assert np.isinf(fit.std).all()
+    known = {str(c): (value, std) for c, value, std in fit.combinations}
+    assert len(known) == 3
+    truth = {"mass": 2.0, "damping": 3.0, "stiffness": 20.0, "gear": 5.0}
+    for combination, value, std in fit.combinations:
+        assert sum(combination.exponents.values()) == 0
+        assert sorted(combination.exponents.values()) == [-1, 1]
+        assert abs(value - combination.value(truth)) < 4 * std
+    said = " ".join(verdict(fit))
+    assert "3 of 4 directions are felt" in said
+    assert "trade off along" in said
+    assert "can be known from this log" in said
+
+
+def test_a_product_is_named_where_a_product_counts():
+    """A force through a gear: x = g u, and a second gain k in front of it, g = k r."""
+    xml_gain = ("actuator/force.gainprm[0]", "actuator/force.gear[0]")
+    records = (positive("gain", 1.0, "", xml_gain[0]), positive("gear", 5.0, "N", xml_gain[1]))
+    plant = ModelPlant(slider(x0=0.0).model, parameters(*records))
+    fit = assess(estimate(plant, LOG, ("gain", "gear"), {"gear": 4.0}))
+    ((combination, value, std),) = fit.combinations
+    assert str(combination) in ("gain gear", "gear gain")
+    assert abs(value - 5.0) < 4 * std
+    assert "only" in " ".join(verdict(fit))
+
+
+def test_round_off_does_not_carry_a_search_along_what_is_not_felt():
+    found = estimate(slider(x0=0.0), LOG, ALL, options=Options(horizons=(1.0,)))
+    assert found.values["gear"] == pytest.approx(5.0, rel=0.2)
+
+
+def test_fixing_one_of_them_makes_the_rest_known():
+    fit = assess(estimate(slider(x0=0.0, **{**OFF, "gear": 5.0}), LOG, ALL[:3]))
+    assert fit.found.rank == 3
+    assert np.isfinite(fit.std).all()
+    assert not fit.combinations
+
+
+def test_a_parameter_without_effect_is_refused_by_name():
+    records = (
+        positive("stiffness", 20.0, "N/m", "joint/slide.stiffness"),
+        positive("inertia", 1.0, "kg m²", "body/cart.inertia[0]"),
+    )
+    plant = ModelPlant(slider().model, parameters(*records))
+    with pytest.raises(InputError, match="inertia has no effect on position") as caught:
+        estimate(plant, LOG, ("stiffness", "inertia"))
+    assert "stiffness" not in str(caught.value)
+
+
+def test_a_parameter_felt_only_as_round_off_is_refused_by_name():
+    """The mass of a body that falls freely: it divides itself out but for the last bits."""
+    xml = """<mujoco><option integrator="RK4" timestep="0.005"/><worldbody><body name="ball">
+      <joint name="fall" type="slide" axis="0 0 1"/><inertial pos="0 0 0" mass="1.3"
+      diaginertia="1 1 1"/></body></worldbody>
+      <actuator><motor name="none" joint="fall" gear="0"/></actuator>
+      <sensor><jointpos name="height" joint="fall"/></sensor></mujoco>"""
+    model = mujoco.MjModel.from_xml_string(xml)
+    plant = ModelPlant(model, parameters(positive("mass", 1.3, "kg", "body/ball.mass")))
+    with pytest.raises(InputError, match="mass has no effect"):
+        estimate(plant, record(plant, ("height",), noise=1e-3), ("mass",))
+
+
+def test_a_value_at_its_bound_is_reported():
+    record_ = Parameter("stiffness", 12.0, "N/m", "joint/slide.stiffness", lower=0, upper=15)
+    plant = ModelPlant(slider(x0=0.0).model, parameters(record_))
+    for method in ("trf", "dogbox"):
+        fit = assess(estimate(plant, LOG, ("stiffness",), options=Options(method=method)))
+        assert fit.at_bound.all(), method
+        assert "At a bound: stiffness" in " ".join(verdict(fit))
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0])
+def test_a_start_on_or_beyond_a_bound_is_refused(value):
+    with pytest.raises(InputError, match=r"damping .* must lie inside \(0, inf\)"):
+        estimate(slider(), LOG, ("damping",), {"damping": value})
+
+
+def test_a_wrong_name_is_answered_with_the_likely_one():
+    with pytest.raises(InputError, match="did you mean 'damping'"):
+        estimate(slider(), LOG, ("dampnig",))
+    with pytest.raises(InputError, match="did you mean 'stiffness'"):
+        estimate(slider(), LOG, ("damping",), {"stifness": 3.0})
+    with pytest.raises(InputError, match="did you mean 'mass'"):
+        estimate(slider(), LOG, ("mass",), options=Options(priors={"mas": 1.0}))
+    with pytest.raises(InputError, match="twice"):
+        estimate(slider(), LOG, ("mass", "mass"))
+    with pytest.raises(InputError, match="no parameter is free"):
+        estimate(slider(), LOG, ())
+
+
+def test_a_start_that_diverges_is_said_in_a_sentence():
+    with pytest.raises(DivergenceError, match=r"diverged at t = .* nearer to the nominal"):
+        estimate(slider(), LOG, ("stiffness",), {"stiffness": 1e9})
+
+
+def test_a_prior_pulls_and_says_how_much_is_its_own():
+    """An unknown common factor is settled by a prior on one of its parameters."""
+    options = Options(priors={"gear": 0.01})
+    start = {**OFF, "gear": 5.0}
+    fit = assess(estimate(slider(x0=0.0, **start), LOG, ALL, options=options))
+    assert fit.estimate.values["gear"] == pytest.approx(5.0, rel=1e-3)
+    assert fit.estimate.values["mass"] == pytest.approx(2.0, rel=0.03)
+    assert fit.std[3] == pytest.approx(0.05, rel=0.05)
+    assert np.isfinite(fit.std).all()
+
+
+def test_a_strong_prior_holds_and_a_weak_one_lets_go():
+    strong, weak = (
+        estimate(
+            slider(x0=0.0, stiffness=16.0), LOG, ("stiffness",),
+            options=Options(priors={"stiffness": s}),
+        ).values["stiffness"]
+        for s in (1e-6, 10.0)
+    )  # fmt: skip
+    assert strong == pytest.approx(16.0, rel=1e-4)
+    assert weak == pytest.approx(20.0, rel=1e-2)

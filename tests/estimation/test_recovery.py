@@ -1,0 +1,63 @@
+"""What went into data comes out of a fit, and its uncertainty is true."""
+
+import numpy as np
+import pytest
+from estimation_plants import pendulum, record, slider
+from scipy.stats import binom
+
+from identification.estimate import Options, estimate
+from identification.fit import assess
+
+TRUTH = {"mass": 2.0, "damping": 3.0, "stiffness": 20.0}
+FAR = {"mass": 2.6, "damping": 2.1, "stiffness": 26.0}
+
+
+@pytest.mark.parametrize("method", ["trf", "dogbox", "lm"])
+def test_a_slider_is_recovered_from_starts_30_percent_off(method):
+    found = estimate(
+        slider(), record(slider(), ("position",)), tuple(FAR), FAR, Options(method=method)
+    )
+    np.testing.assert_allclose([found.values[n] for n in TRUTH], list(TRUTH.values()), rtol=1e-6)
+    assert found.status == "converged"
+
+
+@pytest.mark.parametrize("method", ["trf", "dogbox", "lm"])
+def test_a_pendulum_is_recovered_from_starts_30_percent_off(method):
+    names = ("upper_mass", "lower_mass", "upper_damping", "lower_damping")
+    far = dict(zip(names, (1.3, 0.35, 0.26, 0.07), strict=True))
+    log = record(pendulum(), ("q1", "q2"))
+    found = estimate(pendulum(), log, names, far, Options(method=method))
+    np.testing.assert_allclose(list(found.values.values()), (1.0, 0.5, 0.2, 0.1), rtol=1e-6)
+
+
+def test_a_start_that_is_not_known_is_recovered():
+    log = record(slider(x0=0.25, v0=-0.4), ("position",))
+    found = estimate(slider(), log, ("stiffness", "x0", "v0"))
+    np.testing.assert_allclose(list(found.values.values()), (20.0, 0.25, -0.4), rtol=1e-6)
+
+
+def test_uncertainty_covers_the_truth_as_often_as_it_says():
+    """Per parameter binomial bounds at 1e-3 each side; and all within 4 std or so."""
+    seeds = 40
+    plant, options = slider(mass=2.1, stiffness=19.0), Options(horizons=(1.0,), tolerance=1e-4)
+    z = np.empty((seeds, len(TRUTH)))
+    for seed in range(seeds):
+        log = record(slider(), ("position",), n=70, noise=1e-3, seed=seed)
+        fit = assess(estimate(plant, log, tuple(TRUTH), options=options))
+        z[seed] = [
+            (fit.estimate.values[n] - t) / s
+            for (n, t), s in zip(TRUTH.items(), fit.std, strict=True)
+        ]
+    assert np.abs(z).max() < 4.5
+    covered = (np.abs(z) < 1.96).sum(axis=0)
+    assert (covered >= binom.ppf(1e-3, seeds, 0.95)).all(), covered
+    assert 0.7 < z.std() < 1.3
+
+
+def test_the_residual_of_a_right_model_is_its_noise():
+    log = record(slider(), ("position",), n=500, noise=2e-3)
+    fit = assess(estimate(slider(**FAR), log, tuple(TRUTH)))
+    assert fit.rms == pytest.approx(2e-3, rel=0.1)
+    assert fit.rms / float(np.sqrt(np.mean(fit.floor**2))) == pytest.approx(1, abs=0.1)
+    assert (fit.tests.white > 1e-3).all()
+    assert (fit.tests.independent > 1e-3).all()
