@@ -1,9 +1,9 @@
 """The noise of a measurement, seen in the measurement alone.
 
 A smooth signal vanishes in differences of high order; white noise of std σ grows to
-σ √C(2n, n) in differences of order n (von Neumann 1941, for n = 1). The largest fifth of them is
-left out, and the rest scaled up as for a Gaussian: a few samples after a jump of the input, where
-the signal is not smooth, then do not count.
+σ √C(2n, n) in differences of order n (von Neumann 1941, for n = 1). The largest three tenths of
+them are left out, and the rest scaled up as for a Gaussian: a few samples after a jump of the
+input, where the signal is not smooth, then do not count.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from math import comb
 import numpy as np
 from scipy.stats import norm
 
-ORDER = 4
-KEPT = 0.8  # share of the differences that counts
+ORDER = 8
+KEPT = 0.7  # share of the differences that counts
 
 
 def noise_floor(y: np.ndarray, order: int = ORDER) -> np.ndarray:

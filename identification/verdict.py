@@ -80,7 +80,9 @@ def _unseen(fit: Fit) -> list[str]:
         return ["There is no unseen data to confirm it on."]
     ratio = fit.validation_rms / fit.rms if fit.rms > 0 else np.inf
     held = (
-        "it holds" if ratio < 1.2 else "it does not hold: too many parameters, or an effect missing"
+        "what was fitted holds there too"
+        if ratio < 1.2
+        else "it does not hold: too many parameters, or an effect missing"
     )
     return [
         f"On unseen data the residual is {fit.validation_rms:.3g} rms,"

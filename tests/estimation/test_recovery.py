@@ -55,7 +55,7 @@ def test_uncertainty_covers_the_truth_as_often_as_it_says():
 
 
 def test_the_residual_of_a_right_model_is_its_noise():
-    log = record(slider(), ("position",), n=500, noise=2e-3)
+    log = record(slider(), ("position",), n=2000, noise=2e-3)
     fit = assess(estimate(slider(**FAR), log, tuple(TRUTH)))
     assert fit.rms == pytest.approx(2e-3, rel=0.1)
     assert fit.rms / float(np.sqrt(np.mean(fit.floor**2))) == pytest.approx(1, abs=0.1)
