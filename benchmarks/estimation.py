@@ -23,7 +23,7 @@ from twin import BURST, least, stepper
 
 from identification import InputError, Log, predictor
 from identification.bridge_sysid import from_sysid, sysid_residual, to_sysid_parameters
-from identification.estimate import Estimate, estimate
+from identification.estimation import Estimate, estimate
 from identification.rollout import rollout, threads
 from inca_mj.identify import MECHANICS, POSE
 from inca_mj.inputs import make_input

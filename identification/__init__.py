@@ -1,14 +1,49 @@
-"""Identification of a MuJoCo model from logs of the robot it stands for."""
+"""Identification of a MuJoCo model from logs of the robot it stands for.
 
-from identification.errors import DivergenceError as DivergenceError
-from identification.errors import GraphicsError as GraphicsError
-from identification.errors import InputError as InputError
-from identification.log import Log as Log
-from identification.log import halves as halves
-from identification.metrics import fit_percent as fit_percent
-from identification.metrics import loss as loss
-from identification.metrics import rms as rms
-from identification.parameter import Parameter as Parameter
-from identification.parameter import ParameterSet as ParameterSet
-from identification.read import read_log as read_log
-from identification.write import write_log as write_log
+The public names; each is imported when it is first asked for, so that reading a log needs no
+simulator and a bad graphics setting cannot stop it.
+"""
+
+from importlib import import_module
+from typing import Any
+
+_PUBLIC = {
+    "DivergenceError": "errors",
+    "Estimate": "estimation",
+    "Experiment": "experiment",
+    "Fit": "fit",
+    "GraphicsError": "errors",
+    "Information": "information",
+    "InputError": "errors",
+    "Log": "log",
+    "ModelPlant": "plant",
+    "Options": "options",
+    "Parameter": "parameter",
+    "ParameterSet": "parameter",
+    "Plant": "predictor",
+    "Predictor": "predictor",
+    "Profile": "profiles",
+    "assess": "fit",
+    "estimate": "estimation",
+    "estimate_from": "multistart",
+    "fit_percent": "metrics",
+    "halves": "log",
+    "loss": "metrics",
+    "noise_floor": "noise",
+    "profile": "profiles",
+    "read_log": "read",
+    "residual_tests": "residuals",
+    "rms": "metrics",
+    "write_log": "write",
+}
+__all__ = list(_PUBLIC)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _PUBLIC:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_PUBLIC[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(_PUBLIC)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import DivergenceError
-from identification.estimate import Estimate
+from identification.estimation import Estimate
 from identification.identifiability import (
     BLIND,
     Combination,

@@ -14,7 +14,7 @@ import numpy as np
 
 from identification.coordinates import Coordinates, coordinates
 from identification.errors import DivergenceError, InputError
-from identification.estimate import Estimate, Options, Progress, estimate
+from identification.estimation import Estimate, Options, Progress, estimate
 from identification.log import Log
 from identification.noise import noise_floor
 from identification.predictor import Plant

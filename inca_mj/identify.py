@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from identification import Log
-from identification.estimate import Options, estimate
+from identification.estimation import Options, estimate
 from identification.fit import Fit, assess
 from identification.parameter import ParameterSet
 from inca_mj.comparison import timestep_for

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.stats import norm
 
 from identification import Log
-from identification.estimate import Options, estimate
+from identification.estimation import Options, estimate
 from identification.fit import Fit, assess
 from identification.metrics import fit_percent, loss
 from inca_mj.inputs import make_input

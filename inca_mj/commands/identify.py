@@ -49,7 +49,7 @@ class Identify:
     def run(self) -> int:
         """Identify, say, keep."""
         do_not_draw()
-        from identification.estimate import Options
+        from identification.estimation import Options
         from identification.fit_json import fit_to_json
         from inca_mj.identify import identify
         from inca_mj.logs import read_inca_log

@@ -41,7 +41,7 @@ class Trials:
         """Run, say, keep."""
         do_not_draw()
         from identification.errors import unknown_name
-        from identification.estimate import Options
+        from identification.estimation import Options
         from inca_mj.trials import TRIALS, monte_carlo, run_trial
 
         for number in self.trial:

@@ -6,7 +6,7 @@ import pytest
 from estimation_plants import positive, record, slider
 
 from identification import DivergenceError, InputError, Parameter, ParameterSet
-from identification.estimate import Options, estimate
+from identification.estimation import Options, estimate
 from identification.fit import assess
 from identification.plant import ModelPlant
 from identification.verdict import verdict

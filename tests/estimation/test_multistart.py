@@ -5,7 +5,7 @@ import pytest
 from estimation_plants import record, slider
 
 from identification import DivergenceError, InputError
-from identification.estimate import Options
+from identification.estimation import Options
 from identification.multistart import estimate_from
 
 ONCE = Options(horizons=(1.0,), max_evaluations=20)

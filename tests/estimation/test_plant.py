@@ -21,7 +21,7 @@ def test_a_slider_is_fitted_where_inca_cannot_be_imported():
 import sys
 sys.modules["inca_mj"] = None
 from estimation_plants import record, slider
-from identification.estimate import estimate
+from identification.estimation import estimate
 log = record(slider(), ("position",))
 found = estimate(slider(), log, ("stiffness",), {"stiffness": 14.0}).values
 sys.exit(abs(found["stiffness"] / 20 - 1) > 1e-6)

@@ -5,9 +5,9 @@ import pytest
 from estimation_plants import record, slider
 
 from identification import InputError
-from identification.estimate import Options, estimate
+from identification.estimation import Options, estimate
 from identification.fit import assess
-from identification.profile import profile
+from identification.profiles import profile
 
 ONCE = Options(horizons=(1.0,))
 

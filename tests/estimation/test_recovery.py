@@ -5,7 +5,7 @@ import pytest
 from estimation_plants import pendulum, record, slider
 from scipy.stats import binom
 
-from identification.estimate import Options, estimate
+from identification.estimation import Options, estimate
 from identification.fit import assess
 
 TRUTH = {"mass": 2.0, "damping": 3.0, "stiffness": 20.0}

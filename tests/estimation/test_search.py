@@ -7,7 +7,7 @@ import pytest
 from estimation_plants import measured, record, slider
 
 from identification import InputError
-from identification.estimate import Options, estimate
+from identification.estimation import Options, estimate
 from identification.fit import assess
 from identification.noise import whitener_of
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from identification.estimate import estimate
+from identification.estimation import estimate
 from inca_mj.parameters import parameter_set
 from inca_mj.trials import SMALL, trial_data
 from inca_mj.twin import build_twin

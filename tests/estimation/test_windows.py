@@ -6,8 +6,8 @@ import pytest
 from estimation_plants import SLIDER, STEP, measured, record, slider, steps
 
 from identification import InputError, Log, ParameterSet
-from identification.estimate import estimate
 from identification.estimate_windows import estimate_windows
+from identification.estimation import estimate
 from identification.plant import ModelPlant
 from identification.windows import windows
 

@@ -9,7 +9,7 @@ import pytest
 from excitation_cases import SIGMA, STEP, pushed, slider, step_sensitivity
 
 from identification import InputError
-from identification.estimate import Options, estimate
+from identification.estimation import Options, estimate
 from identification.experiment import information
 from identification.information import determinable
 

@@ -9,7 +9,7 @@ import pytest
 
 from identification import Log
 from identification.coordinates import coordinates
-from identification.estimate import Options, estimate
+from identification.estimation import Options, estimate
 from identification.predictor import Predictor
 from identification.sensitivity import forward_sensitivity, sensitivity
 from inca_mj.inputs import make_input

@@ -17,8 +17,8 @@ import numpy as np
 from scipy.stats import chi2
 
 from identification.errors import DivergenceError, InputError
-from identification.estimate import Estimate
-from identification.estimate import estimate as search
+from identification.estimation import Estimate
+from identification.estimation import estimate as search
 from identification.identifiability import identifiability
 from identification.sensitivity import sensitivity
 
