@@ -11,6 +11,8 @@ from identification.identifiability import in_words
 if TYPE_CHECKING:
     from identification.fit import Fit
 
+# The floor bounds the noise from above and errs by a few percent itself.
+ABOVE = 1.2
 LEVEL = 0.01  # of the residual's tests: one false alarm in a hundred
 
 
@@ -61,9 +63,13 @@ def _enough(fit: Fit) -> list[str]:
     sentences = [f"The residual is {fit.rms:.3g} rms, {ratio:.2f} of the noise floor {floor:.3g}."]
     dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
     coloured = int((fit.tests.white < LEVEL / len(fit.tests.white)).sum())
+    if ratio > ABOVE:
+        sentences.append(
+            "That is more than noise: the model lacks something, or the robot was disturbed."
+        )
     if dependent:
         sentences.append(
-            f"{dependent} outputs' residuals depend on the input: the model lacks something."
+            f"{dependent} outputs' residuals depend on the input: what is missing is excited by it."
         )
     elif coloured:
         sentences.append(
