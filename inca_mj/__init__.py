@@ -29,7 +29,11 @@ __all__ = list(_PUBLIC)
 def __getattr__(name: str) -> Any:
     if name not in _PUBLIC:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_PUBLIC[name]}"), name)
+    try:
+        module = import_module(f"{__name__}.{_PUBLIC[name]}")
+    except AttributeError as error:  # "from ... import" would call it a missing name
+        raise ImportError(f"{name} cannot be imported: {error}") from error
+    return getattr(module, name)
 
 
 def __dir__() -> list[str]:

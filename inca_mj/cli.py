@@ -36,14 +36,14 @@ Command = (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
-    command = tyro.cli(
-        Command,
-        prog="inca",
-        description="The digital twin of the INCA 6D cable robot, and what it lacks.",
-        args=arguments,
-        config=(tyro.conf.AvoidSubcommands,),
-    )
     try:
+        command = tyro.cli(
+            Command,
+            prog="inca",
+            description="The digital twin of the INCA 6D cable robot, and what it lacks.",
+            args=arguments,
+            config=(tyro.conf.AvoidSubcommands,),
+        )
         return command.run()
     except ValueError as error:
         from identification.errors import InputError
@@ -55,6 +55,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of stdout has gone, e.g. `| head`
         sys.stderr.close()
         return 0
+    except OSError as error:
+        sys.stderr.write(f"inca: {error.strerror or error}; make room or choose another place\n")
+        return 2
     except KeyboardInterrupt:
         sys.stderr.write("inca: stopped\n")
         return 130

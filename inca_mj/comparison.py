@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from identification import Log, fit_percent, rms
+from identification import InputError, Log, fit_percent, rms
 from identification.parameter import ParameterSet
 from inca_mj.geometry import INCA, Geometry
+from inca_mj.logs import POSE, pose_of
 from inca_mj.mjcf import TIMESTEP
+from inca_mj.parameters import parameter_set
 from inca_mj.run import Run, simulate
 from inca_mj.twin import build_twin
 
@@ -43,15 +45,26 @@ class Comparison:
 
 
 def compare(
-    log: Log, parameters: ParameterSet | None = None, geometry: Geometry = INCA
+    log: Log,
+    parameters: ParameterSet | None = None,
+    geometry: Geometry = INCA,
+    *,
+    timestep: float = TIMESTEP,
 ) -> Comparison:
-    """Predict a log's angles from its currents alone, from the twin's start.
+    """Predict a log's angles from its currents alone, from its measured pose or the twin's start.
+
+    Args:
+        log: what was measured.
+        parameters: the twin's values; the thesis' Table 3.2 when None.
+        geometry: anchors of the cables.
+        timestep: largest step of the integrator [s].
 
     Raises:
         InputError: the start has no pretension.
         DivergenceError: the simulation left the finite numbers.
     """
-    robot = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time))
+    parameters = start_of(log, parameters or parameter_set())
+    robot = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
     run = simulate(robot, log.inputs, log.sampling_time, hold_kind=log.hold)
     predicted = run.motor_angle
     return Comparison(
@@ -59,6 +72,21 @@ def compare(
     )  # fmt: skip
 
 
-def timestep_for(sampling_time: float) -> float:
-    """The largest step that divides the sampling time and is no more than `TIMESTEP` [s]."""
-    return sampling_time / ceil(sampling_time / TIMESTEP - 1e-9)
+def start_of(log: Log, parameters: ParameterSet) -> ParameterSet:
+    """The parameters, begun at the log's own pose where it has one and they name no other."""
+    pose = pose_of(log)
+    nominal = parameter_set().values()
+    if pose is None or any(parameters[name].value != nominal[name] for name in POSE):
+        return parameters
+    return parameters.with_values(dict(zip(POSE, pose[0].tolist(), strict=True)))
+
+
+def timestep_for(sampling_time: float, largest: float = TIMESTEP) -> float:
+    """The largest step that divides the sampling time and is no more than `largest` [s].
+
+    Raises:
+        InputError: `largest` is no sensible step.
+    """
+    if not 1e-6 <= largest <= 0.1:
+        raise InputError(f"a step of {largest:g} s is not between 1e-6 and 0.1 s; try {TIMESTEP:g}")
+    return sampling_time / ceil(sampling_time / largest - 1e-9)

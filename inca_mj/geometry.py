@@ -16,6 +16,7 @@ import numpy as np
 from identification.errors import InputError
 
 DRIVES = 8
+FARTHEST = 100.0  # a frame of more is one in another unit [m]
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,8 @@ class Geometry:
         source: where the numbers come from.
 
     Raises:
-        InputError: not 8 rows of 3 finite numbers, or fewer than 6 directions of wrench.
+        InputError: not 8 rows of 3 finite numbers, too far for metres, or all connectors in one
+            place, where no cable can turn the platform.
     """
 
     exits: tuple[tuple[float, float, float], ...]
@@ -48,6 +50,16 @@ class Geometry:
                     f"geometry: {name} must be {DRIVES} rows of 3 finite numbers [m],"
                     " as in examples/geometry.toml"
                 )
+
+        if max(np.abs(self.A).max(), np.abs(self.B).max()) > FARTHEST:
+            raise InputError(
+                f"geometry: a point lies more than {FARTHEST:g} m away; give metres, not mm"
+            )
+        if np.linalg.matrix_rank(self.B - self.B.mean(axis=0), tol=1e-6) < 2:
+            raise InputError(
+                "geometry: the connectors lie on one line, so the cables cannot hold the platform's"
+                " turn about it; give connectors that span a plane"
+            )
 
     @property
     def A(self) -> np.ndarray:
@@ -112,6 +124,6 @@ def read_geometry(path: str | Path) -> Geometry:
         rows[name] = tuple(tuple(r) if isinstance(r, list) else r for r in table[name])
     return Geometry(
         **rows,
-        assumed=bool(table.get("assumed", False)),
+        assumed=table.get("assumed", False) is not False,
         source=str(table.get("source", path.name)),
     )

@@ -28,6 +28,8 @@ def make_input(
     """
     if kind not in INPUTS:
         raise unknown_name("input", kind, INPUTS)
+    if seed < 0:
+        raise InputError(f"seed {seed} is negative; give 0 or more")
     if not 2 * sampling_time <= duration <= LONGEST:
         raise InputError(
             f"a duration of {duration:g} s is not between two samples of {sampling_time:g} s and"

@@ -148,20 +148,29 @@ def load_run(path: str | Path) -> Run:
         InputError: the file is missing or is not a run.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             header: dict[str, Any] = json.loads(str(file["header"]))
             arrays = {name: file[name] for name in _ARRAYS}
+        return Run(twin=_robot(header), **arrays)
     except FileNotFoundError:
         raise InputError(f"no run {path}; inca simulate --out DIR writes one") from None
-    except (OSError, ValueError, KeyError) as error:
-        raise InputError(f"{path} is not a run of inca simulate ({error})") from None
+    except InputError:
+        raise
+    except Exception as error:  # zip, JSON and numpy each have errors of their own
+        raise InputError(
+            f"{path} is not a run of inca simulate, or is damaged ({type(error).__name__});"
+            " write it again"
+        ) from error
+
+
+def _robot(header: dict[str, Any]) -> Twin:
+    """The robot that a saved run's header tells."""
     names = {f.name for f in fields(Geometry)}
     geometry = {k: v for k, v in header["geometry"].items() if k in names}
     for name in ("exits", "connectors"):
         geometry[name] = tuple(tuple(row) for row in geometry[name])
-    robot = build_twin(
+    return build_twin(
         parameter_set(header["set"], header["values"]),
         Geometry(**geometry),
         timestep=header["timestep"],
     )
-    return Run(twin=robot, **arrays)

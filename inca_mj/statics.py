@@ -42,6 +42,12 @@ def pretension(pose: np.ndarray, geometry: Geometry, m: float) -> np.ndarray:
     Raises:
         InputError: some cable would have to push, or the cables cannot hold the platform.
     """
+    d = np.linalg.norm(pose[:3] + geometry.B @ rotation(*pose[3:]).T - geometry.A, axis=1)
+    if d.min() < 1e-3:
+        raise InputError(
+            f"cable {d.argmin() + 1} has no length at pose {np.round(pose, 4).tolist()}; move its"
+            " exit point or the start pose"
+        )
     W = -length_jacobian(pose[:3], rotation(*pose[3:]), geometry).T
     w = np.array([0, 0, m * GRAVITY, 0, 0, 0])
     t_0 = np.full(len(geometry.exits), PRETENSION)
@@ -55,7 +61,7 @@ def pretension(pose: np.ndarray, geometry: Geometry, m: float) -> np.ndarray:
     if T.min() <= 0:
         raise InputError(
             f"cable {T.argmin() + 1} would have to push ({T.min():.3g} N) to hold the platform at"
-            f" pose {np.round(pose, 4).tolist()}; move the start pose towards the middle"
+            f" pose {np.round(pose, 4).tolist()}; move the start towards the middle, or lower m"
         )
     return T
 

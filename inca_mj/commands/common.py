@@ -27,6 +27,8 @@ class Robot:
     """Values of your own in SI units, such as m=0.2 lambda=26000."""
     geometry: Path | None = None
     """TOML file with exit points and connectors; the built-in ones are assumed."""
+    step: float = 1e-3
+    """Largest step of the integrator [s]; stiff cables and light motors need a smaller one."""
 
     def parameters(self) -> ParameterSet:
         """The parameter set with the values replaced.

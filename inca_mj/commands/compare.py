@@ -41,7 +41,12 @@ class Compare:
         from inca_mj.comparison import compare
         from inca_mj.logs import read_inca_log
 
-        result = compare(read_inca_log(self.log), self.robot.parameters(), self.robot.place())
+        result = compare(
+            read_inca_log(self.log),
+            self.robot.parameters(),
+            self.robot.place(),
+            timestep=self.robot.step,
+        )
         if self.output.out is not None:
             out = folder(self.output.out)
             keep(result, out)

@@ -53,9 +53,13 @@ class Film:
             from identification.errors import GraphicsError
 
             raise GraphicsError(blind)
+        from identification.errors import InputError
         from inca_mj.film import film, stills
 
         run, measured, pose = self._scene()
+        late = [t for t in self.still if not 0 <= t <= run.time[-1]]
+        if late:
+            raise InputError(f"no still at {late[0]:g} s: the run ends at {run.time[-1]:g} s")
         out = folder(self.output.out or Path("out/film"))
         path = film(
             run,
@@ -85,15 +89,18 @@ class Film:
 
     def _scene(self) -> tuple[Run, np.ndarray | None, np.ndarray | None]:
         """The run to film, and the measured angles and pose of a log."""
+        from identification.errors import InputError
         from inca_mj.comparison import compare
         from inca_mj.logs import pose_of, read_inca_log
         from inca_mj.run import load_run
 
         end = float("inf") if self.seconds is None else self.seconds
+        if not end > 0:
+            raise InputError(f"cannot film {end:g} s; give --seconds a positive number")
         if self.source.suffix == ".npz":
             return load_run(self.source).until(end), None, None
         log = read_inca_log(self.source)
         if end < log.duration:
-            log = log.between(float("-inf"), end)
-        result = compare(log, self.robot.parameters(), self.robot.place())
+            log = log.between(float("-inf"), float(log.time[0]) + end)
+        result = compare(log, self.robot.parameters(), self.robot.place(), timestep=self.robot.step)
         return result.run, log.outputs, pose_of(log)

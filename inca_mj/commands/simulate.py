@@ -50,7 +50,7 @@ class Simulate:
 
         currents, sampling_time, hold = self._currents()
         parameters, place = self.robot.parameters(), self.robot.place()
-        robot = build_twin(parameters, place, timestep=timestep_for(sampling_time))
+        robot = build_twin(parameters, place, timestep=timestep_for(sampling_time, self.robot.step))
         result = simulate(robot, currents, sampling_time, hold_kind=hold)
         summary = {
             "samples": len(result.time),

@@ -11,7 +11,19 @@ from inca_mj.crosscheck.order import crossing, leading_slope, slope
 from inca_mj.crosscheck.trajectories import CASES, Row
 
 DERIVATIVE_LIMIT = 1e-9  # relative
-ANGLE_LIMITS = {1e-3: 1e-5, 5e-4: 1e-6}  # step [s] -> largest angle error on the PRBS [rad]
+STEPS_JUDGED = (1e-3, 5e-4)  # the twin's step, and half of it [s]
+# Largest angle error at those steps [rad]: RK4 where cables stay taut, the quaternion's h² where
+# the handle turns, and a kink of order 1 where cables snap taut.
+ANGLE_LIMITS = {
+    "prbs": (1e-5, 1e-6),
+    "step": (1e-4, 2.5e-5),
+    "spin": (1e-4, 2.5e-5),
+    "drop": (5e-2, 2.5e-2),
+}
+# An angle error e moves R e of cable; ten times that covers the platform's lever arms.
+POSITION_PER_ANGLE = 10 * 0.0175  # [m/rad]
+# ... and changes a tension by λ R e/d, ten times that where all cables err at once.
+TENSION_PER_ANGLE = 10 * 32224 * 0.0175 / 2.5  # [N/rad]
 ORDER, ORDER_LIMIT = 4.0, 0.3
 
 Check = tuple[bool, str]
@@ -94,15 +106,10 @@ class CrossCheck:
             f"Accelerations at {self.derivatives.states} random states agree to {worst:.1e}"
             f" relative (limit {DERIVATIVE_LIMIT:g}).",
         )
-        for h, error in zip(*self._errors("prbs", "max_angle_error"), strict=True):
-            limit = next((e for step, e in ANGLE_LIMITS.items() if abs(step / h - 1) < 1e-6), None)
-            if limit is not None:
-                shown = "diverged" if error is None else f"{error:.1e} rad"
-                yield (
-                    error is not None and error <= limit,
-                    f"PRBS at {1e3 * h:g} ms: largest motor angle error {shown}"
-                    f" (limit {limit:g} rad).",
-                )
+        for row in self.rows:
+            for k, step in enumerate(STEPS_JUDGED):
+                if abs(row["step"] / step - 1) < 1e-6:
+                    yield _judge(row, ANGLE_LIMITS[row["case"]][k])
         if self.order is not None:
             yield (
                 abs(self.order - ORDER) <= ORDER_LIMIT,
@@ -112,16 +119,23 @@ class CrossCheck:
 
     def _diverged_at_model_step(self) -> bool:
         """Whether a run diverged at a step that the limits are set for, or below."""
-        longest = max(ANGLE_LIMITS) * (1 + 1e-6)
+        longest = max(STEPS_JUDGED) * (1 + 1e-6)
         return any(row["max_angle_error"] is None and row["step"] <= longest for row in self.rows)
 
     def _observations(self) -> Iterator[str]:
+        if not self.passed and self.derivatives.largest <= DERIVATIVE_LIMIT:
+            yield (
+                "The equations agree at random states, so it is the step that is too coarse for"
+                " these values: simulate them with a smaller --step."
+            )
+        if self.order is None and "prbs" in self.cases:
+            yield "The order was not judged: too few steps or too short a run show it."
         below = crossing(*self._errors("prbs", "max_angle_error")) if "prbs" in self.cases else 0.0
         if 0 < below < float("inf"):
             yield (
                 f"Below a step of {1e3 * below:.2g} ms the PRBS error falls with the square of the"
-                " step only: MuJoCo's RK4 turns the handle by averaged angular velocities, which"
-                " is exact to second order for rotations that do not commute."
+                " step only: this MuJoCo's RK4 turns the handle by averaged angular velocities,"
+                " which is exact to second order for rotations that do not commute."
             )
         why = {
             "step": "all steps together, RK4's order and the quaternion's",
@@ -133,3 +147,22 @@ class CrossCheck:
             order = self.orders.get(case)
             if order is not None:
                 yield f"Order over all steps, {case}: {order:.1f} ({why[case]})."
+
+
+def _judge(row: Row, angle: float) -> Check:
+    """Whether a run keeps the limits that follow from one on its angles [rad]."""
+    limits = {
+        "angle": (angle, "rad"),
+        "position": (POSITION_PER_ANGLE * angle, "m"),
+        "tension": (TENSION_PER_ANGLE * angle, "N"),
+    }
+    errors = {what: row[f"max_{what}_error"] for what in limits}
+    head = f"{row['case']} at {1e3 * row['step']:g} ms: "
+    if None in errors.values():
+        return False, head + "diverged."
+    kept = all(errors[what] <= limit for what, (limit, _) in limits.items())
+    shown = ", ".join(
+        f"{what} {errors[what]:.1e} (limit {limit:.1e}) {unit}"
+        for what, (limit, unit) in limits.items()
+    )
+    return kept, f"{head}largest errors {shown}."

@@ -101,7 +101,7 @@ def test_two_gigabytes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
         (("--param", "I_x=1"), "no body has I_x"),
         (("--param", "m"), "NAME=VALUE"),
         (("--param", "m=heavy"), "NAME=VALUE"),
-        (("--param", "x=1.3"), "move the start pose"),
+        (("--param", "x=1.3"), "move the start towards"),
         (("--geometry", "nowhere.toml"), "examples/geometry.toml"),
     ],
 )
@@ -163,3 +163,40 @@ def test_a_wrong_command_is_told_the_right_ones(
         main(list(arguments))
     assert stop.value.code == 2
     assert "compare" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("change", "names"),
+    [
+        (lambda A, B: (1e3 * A, B), "not mm"),
+        (lambda A, B: (A, 0 * B), "one line"),
+        (lambda A, B: (np.vstack([B[:1] + [0, 0, 1.43], A[1:]]), B), "has no length"),
+        (lambda A, B: (1e300 * A, B), "not mm"),
+    ],
+)
+def test_bad_geometries(
+    change, names: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from inca_mj.geometry import INCA
+
+    exits, connectors = change(INCA.A, INCA.B)
+    path = tmp_path / "geometry.toml"
+    path.write_text(f"exits = {exits.tolist()}\nconnectors = {connectors.tolist()}\n")
+    assert names in refused(capsys, "compare", LOG, "--geometry", path)
+
+
+def test_damaged_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "run.npz"
+    path.write_bytes(b"PK\x03\x04 and no more")
+    assert "damaged" in refused(capsys, "film", path)
+    names = ("time", "currents", "qpos", "qvel", "act", "tension", "length")
+    np.savez(path, header="{}", **dict.fromkeys(names, np.zeros(2)))
+    assert "damaged" in refused(capsys, "film", path)
+
+
+def test_a_negative_seed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "seed" in refused(capsys, "simulate", "--input", "prbs", "--seed", -1)
+
+
+def test_a_step_that_is_none(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "step of 0" in refused(capsys, "compare", LOG, "--step", 0)

@@ -101,3 +101,11 @@ def test_crosscheck_disagrees_aloud(
 def test_compare_reads_the_practice_logs(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("compare", PRACTICE / name, "--json") == 0
     assert min(last_json(capsys)["fit_percent"]) > 50
+
+
+def test_a_log_with_a_pose_begins_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    moved = ("--param", "x=0.1", "z=1.3", "yaw=0.1")
+    assert run("simulate", "--input", "prbs", "--duration", 1, *moved, "--out", tmp_path) == 0
+    capsys.readouterr()
+    assert run("compare", tmp_path / "log.csv", "--json") == 0
+    assert max(last_json(capsys)["rms"]) < 1e-9

@@ -19,7 +19,7 @@ GOOD = DerivativeErrors(0, 0, 0, 0, 0, states=1, slack=0.5)
 
 def row(case, step, error):
     return {"case": case, "step": step, "max_angle_error": error,
-            "max_position_error": error, "max_tension_error": error}  # fmt: skip
+            "max_position_error": error and error / 50, "max_tension_error": error}  # fmt: skip
 
 
 def test_accelerations_agree_at_random_states():
@@ -120,3 +120,20 @@ def test_a_diverged_run_and_an_unknown_order_can_be_drawn():
 
     rows = (row("prbs", 2e-3, None), row("prbs", 1e-3, 1e-6), row("drop", 2e-3, None))
     assert crosscheck_section(CrossCheck(GOOD, rows)).figures
+
+
+@pytest.mark.parametrize("what", ["angle", "position", "tension"])
+@pytest.mark.parametrize("case", CASES)
+def test_every_column_of_every_case_can_fail(case, what):
+    """A position off by a millimetre, or a tension by a newton, is not lost among good angles."""
+    good = [
+        {"case": c, "step": h, "max_angle_error": 1e-8, "max_position_error": 1e-10,
+         "max_tension_error": 1e-6} for c in CASES for h in STEPS
+    ]  # fmt: skip
+    assert CrossCheck(GOOD, tuple(good)).passed
+    bad = [dict(r) for r in good]
+    size = {"angle": 0.1, "position": 0.02, "tension": 200.0}[what]
+    for r in bad:
+        if r["case"] == case:
+            r[f"max_{what}_error"] = size
+    assert not CrossCheck(GOOD, tuple(bad)).passed
