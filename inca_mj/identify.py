@@ -15,6 +15,7 @@ from identification.fit import Fit, assess
 from identification.parameter import ParameterSet
 from inca_mj.comparison import timestep_for
 from inca_mj.geometry import INCA, Geometry
+from inca_mj.mjcf import TIMESTEP
 from inca_mj.twin import build_twin
 
 MECHANICS = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t", "m")
@@ -49,6 +50,7 @@ def identify(
     free: Sequence[str] = (),
     options: Options | None = None,
     progress: Callable[[str], None] | None = None,
+    timestep: float = TIMESTEP,
 ) -> Identification:
     """Identify the robot from a log: fitted on its estimation part, confirmed on all of it.
 
@@ -59,12 +61,13 @@ def identify(
         free: parameters to estimate in one step; the two-step procedure when empty.
         options: how to search.
         progress: is told one line per accepted step.
+        timestep: largest step of the integrator [s].
 
     Raises:
         InputError: a name is unknown or has no effect, or a start has no pretension.
         DivergenceError: the nominal values cannot be simulated.
     """
-    plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time))
+    plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
     fitted = log.part("estimation")
 
     def step(names: Sequence[str], start: dict[str, float]) -> Fit:

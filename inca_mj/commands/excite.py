@@ -68,7 +68,9 @@ class Excite:
 
         limits = Limits(*self.current, self.margin, self.reach, radians(self.turn))
         robot = build_twin(
-            self.robot.parameters(), self.robot.place(), timestep=timestep_for(SAMPLING)
+            self.robot.parameters(),
+            self.robot.place(),
+            timestep=timestep_for(SAMPLING, self.robot.step),
         )
         result = design(
             robot, self.duration, self.noise, self.free, limits, self.budget, self.seed, note

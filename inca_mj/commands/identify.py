@@ -61,12 +61,13 @@ class Identify:
             self.free,
             Options(self.method, self.criterion, self.loss, self.horizons),
             note,
+            self.robot.step,
         )
         best = fit_to_json(result.fit)
         best["steps"] = [fit_to_json(fit) for fit in result.fits]
         if self.output.out is not None:
             out = folder(self.output.out)
-            keep(result, out)
+            keep(result, out, self.robot)
             write_result(out / "result.json", self, best)
         if self.output.json:
             say_json(best)
@@ -97,7 +98,7 @@ def summary(fit: Fit) -> str:
     )
 
 
-def keep(result: Identification, out: Path) -> None:
+def keep(result: Identification, out: Path, robot: Robot) -> None:
     """Write figures, the one-file report and the identified model into a folder."""
     from identification.verdict import verdict
     from inca_mj.comparison import compare
@@ -107,7 +108,7 @@ def keep(result: Identification, out: Path) -> None:
 
     plant = result.fit.estimate.predictor.plant
     final = plant.parameters.with_values(result.fit.estimate.values)
-    shown = compare(result.log, final)
+    shown = compare(result.log, final, robot.place(), timestep=robot.step)
     sections = [
         *(fit_section(fit, f"Step {k}") for k, fit in enumerate(result.fits, 1)),
         compare_section(shown),

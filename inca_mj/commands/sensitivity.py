@@ -56,7 +56,9 @@ class Sensitivity:
 
         currents, sampling, hold, sigma, about = self._experiment()
         robot = build_twin(
-            self.robot.parameters(), self.robot.place(), timestep=timestep_for(sampling)
+            self.robot.parameters(),
+            self.robot.place(),
+            timestep=timestep_for(sampling, self.robot.step),
         )
         trial = Experiment(robot, currents, sampling, ANGLES, sigma, hold)
         found = information(trial, self.free, [n for n in POSE if n not in self.free])
