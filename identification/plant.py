@@ -87,6 +87,12 @@ class ModelPlant:
                 rows[place[0]][:, place[1]] = column
         return State(**rows), numbers
 
+    def inputs(
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
+    ) -> np.ndarray:
+        """The logged inputs, as they are; see `Plant`."""
+        return held
+
 
 def own_start(model: mujoco.MjModel) -> State:
     """The state in which a model is reset: qpos0, at rest."""

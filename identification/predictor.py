@@ -43,6 +43,21 @@ class Plant(Protocol):
             values: their values, shape (n, p).
         """
 
+    def inputs(
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
+    ) -> np.ndarray:
+        """What of the logged inputs reaches the model, step by step.
+
+        Args:
+            names: as above.
+            values: as above.
+            held: logged inputs at the steps of the simulation, shape (steps, nu).
+            timestep: of the simulation [s].
+
+        Returns:
+            Shape (steps, nu) for all, or (n, steps, nu).
+        """
+
 
 @dataclass(frozen=True)
 class Predictor:
@@ -77,7 +92,9 @@ class Predictor:
         values = np.atleast_2d(values)
         fixed = {n: v for n, v in self.fixed.items() if n not in self.names}
         rest = np.broadcast_to(list(fixed.values()), (len(values), len(fixed)))
-        start, numbers = self.plant.settings((*self.names, *fixed), np.hstack([values, rest]))
+        names, every = (*self.names, *fixed), np.hstack([values, rest])
+        start, numbers = self.plant.settings(names, every)
+        timestep = self.plant.model.opt.timestep
         states = rollout(
             self.plant.model,
             start,
@@ -86,6 +103,7 @@ class Predictor:
             numbers=numbers,
             record=("qpos", "qvel"),
             hold_kind=log.hold,
+            before=lambda held: self.plant.inputs(names, every, held, timestep),
         )
         columns = output_columns(self.plant.model, log.output_names)
         return np.stack([states[field][:, :, i] for field, i in columns], axis=-1)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -23,7 +23,14 @@ from identification.errors import DivergenceError, InputError
 from identification.paths import Slot
 
 # From these entries MuJoCo derives nothing: writing them needs no mj_setConst.
-UNDERIVED = {"actuator_user", "tendon_user", "numeric_data", "dof_damping", "jnt_stiffness"}
+UNDERIVED = {
+    "actuator_user",
+    "tendon_user",
+    "body_user",
+    "numeric_data",
+    "dof_damping",
+    "jnt_stiffness",
+}
 
 
 @dataclass(frozen=True)
@@ -82,6 +89,7 @@ def rollout(
     record: Sequence[str] = ("qpos",),
     hold_kind: str = "zoh",
     nthread: int | None = None,
+    before: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> Mapping[str, np.ndarray]:
     """Simulate n copies of a model under one input sequence.
 
@@ -95,6 +103,8 @@ def rollout(
         record: MjData fields of the state (qpos, qvel, act).
         hold_kind: "zoh" or "foh".
         nthread: native threads; all processors when None.
+        before: what happens to the held inputs on their way to the model, step by step:
+            (steps, nu) -> (steps, nu) for all or (n, steps, nu).
 
     Returns:
         For each recorded field an array (n, N, size), sample 0 being the start.
@@ -111,6 +121,9 @@ def rollout(
     every = substeps(sampling_time, model.opt.timestep)
     own = inputs[None] if inputs.ndim == 2 else inputs
     controls = np.stack([hold(u, every, hold_kind) for u in own])
+    if before is not None and len(own) == 1:
+        controls = before(controls[0])
+        controls = controls if controls.ndim == 3 else controls[None]
     if len(own) not in (1, n):
         raise InputError(f"{len(own)} input sequences for {n} simulations; give one, or one each")
 

@@ -7,165 +7,208 @@
 
 A drive is an actuator whose `actuator_user` row starts with `law.TAG`: every other actuator,
 sensor and model passes through untouched. A compiled callback must not raise: a vanished length
-gives NaN, which MuJoCo reports as a divergence.
+gives NaN, which MuJoCo reports as a divergence, and so does a model with other effects than those
+compiled.
+
+Candidate effects are terms of the same law (see `inca_mj.effects.hooks`), added where their
+letters stand: i + Δi, R + ΔR, d + Δd, T + ΔT, τ + Δτ. A set without effects costs nothing.
 """
 
 from __future__ import annotations
 
-from collections import namedtuple
+from collections.abc import Callable
 from typing import Any
 
 import mujoco
 import numpy as np
 from numba import njit, types
 
-from inca_mj import law, structs
-from inca_mj.memory import (
-    load_byte,
-    load_constant,
-    load_double,
-    load_int,
-    load_word,
-    store_double,
-)
+from inca_mj import law
+from inca_mj.effects.compose import rates, total
+from inca_mj.effects.hooks import Drive
+from inca_mj.effects.layout import KEY, Layout
+from inca_mj.fields import D, M, cable, double, drive, integer, word
+from inca_mj.memory import load_byte, load_constant, load_double, store_double
+from inca_mj.platform import connector, dof, platform, push, span, velocity, wrench
 
-
-def _offsets(struct: str, names: str) -> Any:
-    """Word offsets of fields, frozen into the compiled code as constants."""
-    fields = names.split()
-    kind: Any = namedtuple(struct, fields)  # type: ignore[misc]
-    return kind(*(structs.word(struct, n) for n in fields))
-
-
-_M = _offsets(
-    "mjModel",
-    "nactuator nsensor nuser_actuator nuser_tendon nuser_sensor"
-    " actuator_user actuator_actadr actuator_trnid actuator_ctrladr actuator_ctrllimited"
-    " actuator_ctrlrange tendon_user ten_J_rownnz ten_J_rowadr ten_J_colind"
-    " jnt_qposadr jnt_dofadr sensor_type sensor_objtype sensor_objid sensor_adr sensor_user",
-)
-_D = _offsets("mjData", "qpos qvel act ctrl ten_length ten_velocity ten_J qfrc_passive sensordata")
 _USER = int(mujoco.mjtSensor.mjSENS_USER)
 _ACTUATOR = int(mujoco.mjtObj.mjOBJ_ACTUATOR)
 _STAGE_VEL = int(mujoco.mjtStage.mjSTAGE_VEL)
 
-
-@njit
-def _word(struct, at):  # type: ignore[no-untyped-def]
-    """A size, or the address of an array."""
-    return load_word(struct + 8 * at)
-
-
-@njit
-def _double(struct, at, i):  # type: ignore[no-untyped-def]
-    return load_constant(load_word(struct + 8 * at) + 8 * i)
-
-
-@njit
-def _int(struct, at, i):  # type: ignore[no-untyped-def]
-    return np.int64(load_int(load_word(struct + 8 * at) + 4 * i))
+SIGNATURES: dict[str, Any] = {
+    "passive": types.void(types.int64, types.int64),
+    "act_dyn": types.double(types.int64, types.int64, types.intc),
+    "act_bias": types.double(types.int64, types.int64, types.intc),
+    "sensor": types.void(types.int64, types.int64, types.intc),
+}
 
 
 @njit
 def _is_ours(m):  # type: ignore[no-untyped-def]
     return (
-        _word(m, _M.nuser_actuator) >= law.ACTUATOR_COLUMNS
-        and _word(m, _M.nuser_tendon) >= law.TENDON_COLUMNS
+        word(m, M.nuser_actuator) >= law.ACTUATOR_COLUMNS
+        and word(m, M.nuser_tendon) >= law.TENDON_COLUMNS
     )
 
 
 @njit
-def _drive(m, i, column):  # type: ignore[no-untyped-def]
-    """A number of drive i: row i of `actuator_user`."""
-    return _double(m, _M.actuator_user, _word(m, _M.nuser_actuator) * i + column)
-
-
-@njit
-def _cable(m, k, column):  # type: ignore[no-untyped-def]
-    """A number of cable k: row k of `tendon_user`."""
-    return _double(m, _M.tendon_user, _word(m, _M.nuser_tendon) * k + column)
-
-
-@njit
-def _no_load(m, d, i):  # type: ignore[no-untyped-def]
-    """No-load length of the cable of drive i and its rate: d₀ [m], ḋ₀ [m/s]."""
-    joint = _int(m, _M.actuator_trnid, 2 * i)
-    omega = _double(d, _D.qvel, _int(m, _M.jnt_dofadr, joint))
-    d_0 = _double(d, _D.act, _int(m, _M.actuator_actadr, i))
-    length = _double(d, _D.ten_length, np.int64(_drive(m, i, law.CABLE)))
-    return d_0, law.no_load_rate(length, d_0, omega, _drive(m, i, law.R))
-
-
-@njit
-def _tension(m, d, i):  # type: ignore[no-untyped-def]
-    """Tension of the cable of drive i: T [N]."""
-    k = np.int64(_drive(m, i, law.CABLE))
-    length, rate = _double(d, _D.ten_length, k), _double(d, _D.ten_velocity, k)
-    d_0, d_0_dot = _no_load(m, d, i)
-    return law.tension(length, rate, d_0, d_0_dot, _cable(m, k, law.LAMBDA), _cable(m, k, law.B))
-
-
-def _passive(m, d):  # type: ignore[no-untyped-def]
-    if not _is_ours(m):
-        return
-    force = _word(d, _D.qfrc_passive)
-    for i in range(_word(m, _M.nactuator)):
-        if _drive(m, i, law.ACTUATOR_TAG) != law.TAG:
-            continue
-        T = _tension(m, d, i)
-        k = np.int64(_drive(m, i, law.CABLE))
-        start = _int(m, _M.ten_J_rowadr, k)
-        for a in range(start, start + _int(m, _M.ten_J_rownnz, k)):
-            at = force + 8 * _int(m, _M.ten_J_colind, a)
-            store_double(at, load_double(at) - T * _double(d, _D.ten_J, a))
-        joint = _int(m, _M.actuator_trnid, 2 * i)
-        dof = _int(m, _M.jnt_dofadr, joint)
-        phi, omega = _double(d, _D.qpos, _int(m, _M.jnt_qposadr, joint)), _double(d, _D.qvel, dof)
-        R, R_s = _drive(m, i, law.R), _drive(m, i, law.R_S)
-        F_s = law.spring_force(phi, R, R_s, _drive(m, i, law.K_S), _drive(m, i, law.T_0))
-        tau_c = law.coulomb_friction(omega, _drive(m, i, law.B_C), _drive(m, i, law.BETA))
-        at = force + 8 * dof
-        store_double(at, load_double(at) - R * T + R_s * F_s - tau_c)
-
-
-def _act_dyn(m, d, i):  # type: ignore[no-untyped-def]
-    if not _is_ours(m) or _drive(m, i, law.ACTUATOR_TAG) != law.TAG:
-        return 0.0
-    return _no_load(m, d, i)[1]
-
-
-def _act_bias(m, d, i):  # type: ignore[no-untyped-def]
-    if not _is_ours(m) or _drive(m, i, law.ACTUATOR_TAG) != law.TAG:
-        return 0.0
-    u = _int(m, _M.actuator_ctrladr, i)
-    current = _double(d, _D.ctrl, u)
-    if load_byte(_word(m, _M.actuator_ctrllimited) + u):
-        current = max(current, _double(m, _M.actuator_ctrlrange, 2 * u))
-        current = min(current, _double(m, _M.actuator_ctrlrange, 2 * u + 1))
+def _current(m, d, i):  # type: ignore[no-untyped-def]
+    """Current of drive i, within its limits [A]."""
+    u = integer(m, M.actuator_ctrladr, i)
+    current = double(d, D.ctrl, u)
+    if load_byte(word(m, M.actuator_ctrllimited) + u):
+        current = max(current, double(m, M.actuator_ctrlrange, 2 * u))
+        current = min(current, double(m, M.actuator_ctrlrange, 2 * u + 1))
     return current
 
 
-def _sensor(m, d, stage):  # type: ignore[no-untyped-def]
-    if stage != _STAGE_VEL or not _is_ours(m) or _word(m, _M.nuser_sensor) < 1:
-        return
-    for s in range(_word(m, _M.nsensor)):
-        if _int(m, _M.sensor_type, s) != _USER or _int(m, _M.sensor_objtype, s) != _ACTUATOR:
-            continue
-        i = _int(m, _M.sensor_objid, s)
-        if _drive(m, i, law.ACTUATOR_TAG) != law.TAG:
-            continue
-        shown = _double(m, _M.sensor_user, _word(m, _M.nuser_sensor) * s)
-        at = _word(d, _D.sensordata) + 8 * _int(m, _M.sensor_adr, s)
-        if shown == law.TENSION:
-            store_double(at, _tension(m, d, i))
-        elif shown == law.NO_LOAD_LENGTH:
-            store_double(at, _no_load(m, d, i)[0])
+@njit
+def _row(m, i):  # type: ignore[no-untyped-def]
+    """Address of the row of drive i in `actuator_user`."""
+    return word(m, M.actuator_user) + 8 * word(m, M.nuser_actuator) * i
 
 
-SIGNATURES: dict[str, tuple[Any, Any]] = {
-    "passive": (types.void(types.int64, types.int64), _passive),
-    "act_dyn": (types.double(types.int64, types.int64, types.intc), _act_dyn),
-    "act_bias": (types.double(types.int64, types.int64, types.intc), _act_bias),
-    "sensor": (types.void(types.int64, types.int64, types.intc), _sensor),
-}
-FIELDS = {*_M._fields, *_D._fields}  # everything the callbacks touch
+@njit
+def _act(m, d, i):  # type: ignore[no-untyped-def]
+    """Address of the activations of drive i: d₀, then the states of its effects."""
+    return word(d, D.act) + 8 * integer(m, M.actuator_actadr, i)
+
+
+def callbacks(layout: Layout) -> dict[str, Callable[..., Any]]:
+    """The four callbacks of the law with a set of candidate effects, to be compiled."""
+    added_current, added_radius = total(layout, "current", 1), total(layout, "radius", 1)
+    added_path, added_tension = total(layout, "path", 4), total(layout, "tension", 1)
+    added_torque, added_force = total(layout, "torque", 1), total(layout, "force", 3)
+    added_wrench, advance = total(layout, "wrench", 6), rates(layout)
+    key, some = layout.key, bool(layout.effects)
+
+    @njit
+    def state(m, d, i):  # type: ignore[no-untyped-def]
+        """Drive i with all that follows from its state; NaN is what is not known yet."""
+        joint = integer(m, M.actuator_trnid, 2 * i)
+        phi = double(d, D.qpos, integer(m, M.jnt_qposadr, joint))
+        omega = double(d, D.qvel, integer(m, M.jnt_dofadr, joint))
+        k = np.int64(drive(m, i, law.CABLE))
+        length, rate = double(d, D.ten_length, k), double(d, D.ten_velocity, k)
+        d_0 = load_constant(_act(m, d, i))
+        R, lambda_, b = drive(m, i, law.R), cable(m, k, law.LAMBDA), cable(m, k, law.B)
+        R_0, gx, gy, gz = R, 0.0, 0.0, 0.0
+        x, y, z, current, more = np.nan, np.nan, np.nan, np.nan, 0.0
+        if some and word(m, M.nuser_actuator) > KEY:
+            row, act = _row(m, i), _act(m, d, i)
+            time, current = load_constant(d + 8 * D.time), _current(m, d, i)
+            x, y, z = span(m, d, k)
+            rest = Drive(
+                time, 0.0, 0.0, current, 0.0, x, y, z, length, d_0, np.nan, np.nan, np.nan,
+                np.nan, R, drive(m, i, law.R_S), drive(m, i, law.K_S), drive(m, i, law.B_C),
+                drive(m, i, law.BETA), double(m, M.actuator_gear, 6 * i), lambda_,
+            )  # fmt: skip
+            s = _moving(rest, phi, omega, length, np.nan, np.nan, np.nan, R)
+            R_0, R = R + added_radius(rest, row, act), R + added_radius(s, row, act)
+            longer, gx, gy, gz = added_path(s, row, act)
+            length += longer
+            if gx != 0.0 or gy != 0.0 or gz != 0.0:
+                v = velocity(m, d, connector(m, k))
+                rate += gx * v[0] + gy * v[1] + gz * v[2]
+            d_0_dot = law.no_load_rate(length, d_0, omega, R)
+            strain, strain_rate = (length - d_0) / d_0, (rate - d_0_dot) / d_0
+            s = _moving(rest, phi, omega, length, strain, strain_rate, np.nan, R)
+            more = added_tension(s, row, act)
+            if drive(m, i, KEY) != key:
+                more = np.nan
+        d_0_dot = law.no_load_rate(length, d_0, omega, R)
+        T = law.tension(length, rate, d_0, d_0_dot, lambda_, b, more)
+        F_s = law.spring_force(
+            phi, R_0, drive(m, i, law.R_S), drive(m, i, law.K_S), drive(m, i, law.T_0)
+        )
+        return phi, omega, length, d_0, d_0_dot, T, F_s, R, (gx, gy, gz), (x, y, z), current
+
+    @njit
+    def seen(m, d, i, now):  # type: ignore[no-untyped-def]
+        """Drive i as the hooks behind the tension see it."""
+        phi, omega, length, d_0, _, T, F_s, R, _, r, current = now
+        k = np.int64(drive(m, i, law.CABLE))
+        return Drive(
+            load_constant(d + 8 * D.time), phi, omega, current, 0.0, r[0], r[1], r[2], length, d_0,
+            (length - d_0) / d_0, np.nan, T, F_s, R, drive(m, i, law.R_S), drive(m, i, law.K_S),
+            drive(m, i, law.B_C), drive(m, i, law.BETA), double(m, M.actuator_gear, 6 * i),
+            cable(m, k, law.LAMBDA),
+        )  # fmt: skip
+
+    def passive(m, d):  # type: ignore[no-untyped-def]
+        if not _is_ours(m):
+            return
+        qfrc = word(d, D.qfrc_passive)
+        body = -1
+        for i in range(word(m, M.nactuator)):
+            if drive(m, i, law.ACTUATOR_TAG) != law.TAG:
+                continue
+            now = state(m, d, i)
+            _, omega, _, _, _, T, F_s, R, g, _, _ = now
+            k = np.int64(drive(m, i, law.CABLE))
+            start = integer(m, M.ten_J_rowadr, k)
+            for a in range(start, start + integer(m, M.ten_J_rownnz, k)):
+                at = qfrc + 8 * integer(m, M.ten_J_colind, a)
+                store_double(at, load_double(at) - T * double(d, D.ten_J, a))
+            tau = -law.coulomb_friction(omega, drive(m, i, law.B_C), drive(m, i, law.BETA))
+            if some and word(m, M.nuser_actuator) > KEY:
+                s, row, act = seen(m, d, i, now), _row(m, i), _act(m, d, i)
+                tau += added_torque(s, row, act)
+                f = added_force(s, row, act)
+                end = connector(m, k)
+                body = integer(m, M.site_bodyid, end)
+                push(m, d, end, (f[0] - T * g[0], f[1] - T * g[1], f[2] - T * g[2]))
+            at = qfrc + 8 * integer(m, M.jnt_dofadr, integer(m, M.actuator_trnid, 2 * i))
+            store_double(at, load_double(at) - R * T + drive(m, i, law.R_S) * F_s + tau)
+        if some and body >= 0 and word(m, M.nuser_body) > 0:
+            row = word(m, M.body_user) + 8 * word(m, M.nuser_body) * body
+            wrench(m, d, body, added_wrench(platform(d, dof(m, body), body), row, 0))
+
+    def act_dyn(m, d, i):  # type: ignore[no-untyped-def]
+        if not _is_ours(m) or drive(m, i, law.ACTUATOR_TAG) != law.TAG:
+            return 0.0
+        now = state(m, d, i)
+        if some and word(m, M.nuser_actuator) > KEY:
+            out = word(d, D.act_dot) + 8 * integer(m, M.actuator_actadr, i)
+            advance(seen(m, d, i, now), _row(m, i), _act(m, d, i), out)
+            store_double(out, now[4])  # MuJoCo keeps what is returned only of a single activation
+        return now[4]
+
+    def act_bias(m, d, i):  # type: ignore[no-untyped-def]
+        if not _is_ours(m) or drive(m, i, law.ACTUATOR_TAG) != law.TAG:
+            return 0.0
+        current = _current(m, d, i)
+        if some and word(m, M.nuser_actuator) > KEY:
+            s = seen(m, d, i, state(m, d, i))
+            current += added_current(s, _row(m, i), _act(m, d, i))
+        return current
+
+    def sensor(m, d, stage):  # type: ignore[no-untyped-def]
+        if stage != _STAGE_VEL or not _is_ours(m) or word(m, M.nuser_sensor) < 1:
+            return
+        for s in range(word(m, M.nsensor)):
+            if (
+                integer(m, M.sensor_type, s) != _USER
+                or integer(m, M.sensor_objtype, s) != _ACTUATOR
+            ):
+                continue
+            i = integer(m, M.sensor_objid, s)
+            if drive(m, i, law.ACTUATOR_TAG) != law.TAG:
+                continue
+            shown = double(m, M.sensor_user, word(m, M.nuser_sensor) * s)
+            at = word(d, D.sensordata) + 8 * integer(m, M.sensor_adr, s)
+            if shown == law.TENSION:
+                store_double(at, state(m, d, i)[5])
+            elif shown == law.NO_LOAD_LENGTH:
+                store_double(at, load_constant(_act(m, d, i)))
+
+    return {"passive": passive, "act_dyn": act_dyn, "act_bias": act_bias, "sensor": sensor}
+
+
+@njit
+def _moving(s, phi, omega, d, strain, strain_rate, T, R):  # type: ignore[no-untyped-def]
+    """A drive with its motion, and as much of its cable as is known."""
+    return Drive(
+        s.time, phi, omega, s.i, 0.0, s.rx, s.ry, s.rz, d, s.d_0, strain, strain_rate, T, s.F_s,
+        R, s.R_s, s.k_s, s.b_c, s.beta, s.K_t, s.lambda_,
+    )  # fmt: skip

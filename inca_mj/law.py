@@ -44,10 +44,10 @@ def no_load_rate(d: float, d_0: float, omega: float, R: float) -> float:
 
 @njit
 def tension(
-    d: float, d_dot: float, d_0: float, d_0_dot: float, lambda_: float, b: float
+    d: float, d_dot: float, d_0: float, d_0_dot: float, lambda_: float, b: float, more: float = 0.0
 ) -> float:  # fmt: skip
-    """Tension of the cable T [N], zero when slack."""
-    T = lambda_ * (d - d_0) / d_0 + b * (d_dot - d_0_dot)
+    """Tension of the cable T [N], zero when slack; `more` is what candidate effects add."""
+    T = lambda_ * (d - d_0) / d_0 + b * (d_dot - d_0_dot) + more
     return 0.0 if T < 0.0 else T  # written so that NaN stays NaN
 
 

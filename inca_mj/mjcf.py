@@ -19,17 +19,26 @@ from identification.errors import InputError
 from identification.parameter import ParameterSet
 from inca_mj import law
 from inca_mj.appearance import dress_drum, dress_platform, dress_world
+from inca_mj.effects.layout import KEY, Layout
+from inca_mj.effects.values import drive_values, entry
 from inca_mj.geometry import DRIVES, Geometry
 from inca_mj.kinematics import quaternion
 from inca_mj.parameters import GRAVITY
-from inca_mj.statics import start
+from inca_mj.statics import activations, start
 
 TIMESTEP = 1e-3  # [s]; RK4 at 1 ms follows the reference to a few microradians
 ROTOR = 2e-15  # inertia MuJoCo demands of the drum's body beside the armature [kg m^2]
 
 
-def build(parameters: ParameterSet, geometry: Geometry) -> mujoco.MjSpec:
+def build(
+    parameters: ParameterSet, geometry: Geometry, layout: Layout | None = None
+) -> mujoco.MjSpec:
     """The robot at its pretensioned start, as an editable `MjSpec`.
+
+    Args:
+        parameters: the values, those of the effects included.
+        geometry: anchors of the cables.
+        layout: the candidate effects; none when None.
 
     Raises:
         InputError: the start pose admits no pretension (see `inca_mj.statics.pretension`).
@@ -40,17 +49,18 @@ def build(parameters: ParameterSet, geometry: Geometry) -> mujoco.MjSpec:
         f"INCA 6D, parameter set {parameters.name}; geometry: {geometry.source}."
         " Needs the law of inca_mj (inca_mj.native.install) for its cables to pull."
     )
-    _settings(spec)
+    layout = layout or Layout()
+    _settings(spec, layout)
     dress_world(spec, geometry)
-    _platform(spec, parameters, geometry)
+    _platform(spec, parameters, geometry, layout)
     for k in range(1, DRIVES + 1):
-        _drive(spec, k, parameters, geometry)
+        _drive(spec, k, parameters, geometry, layout)
     _sensors(spec)
-    _keyframe(spec, parameters, geometry)
+    _keyframe(spec, parameters, geometry, layout)
     return spec
 
 
-def _settings(spec: mujoco.MjSpec) -> None:
+def _settings(spec: mujoco.MjSpec, layout: Layout) -> None:
     spec.compiler.degree = False
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
     spec.option.timestep = TIMESTEP
@@ -62,12 +72,15 @@ def _settings(spec: mujoco.MjSpec) -> None:
         | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
         | mujoco.mjtDisableBit.mjDSBL_AUTORESET  # a divergence must be seen, not restarted
     )
-    spec.nuser_actuator = law.ACTUATOR_COLUMNS
+    spec.nuser_actuator = layout.actuator_columns
+    spec.nuser_body = layout.body_columns
     spec.nuser_tendon = law.TENDON_COLUMNS
     spec.nuser_sensor = 1
 
 
-def _platform(spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry) -> None:
+def _platform(
+    spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry, layout: Layout
+) -> None:
     p = parameters.values()
     check_inertia(p)
     body = spec.worldbody.add_body(name="platform", pos=[p["x"], p["y"], p["z"]])
@@ -78,6 +91,13 @@ def _platform(spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry)
     for k, connector in enumerate(geometry.connectors, 1):
         body.add_site(name=f"connector_{k}", pos=connector, size=[0.006, 0.006, 0.006])
     dress_platform(body, geometry)
+    body.userdata = np.concatenate(
+        [np.zeros(0), *(drive_values(e.effect, p)[:, 0] for e in layout if e.on_platform)]
+    )
+    for e in layout:
+        for path, value in zip(e.effect.entries, drive_values(e.effect, p)[:, 0], strict=False):
+            field, column = entry(path)
+            getattr(body, field)[column] = value
 
 
 def check_inertia(values: Mapping[str, float]) -> None:
@@ -102,7 +122,9 @@ def _weigh(body: Any, mass: float, inertia: list[float]) -> None:
     body.mass, body.inertia, body.ipos = mass, inertia, [0, 0, 0]
 
 
-def _drive(spec: mujoco.MjSpec, k: int, parameters: ParameterSet, geometry: Geometry) -> None:
+def _drive(
+    spec: mujoco.MjSpec, k: int, parameters: ParameterSet, geometry: Geometry, layout: Layout
+) -> None:
     """Drum, motor, cable and current actuator of drive k."""
     p = parameters.values()
     exit_point = np.array(geometry.exits[k - 1])
@@ -130,18 +152,23 @@ def _drive(spec: mujoco.MjSpec, k: int, parameters: ParameterSet, geometry: Geom
     cable_row[[law.TENDON_TAG, law.LAMBDA, law.B]] = law.TAG, p["lambda"], p["b"]
     cable.userdata = cable_row
 
-    row = np.zeros(law.ACTUATOR_COLUMNS)
+    row = np.zeros(layout.actuator_columns)
+    row[KEY:][:1] = layout.key
+    for place in layout:
+        if place.on_drives:
+            values = drive_values(place.effect, p)[:, k - 1]
+            row[place.column : place.column + len(values)] = values
     row[law.ACTUATOR_TAG], row[law.CABLE] = law.TAG, k - 1
     row[[law.R, law.R_S, law.K_S]] = p["R"], p["R_s"], p["k_s"]
     row[[law.B_C, law.BETA]] = p["b_c"], p["beta"]
-    row[law.T_0] = start(parameters, geometry).tension[k - 1]
+    row[law.T_0] = start(parameters, geometry, layout.effects).tension[k - 1]
     spec.add_actuator(
         name=f"current_{k}",
         target=f"motor_{k}",
         trntype=mujoco.mjtTrn.mjTRN_JOINT,
         gear=[p["K_t"], 0, 0, 0, 0, 0],
         dyntype=mujoco.mjtDyn.mjDYN_USER,  # activation: the no-load length d₀
-        actdim=1,
+        actdim=layout.states,
         gaintype=mujoco.mjtGain.mjGAIN_FIXED,
         gainprm=[0.0] * 10,
         biastype=mujoco.mjtBias.mjBIAS_USER,  # force: the current
@@ -176,7 +203,9 @@ def _sensors(spec: mujoco.MjSpec) -> None:
         spec.add_sensor(name=name, type=kind, objtype=of.mjOBJ_SITE, objname="platform")
 
 
-def _keyframe(spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry) -> None:
-    at = start(parameters, geometry)
+def _keyframe(
+    spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry, layout: Layout
+) -> None:
+    at = start(parameters, geometry, layout.effects)
     qpos = np.concatenate([at.pose[:3], quaternion(*at.pose[3:]), np.zeros(DRIVES)])
-    spec.add_key(name="start", qpos=qpos, act=at.no_load_length)
+    spec.add_key(name="start", qpos=qpos, act=activations(at, layout))

@@ -14,10 +14,12 @@ from numba import cfunc
 
 from identification.errors import InputError
 from inca_mj import structs
-from inca_mj.callbacks import FIELDS, SIGNATURES
+from inca_mj.callbacks import SIGNATURES, callbacks
+from inca_mj.effects.layout import Layout
+from inca_mj.fields import FIELDS
 
 _PROBE = """<mujoco>
-  <size nuser_actuator="1" nuser_tendon="1" nuser_sensor="1"/>
+  <size nuser_actuator="1" nuser_tendon="1" nuser_sensor="1" nuser_body="1"/>
   <worldbody><site name="a"/><body pos="1 0 0"><joint name="j"/><geom size="1"/><site name="b"/>
   </body></worldbody>
   <tendon><spatial name="t"><site site="a"/><site site="b"/></spatial></tendon>
@@ -45,31 +47,42 @@ def _check_structs() -> None:
 
 
 @cache
-def _compiled() -> dict[str, Any]:
+def _compiled(layout: Layout) -> dict[str, Any]:
     """The callbacks, compiled once a process: a disk cache would outlive a MuJoCo upgrade."""
     _check_structs()
     return {
-        name: cfunc(signature, error_model="numpy")(function).ctypes
-        for name, (signature, function) in SIGNATURES.items()
+        name: _keep(cfunc(SIGNATURES[name], error_model="numpy")(function).ctypes)
+        for name, function in callbacks(layout).items()
     }
 
 
-def install() -> None:
+_OURS: list[Any] = []  # every callback ever compiled here; MuJoCo holds bare pointers to them
+
+
+def _keep(callback: Any) -> Any:
+    _OURS.append(callback)
+    return callback
+
+
+def install(layout: Layout | None = None) -> None:
     """Install the law in this process; does nothing when it is installed already.
+
+    Args:
+        layout: the candidate effects to compile into it; none when None.
 
     Raises:
         InputError: another library has installed MuJoCo callbacks of its own.
         RuntimeError: MuJoCo's structs are not laid out as declared.
     """
-    callbacks = _compiled()
-    for name, callback in callbacks.items():
+    compiled = _compiled(layout or Layout())
+    for name in compiled:
         present = getattr(mujoco, f"get_mjcb_{name}")()
-        if present is not None and present is not callback:
+        if present is not None and not any(present is own for own in _OURS):
             raise InputError(
                 f"another library has installed mjcb_{name}, and MuJoCo holds one a process;"
                 f" release it with mujoco.set_mjcb_{name}(None), or use a process of its own"
             )
-    for name, callback in callbacks.items():
+    for name, callback in compiled.items():
         getattr(mujoco, f"set_mjcb_{name}")(callback)
 
 

@@ -108,11 +108,13 @@ def simulate(
         sampling_time,
         record=("qpos", "qvel", "act"),
         hold_kind=hold_kind,
+        before=lambda held: robot.inputs((), np.empty((1, 0)), held, robot.model.opt.timestep),
     )
     at = State(*(states[name][0] for name in ("qpos", "qvel", "act")))
     tension, length = readings(robot, at)
     time = np.arange(len(currents)) * sampling_time
-    return Run(robot, time, currents, at.qpos, at.qvel, at.act, tension, length)
+    no_load = at.act[:, :: robot.layout.states]
+    return Run(robot, time, currents, at.qpos, at.qvel, no_load, tension, length)
 
 
 def readings(robot: Twin, at: State) -> tuple[np.ndarray, np.ndarray]:

@@ -9,13 +9,16 @@ w = (0, 0, m g, 0, 0, 0) is the weight to carry.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from identification.errors import InputError
 from identification.parameter import ParameterSet
+from inca_mj.effects.at_rest import Change, change_at_rest
+from inca_mj.effects.hooks import DriveEffect
+from inca_mj.effects.layout import Layout
 from inca_mj.geometry import Geometry
 from inca_mj.kinematics import cables, length_jacobian, rotation
 from inca_mj.parameters import GRAVITY, PRETENSION
@@ -29,27 +32,41 @@ class Start:
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
         tension: T(0), shape (8,) [N].
         no_load_length: d₀(0), shape (8,) [m].
+        strain: ε(0) of each cable, shape (8,).
     """
 
     pose: np.ndarray
     tension: np.ndarray
     no_load_length: np.ndarray
+    strain: np.ndarray
 
 
-def pretension(pose: np.ndarray, geometry: Geometry, m: float) -> np.ndarray:
+def pretension(
+    pose: np.ndarray, geometry: Geometry, m: float, change: Change | None = None
+) -> np.ndarray:
     """Tensions T(0), shape (8,) [N], nearest to 4 N each that hold a platform of mass m [kg].
+
+    Args:
+        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
+        geometry: anchors of the cables.
+        m: mass of the platform [kg].
+        change: what candidate effects change of the cables' ways and of the load.
 
     Raises:
         InputError: some cable would have to push, or the cables cannot hold the platform.
     """
-    d = np.linalg.norm(pose[:3] + geometry.B @ rotation(*pose[3:]).T - geometry.A, axis=1)
+    R = rotation(*pose[3:])
+    d = np.linalg.norm(pose[:3] + geometry.B @ R.T - geometry.A, axis=1)
     if d.min() < 1e-3:
         raise InputError(
             f"cable {d.argmin() + 1} has no length at pose {np.round(pose, 4).tolist()}; move its"
             " exit point or the start pose"
         )
-    W = -length_jacobian(pose[:3], rotation(*pose[3:]), geometry).T
+    W = -length_jacobian(pose[:3], R, geometry).T
     w = np.array([0, 0, m * GRAVITY, 0, 0, 0])
+    if change is not None:
+        W = W - np.hstack([change.turned, np.cross(geometry.B @ R.T, change.turned)]).T
+        w = w + change.load
     t_0 = np.full(len(geometry.exits), PRETENSION)
     T = t_0 + np.linalg.pinv(W) @ (w - W @ t_0)
     if np.abs(W @ T - w).max() > 1e-9 * max(1.0, m * GRAVITY):
@@ -66,18 +83,33 @@ def pretension(pose: np.ndarray, geometry: Geometry, m: float) -> np.ndarray:
     return T
 
 
-def start(parameters: ParameterSet, geometry: Geometry) -> Start:
+def start(
+    parameters: ParameterSet, geometry: Geometry, effects: Sequence[DriveEffect] = ()
+) -> Start:
     """The start that parameters and geometry imply: T(0) and d₀(0) follow from pose, m and λ.
 
     Raises:
         InputError: as `pretension`.
     """
-    return start_from(parameters.values(), geometry)
+    return start_from(parameters.values(), geometry, effects)
 
 
-def start_from(values: Mapping[str, float], geometry: Geometry) -> Start:
-    """`start` from plain values by name, in SI units."""
+def start_from(
+    values: Mapping[str, float], geometry: Geometry, effects: Sequence[DriveEffect] = ()
+) -> Start:
+    """`start` from plain values by name, in SI units; what candidate effects change included."""
     pose = np.array([values[name] for name in ("x", "y", "z", "roll", "pitch", "yaw")])
-    T = pretension(pose, geometry, values["m"])
     d, _ = cables(pose[:3], rotation(*pose[3:]), geometry)
-    return Start(pose, T, values["lambda"] * d / (values["lambda"] + T))
+    change = change_at_rest(values, pose, geometry, effects)
+    T = pretension(pose, geometry, values["m"], change)
+    if change is None:
+        return Start(pose, T, values["lambda"] * d / (values["lambda"] + T), T / values["lambda"])
+    strain = change.strain(T)
+    return Start(pose, T, (d + change.longer) / (1 + strain), strain)
+
+
+def activations(begin: Start, layout: Layout) -> np.ndarray:
+    """The twin's activations at a start: d₀ of each drive, then its effects' own states."""
+    own = [p.effect.rest for p in layout if p.state]
+    rest = {"zero": np.zeros_like(begin.strain), "strain": begin.strain}
+    return np.column_stack([begin.no_load_length, *(rest[name] for name in own)]).ravel()

@@ -86,7 +86,7 @@ def check(model: mujoco.MjModel, data: mujoco.MjData) -> set[str]:
                 if not seen.size or pointer is None:  # None: in the arena, not allocated yet
                     continue
                 right = pointer == seen.ctypes.data
-            elif isinstance(seen, int) and not isinstance(seen, bool):
+            elif isinstance(seen, (int, float)) and not isinstance(seen, bool):
                 if not isinstance(field.type, ast_nodes.ValueType):
                     continue
                 right = _c_type(field.type).from_address(at).value == seen  # type: ignore[attr-defined]

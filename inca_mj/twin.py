@@ -16,11 +16,16 @@ from identification.paths import Slot, resolve, write
 from identification.predictor import Numbers
 from identification.rollout import State
 from inca_mj import law, native
+from inca_mj.effects.hooks import DriveEffect
+from inca_mj.effects.layout import Layout
+from inca_mj.effects.values import inputs as effect_inputs
+from inca_mj.effects.values import numbers as effect_numbers
+from inca_mj.effects.values import with_effects
 from inca_mj.geometry import INCA, Geometry
 from inca_mj.kinematics import quaternion
 from inca_mj.mjcf import TIMESTEP, build, check_inertia
 from inca_mj.parameters import parameter_set
-from inca_mj.statics import Start, start, start_from
+from inca_mj.statics import Start, activations, start, start_from
 
 
 @dataclass(frozen=True)
@@ -31,20 +36,28 @@ class Twin:
         parameters: every number of the robot, with unit and source.
         geometry: where its cables begin and end.
         model: the compiled model; treat it as read-only.
+        effects: candidate effects that are compiled into its law, absent while their sizes are 0.
     """
 
     parameters: ParameterSet
     geometry: Geometry
     model: mujoco.MjModel
+    effects: tuple[DriveEffect, ...] = ()
+
+    @property
+    def layout(self) -> Layout:
+        """Where the parameters of its effects are in the model."""
+        return Layout(self.effects)
 
     @property
     def start(self) -> Start:
         """The pretensioned start that the parameters imply."""
-        return start(self.parameters, self.geometry)
+        return start(self.parameters, self.geometry, self.effects)
 
     def state(self) -> State:
         """The start as a MuJoCo state."""
-        return start_state(self.start)
+        native.install(self.layout)
+        return start_state(self.start, self.layout)
 
     def with_values(self, values: Mapping[str, float]) -> Twin:
         """The twin with other values, without compiling again.
@@ -55,10 +68,10 @@ class Twin:
         parameters = self.parameters.with_values(values)
         check_inertia(parameters.values())
         model = copy.copy(self.model)
-        write_values(model, parameters)
-        begin = start(parameters, self.geometry)
+        write_values(model, parameters, self.layout)
+        begin = start(parameters, self.geometry, self.effects)
         model.actuator_user[:, law.T_0] = begin.tension
-        state = start_state(begin)
+        state = start_state(begin, self.layout)
         model.qpos0[:] = model.key("start").qpos[:] = state.qpos
         model.key("start").act[:] = state.act
         mujoco.mj_setConst(model, mujoco.MjData(model))
@@ -77,27 +90,42 @@ class Twin:
         Raises:
             InputError: a start has no pretension.
         """
+        native.install(self.layout)
         own = self.parameters.values()
         starts = [
-            start_from({**own, **dict(zip(names, row, strict=True))}, self.geometry)
+            start_from({**own, **dict(zip(names, row, strict=True))}, self.geometry, self.effects)
             for row in values
         ]
         tensions = np.array([begin.tension for begin in starts])
         numbers = [
             (resolve(self.model, self.parameters[name].where), column)
             for name, column in zip(names, values.T, strict=True)
-            if self.parameters[name].where != "start"
+            if self.parameters[name].where not in ("start", "effect")
         ]
+        numbers += effect_numbers(self.layout, names, own, values, self.model.body("platform").id)
         numbers += [
             (Slot("actuator_user", (i,), law.T_0), column) for i, column in enumerate(tensions.T)
         ]
-        states = [start_state(begin) for begin in starts]
+        states = [start_state(begin, self.layout) for begin in starts]
         rows = (np.array([getattr(s, field) for s in states]) for field in ("qpos", "qvel", "act"))
         return State(*rows), numbers
 
+    def inputs(
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
+    ) -> np.ndarray:
+        """Currents that reach the motors, where an effect acts on their way; see `Plant`.
+
+        Args:
+            names: parameters that differ from the twin's own.
+            values: their values, shape (n, p).
+            held: logged currents at the steps of the simulation, shape (steps, 8) [A].
+            timestep: of the simulation [s].
+        """
+        return effect_inputs(self.effects, names, self.parameters.values(), values, held, timestep)
+
     def save(self, path: str | Path) -> Path:
         """Write the model as MJCF, exact to the last bit; returns the path."""
-        spec = build(self.parameters, self.geometry)
+        spec = build(self.parameters, self.geometry, self.layout)
         spec.option.timestep = self.model.opt.timestep
         return write_xml(spec, path)
 
@@ -107,6 +135,7 @@ def build_twin(
     geometry: Geometry = INCA,
     *,
     timestep: float = TIMESTEP,
+    effects: Sequence[DriveEffect] = (),
 ) -> Twin:
     """Build and compile the robot, and install the law of its cables in this process.
 
@@ -114,26 +143,35 @@ def build_twin(
         parameters: the values; the thesis' Table 3.2 when None.
         geometry: anchors of the cables; assumed ones by default.
         timestep: of the RK4 integrator [s].
+        effects: candidate effects to compile into the law; their sizes become parameters.
 
     Raises:
-        InputError: the start has no pretension, or another library holds MuJoCo's callbacks.
+        InputError: the start has no pretension, two effects have one name, or another library
+            holds MuJoCo's callbacks.
     """
-    parameters = parameters or parameter_set()
-    native.install()
-    spec = build(parameters, geometry)
+    layout = Layout(tuple(effects))
+    parameters = with_effects(parameters or parameter_set(), layout.effects)
+    native.install(layout)
+    spec = build(parameters, geometry, layout)
     spec.option.timestep = timestep
-    return Twin(parameters, geometry, spec.compile())
+    model = spec.compile()
+    write_values(model, parameters, layout)
+    return Twin(parameters, geometry, model, layout.effects)
 
 
-def write_values(model: mujoco.MjModel, parameters: ParameterSet) -> None:
+def write_values(model: mujoco.MjModel, parameters: ParameterSet, layout: Layout) -> None:
     """Write all model parameters into mjModel, in place; the start's follow in `Twin`."""
     for parameter in parameters:
-        if parameter.where != "start":
+        if parameter.where not in ("start", "effect"):
             write(model, resolve(model, parameter.where), parameter.value)
+    own, platform = parameters.values(), model.body("platform").id
+    for slot, column in effect_numbers(layout, tuple(own), own, np.array([[*own.values()]]),
+                                       platform):  # fmt: skip
+        write(model, slot, float(column[0]))
 
 
-def start_state(begin: Start) -> State:
-    """A start as a MuJoCo state: qpos (15,), qvel (14,), act (8,)."""
+def start_state(begin: Start, layout: Layout) -> State:
+    """A start as a MuJoCo state: qpos (15,), qvel (14,), act (8 (1 + own states),)."""
     drives = len(begin.tension)
     qpos = np.concatenate([begin.pose[:3], quaternion(*begin.pose[3:]), np.zeros(drives)])
-    return State(qpos, np.zeros(6 + drives), begin.no_load_length)
+    return State(qpos, np.zeros(6 + drives), activations(begin, layout))

@@ -43,6 +43,11 @@ class Slider:
         ]
         return State(np.zeros((n, 1)), np.zeros((n, 1)), np.zeros((n, 0))), numbers
 
+    def inputs(
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
+    ) -> np.ndarray:
+        return held
+
 
 def slider() -> Slider:
     return Slider(

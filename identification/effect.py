@@ -1,0 +1,112 @@
+"""A candidate effect: parameters of a plant that are zero in the nominal model, and their physics.
+
+An effect is a group of sizes, all zero where it is absent, and of shapes, which say how it looks
+when it is there (a Stribeck velocity, a harmonic). Its sizes enter the model linearly, or nearly
+so; its shapes do not matter while the sizes are zero, so they are tried on a grid and freed once
+the effect is named.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+Sign = Literal[-1, 0, 1]
+
+
+@dataclass(frozen=True)
+class Size:
+    """How large an effect is; zero is none of it.
+
+    Attributes:
+        name: as in the law and in JSON.
+        unit: SI unit, "" when dimensionless.
+        largest: the largest plausible magnitude [unit].
+        probe: the magnitude at which its sensitivity is taken [unit].
+        sign: 1 or -1 where physics admits only that sign, else 0.
+        about: what it is, in words.
+    """
+
+    name: str
+    unit: str
+    largest: float
+    probe: float
+    sign: Sign = 0
+    about: str = ""
+
+
+@dataclass(frozen=True)
+class Shape:
+    """How an effect looks; without meaning while its sizes are zero.
+
+    Attributes:
+        name: as in the law and in JSON.
+        unit: SI unit, "" when dimensionless.
+        grid: values to try before it is freed [unit].
+        lower: smallest admissible value [unit].
+        upper: largest admissible value [unit].
+        free: whether it is estimated once the effect is named; False for an integer.
+        about: what it is, in words.
+    """
+
+    name: str
+    unit: str
+    grid: tuple[float, ...]
+    lower: float
+    upper: float
+    free: bool = True
+    about: str = ""
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What may be missing from a model.
+
+    Attributes:
+        name: canonical name.
+        law: the equation, as a reader writes it.
+        sizes: zero when the effect is absent.
+        shapes: see `Shape`.
+        places: where it may act, in words, each with its parameters' suffix: {"all drives": "",
+            "drive 1": "@1"}; parameters are called `effect.size` + suffix.
+        phrase: "{where}: " follows; e.g. "friction: Stribeck peak".
+        reference: table, paper or book of the law.
+    """
+
+    name: str
+    law: str
+    sizes: tuple[Size, ...]
+    shapes: tuple[Shape, ...] = ()
+    places: Mapping[str, str] = field(default_factory=dict, hash=False)
+    phrase: str = ""
+    reference: str = ""
+
+    def parameter(self, name: str, where: str) -> str:
+        """Name of the plant's parameter for a size or shape at a place."""
+        return f"{self.name}.{name}{self.places[where]}"
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect at a place with shapes chosen: what a score is computed for.
+
+    Attributes:
+        effect: which.
+        where: at which of its places.
+        shape: values of its shapes by name, in their units.
+    """
+
+    effect: Effect
+    where: str
+    shape: Mapping[str, float]
+
+    @property
+    def sizes(self) -> tuple[str, ...]:
+        """The plant's parameters that are zero without it."""
+        return tuple(self.effect.parameter(s.name, self.where) for s in self.effect.sizes)
+
+    @property
+    def fixed(self) -> dict[str, float]:
+        """Values of the plant's shape parameters."""
+        return {self.effect.parameter(n, self.where): v for n, v in self.shape.items()}

@@ -1,0 +1,134 @@
+"""Effects as parameters of the twin: one record per size and place, all zero in the nominal model.
+
+drive k gets    size(all drives) + size@k
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from identification.effect import Shape, Size
+from identification.parameter import Parameter, ParameterSet
+from identification.paths import Slot
+from identification.predictor import Numbers
+from inca_mj.effects.hooks import DriveEffect
+from inca_mj.effects.layout import Layout, Place
+from inca_mj.geometry import DRIVES
+
+FARTHER = 5.0  # bounds of a search, in units of the largest plausible size
+
+
+def records(effects: Sequence[DriveEffect]) -> tuple[Parameter, ...]:
+    """The parameters of some effects: `name.size` at all its places, `name.shape` once."""
+    out = []
+    for effect in (e.effect for e in effects):
+        for size in effect.sizes:
+            out += [_size(effect.parameter(size.name, w), size) for w in effect.places]
+        out += [_shape(f"{effect.name}.{shape.name}", shape) for shape in effect.shapes]
+    return tuple(out)
+
+
+def with_effects(parameters: ParameterSet, effects: Sequence[DriveEffect]) -> ParameterSet:
+    """A parameter set with those of some effects, zero where it does not name them already."""
+    known = {p.name for p in parameters}
+    new = tuple(p for p in records(effects) if p.name not in known)
+    return replace(parameters, records=(*parameters.records, *new))
+
+
+def _size(name: str, size: Size) -> Parameter:
+    farthest = FARTHER * size.largest
+    lower, upper = (-farthest if size.sign <= 0 else 0.0), (farthest if size.sign >= 0 else 0.0)
+    return Parameter(name, 0.0, size.unit, "effect", lower, upper, size.name, size.about)
+
+
+def _shape(name: str, shape: Shape) -> Parameter:
+    middle = shape.grid[len(shape.grid) // 2]
+    return Parameter(
+        name, middle, shape.unit, "effect", shape.lower, shape.upper, shape.name, shape.about
+    )
+
+
+def drive_values(effect: DriveEffect, values: Mapping[str, float]) -> np.ndarray:
+    """Sizes and shapes of an effect at each drive, shape (k, 8)."""
+    out = [
+        [
+            sum(values.get(f"{effect.name}.{size.name}{at}", 0.0) for at in ("", f"@{drive}"))
+            for drive in range(1, DRIVES + 1)
+        ]
+        for size in effect.effect.sizes
+    ]
+    out += [[values[f"{effect.name}.{shape.name}"]] * DRIVES for shape in effect.effect.shapes]
+    return np.array(out, float)
+
+
+def present(effect: DriveEffect, values: Mapping[str, float]) -> bool:
+    """Whether any size of an effect is not zero."""
+    sizes = drive_values(effect, values)[: len(effect.effect.sizes)]
+    return bool(sizes.any())
+
+
+def numbers(layout: Layout, names: Sequence[str], own: Mapping[str, float], values: np.ndarray,
+            platform: int) -> Numbers:  # fmt: skip
+    """Model numbers of n value sets, for the effects that `names` touch.
+
+    Args:
+        layout: the effects and their columns.
+        names: parameters that differ from `own`, p of them.
+        own: values of all parameters.
+        values: shape (n, p).
+        platform: id of the platform's body.
+    """
+    touched = {name.partition(".")[0] for name in names}
+    out: list[tuple[Slot, np.ndarray]] = []
+    for place in layout:
+        if place.effect.name in touched:
+            rows = [{**own, **dict(zip(names, row, strict=True))} for row in values]
+            each = np.array([drive_values(place.effect, row) for row in rows])  # (n, k, 8)
+            out += _columns(place, each, platform)
+    return out
+
+
+def inputs(
+    effects: Sequence[DriveEffect], names: Sequence[str], own: Mapping[str, float],
+    values: np.ndarray, held: np.ndarray, timestep: float,
+) -> np.ndarray:  # fmt: skip
+    """Currents after the effects that act before the model, for n value sets.
+
+    Returns:
+        `held` itself where no such effect is there, else shape (n, steps, 8) [A].
+    """
+    acting = [e for e in effects if e.inputs is not None]
+    rows = [{**own, **dict(zip(names, row, strict=True))} for row in values] if acting else []
+    if not any(present(e, row) for e in acting for row in rows):
+        return held
+    out = np.repeat(held[None], len(rows), axis=0)
+    for n, row in enumerate(rows):
+        for effect in acting:
+            if effect.inputs is not None and present(effect, row):
+                out[n] = effect.inputs(out[n], timestep, drive_values(effect, row))
+    return out
+
+
+def _columns(place: Place, each: np.ndarray, platform: int) -> Numbers:
+    effect, k = place.effect, range(each.shape[1])
+    if effect.entries:
+        return [
+            (Slot(f"body_{field}", (platform,), column), each[:, j, 0])
+            for j, (field, column) in zip(k, map(entry, effect.entries), strict=True)
+        ]
+    if place.on_platform:
+        return [(Slot("body_user", (platform,), place.column + j), each[:, j, 0]) for j in k]
+    return [
+        (Slot("actuator_user", (i,), place.column + j), each[:, j, i])
+        for j in k
+        for i in range(DRIVES if place.on_drives else 0)
+    ]
+
+
+def entry(path: str) -> tuple[str, int]:
+    """`ipos[2]` as an attribute of the platform's body and its column."""
+    name, _, column = path.rstrip("]").partition("[")
+    return name, int(column)
