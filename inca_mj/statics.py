@@ -99,9 +99,9 @@ def start_from(
 ) -> Start:
     """`start` from plain values by name, in SI units; what candidate effects change included."""
     pose = np.array([values[name] for name in ("x", "y", "z", "roll", "pitch", "yaw")])
-    d, _ = cables(pose[:3], rotation(*pose[3:]), geometry)
     change = change_at_rest(values, pose, geometry, effects)
     T = pretension(pose, geometry, values["m"], change)
+    d, _ = cables(pose[:3], rotation(*pose[3:]), geometry)
     if change is None:
         return Start(pose, T, values["lambda"] * d / (values["lambda"] + T), T / values["lambda"])
     strain = change.strain(T)
