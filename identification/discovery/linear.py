@@ -1,0 +1,110 @@
+"""The plant along a predicted trajectory, linearised: how small errors of state and input grow.
+
+    δẋ = F(t) δx + G(t) δu,    δx_{k+1} = A_k δx_k + B_k δu_k,    δy_k = C δx_k
+
+    [A_k B_k; 0 I] = exp([F G; 0 0] T_s)                               (Van Loan 1978)
+
+x is MuJoCo's state in tangent space: position (nv), velocity (nv), activation (na). F and G come
+from MuJoCo's own finite differences of one short Euler step.
+"""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from scipy.linalg import expm
+
+from identification.predictor import Predictor, output_columns
+from identification.rollout import rollout
+
+SHORT = 1e-6  # Euler step whose difference from the identity is F [s]
+EPS = 1e-6  # of the finite differences
+
+
+@dataclass(frozen=True)
+class LinearPlant:
+    """Linearisation at the N samples of a log.
+
+    Attributes:
+        A: transition from each sample to the next, shape (N-1, nx, nx).
+        B: effect of an input held over the sample, shape (N-1, nx, nu).
+        C: outputs from the state, shape (ny, nx).
+        G: effect of a generalised force held over the sample on the state, shape (N-1, nx, nv).
+    """
+
+    A: np.ndarray
+    B: np.ndarray
+    C: np.ndarray
+    G: np.ndarray
+
+
+def linearise(predictor: Predictor, values: np.ndarray) -> LinearPlant:
+    """Linearise a plant along the trajectory that it predicts for one value set.
+
+    Args:
+        predictor: plant and log.
+        values: shape (p,), in the parameters' units.
+
+    Raises:
+        DivergenceError: the simulation left the finite numbers.
+    """
+    plant, log = predictor.plant, predictor.log
+    names = (*predictor.names, *(n for n in predictor.fixed if n not in predictor.names))
+    rest = [v for n, v in predictor.fixed.items() if n not in predictor.names]
+    every = np.array([[*values, *rest]])
+    start, numbers = plant.settings(names, every)
+    states = rollout(
+        plant.model, start, log.inputs, log.sampling_time, numbers=numbers,
+        record=("qpos", "qvel", "act") if plant.model.na else ("qpos", "qvel"),
+        hold_kind=log.hold,
+        before=lambda held: plant.inputs(names, every, held, plant.model.opt.timestep),
+    )  # fmt: skip
+    model = copy.copy(plant.model)
+    for slot, column in numbers:
+        getattr(model, slot.field)[slot.index()] = column[0]
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+    F, G, J = _derivatives(model, {k: v[0] for k, v in states.items()}, log.inputs, log.sampling_time)
+    nx, nu, nv = F.shape[1], G.shape[2], model.nv
+    block = np.zeros((len(F), nx + nu + nv, nx + nu + nv))
+    block[:, :nx] = np.concatenate([F, G, J], axis=2) * log.sampling_time
+    block = expm(block)
+    C = np.zeros((log.outputs.shape[1], nx))
+    for row, (field, i) in enumerate(output_columns(model, log.output_names)):
+        C[row, _tangent(model, field, i)] = 1
+    return LinearPlant(
+        block[:, :nx, :nx], block[:, :nx, nx : nx + nu], C, block[:, :nx, nx + nu :]
+    )
+
+
+def _derivatives(
+    model: mujoco.MjModel, states: dict[str, np.ndarray], inputs: np.ndarray, sampling_time: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """F (N-1, nx, nx), ∂ẋ/∂u (N-1, nx, nu) and ∂ẋ/∂τ (N-1, nx, nv) at all samples but the last."""
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
+    model.opt.timestep = SHORT
+    data = mujoco.MjData(model)
+    nx, nu, nv, n = 2 * model.nv + model.na, model.nu, model.nv, len(inputs) - 1
+    F, G, J = np.empty((n, nx, nx)), np.empty((n, nx, nu)), np.zeros((n, nx, nv))
+    inverse = np.empty((nv, nv))
+    for k in range(n):
+        data.time = k * sampling_time
+        data.qpos, data.qvel, data.ctrl = states["qpos"][k], states["qvel"][k], inputs[k]
+        if model.na:
+            data.act = states["act"][k]
+        mujoco.mjd_transitionFD(model, data, EPS, 1, F[k], G[k], None, None)
+        mujoco.mj_solveM(model, data, inverse, np.eye(nv))
+        J[k, nv : 2 * nv] = inverse
+    F -= np.eye(nx)
+    return F / SHORT, G / SHORT, J
+
+
+def _tangent(model: mujoco.MjModel, field: str, i: int) -> int:
+    """Index in the tangent state of an entry of qpos (of a hinge or slide) or qvel."""
+    if field == "qvel":
+        return model.nv + i
+    joint = int(np.flatnonzero(model.jnt_qposadr == i)[0])
+    return int(model.jnt_dofadr[joint])

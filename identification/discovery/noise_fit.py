@@ -1,0 +1,112 @@
+"""The level of the noise, by maximum likelihood.
+
+    log L(ρ, τ) = -½ (n log(‖E - Φ c‖²/n) + log det S(ρ, τ)),     σ² = ‖E - Φ c‖²/n
+
+E, Φ: whitened residual and sensitivities, c: the best small change of the parameters, held by
+their priors. ρ is sought on a scale of the plant's own: at ρ₀ the inputs' error moves the outputs
+by as much as the sensors' noise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from identification.discovery.linear import LinearPlant
+from identification.discovery.noise_model import Noise, Whitener, whitener
+
+TIMES = (0.01, 0.03, 0.1, 0.3)  # correlation times of the inputs' error to try [s]
+LEVELS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # ρ/ρ₀ to try
+
+
+@dataclass(frozen=True)
+class Level:
+    """A noise and how likely it makes a residual.
+
+    Attributes:
+        noise: ρ and τ.
+        sigma: σ of the sensors, in the outputs' unit.
+        log_likelihood: of the residual, up to a constant of the log.
+    """
+
+    noise: Noise
+    sigma: float
+    log_likelihood: float
+
+    @property
+    def input_std(self) -> float:
+        """ρ σ: std of the inputs' unlogged error, in their unit."""
+        return self.noise.ratio * self.sigma
+
+
+def unit_ratio(plant: LinearPlant, sampling_time: float, time: float) -> float:
+    """ρ₀ at a correlation time: where input errors move the outputs by σ (rms over the log)."""
+    n, nx, nu = plant.B.shape
+    a = np.exp(-sampling_time / time)
+    A = np.zeros((n, nx + nu, nx + nu))
+    A[:, :nx, :nx], A[:, :nx, nx:], A[:, nx:, nx:] = plant.A, plant.B, a * np.eye(nu)
+    P, moved = np.zeros((nx + nu, nx + nu)), 0.0
+    P[nx:, nx:] = np.eye(nu)
+    for k in range(n):
+        P = A[k] @ P @ A[k].T
+        P[nx:, nx:] += (1 - a**2) * np.eye(nu)
+        moved += np.einsum("ij,jk,ik->", plant.C, P[:nx, :nx], plant.C)
+    return 1 / np.sqrt(moved / (n * len(plant.C)))
+
+
+def likelihood(
+    filter_: Whitener, noise: Noise, e: np.ndarray, J: np.ndarray, prior: np.ndarray
+) -> Level:
+    """How likely a noise makes a residual once the parameters have been adjusted.
+
+    Args:
+        filter_: the whitening filter of the noise.
+        noise: ρ and τ.
+        e: residual, shape (N, ny).
+        J: sensitivities, shape (N, ny, p).
+        prior: 1/std of each parameter's prior, shape (p,).
+    """
+    E, F = filter_(e).ravel(), filter_(J).reshape(e.size, -1)
+    sigma = np.sqrt(E @ E / E.size)
+    for _ in range(2):  # the prior weighs by σ
+        H = F.T @ F + np.diag((prior * sigma) ** 2)
+        c = np.linalg.solve(H, F.T @ E)
+        sigma = np.sqrt(np.sum((E - F @ c) ** 2) / E.size)
+    return Level(
+        noise, float(sigma), float(-0.5 * (2 * E.size * np.log(sigma) + filter_.log_determinant))
+    )
+
+
+def fit_noise(
+    plant: LinearPlant, e: np.ndarray, J: np.ndarray, prior: np.ndarray, sampling_time: float
+) -> Level:
+    """The most likely noise of a residual.
+
+    Args:
+        plant: the linearised plant.
+        e: residual, shape (N, ny).
+        J: sensitivities, shape (N, ny, p).
+        prior: 1/std of each parameter's prior, shape (p,).
+        sampling_time: [s].
+    """
+    with threadpool_limits(1, "blas"):  # the matrices are small; threads only wait for each other
+
+        def at(level: float, time: float) -> Level:
+            ratio = level * unit_ratio(plant, sampling_time, time) if level else 0.0
+            noise = Noise(ratio, time)
+            return likelihood(whitener(plant, noise, sampling_time), noise, e, J, prior)
+
+        tried = {(level, TIMES[1]): at(level, TIMES[1]) for level in LEVELS}
+
+        def best() -> tuple[float, float]:
+            return max(tried, key=lambda key: tried[key].log_likelihood)
+
+        if best()[0] > 0:
+            for time in TIMES:
+                tried[best()[0], time] = at(best()[0], time)
+            for factor in (1.8, 1 / 1.8, 1.35, 1 / 1.35):
+                level, time = best()
+                tried[level * factor, time] = at(level * factor, time)
+        return tried[best()]

@@ -1,0 +1,94 @@
+"""What the sensors and the unlogged inputs do to the outputs: a whitening filter for it.
+
+    δx_{k+1} = A_k δx_k + B_k w_k          w: unlogged error of each input
+    w_{k+1}  = a w_k + √(1-a²) ρ ν_k        of std ρ σ, correlation time τ, a = exp(-T_s/τ)
+    e_k      = C δx_k + σ v_k               v, ν: white, of unit variance
+
+The Kalman filter of this model turns residuals into innovations that are white where the model is
+right (Kailath 1968): innovations of residual and sensitivities alike make generalised least
+squares and likelihoods as easy as with white noise. σ scales everything and is estimated last.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from identification.discovery.linear import LinearPlant
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Levels of the noise.
+
+    Attributes:
+        ratio: ρ, std of the inputs' error over σ [unit of the input per unit of the output].
+        time: τ, correlation time of the inputs' error [s].
+    """
+
+    ratio: float
+    time: float
+
+
+@dataclass(frozen=True)
+class Whitener:
+    """A whitening filter: apply it to residuals and sensitivities alike.
+
+    Attributes:
+        A: transition of state and disturbance, shape (N-1, nz, nz).
+        C: shape (ny, nz).
+        K: gains, shape (N, nz, ny).
+        L: Cholesky factors of the innovations' covariance over σ², inverted, shape (N, ny, ny).
+        log_determinant: Σ log det of the covariances over σ².
+    """
+
+    A: np.ndarray
+    C: np.ndarray
+    K: np.ndarray
+    L: np.ndarray
+    log_determinant: float
+
+    def __call__(self, e: np.ndarray) -> np.ndarray:
+        """Innovations of e, shape (n, ny) or (n, ny, p) for n <= N samples, in units of σ."""
+        if not self.A.size:
+            return np.array(e)
+        columns = e.reshape(*e.shape[:2], -1)
+        z = np.zeros((self.A.shape[1], columns.shape[2]))
+        out = np.empty_like(columns)
+        for k in range(len(columns)):
+            innovation = columns[k] - self.C @ z
+            out[k] = self.L[k] @ innovation
+            if k + 1 < len(columns):
+                z = self.A[k] @ (z + self.K[k] @ innovation)
+        return out.reshape(e.shape)
+
+
+def whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
+    """The whitening filter for a level of noise; the start is known (its errors are parameters)."""
+    n, nx, nu = plant.B.shape
+    ny = len(plant.C)
+    if noise.ratio == 0:
+        return Whitener(np.empty((0, 0, 0)), plant.C, np.empty(0), np.empty(0), 0.0)
+    a = np.exp(-sampling_time / noise.time)
+    A = np.zeros((n, nx + nu, nx + nu))
+    A[:, :nx, :nx], A[:, :nx, nx:] = plant.A, plant.B
+    A[:, nx:, nx:] = a * np.eye(nu)
+    C = np.hstack([plant.C, np.zeros((ny, nu))])
+    P = np.zeros((nx + nu, nx + nu))
+    steady = noise.ratio**2 * np.eye(nu)
+    P[nx:, nx:] = steady
+    K, L, log_determinant = np.empty((n + 1, nx + nu, ny)), np.empty((n + 1, ny, ny)), 0.0
+    for k in range(n + 1):
+        PC = P @ C.T
+        S = C @ PC + np.eye(ny)
+        factor = np.linalg.cholesky(S)
+        L[k] = solve_triangular(factor, np.eye(ny), lower=True, check_finite=False)
+        K[k] = PC @ L[k].T @ L[k]
+        log_determinant += 2 * np.log(np.diag(factor)).sum()
+        if k < n:
+            P = A[k] @ (P - K[k] @ PC.T) @ A[k].T
+            P[nx:, nx:] += (1 - a**2) * steady
+            P = (P + P.T) / 2
+    return Whitener(A, C, K, L, log_determinant)

@@ -1,0 +1,81 @@
+"""A plant at one set of values: residual, sensitivities and linearisation along the trajectory.
+
+    e = y - ŷ(q),   Φ = ∂ŷ/∂q,   δx_{k+1} = A_k δx_k + B_k δu_k
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from identification.coordinates import Coordinates
+from identification.discovery.linear import LinearPlant, linearise
+from identification.log import Log
+from identification.predictor import Predictor
+
+STEP = 1e-4  # of q, for forward differences
+
+
+@dataclass(frozen=True)
+class Point:
+    """What is known at q.
+
+    Attributes:
+        predictor: plant, log, and names of the free parameters.
+        space: their coordinates.
+        q: where, shape (p,).
+        e: residual, shape (N, ny).
+        J: sensitivities Φ, shape (N, ny, p).
+        linear: the plant linearised along its trajectory.
+    """
+
+    predictor: Predictor
+    space: Coordinates
+    q: np.ndarray
+    e: np.ndarray
+    J: np.ndarray
+    linear: LinearPlant
+
+    @property
+    def log(self) -> Log:
+        """The log that is explained."""
+        return self.predictor.log
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Values of all parameters that are not the plant's own, in their units."""
+        free = dict(zip(self.space.names, self.space.decode(self.q).tolist(), strict=True))
+        return {**self.predictor.fixed, **free}
+
+
+def point(
+    predictor: Predictor, space: Coordinates, q: np.ndarray, linear: LinearPlant | None = None
+) -> Point:
+    """Simulate a plant and its sensitivities at q, all in one batch.
+
+    Args:
+        predictor: plant, log and free parameters.
+        space: coordinates of the free parameters.
+        q: shape (p,).
+        linear: the linearisation, where an older one is good enough.
+
+    Raises:
+        DivergenceError: a simulation left the finite numbers.
+    """
+    inside = np.clip(q, space.lower, space.upper)
+    moves = np.where(inside + STEP > space.upper, -STEP, STEP)
+    values = space.decode(np.vstack([inside, inside + np.diag(moves)]))
+    predicted = predictor.predict(values)
+    J = np.moveaxis((predicted[1:] - predicted[0]) / moves[:, None, None], 0, -1)
+    if linear is None:
+        linear = linearise(predictor, values[0])
+    return Point(predictor, space, inside, predictor.log.outputs - predicted[0], J, linear)
+
+
+def beyond(at: Point, whole: Log) -> Point:
+    """The same values on a longer log, whose first samples are the point's own."""
+    predictor = replace(at.predictor, log=whole)
+    values = at.space.decode(at.q)
+    e = whole.outputs - predictor.predict(values)[0]
+    return Point(predictor, at.space, at.q, e, at.J[:0], linearise(predictor, values))
