@@ -1,0 +1,112 @@
+"""What each candidate would do to the outputs: its sensitivities, many candidates in one batch.
+
+    S_j = (ŷ(θ, η_j = h_j) - ŷ(θ, 0))/h_j          h_j: a probe that a log would show
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from identification.discovery.point import Point
+from identification.effect import Candidate, Effect
+from identification.errors import DivergenceError, InputError
+from identification.predictor import Predictor
+
+BATCH = 48  # simulations at a time: bounds the memory of their trajectories
+
+
+@dataclass(frozen=True)
+class Column:
+    """Sensitivities of one candidate.
+
+    Attributes:
+        candidate: which.
+        S: shape (N, ny, m), per unit of each of its m sizes.
+    """
+
+    candidate: Candidate
+    S: np.ndarray
+
+
+def common(effects: Sequence[Effect]) -> tuple[Candidate, ...]:
+    """Every effect with all its shapes where it acts everywhere, or at all its single places."""
+    out = []
+    for effect in effects:
+        everywhere = [where for where, suffix in effect.places.items() if not suffix]
+        for where in everywhere or effect.places:
+            out += [Candidate(effect, where, shape) for shape in shapes(effect)]
+    return tuple(out)
+
+
+def single(best: Sequence[Candidate]) -> tuple[Candidate, ...]:
+    """The same effects at each of their single places, with the shapes given."""
+    return tuple(
+        Candidate(c.effect, where, c.shape)
+        for c in best
+        if not c.effect.places[c.where]
+        for where, suffix in c.effect.places.items()
+        if suffix
+    )
+
+
+def shapes(effect: Effect) -> Iterator[dict[str, float]]:
+    """All combinations of the grids of an effect's shapes."""
+    for values in product(*(shape.grid for shape in effect.shapes)):
+        yield dict(zip((shape.name for shape in effect.shapes), values, strict=True))
+
+
+def columns(at: Point, candidates: Sequence[Candidate]) -> tuple[Column, ...]:
+    """Sensitivities of candidates at a point; one whose simulation diverges is left out.
+
+    Args:
+        at: where; the candidates' own sizes are zero there.
+        candidates: which.
+    """
+    predicted = at.log.outputs - at.e
+    out: list[Column] = []
+    for group in _groups(candidates):
+        try:
+            out += _batch(at, group, predicted)
+        except (DivergenceError, InputError):
+            for candidate in group:
+                try:
+                    out += _batch(at, [candidate], predicted)
+                except (DivergenceError, InputError):
+                    continue
+    return tuple(out)
+
+
+def _groups(candidates: Sequence[Candidate]) -> Iterator[list[Candidate]]:
+    group: list[Candidate] = []
+    for candidate in candidates:
+        if sum(len(c.sizes) for c in (*group, candidate)) > BATCH and group:
+            yield group
+            group = []
+        group.append(candidate)
+    if group:
+        yield group
+
+
+def _batch(at: Point, group: list[Candidate], predicted: np.ndarray) -> list[Column]:
+    own = at.values
+    names = list(dict.fromkeys([*own, *(n for c in group for n in (*c.sizes, *c.fixed))]))
+    parameters = at.predictor.plant.parameters
+    nominal = [own.get(name, parameters[name].value) for name in names]
+    rows, probes = [], []
+    for c in group:
+        for name, size in zip(c.sizes, c.effect.sizes, strict=True):
+            row = dict(zip(names, nominal, strict=True))
+            probe = -size.probe if size.sign < 0 else size.probe
+            rows.append([*{**row, **c.fixed, name: row[name] + probe}.values()])
+            probes.append(probe)
+    moved = Predictor(at.predictor.plant, at.log, tuple(names)).predict(np.array(rows))
+    S = (moved - predicted) / np.array(probes)[:, None, None]
+    ends = np.cumsum([len(c.sizes) for c in group])
+    return [
+        Column(c, np.moveaxis(S[end - len(c.sizes) : end], 0, -1))
+        for c, end in zip(group, ends, strict=True)
+    ]

@@ -1,0 +1,161 @@
+"""Score tests: what each candidate would explain of a residual, the base parameters re-tuned.
+
+    E, Φ, S_j                    whitened residual and sensitivities
+    r⊥ = r - Φ (ΦᵀΦ + P)⁻¹ Φᵀ r  what re-tuning within the priors P cannot imitate
+    η̂_j = (S⊥ᵀS⊥)⁻¹ S⊥ᵀE⊥       the size, at once
+    LR_j = 2 max_ρ log L_j(ρ) - 2 max_ρ log L_0(ρ)
+
+Each candidate is judged with the noise that is the most likely *with it*: an effect that is truly
+missing looks like input noise until it is there. p-values hold the noise of the nominal model,
+
+    p_j = P(χ²_m > η̂ᵀ S⊥ᵀS⊥ η̂/σ²)          halved where physics admits one sign only,
+
+and are checked by scores summed over blocks, whose scatter needs no noise model (White 1980):
+
+    LM = sᵀ (Σ_b g_b g_bᵀ)⁻¹ s,  g_b = Σ_{k in b} S⊥ᵀE⊥,     F = LM (B - m)/((B - LM) m)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+from scipy.stats import f as f_distribution
+from threadpoolctl import threadpool_limits
+
+from identification.discovery.columns import Column
+from identification.discovery.noise_fit import Level
+from identification.discovery.noise_model import Noise, whitener
+from identification.discovery.point import Point
+from identification.effect import Candidate
+
+BLOCKS = 40
+SMALLER = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # noise of the inputs to try, in units of the nominal
+
+
+@dataclass(frozen=True)
+class Score:
+    """What a candidate would explain.
+
+    Attributes:
+        candidate: which.
+        size: η̂, shape (m,), in the units of its sizes.
+        std: of η̂, by the noise with the candidate, shape (m,).
+        gain: LR_j.
+        p_value: that as much is explained by chance.
+        block_p_value: the same, by blocks.
+        identifiable: share of its sensitivity that re-tuning cannot imitate, 0 to 1.
+        level: the noise with it.
+    """
+
+    candidate: Candidate
+    size: np.ndarray
+    std: np.ndarray
+    gain: float
+    p_value: float
+    block_p_value: float
+    identifiable: float
+    level: Level
+
+
+def score(
+    at: Point, level: Level, prior: np.ndarray, columns: Sequence[Column]
+) -> tuple[Score, ...]:
+    """Score candidates at a point, the best first.
+
+    Args:
+        at: the fitted model.
+        level: its noise.
+        prior: 1/std of the priors of its parameters, shape (p,).
+        columns: sensitivities of the candidates.
+    """
+    stacked = np.concatenate([at.e[..., None], at.J, *(c.S for c in columns)], axis=2)
+    with threadpool_limits(1, "blas"):
+        seen = [
+            _Projected(at, Noise(level.noise.ratio * share, level.noise.time), stacked,
+                       prior * level.sigma, columns)
+            for share in (SMALLER if level.noise.ratio else (1.0,))
+        ]  # fmt: skip
+        nominal = max(p.log_likelihood(p.rest) for p in seen)
+        out = [_score(j, column, seen, nominal) for j, column in enumerate(columns)]
+    return tuple(sorted(out, key=lambda s: -s.gain))
+
+
+class _Projected:
+    """Residual and columns under one noise, with the base parameters projected out."""
+
+    def __init__(
+        self, at: Point, noise: Noise, stacked: np.ndarray, ridge: np.ndarray,
+        columns: Sequence[Column],
+    ) -> None:  # fmt: skip
+        filter_ = whitener(at.linear, noise, at.log.sampling_time)
+        W = filter_(stacked)
+        p = at.J.shape[2]
+        self.noise, self.samples, self.log_determinant = noise, at.e.size, filter_.log_determinant
+        F = W[..., 1 : 1 + p].reshape(-1, p)
+        rest = np.delete(W, np.s_[1 : 1 + p], axis=2)
+        flat = rest.reshape(len(F), -1)
+        C = np.linalg.solve(F.T @ F + np.diag(ridge**2), F.T @ flat)
+        self.raw = np.einsum("ij,ij->j", flat, flat)[1:]
+        flat = flat - F @ C
+        # With priors the projection is oblique: their part of the criterion belongs to the Gram.
+        self.gram = flat.T @ flat + C.T @ (C * (ridge**2)[:, None])
+        self.rest = float(self.gram[0, 0])
+        self.perpendicular = flat.reshape(*rest.shape)
+        ends = 1 + np.cumsum([c.S.shape[2] for c in columns])
+        self.slices = [slice(e - c.S.shape[2], e) for c, e in zip(columns, ends, strict=True)]
+
+    def log_likelihood(self, sum_of_squares: float) -> float:
+        n = self.samples
+        return -0.5 * (n * np.log(sum_of_squares / n) + self.log_determinant)
+
+    def solve(self, j: int, signs: Sequence[int]) -> tuple[np.ndarray, np.ndarray, float]:
+        """η̂, its Gram matrix and the sum of squares with the candidate."""
+        s = self.slices[j]
+        H, b = self.gram[s, s], self.gram[s, 0]
+        size = np.linalg.lstsq(H, b, rcond=1e-12)[0]
+        if len(signs) == 1 and signs[0] * size[0] < 0:
+            return size, H, self.rest  # physics does not admit it
+        return size, H, max(self.rest - float(b @ size), 1e-12 * self.rest)
+
+
+def _score(j: int, column: Column, seen: Sequence[_Projected], nominal: float) -> Score:
+    signs = [s.sign for s in column.candidate.effect.sizes]
+    solved = [(p, *p.solve(j, signs)) for p in seen]
+    best = max(solved, key=lambda s: s[0].log_likelihood(s[3]))
+    with_it, size, H, squares = best
+    sigma = np.sqrt(squares / with_it.samples)
+    gain = 2 * (with_it.log_likelihood(squares) - nominal)
+    null = max(solved, key=lambda s: s[0].log_likelihood(s[0].rest))
+    m = len(signs)
+    statistic = (null[0].rest - null[3]) / (null[0].rest / null[0].samples)
+    one_sided = m == 1 and signs[0] != 0
+    s = null[0].slices[j]
+    own = np.trace(null[2])
+    return Score(
+        column.candidate,
+        size,
+        sigma * np.sqrt(np.diag(np.linalg.pinv(H, rcond=1e-12, hermitian=True))),
+        float(gain),
+        float(chi2.sf(statistic, m)) * (0.5 if one_sided else 1.0),
+        _by_blocks(null[0].perpendicular[..., 0], null[0].perpendicular[..., s], null[1], signs),
+        float(own / max(null[0].raw[s.start - 1 : s.stop - 1].sum(), 1e-300)),
+        Level(with_it.noise, float(sigma), with_it.log_likelihood(squares)),
+    )
+
+
+def _by_blocks(e: np.ndarray, S: np.ndarray, size: np.ndarray, signs: Sequence[int]) -> float:
+    """p-value of the block-robust score test."""
+    m = S.shape[2]
+    if m == 1 and signs[0] * size[0] < 0:
+        return 1.0
+    blocks = min(BLOCKS, len(e) // 10)
+    starts = np.linspace(0, len(e), blocks, endpoint=False).astype(int)
+    g = np.add.reduceat(np.einsum("nip,ni->np", S, e), starts, axis=0)
+    s = g.sum(axis=0)
+    LM = float(s @ np.linalg.pinv(g.T @ g, rcond=1e-12, hermitian=True) @ s)
+    F = LM * (blocks - m) / (max(blocks - LM, 1e-9) * m)
+    p = float(f_distribution.sf(F, m, blocks - m))
+    return p / 2 if m == 1 and signs[0] != 0 else p
