@@ -94,6 +94,8 @@ def _platform(
     body.userdata = np.concatenate(
         [np.zeros(0), *(drive_values(e.effect, p)[:, 0] for e in layout if e.on_platform)]
     )
+    if any(e.effect.entries for e in layout):
+        body.simple = False  # else its centre of mass could not be moved after compiling
     for e in layout:
         for path, value in zip(e.effect.entries, drive_values(e.effect, p)[:, 0], strict=False):
             field, column = entry(path)

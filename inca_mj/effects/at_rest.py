@@ -3,7 +3,7 @@
 The robot starts at rest, effects and all: the pretension balances what they do to the ways of the
 cables and to the platform's load, and d₀(0) follows from the cable's own law.
 
-    T(0) = λ ε + ΔT(ε)        solved for ε by fixed-point steps
+    T(0) = λ ε + ΔT(ε)        solved for ε by secant steps
 """
 
 from __future__ import annotations
@@ -14,12 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from inca_mj.effects.hooks import Drive, DriveEffect
+from inca_mj.effects.hooks import Drive, DriveEffect, Platform
 from inca_mj.effects.values import drive_values, present
 from inca_mj.geometry import DRIVES, Geometry
 from inca_mj.kinematics import rotation
 from inca_mj.parameters import GRAVITY
 
+SECANTS = 12  # more than enough: each adds half as many digits again
 UNKNOWN = dict.fromkeys(Drive._fields, np.nan)
 
 
@@ -44,9 +45,13 @@ class Change:
     def strain(self, T: np.ndarray) -> np.ndarray:
         """ε(0) at tensions T, shape (8,)."""
         lambda_ = self.values["lambda"]
-        strain = T / lambda_
-        for _ in range(20 if self.stiffening else 0):
-            strain = (T - self._added(strain)) / lambda_
+        one = np.ones(DRIVES)
+        strain, last, error = T / lambda_, 0 * one, -T
+        for _ in range(SECANTS if self.stiffening else 0):
+            wrong = lambda_ * strain + self._added(strain) - T
+            moved = (strain != last) & (wrong != error)
+            slope = np.divide(wrong - error, strain - last, where=moved, out=lambda_ * one)
+            last, error, strain = strain, wrong, strain - wrong / slope
         return strain
 
     def _added(self, strain: np.ndarray) -> np.ndarray:
@@ -86,6 +91,9 @@ def change_at_rest(
             if effect.force is not None:
                 F = np.array(effect.force(s, tuple(p[:, k])))
                 load -= np.concatenate([F, np.cross(geometry.B[k] @ R.T, F)])
+        if effect.wrench is not None:
+            still = Platform(0.0, *pose[:3], *np.zeros(6))
+            load -= np.array(effect.wrench(still, tuple(p[:, 0])))
         if effect.entries:  # the centre of mass lies elsewhere in the platform
             F = np.array([0, 0, -values["m"] * GRAVITY])
             load -= np.concatenate([np.zeros(3), np.cross(R @ p[:, 0], F)])
@@ -95,4 +103,4 @@ def change_at_rest(
 
 def _touches(effect: DriveEffect) -> bool:
     """Whether an effect can change anything at rest."""
-    return any((effect.path, effect.force, effect.tension, effect.entries))
+    return any((effect.path, effect.force, effect.tension, effect.wrench, effect.entries))
