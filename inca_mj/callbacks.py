@@ -92,7 +92,7 @@ def callbacks(layout: Layout) -> dict[str, Callable[..., Any]]:
         length, rate = double(d, D.ten_length, k), double(d, D.ten_velocity, k)
         d_0 = load_constant(_act(m, d, i))
         R, lambda_, b = drive(m, i, law.R), cable(m, k, law.LAMBDA), cable(m, k, law.B)
-        R_0, gx, gy, gz = R, 0.0, 0.0, 0.0
+        gx, gy, gz = 0.0, 0.0, 0.0
         x, y, z, current, more = np.nan, np.nan, np.nan, np.nan, 0.0
         if some and word(m, M.nuser_actuator) > KEY:
             row, act = _row(m, i), _act(m, d, i)
@@ -104,7 +104,7 @@ def callbacks(layout: Layout) -> dict[str, Callable[..., Any]]:
                 drive(m, i, law.BETA), double(m, M.actuator_gear, 6 * i), lambda_,
             )  # fmt: skip
             s = _moving(rest, phi, omega, length, np.nan, np.nan, np.nan)
-            R_0, R = R + added_radius(rest, row, act), R + added_radius(s, row, act)
+            R += added_radius(s, row, act)
             longer, gx, gy, gz = added_path(s, row, act)
             length += longer
             if gx != 0.0 or gy != 0.0 or gz != 0.0:
@@ -119,8 +119,9 @@ def callbacks(layout: Layout) -> dict[str, Callable[..., Any]]:
         d_0_dot = law.no_load_rate(length, d_0, omega, R)
         T = law.tension(length, rate, d_0, d_0_dot, lambda_, b, more)
         F_s = law.spring_force(
-            phi, R_0, drive(m, i, law.R_S), drive(m, i, law.K_S), drive(m, i, law.T_0)
-        )
+            phi, drive(m, i, law.R), drive(m, i, law.R_S), drive(m, i, law.K_S),
+            drive(m, i, law.T_0),
+        )  # fmt: skip
         return phi, omega, length, d_0, d_0_dot, T, F_s, R, (gx, gy, gz), (x, y, z), current
 
     @njit

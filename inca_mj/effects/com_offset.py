@@ -1,4 +1,7 @@
-"""Offset of the centre of mass: the platform is heavier on one side."""
+"""Offset of the centre of mass: the platform is heavier on one side.
+
+The platform's frame stays in its centre of mass, so the connectors move the other way: b_i - c.
+"""
 
 from identification.effect import Effect, Size
 from inca_mj.effects.hooks import DriveEffect
@@ -17,5 +20,5 @@ COM_OFFSET = DriveEffect(
         phrase="platform: centre of mass is elsewhere",
         reference="thesis 2.36",
     ),
-    entries=("ipos[0]", "ipos[1]", "ipos[2]"),
+    centre=True,
 )

@@ -1,6 +1,6 @@
 """Lag of the current loop: the motor's current follows the log's as a first-order filter.
 
-    τ i̇ = u - i,  i(0) = u(0)
+    τ i̇ = u - i,  i(0) = 0: no current before the first sample, as of a delay
 
 u is constant over a step, so the mean of i over it is exact for every τ >= 0:
 
@@ -21,7 +21,7 @@ def inputs(currents: np.ndarray, step: float, p: np.ndarray) -> np.ndarray:
     for k, tau in enumerate(p[0]):
         if tau > 0:
             u, keep = currents[:, k], np.exp(-step / tau)
-            i, _ = lfilter([0.0, 1 - keep], [1.0, -keep], u, zi=u[:1])
+            i, _ = lfilter([0.0, 1 - keep], [1.0, -keep], u, zi=[0.0])
             out[:, k] = u + (i - u) * (tau / step) * (1 - keep)
     return out
 

@@ -51,7 +51,7 @@ class DriveEffect:
         rate: (Drive, p) -> ẋ of the effect's own state, which starts at `rest`.
         rest: "zero", or "strain": where x starts.
         inputs: (currents (steps, 8), step [s], p (k, 8)) -> currents; numpy, before the model.
-        entries: paths into the model instead of hooks, one per size.
+        centre: its sizes x, y, z [m] move the centre of mass; it has no hooks.
     """
 
     effect: Effect
@@ -65,7 +65,7 @@ class DriveEffect:
     rate: Hook | None = None
     rest: str = "zero"
     inputs: Hook | None = None
-    entries: tuple[str, ...] = ()
+    centre: bool = False
 
     @property
     def name(self) -> str:
