@@ -28,7 +28,7 @@ ANCHOR_OFFSET = DriveEffect(
         ),
         places=ONE_DRIVE,
         phrase="geometry: an exit point is elsewhere",
-        reference="Pott 2018, section 4.2",
+        reference="Pott 2018, Cable-Driven Parallel Robots",
     ),
     path=path,
 )

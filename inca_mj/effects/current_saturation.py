@@ -29,7 +29,7 @@ CURRENT_SATURATION = DriveEffect(
         (Shape("i_max", "A", GRID, 0.05, 20.0, about="the limit"),),
         DRIVES_EACH,
         "motor: current clipped",
-        "discussed by Slotine, Li 1991",
+        "data sheet of the amplifier",
     ),
     current=current,
 )

@@ -20,7 +20,7 @@ DRUM_LAYERING = DriveEffect(
         (Size("h", "m/rad", 1e-4, 4e-7, sign=1, about="growth of the radius per angle"),),
         places=DRIVES_EACH,
         phrase="roller: cable piles up",
-        reference="Pott 2018, section 7.2",
+        reference="Pott 2018, Cable-Driven Parallel Robots",
     ),
     radius=radius,
 )
