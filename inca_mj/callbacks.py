@@ -92,7 +92,7 @@ def callbacks(layout: Layout) -> dict[str, Callable[..., Any]]:
         length, rate = double(d, D.ten_length, k), double(d, D.ten_velocity, k)
         d_0 = load_constant(_act(m, d, i))
         R, lambda_, b = drive(m, i, law.R), cable(m, k, law.LAMBDA), cable(m, k, law.B)
-        R_0, gx, gy, gz = R, 0.0, 0.0, 0.0
+        gx, gy, gz = 0.0, 0.0, 0.0
         x, y, z, current, more = np.nan, np.nan, np.nan, np.nan, 0.0
         if some and word(m, M.nuser_actuator) > KEY:
             row, act = _row(m, i), _act(m, d, i)
@@ -103,8 +103,8 @@ def callbacks(layout: Layout) -> dict[str, Callable[..., Any]]:
                 np.nan, R, drive(m, i, law.R_S), drive(m, i, law.K_S), drive(m, i, law.B_C),
                 drive(m, i, law.BETA), double(m, M.actuator_gear, 6 * i), lambda_,
             )  # fmt: skip
-            s = _moving(rest, phi, omega, length, np.nan, np.nan, np.nan, R)
-            R_0, R = R + added_radius(rest, row, act), R + added_radius(s, row, act)
+            s = _moving(rest, phi, omega, length, np.nan, np.nan, np.nan)
+            R += added_radius(s, row, act)
             longer, gx, gy, gz = added_path(s, row, act)
             length += longer
             if gx != 0.0 or gy != 0.0 or gz != 0.0:
@@ -112,27 +112,28 @@ def callbacks(layout: Layout) -> dict[str, Callable[..., Any]]:
                 rate += gx * v[0] + gy * v[1] + gz * v[2]
             d_0_dot = law.no_load_rate(length, d_0, omega, R)
             strain, strain_rate = (length - d_0) / d_0, (rate - d_0_dot) / d_0
-            s = _moving(rest, phi, omega, length, strain, strain_rate, np.nan, R)
+            s = _moving(rest, phi, omega, length, strain, strain_rate, np.nan)
             more = added_tension(s, row, act)
             if drive(m, i, KEY) != key:
                 more = np.nan
         d_0_dot = law.no_load_rate(length, d_0, omega, R)
         T = law.tension(length, rate, d_0, d_0_dot, lambda_, b, more)
         F_s = law.spring_force(
-            phi, R_0, drive(m, i, law.R_S), drive(m, i, law.K_S), drive(m, i, law.T_0)
-        )
+            phi, drive(m, i, law.R), drive(m, i, law.R_S), drive(m, i, law.K_S),
+            drive(m, i, law.T_0),
+        )  # fmt: skip
         return phi, omega, length, d_0, d_0_dot, T, F_s, R, (gx, gy, gz), (x, y, z), current
 
     @njit
     def seen(m, d, i, now):  # type: ignore[no-untyped-def]
         """Drive i as the hooks behind the tension see it."""
-        phi, omega, length, d_0, _, T, F_s, R, _, r, current = now
+        phi, omega, length, d_0, _, T, F_s, _, _, r, current = now
         k = np.int64(drive(m, i, law.CABLE))
         return Drive(
             load_constant(d + 8 * D.time), phi, omega, current, 0.0, r[0], r[1], r[2], length, d_0,
-            (length - d_0) / d_0, np.nan, T, F_s, R, drive(m, i, law.R_S), drive(m, i, law.K_S),
-            drive(m, i, law.B_C), drive(m, i, law.BETA), double(m, M.actuator_gear, 6 * i),
-            cable(m, k, law.LAMBDA),
+            (length - d_0) / d_0, np.nan, T, F_s, drive(m, i, law.R), drive(m, i, law.R_S),
+            drive(m, i, law.K_S), drive(m, i, law.B_C), drive(m, i, law.BETA),
+            double(m, M.actuator_gear, 6 * i), cable(m, k, law.LAMBDA),
         )  # fmt: skip
 
     def passive(m, d):  # type: ignore[no-untyped-def]
@@ -206,9 +207,9 @@ def callbacks(layout: Layout) -> dict[str, Callable[..., Any]]:
 
 
 @njit
-def _moving(s, phi, omega, d, strain, strain_rate, T, R):  # type: ignore[no-untyped-def]
+def _moving(s, phi, omega, d, strain, strain_rate, T):  # type: ignore[no-untyped-def]
     """A drive with its motion, and as much of its cable as is known."""
     return Drive(
         s.time, phi, omega, s.i, 0.0, s.rx, s.ry, s.rz, d, s.d_0, strain, strain_rate, T, s.F_s,
-        R, s.R_s, s.k_s, s.b_c, s.beta, s.K_t, s.lambda_,
+        s.R, s.R_s, s.k_s, s.b_c, s.beta, s.K_t, s.lambda_,
     )  # fmt: skip

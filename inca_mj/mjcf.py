@@ -20,7 +20,7 @@ from identification.parameter import ParameterSet
 from inca_mj import law
 from inca_mj.appearance import dress_drum, dress_platform, dress_world
 from inca_mj.effects.layout import KEY, Layout
-from inca_mj.effects.values import drive_values, entry
+from inca_mj.effects.values import about_centre, drive_values
 from inca_mj.geometry import DRIVES, Geometry
 from inca_mj.kinematics import quaternion
 from inca_mj.parameters import GRAVITY
@@ -88,16 +88,12 @@ def _platform(
     body.add_freejoint(name="platform")
     _weigh(body, p["m"], [p["I_x"], p["I_y"], p["I_z"]])
     body.add_site(name="platform", pos=[0, 0, 0], size=[0.004, 0.004, 0.004])
-    for k, connector in enumerate(geometry.connectors, 1):
+    for k, connector in enumerate(about_centre(geometry, layout.effects, p).connectors, 1):
         body.add_site(name=f"connector_{k}", pos=connector, size=[0.006, 0.006, 0.006])
     dress_platform(body, geometry)
     body.userdata = np.concatenate(
         [np.zeros(0), *(drive_values(e.effect, p)[:, 0] for e in layout if e.on_platform)]
     )
-    for e in layout:
-        for path, value in zip(e.effect.entries, drive_values(e.effect, p)[:, 0], strict=False):
-            field, column = entry(path)
-            getattr(body, field)[column] = value
 
 
 def check_inertia(values: Mapping[str, float]) -> None:
@@ -161,7 +157,7 @@ def _drive(
     row[law.ACTUATOR_TAG], row[law.CABLE] = law.TAG, k - 1
     row[[law.R, law.R_S, law.K_S]] = p["R"], p["R_s"], p["k_s"]
     row[[law.B_C, law.BETA]] = p["b_c"], p["beta"]
-    row[law.T_0] = start(parameters, geometry, layout.effects).tension[k - 1]
+    row[law.T_0] = start(parameters, geometry, layout).balance[k - 1]
     spec.add_actuator(
         name=f"current_{k}",
         target=f"motor_{k}",
@@ -206,6 +202,6 @@ def _sensors(spec: mujoco.MjSpec) -> None:
 def _keyframe(
     spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry, layout: Layout
 ) -> None:
-    at = start(parameters, geometry, layout.effects)
+    at = start(parameters, geometry, layout)
     qpos = np.concatenate([at.pose[:3], quaternion(*at.pose[3:]), np.zeros(DRIVES)])
     spec.add_key(name="start", qpos=qpos, act=activations(at, layout))

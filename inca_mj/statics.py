@@ -4,12 +4,13 @@
     T(0) = t₀ + W⁺ (w - W t₀)                     nearest (least squares) to t₀ = 4 N each
     d₀(0) = λ d/(λ + T(0))                        (thesis 2.24, 2.25 at rest)
 
-w = (0, 0, m g, 0, 0, 0) is the weight to carry.
+w = (0, 0, m g, 0, 0, 0) is the weight to carry. What candidate effects change of it: see
+`inca_mj.effects.at_rest`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,11 +18,13 @@ import numpy as np
 from identification.errors import InputError
 from identification.parameter import ParameterSet
 from inca_mj.effects.at_rest import Change, change_at_rest
-from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.layout import Layout
+from inca_mj.effects.values import about_centre
 from inca_mj.geometry import Geometry
 from inca_mj.kinematics import cables, length_jacobian, rotation
 from inca_mj.parameters import GRAVITY, PRETENSION
+
+NO_EFFECTS = Layout()
 
 
 @dataclass(frozen=True)
@@ -33,12 +36,14 @@ class Start:
         tension: T(0), shape (8,) [N].
         no_load_length: d₀(0), shape (8,) [m].
         strain: ε(0) of each cable, shape (8,).
+        balance: what the drum springs balance, at the roller of the model, shape (8,) [N].
     """
 
     pose: np.ndarray
     tension: np.ndarray
     no_load_length: np.ndarray
     strain: np.ndarray
+    balance: np.ndarray
 
 
 def pretension(
@@ -83,29 +88,31 @@ def pretension(
     return T
 
 
-def start(
-    parameters: ParameterSet, geometry: Geometry, effects: Sequence[DriveEffect] = ()
-) -> Start:
+def start(parameters: ParameterSet, geometry: Geometry, layout: Layout = NO_EFFECTS) -> Start:
     """The start that parameters and geometry imply: T(0) and d₀(0) follow from pose, m and λ.
 
     Raises:
         InputError: as `pretension`.
     """
-    return start_from(parameters.values(), geometry, effects)
+    return start_from(parameters.values(), geometry, layout)
 
 
 def start_from(
-    values: Mapping[str, float], geometry: Geometry, effects: Sequence[DriveEffect] = ()
+    values: Mapping[str, float], geometry: Geometry, layout: Layout = NO_EFFECTS
 ) -> Start:
     """`start` from plain values by name, in SI units; what candidate effects change included."""
     pose = np.array([values[name] for name in ("x", "y", "z", "roll", "pitch", "yaw")])
-    change = change_at_rest(values, pose, geometry, effects)
-    T = pretension(pose, geometry, values["m"], change)
-    d, _ = cables(pose[:3], rotation(*pose[3:]), geometry)
+    moved = about_centre(geometry, layout.effects, values)
+    change = change_at_rest(values, pose, moved, layout)
+    T = pretension(pose, moved if layout.settled else geometry, values["m"], change)
+    d, _ = cables(pose[:3], rotation(*pose[3:]), moved)
     if change is None:
-        return Start(pose, T, values["lambda"] * d / (values["lambda"] + T), T / values["lambda"])
+        d_0 = values["lambda"] * d / (values["lambda"] + T)
+        return Start(pose, T, d_0, T / values["lambda"], T)
     strain = change.strain(T)
-    return Start(pose, T, (d + change.longer) / (1 + strain), strain)
+    return Start(
+        pose, T, (d + change.longer) / (1 + strain), strain, T * (1 + change.wider / values["R"])
+    )
 
 
 def activations(begin: Start, layout: Layout) -> np.ndarray:

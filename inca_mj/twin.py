@@ -37,22 +37,24 @@ class Twin:
         geometry: where its cables begin and end.
         model: the compiled model; treat it as read-only.
         effects: candidate effects that are compiled into its law, absent while their sizes are 0.
+        settled: see `Layout`.
     """
 
     parameters: ParameterSet
     geometry: Geometry
     model: mujoco.MjModel
     effects: tuple[DriveEffect, ...] = ()
+    settled: bool = False
 
     @property
     def layout(self) -> Layout:
         """Where the parameters of its effects are in the model."""
-        return Layout(self.effects)
+        return Layout(self.effects, self.settled)
 
     @property
     def start(self) -> Start:
         """The pretensioned start that the parameters imply."""
-        return start(self.parameters, self.geometry, self.effects)
+        return start(self.parameters, self.geometry, self.layout)
 
     def state(self) -> State:
         """The start as a MuJoCo state."""
@@ -68,9 +70,9 @@ class Twin:
         parameters = self.parameters.with_values(values)
         check_inertia(parameters.values())
         model = copy.copy(self.model)
-        write_values(model, parameters, self.layout)
-        begin = start(parameters, self.geometry, self.effects)
-        model.actuator_user[:, law.T_0] = begin.tension
+        write_values(model, parameters, self.geometry, self.layout)
+        begin = start(parameters, self.geometry, self.layout)
+        model.actuator_user[:, law.T_0] = begin.balance
         state = start_state(begin, self.layout)
         model.qpos0[:] = model.key("start").qpos[:] = state.qpos
         model.key("start").act[:] = state.act
@@ -93,18 +95,18 @@ class Twin:
         native.install(self.layout)
         own = self.parameters.values()
         starts = [
-            start_from({**own, **dict(zip(names, row, strict=True))}, self.geometry, self.effects)
+            start_from({**own, **dict(zip(names, row, strict=True))}, self.geometry, self.layout)
             for row in values
         ]
-        tensions = np.array([begin.tension for begin in starts])
+        balance = np.array([begin.balance for begin in starts])
         numbers = [
             (resolve(self.model, self.parameters[name].where), column)
             for name, column in zip(names, values.T, strict=True)
             if self.parameters[name].where not in ("start", "effect")
         ]
-        numbers += effect_numbers(self.layout, names, own, values, self.model.body("platform").id)
+        numbers += effect_numbers(self.layout, names, own, values, self.model, self.geometry)
         numbers += [
-            (Slot("actuator_user", (i,), law.T_0), column) for i, column in enumerate(tensions.T)
+            (Slot("actuator_user", (i,), law.T_0), column) for i, column in enumerate(balance.T)
         ]
         states = [start_state(begin, self.layout) for begin in starts]
         rows = (np.array([getattr(s, field) for s in states]) for field in ("qpos", "qvel", "act"))
@@ -136,6 +138,7 @@ def build_twin(
     *,
     timestep: float = TIMESTEP,
     effects: Sequence[DriveEffect] = (),
+    settled: bool = False,
 ) -> Twin:
     """Build and compile the robot, and install the law of its cables in this process.
 
@@ -144,29 +147,32 @@ def build_twin(
         geometry: anchors of the cables; assumed ones by default.
         timestep: of the RK4 integrator [s].
         effects: candidate effects to compile into the law; their sizes become parameters.
+        settled: see `Layout`.
 
     Raises:
         InputError: the start has no pretension, two effects have one name, or another library
             holds MuJoCo's callbacks.
     """
-    layout = Layout(tuple(effects))
+    layout = Layout(tuple(effects), settled)
     parameters = with_effects(parameters or parameter_set(), layout.effects)
     native.install(layout)
     spec = build(parameters, geometry, layout)
     spec.option.timestep = timestep
     model = spec.compile()
-    write_values(model, parameters, layout)
-    return Twin(parameters, geometry, model, layout.effects)
+    write_values(model, parameters, geometry, layout)
+    return Twin(parameters, geometry, model, layout.effects, settled)
 
 
-def write_values(model: mujoco.MjModel, parameters: ParameterSet, layout: Layout) -> None:
+def write_values(
+    model: mujoco.MjModel, parameters: ParameterSet, geometry: Geometry, layout: Layout
+) -> None:
     """Write all model parameters into mjModel, in place; the start's follow in `Twin`."""
     for parameter in parameters:
         if parameter.where not in ("start", "effect"):
             write(model, resolve(model, parameter.where), parameter.value)
-    own, platform = parameters.values(), model.body("platform").id
+    own = parameters.values()
     for slot, column in effect_numbers(layout, tuple(own), own, np.array([[*own.values()]]),
-                                       platform):  # fmt: skip
+                                       model, geometry):  # fmt: skip
         write(model, slot, float(column[0]))
 
 

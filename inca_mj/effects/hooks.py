@@ -22,7 +22,7 @@ from identification.effect import Effect
 #   time [s]; phi [rad], omega [rad/s] of the motor; i [A] as logged; x own state
 #   rx, ry, rz [m] connector minus exit point, in O; d [m] path, d_0 [m] no-load length
 #   strain [-], strain_rate [1/s]; T [N], F_s [N]; R, R_s [m], k_s [N/m], b_c [N m], beta [s/rad],
-#   K_t [N m/A], lambda_ [N]
+#   K_t [N m/A], lambda_ [N]: the model's numbers, without what effects add to them
 Drive: Any = namedtuple(
     "Drive",
     "time phi omega i x rx ry rz d d_0 strain strain_rate T F_s R R_s k_s b_c beta K_t lambda_",
@@ -51,7 +51,7 @@ class DriveEffect:
         rate: (Drive, p) -> ẋ of the effect's own state, which starts at `rest`.
         rest: "zero", or "strain": where x starts.
         inputs: (currents (steps, 8), step [s], p (k, 8)) -> currents; numpy, before the model.
-        entries: paths into the model instead of hooks, one per size.
+        centre: its sizes x, y, z [m] move the centre of mass; it has no hooks.
     """
 
     effect: Effect
@@ -65,7 +65,7 @@ class DriveEffect:
     rate: Hook | None = None
     rest: str = "zero"
     inputs: Hook | None = None
-    entries: tuple[str, ...] = ()
+    centre: bool = False
 
     @property
     def name(self) -> str:

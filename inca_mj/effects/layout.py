@@ -9,7 +9,7 @@ that a model is never advanced by the law of another.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from zlib import crc32
 
 from identification.errors import InputError
@@ -51,12 +51,15 @@ class Layout:
 
     Attributes:
         effects: the set, in order.
+        settled: whether a robot starts at rest with its effects, as one that has stood for a
+            while; else with the nominal T(0), as one that was held until then.
 
     Raises:
         InputError: two effects have one name.
     """
 
     effects: tuple[DriveEffect, ...] = ()
+    settled: bool = field(default=False, compare=False)  # the compiled law is the same
 
     def __post_init__(self) -> None:
         names = [e.name for e in self.effects]
@@ -73,7 +76,7 @@ class Layout:
         drive, platform, state = FIRST, 0, 0
         for effect in self.effects:
             width = len(effect.names)
-            if effect.inputs is not None or effect.entries:
+            if effect.inputs is not None or effect.centre:
                 yield Place(effect, -1, 0)
             elif effect.wrench is not None:
                 yield Place(effect, platform, 0)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import mujoco
 import numpy as np
 
 from identification.effect import Shape, Size
@@ -16,7 +17,7 @@ from identification.paths import Slot
 from identification.predictor import Numbers
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.layout import Layout, Place
-from inca_mj.geometry import DRIVES
+from inca_mj.geometry import DRIVES, Geometry
 
 FARTHER = 5.0  # bounds of a search, in units of the largest plausible size
 
@@ -71,7 +72,7 @@ def present(effect: DriveEffect, values: Mapping[str, float]) -> bool:
 
 
 def numbers(layout: Layout, names: Sequence[str], own: Mapping[str, float], values: np.ndarray,
-            platform: int) -> Numbers:  # fmt: skip
+            model: mujoco.MjModel, geometry: Geometry) -> Numbers:  # fmt: skip
     """Model numbers of n value sets, for the effects that `names` touch.
 
     Args:
@@ -79,7 +80,8 @@ def numbers(layout: Layout, names: Sequence[str], own: Mapping[str, float], valu
         names: parameters that differ from `own`, p of them.
         own: values of all parameters.
         values: shape (n, p).
-        platform: id of the platform's body.
+        model: with the names of the robot.
+        geometry: its connectors, of which the centre of mass may move away.
     """
     touched = {name.partition(".")[0] for name in names}
     out: list[tuple[Slot, np.ndarray]] = []
@@ -87,7 +89,7 @@ def numbers(layout: Layout, names: Sequence[str], own: Mapping[str, float], valu
         if place.effect.name in touched:
             rows = [{**own, **dict(zip(names, row, strict=True))} for row in values]
             each = np.array([drive_values(place.effect, row) for row in rows])  # (n, k, 8)
-            out += _columns(place, each, platform)
+            out += _columns(place, each, model, geometry)
     return out
 
 
@@ -112,15 +114,18 @@ def inputs(
     return out
 
 
-def _columns(place: Place, each: np.ndarray, platform: int) -> Numbers:
-    effect, k = place.effect, range(each.shape[1])
-    if effect.entries:
+def _columns(place: Place, each: np.ndarray, model: mujoco.MjModel, geometry: Geometry) -> Numbers:
+    k = range(each.shape[1])
+    if place.effect.centre:
+        sites = [model.site(f"connector_{drive}").id for drive in range(1, DRIVES + 1)]
         return [
-            (Slot(f"body_{field}", (platform,), column), each[:, j, 0])
-            for j, (field, column) in zip(k, map(entry, effect.entries), strict=True)
+            (Slot("site_pos", (site,), j), b[j] - each[:, j, 0])
+            for site, b in zip(sites, geometry.B, strict=True)
+            for j in k
         ]
     if place.on_platform:
-        return [(Slot("body_user", (platform,), place.column + j), each[:, j, 0]) for j in k]
+        row = (model.body("platform").id,)
+        return [(Slot("body_user", row, place.column + j), each[:, j, 0]) for j in k]
     return [
         (Slot("actuator_user", (i,), place.column + j), each[:, j, i])
         for j in k
@@ -128,7 +133,11 @@ def _columns(place: Place, each: np.ndarray, platform: int) -> Numbers:
     ]
 
 
-def entry(path: str) -> tuple[str, int]:
-    """`ipos[2]` as an attribute of the platform's body and its column."""
-    name, _, column = path.rstrip("]").partition("[")
-    return name, int(column)
+def about_centre(
+    geometry: Geometry, effects: Sequence[DriveEffect], values: Mapping[str, float]
+) -> Geometry:
+    """The geometry with its connectors as seen from where the centre of mass is."""
+    moved = [drive_values(e, values)[:, 0] for e in effects if e.centre and present(e, values)]
+    if not moved:
+        return geometry
+    return replace(geometry, connectors=tuple(map(tuple, geometry.B - np.sum(moved, axis=0))))

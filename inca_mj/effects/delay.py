@@ -1,0 +1,43 @@
+"""Delay of the input: the current arrives late, and is zero before the first sample has arrived.
+
+    i(t) = u(t - τ)
+
+u is constant over a step, so the mean of i over it is exact for every τ >= 0: with τ = (n + f) h,
+
+    mean_k = (1 - f) u_(k-n) + f u_(k-n-1)
+"""
+
+import numpy as np
+
+from identification.effect import Effect, Size
+from inca_mj.effects.hooks import DriveEffect
+from inca_mj.effects.places import DRIVES_EACH
+
+
+def inputs(currents: np.ndarray, step: float, p: np.ndarray) -> np.ndarray:
+    """Mean delayed current of every step [A], shape (steps, 8)."""
+    out = currents.copy()
+    for k, tau in enumerate(p[0]):
+        if tau > 0:
+            n, f = divmod(tau / step, 1.0)
+            out[:, k] = (1 - f) * _late(currents[:, k], int(n)) + f * _late(
+                currents[:, k], int(n) + 1
+            )
+    return out
+
+
+def _late(u: np.ndarray, n: int) -> np.ndarray:
+    return np.concatenate([np.zeros(min(n, len(u))), u[: max(0, len(u) - n)]])
+
+
+DELAY = DriveEffect(
+    Effect(
+        "delay",
+        "pure delay of the input, zero before the first sample",
+        (Size("tau", "s", 0.02, 5e-4, sign=1, about="delay"),),
+        places=DRIVES_EACH,
+        phrase="motor: current comes late",
+        reference="Åström, Hägglund 2006",
+    ),
+    inputs=inputs,
+)
