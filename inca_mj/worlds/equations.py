@@ -35,6 +35,8 @@ from inca_mj.worlds.pulley import path
 # No disk cache: it watches this file only, and would keep an old `path` or `rotation` inside.
 compiled = njit(error_model="numpy")
 
+EDGE = 1e-9  # a rotor this near to an edge of its gap pushes it: rounding must not let go [rad]
+
 
 @compiled
 def radius(ψ: float, R: float, D: np.ndarray) -> float:
@@ -46,7 +48,8 @@ def radius(ψ: float, R: float, D: np.ndarray) -> float:
 @compiled
 def drum_rate(φ: float, ψ: float, ω: float, h: float) -> float:
     """ψ̇ of the play operator: ω where the rotor pushes an edge of the gap, else 0 [rad/s]."""
-    if h == 0.0 or (φ - ψ >= h and ω > 0.0) or (φ - ψ <= -h and ω < 0.0):
+    edge = h - EDGE
+    if h == 0.0 or (φ - ψ >= edge and ω > 0.0) or (φ - ψ <= -edge and ω < 0.0):
         return ω
     return 0.0
 
@@ -66,7 +69,9 @@ def elastic(ε: float, ε_v: float, λ: float, D: np.ndarray) -> float:
 def sagging(T: float, K: float) -> float:
     """The root of T' = T + K/T'² [N], K [N^3]: a hanging cable is longer, and never quite slack."""
     root = max(0.0, T) + K ** (1.0 / 3.0)
-    for _ in range(8):  # concave and rising: Newton comes from below after its first step
+    if T < 0.0:
+        root = min(root, sqrt(-K / T))
+    for _ in range(10):  # concave and rising: Newton comes from below after its first step
         slope = 1.0 + 2.0 * K / root**3
         root = max(root - (root - T - K / root**2) / slope, 0.1 * root)
     return root

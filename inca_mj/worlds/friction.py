@@ -54,7 +54,7 @@ class LoadDependentFriction(DriveEffect):
 
     name: ClassVar[str] = "load_dependent_friction"
     sizes: ClassVar[tuple[str, ...]] = ("mu",)
-    mu: float = 0.02
+    mu: float = 0.004
 
     def put(self, numbers: Numbers) -> None:
         """Write μ."""

@@ -4,8 +4,10 @@ Currents are a zero-order hold, and delayed ones change inside a sample: the ste
 change, so no step sees a jump. Where the current loop lags, its current is exact,
 i_m(t) = i_c + (i_m(t₀) − i_c) e^(−(t − t₀)/τ), and a lag of any τ costs nothing in stability.
 
-After each step the play is made exact: ψ ← clip(ψ, φ − h, φ + h), and the cable that this winds is
-taken off d₀. The formula is that of J. R. Dormand and P. J. Prince, J. Comp. Appl. Math. 6 (1980).
+Inside a step a rotor may meet the edge of its play, where ψ̇ jumps. After each step the play is made
+exact, ψ ← clip(ψ before, φ − h, φ + h), and the cable that this winds is taken off d₀.
+
+The formula is that of J. R. Dormand and P. J. Prince, J. Comp. Appl. Math. 6 (1980).
 """
 
 from __future__ import annotations
@@ -49,13 +51,20 @@ def limited(i: float, D: np.ndarray) -> float:
 
 
 @compiled
-def close_play(x: np.ndarray, q: np.ndarray, D: np.ndarray) -> None:
-    """Put every drum back into its gap, with the cable that it winds."""
+def close_play(x: np.ndarray, before: np.ndarray, q: np.ndarray, D: np.ndarray) -> None:
+    """Put every drum where the play operator has it, with the cable that it winds.
+
+    Args:
+        x: state after a step, changed in place, shape (60,).
+        before: ψ before the step, shape (8,) [rad].
+        q: packed numbers of the reference.
+        D: numbers of the drives.
+    """
     for k in range(8):
         h, φ, ψ = D[k, at.PLAY], x[12 + k], x[36 + k]
         if h == 0.0:
             continue
-        inside = min(max(ψ, φ - h), φ + h)
+        inside = min(max(before[k], φ - h), φ + h)
         if inside != ψ:
             Rb = times(rotation(vector(x[6:])), vector(q[45 + 3 * k :]))
             ds = (x[0] + Rb[0] - q[21 + 3 * k], x[1] + Rb[1] - q[22 + 3 * k],
@@ -87,12 +96,13 @@ def advance(t_0: float, span: float, x: np.ndarray, i_c: np.ndarray, i_m: np.nda
                     change += A[stage, before] * K[before, n_x]
                 y[n_x] = x[n_x] + h * change
             world_rate(t + C[stage] * h, y, i, q, D, P, K[stage])
+        before_step = x[at.DRUM].copy()
         for n_x in range(at.STATES):
             change = 0.0
             for stage in range(6):
                 change += B[stage] * K[stage, n_x]
             x[n_x] += h * change
-        close_play(x, q, D)
+        close_play(x, before_step, q, D)
     for k in range(8):
         i_m[k] = i_c[k]
         if D[k, at.LAG] > 0.0:

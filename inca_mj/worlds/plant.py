@@ -68,7 +68,9 @@ def make_plant(
 
     arms = n.B @ R_AB.T
     ds = p + arms - n.A
-    paths = [path(tuple(row), D[at.PULLEY], D[at.PULLEY_SIDE]) for row, D in zip(ds, n.D, strict=True)]
+    paths = [
+        path(tuple(row), D[at.PULLEY], D[at.PULLEY_SIDE]) for row, D in zip(ds, n.D, strict=True)
+    ]
     d, s = np.array([length for length, _ in paths]), np.array([list(u) for _, u in paths])
     T = _pretension(n, s, arms, d, value["m"], R_AB)
     q[base.PRETENSION] = T
@@ -113,6 +115,11 @@ def simulate_world(
 def _pretension(
     n: Numbers, s: np.ndarray, arms: np.ndarray, d: np.ndarray, m: float, R_AB: np.ndarray
 ) -> np.ndarray:
+    if not np.isfinite(d).all():
+        raise InputError(
+            f"pulley_radius: the connector of cable {int(np.isfinite(d).argmin()) + 1} is inside"
+            " its pulley; give a smaller radius"
+        )
     W = -np.vstack([s.T, np.cross(arms, s).T])
     w = np.array([0.0, 0.0, m * GRAVITY, 0.0, 0.0, 0.0])
     w[:3] -= n.carried
@@ -123,8 +130,7 @@ def _pretension(
         w[3:] -= np.cross(arms, hangs).sum(axis=0)
     t_0 = np.full(DRIVES, PRETENSION)
     T = t_0 + np.linalg.pinv(W) @ (w - W @ t_0)
-    # "not ≤" also refuses the NaN of a connector inside its pulley.
-    if not np.abs(W @ T - w).max() <= 1e-9 or T.min() <= 0:
+    if np.abs(W @ T - w).max() > 1e-9 or T.min() <= 0:
         raise InputError("no tensions that pull hold the platform at rest at this start pose")
     return T
 

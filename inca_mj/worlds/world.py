@@ -163,5 +163,5 @@ def _ratios(ratio: float | Sequence[float] | None, n: int) -> tuple[float, ...]:
 def _log(u: np.ndarray, y: np.ndarray, setting: Setting) -> Log:
     names = [tuple(f"{kind}_{k}" for k in range(1, DRIVES + 1)) for kind in ("current", "angle")]
     units = {**dict.fromkeys(names[0], "A"), **dict.fromkeys(names[1], "rad")}
-    time = np.arange(len(u)) * setting.sampling_time
+    time = setting.sampling_time * np.arange(len(u), dtype=np.float64)
     return Log(time, u, y, names[0], names[1], units=units, name="world")
