@@ -61,11 +61,14 @@ class DrumRadiusMismatch(OneDriveEffect):
 
 @dataclass(frozen=True, kw_only=True)
 class Backlash(DriveEffect):
-    """A dead zone of ±h [rad] between rotor and drum, which starts in its middle."""
+    """A dead zone of ±h [rad] between rotor and drum, which starts in its middle.
+
+    From about 0.03 rad on, the robot's motion is chaotic: no two steps give the same 20 s.
+    """
 
     name: ClassVar[str] = "backlash"
     sizes: ClassVar[tuple[str, ...]] = ("h",)
-    h: float = 0.015
+    h: float = 0.01
 
     def put(self, numbers: Numbers) -> None:
         """Write h."""

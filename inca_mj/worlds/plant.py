@@ -22,7 +22,7 @@ from inca_mj.reference import kinematics, pack
 from inca_mj.reference import layout as base
 from inca_mj.worlds import layout as at
 from inca_mj.worlds.effect import Effect, Numbers
-from inca_mj.worlds.integrate import STEP, trajectory
+from inca_mj.worlds.integrate import PLAY_STEP, STEP, trajectory
 from inca_mj.worlds.pulley import path
 
 
@@ -83,7 +83,7 @@ def make_plant(
 
 
 def simulate_world(
-    plant: Plant, currents: np.ndarray, sampling_time: float = 0.01, step: float = STEP
+    plant: Plant, currents: np.ndarray, sampling_time: float = 0.01, step: float | None = None
 ) -> np.ndarray:
     """States of a plant at the samples, shape (n, 60).
 
@@ -91,7 +91,8 @@ def simulate_world(
         plant: from `make_plant`.
         currents: commanded, held from sample to sample, shape (n, 8) [A].
         sampling_time: between samples [s].
-        step: largest step of the integrator [s].
+        step: largest step of the integrator [s]; when not given, one that leaves 1e-8 rad of error
+            in 20 s, or 5e-5 rad where a drum plays.
 
     Raises:
         InputError: the currents have another shape.
@@ -100,6 +101,8 @@ def simulate_world(
     u = np.ascontiguousarray(currents, dtype=float)
     if u.ndim != 2 or u.shape[1] != DRIVES or not np.isfinite(u).all():
         raise InputError(f"currents must be finite numbers of shape (n, {DRIVES}) [A]")
+    if step is None:  # the edges of a play fall inside steps, and cost them their order
+        step = PLAY_STEP if plant.D[:, at.PLAY].any() else STEP
     X: np.ndarray = trajectory(
         plant.start, u, float(sampling_time), plant.q, plant.D, plant.P, float(step)
     )

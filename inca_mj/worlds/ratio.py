@@ -22,7 +22,7 @@ from inca_mj.worlds.plant import make_plant, simulate_world
 
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 NEAR = 0.02  # a ratio this near to the asked one, relative, is good enough
-ATTEMPTS = 8
+ATTEMPTS = 12
 
 
 class Absorbed:
@@ -101,8 +101,13 @@ def _next(
     s: float, r: float, goal: float, below: tuple[float, float], above: tuple[float, float]
 ) -> float:
     """The next size: the chord's where both sides are known, else the proportional one."""
-    if np.isfinite(above[1]):
-        return below[0] + (above[0] - below[0]) * (goal - below[1]) / (above[1] - below[1])
+    (s_1, r_1), (s_2, r_2) = below, above
+    if np.isfinite(r_2):
+        if r_1 == 0.0:
+            return s_1 + (s_2 - s_1) * goal / r_2
+        # In logarithms a power law is straight; the bounds keep one side from creeping.
+        part = np.clip(np.log(goal / r_1) / np.log(r_2 / r_1), 0.1, 0.9)
+        return float(s_1 * (s_2 / s_1) ** part)
     if np.isfinite(above[0]):
         return 0.5 * (below[0] + above[0])
     return s * min(10.0, goal / r) if r > 0 else 10.0 * s

@@ -154,7 +154,7 @@ def test_radii_by_their_letters():
 @pytest.mark.parametrize("h", [0.01, 0.1])
 def test_the_drum_plays_behind_the_rotor(h):
     u = fine(prbs())
-    X = simulate(plant(Backlash(h=h)), u, FINE)
+    X = simulate(plant(Backlash(h=h)), u, FINE, FINE)
     φ, ψ = X[:, base.ANGLES], np.zeros((len(u), 8))
     for k in range(1, len(u)):  # the play operator, sample by sample
         ψ[k] = np.clip(ψ[k - 1], φ[k] - h, φ[k] + h)
