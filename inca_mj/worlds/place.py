@@ -1,0 +1,124 @@
+"""Geometry and platform: where points truly are, and what pushes the platform.
+
+A_i + r_p        swivelling pulley, see `inca_mj.worlds.pulley`
+A_k + (x, y, z)                                               anchor offset
+A_k + (x, y, z) sin(2πf t + φ₀)                               vibration of the frame
+b_i − c, start at p + R_AB c                                  centre of mass at c
+(x, y, z) [N] in O, at the platform's origin                  external force
+−c |v|^(n−1) v                                                air drag
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from typing import ClassVar
+
+from inca_mj.worlds import layout as at
+from inca_mj.worlds.effect import DriveEffect, Effect, Numbers, OneDriveEffect
+
+
+@dataclass(frozen=True, kw_only=True)
+class PulleyRadius(DriveEffect):
+    """A swivelling pulley of radius r_p [m] at A_i."""
+
+    name: ClassVar[str] = "pulley_radius"
+    acts_on: ClassVar[str] = "all cables"
+    sizes: ClassVar[tuple[str, ...]] = ("r_p",)
+    r_p: float = 0.01
+
+    def put(self, numbers: Numbers) -> None:
+        """Write r_p."""
+        self.column(numbers, at.PULLEY)[:] += self.r_p
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnchorOffset(OneDriveEffect):
+    """A_k moved by (x, y, z) [m]."""
+
+    name: ClassVar[str] = "anchor_offset"
+    sizes: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    x: float = 0.01
+    y: float = -0.01
+    z: float = 0.0
+
+    def put(self, numbers: Numbers) -> None:
+        """Move A_k."""
+        if self.drive is not None:
+            numbers.A[self.drive - 1] += (self.x, self.y, self.z)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrameVibration(OneDriveEffect):
+    """A_k moved by (x, y, z) sin(2πf t + φ₀) [m]; f [Hz], φ₀ [rad]. In no catalogue."""
+
+    name: ClassVar[str] = "frame_vibration"
+    sizes: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    positive: ClassVar[tuple[str, ...]] = ("frequency",)
+    x: float = 3e-4
+    y: float = 3e-4
+    z: float = 0.0
+    frequency: float = 6.3
+    phase: float = 0.0
+
+    def put(self, numbers: Numbers) -> None:
+        """Write the motion of A_k."""
+        for column, value in zip(
+            (at.SHAKE_X, at.SHAKE_Y, at.SHAKE_Z), (self.x, self.y, self.z), strict=True
+        ):
+            self.column(numbers, column)[:] += value
+        self.column(numbers, at.SHAKE_RATE)[:] = 2 * pi * self.frequency
+        self.column(numbers, at.SHAKE_PHASE)[:] = self.phase
+
+
+@dataclass(frozen=True, kw_only=True)
+class ComOffset(Effect):
+    """Centre of mass at (x, y, z) of the platform frame [m]; its inertia is about that point."""
+
+    name: ClassVar[str] = "com_offset"
+    acts_on: ClassVar[str] = "platform"
+    sizes: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    x: float = 2e-3
+    y: float = 0.0
+    z: float = -3e-3
+
+    def put(self, numbers: Numbers) -> None:
+        """Move the centre; the connectors move the other way."""
+        numbers.centre += (self.x, self.y, self.z)
+        numbers.B -= (self.x, self.y, self.z)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExternalForce(Effect):
+    """A constant force (x, y, z) [N] in O; the pretension carries it where `balanced`."""
+
+    name: ClassVar[str] = "external_force"
+    acts_on: ClassVar[str] = "platform"
+    sizes: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    x: float = 0.06
+    y: float = -0.03
+    z: float = 0.0
+    balanced: bool = False
+
+    def put(self, numbers: Numbers) -> None:
+        """Write the force."""
+        numbers.force += (self.x, self.y, self.z)
+        if self.balanced:
+            numbers.carried += (self.x, self.y, self.z)
+
+
+@dataclass(frozen=True, kw_only=True)
+class AirDrag(Effect):
+    """−c |v|^(n−1) v on the centre of mass; c [N (s/m)^n]."""
+
+    name: ClassVar[str] = "air_drag"
+    acts_on: ClassVar[str] = "platform"
+    sizes: ClassVar[tuple[str, ...]] = ("c",)
+    positive: ClassVar[tuple[str, ...]] = ("exponent",)
+    c: float = 0.15
+    exponent: float = 2.0
+
+    def put(self, numbers: Numbers) -> None:
+        """Write c and n."""
+        numbers.P[at.DRAG] += self.c
+        numbers.P[at.DRAG_POWER] = self.exponent

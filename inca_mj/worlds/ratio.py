@@ -1,0 +1,116 @@
+"""How large an effect is, as the part that the base parameters cannot absorb.
+
+    e(s)  = φ(with s times the effect) − φ(without), all samples and drives
+    S     = ∂φ/∂(base parameters, start pose), by forward differences of the world without effects
+    r(s)  = rms((I − S S⁺) e(s)) / rms(measurement noise)
+
+`sized` solves r(s) = ratio by secants; r(0) = 0, and r is nearly proportional to s mostly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from identification.errors import DivergenceError, InputError
+from identification.parameter import ParameterSet
+from inca_mj.geometry import Geometry
+from inca_mj.reference import layout as base
+from inca_mj.worlds import layout as at
+from inca_mj.worlds.effect import Effect
+from inca_mj.worlds.plant import make_plant, simulate_world
+
+POSE = ("x", "y", "z", "roll", "pitch", "yaw")
+COARSE = 1e-3  # step of these simulations: 4e-8 rad from the world's own, in half its time [s]
+NEAR = 0.02  # a ratio this near to the asked one, relative, is good enough
+ATTEMPTS = 12
+
+
+class Absorbed:
+    """What the base parameters and the start pose of a robot can absorb, for one input."""
+
+    def __init__(
+        self,
+        parameters: ParameterSet,
+        geometry: Geometry,
+        currents: np.ndarray,
+        sampling_time: float,
+        names: Sequence[str],
+    ) -> None:
+        """Take the sensitivities.
+
+        Args:
+            parameters: true values.
+            geometry: nominal.
+            currents: the input, shape (n, 8) [A].
+            sampling_time: [s].
+            names: the base parameters; the start pose is always among them.
+        """
+        self._robot = (parameters, geometry, currents, sampling_time)
+        self._without = self._angles(parameters, ())
+        columns = []
+        for name in (*names, *(pose for pose in POSE if pose not in names)):
+            value = parameters[name].value
+            h = 1e-5 if name in POSE else 1e-4 * value
+            moved = parameters.with_values({name: value + h})
+            column = self._angles(moved, ()) - self._without
+            columns.append(column / np.linalg.norm(column))
+        # Directions that differ by rounding only (as R_s and k_s do) must not count twice.
+        U, size, _ = np.linalg.svd(np.stack(columns, axis=1), full_matrices=False)
+        self._basis = U[:, size > 1e-6 * size[0]]
+
+    def rms(self, effects: Sequence[Effect]) -> float:
+        """Rms of what the base cannot absorb of these effects [rad]."""
+        e = self._angles(self._robot[0], effects) - self._without
+        e -= self._basis @ (self._basis.T @ e)
+        return float(np.sqrt(np.mean(e**2)))
+
+    def _angles(self, parameters: ParameterSet, effects: Sequence[Effect]) -> np.ndarray:
+        _, geometry, currents, sampling_time = self._robot
+        plant = make_plant(parameters, geometry, effects)
+        step = None if plant.D[:, at.PLAY].any() else COARSE
+        return simulate_world(plant, currents, sampling_time, step)[:, base.ANGLES].ravel()
+
+
+def sized(effect: Effect, absorbed: Absorbed, goal: float) -> Effect:
+    """The effect with a size whose unabsorbed rms is `goal` [rad], to 2 %.
+
+    Raises:
+        InputError: no size gives it; the effect as given must show in the angles.
+    """
+    # Sizes and rms of two trials; the first stands for no effect at all.
+    below, above = (0.0, 0.0), (np.inf, np.inf)
+    s, r = 1.0, 0.0
+    for _ in range(ATTEMPTS):
+        try:
+            r = absorbed.rms([effect.scaled(s)])
+        except DivergenceError:
+            r = np.inf
+        if abs(r / goal - 1) < NEAR:
+            return effect.scaled(s)
+        if r < goal:
+            below = (s, r)
+        else:
+            above = (s, r)
+        s = _next(s, r, goal, below, above)
+    raise InputError(
+        f"{effect.name}: no size was found that the base parameters leave {goal:.3g} rad of (the"
+        f" last left {r:.3g} rad); start from another size, or ask for another ratio"
+    )
+
+
+def _next(
+    s: float, r: float, goal: float, below: tuple[float, float], above: tuple[float, float]
+) -> float:
+    """The next size: the chord's where both sides are known, else the proportional one."""
+    (s_1, r_1), (s_2, r_2) = below, above
+    if np.isfinite(r_2):
+        if r_1 == 0.0:
+            return s_1 + (s_2 - s_1) * goal / r_2
+        # In logarithms a power law is straight; the bounds keep one side from creeping.
+        part = np.clip(np.log(goal / r_1) / np.log(r_2 / r_1), 0.1, 0.9)
+        return float(s_1 * (s_2 / s_1) ** part)
+    if np.isfinite(above[0]):
+        return 0.5 * (below[0] + above[0])
+    return s * min(10.0, goal / r) if r > 0 else 10.0 * s

@@ -1,0 +1,134 @@
+"""Without effects a world is the reference; an effect of size zero is no effect, to the bit."""
+
+import ast
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from worlds_cases import ALL, TRIAL, plant, prbs, rate
+from worlds_cases import simulate as simulate_world
+
+import inca_mj.worlds
+from identification.errors import InputError
+from inca_mj.geometry import INCA
+from inca_mj.reference import derivative, pack, simulate_reference
+from inca_mj.reference import layout as base
+from inca_mj.worlds import (
+    AnchorOffset,
+    CableHardening,
+    ComOffset,
+    ExternalForce,
+    PulleyRadius,
+    StribeckFriction,
+    draw_effect,
+    effect,
+)
+from inca_mj.worlds import layout as at
+
+CLOSE = 1e-7  # the oracle is adaptive, at 1e-11 [rad]
+SHARED = {
+    *("inca_mj.geometry", "inca_mj.parameters", "inca_mj.inputs"),
+    *("inca_mj.reference", "inca_mj.worlds"),
+}
+
+
+def test_the_worlds_share_no_physics_with_the_twin():
+    names = set()
+    for file in Path(inca_mj.worlds.__file__).parent.glob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                names |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                names.add(node.module)
+    assert not any(name.split(".")[0] == "mujoco" for name in names)
+    ours = {".".join(n.split(".")[:2]) for n in names if n.startswith("inca_mj")}
+    assert ours == SHARED
+
+
+def test_the_rate_is_that_of_the_reference_without_effects():
+    rng, p = np.random.default_rng(0), plant()
+    q = pack(TRIAL, INCA)
+    for _ in range(50):
+        x = p.start.copy()
+        x[base.POSITION] += rng.uniform(-0.5, 0.5, 3)
+        x[base.EULER] = rng.uniform(-1, 1, 3)
+        for part, size in ((base.VELOCITY, 1), (base.RATES, 3), (base.ANGLES, 30)):
+            x[part] = rng.normal(0, size, x[part].shape)
+        x[base.SPEEDS] = rng.normal(0, 20, 8)
+        d = np.linalg.norm(x[:3] - INCA.A, axis=1)  # about the length: half of the cables are slack
+        x[base.NO_LOAD] = d / (1 + rng.uniform(-1e-3, 1e-3, 8))
+        i = rng.normal(0, 2, 8)
+        expected = derivative(x[: base.STATES], i, q)
+        np.testing.assert_allclose(
+            rate(p, x, i)[: base.STATES], expected, rtol=1e-10, atol=1e-10 * abs(expected).max()
+        )
+
+
+@pytest.mark.parametrize("moved", ["nothing", "external_force", "anchor_offset", "com_offset"])
+def test_what_the_reference_can_say_it_says_the_same(moved):
+    u, robot, geometry, force, effects = prbs(0.5), TRIAL, INCA, (0.0, 0.0, 0.0), ()
+    if moved == "external_force":
+        force = (0.1, -0.2, 0.3)
+        effects = (ExternalForce(x=0.1, y=-0.2, z=0.3),)
+    if moved == "anchor_offset":
+        A = INCA.A
+        A[2] += (0.01, 0.02, -0.03)
+        geometry, effects = (
+            replace(INCA, exits=A),
+            (AnchorOffset(drive=3, x=0.01, y=0.02, z=-0.03),),
+        )
+    if moved == "com_offset":
+        c = np.array([0.002, 0.001, -0.004])
+        geometry = replace(INCA, connectors=INCA.B - c)
+        robot = TRIAL.with_values({"x": c[0], "y": c[1], "z": 1.43 + c[2]})
+        effects = (ComOffset(x=c[0], y=c[1], z=c[2]),)
+    time = np.arange(len(u)) * 0.01
+    expected = simulate_reference(robot, geometry, time, u, force=force)
+    X = simulate_world(plant(*effects), u)
+    np.testing.assert_allclose(X[:, base.ANGLES], expected.angles, atol=CLOSE)
+    np.testing.assert_allclose(X[:, base.POSITION], expected.position, atol=CLOSE)
+
+
+@pytest.mark.parametrize(("name", "other_shape"), ALL)
+def test_no_size_is_no_effect_and_a_size_is_one(name, other_shape):
+    u, e = prbs(), effect(name, other_shape=other_shape)
+    without = simulate_world(plant(), u)[:, : base.STATES]
+    assert np.array_equal(simulate_world(plant(e.scaled(0)), u)[:, : base.STATES], without)
+    change = abs(simulate_world(plant(e), u)[:, : base.STATES] - without)[:, base.ANGLES].max()
+    # The clip at 0.95 A loses much, the hardening of a cable in a second little.
+    assert 1e-6 < change < 1.0
+
+
+@pytest.mark.parametrize("name", [name for name, other in ALL if not other])
+def test_a_drawn_effect_is_one_that_a_robot_can_have(name):
+    one, same, another = (draw_effect(name, seed) for seed in (1, 1, 2))
+    assert one == same != another
+    assert one.name == name
+    simulate_world(plant(one), prbs(0.3))
+
+
+def test_a_drive_effect_can_act_on_one_drive():
+    p = plant(StribeckFriction(drive=4))
+    assert np.flatnonzero(p.D[:, at.STRIBECK]).tolist() == [3]
+    assert StribeckFriction(drive=4).where == "drive 4"
+    assert StribeckFriction().where == "all drives"
+
+
+def test_bad_effects_are_refused():
+    with pytest.raises(InputError, match="did you mean 'backlash'"):
+        effect("backlas")
+    with pytest.raises(InputError, match="no drive 9"):
+        AnchorOffset(drive=9)
+    with pytest.raises(InputError, match="name its drive"):
+        AnchorOffset(drive=None)
+    with pytest.raises(InputError, match="v_s = 0 must be positive"):
+        StribeckFriction(v_s=0.0)
+    with pytest.raises(InputError, match="not a finite number"):
+        StribeckFriction(f_s=float("nan"))
+    with pytest.raises(InputError, match="no strain that carries"):
+        plant(CableHardening(kappa=-1e5))
+    with pytest.raises(InputError, match="inside its pulley"):
+        plant(PulleyRadius(r_p=3.0))
+    with pytest.raises(InputError, match="hold the platform"):
+        plant(ComOffset(x=2.0))

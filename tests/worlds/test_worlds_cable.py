@@ -1,0 +1,156 @@
+"""Laws of the cables, the geometry and the platform."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from worlds_cases import FINE, plant, prbs, rate, simulate
+
+from inca_mj.reference import layout as base
+from inca_mj.worlds import (
+    AirDrag,
+    AnchorOffset,
+    CableCreep,
+    CableHardening,
+    CableWeight,
+    ComOffset,
+    DrumEccentricity,
+    DrumLayering,
+    DrumRadiusMismatch,
+    ExternalForce,
+    FrameVibration,
+    PulleyRadius,
+    SpringHardening,
+    SpringHysteresis,
+)
+from inca_mj.worlds import layout as at
+from inca_mj.worlds.equations import drag, elastic, sagging, shake
+from inca_mj.worlds.pulley import path
+
+points = st.tuples(
+    st.floats(0.3, 2.0), st.floats(-2.0, 2.0), st.floats(-2.0, 2.0)
+)  # from A to a connector [m]
+
+
+@given(ds=points, r=st.floats(1e-3, 0.1), side=st.sampled_from([-1.0, 1.0]))
+def test_the_gradient_of_the_path_is_the_unit_tangent(ds, r, side):
+    d, t = path(ds, r, side)
+    assert np.linalg.norm(t) == pytest.approx(1, abs=1e-12)
+    assert d >= np.linalg.norm(ds) - 1e-12  # no path is shorter than the straight one
+    for k in range(3):
+        up, down = (tuple(np.array(ds) + h * np.eye(3)[k]) for h in (1e-6, -1e-6))
+        slope = (path(up, r, side)[0] - path(down, r, side)[0]) / 2e-6
+        assert slope == pytest.approx(t[k], abs=1e-8)
+
+
+@given(ds=points, side=st.sampled_from([-1.0, 1.0]))
+def test_a_small_pulley_is_none(ds, side):
+    d, t = path(ds, 1e-9, side)
+    d_0, t_0 = path(ds, 0.0, side)
+    assert d == pytest.approx(d_0, abs=1e-8)
+    assert t == pytest.approx(t_0, abs=1e-7)
+
+
+def test_a_quarter_turn_over_a_pulley():
+    d, t = path((1.0, 0.0, 0.1), 0.1, 1.0)  # level with the top: the tangent is horizontal
+    assert d == pytest.approx(0.1 * np.pi / 2 + 0.9)
+    assert t == pytest.approx((1.0, 0.0, 0.0), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [
+        PulleyRadius(r_p=0.03),
+        AnchorOffset(drive=2, x=0.05),
+        ComOffset(x=0.01, y=-0.01, z=0.02),
+        DrumRadiusMismatch(drive=7, delta=0.1),
+        DrumEccentricity(a=0.05),
+        DrumLayering(h=1e-4),
+        CableHardening(),
+        CableHardening(kappa=4e5, exponent=2.0),
+        CableCreep(),
+        SpringHardening(),
+        SpringHysteresis(),
+        CableWeight(rho=5e-3, balanced=True),
+        CableWeight(rho=5e-3, balanced=True, sag=True),
+        ExternalForce(x=0.2, z=0.1, balanced=True),
+    ],
+    ids=lambda e: e.name,
+)
+def test_a_world_starts_at_rest(effect):
+    p = plant(effect)
+    assert abs(rate(p, p.start, np.zeros(8))).max() < 1e-6
+
+
+def test_forces_act_from_the_first_instant_where_nothing_balances_them():
+    p = plant(ExternalForce(x=0.1725, y=0.0), ComOffset(x=0.0, y=0.0, z=-0.01))
+    start = rate(p, p.start, np.zeros(8))
+    assert start[base.VELOCITY] == pytest.approx([1.0, 0.0, 0.0], abs=1e-9)
+    # the force acts at the platform's origin, 0.01 m above the centre of mass
+    assert start[base.RATES] == pytest.approx([0, 0.01 * 0.1725 / 1.5e-4, 0], abs=1e-6)
+    hung = plant(CableWeight(rho=1e-3))
+    d = (1 + hung.start[at.VISCOUS]) * hung.start[base.NO_LOAD]
+    fall = rate(hung, hung.start, np.zeros(8))[base.VELOCITY]
+    assert fall[2] == pytest.approx(-0.5e-3 * d.sum() * 9.81 / 0.1725, rel=1e-9)
+
+
+def test_the_maxwell_branch_relaxes():
+    u = np.ones((400, 8)) * np.array([1, 0, 0, 0, 1, 0, 0, 0])
+    p = plant(CableCreep(fraction=0.5, tau=0.2))
+    X = simulate(p, u)
+    A, B = (p.q[part].reshape(8, 3) for part in (base.EXITS, base.CONNECTORS))
+    from inca_mj.reference import kinematics
+
+    d = np.array(
+        [np.linalg.norm(x[:3] + B @ kinematics.rotation(x[base.EULER]).T - A, axis=1) for x in X]
+    )
+    ε = d / X[:, base.NO_LOAD] - 1
+    branch = abs(ε - X[:, at.VISCOUS])
+    assert branch[0].max() < 1e-12
+    assert branch[-1].max() < 0.05 * branch.max()
+    # ε_v follows ε as a low-pass does
+    lag = np.gradient(X[:, at.VISCOUS], 0.01, axis=0) * 0.2 - (ε - X[:, at.VISCOUS])
+    assert abs(lag[100:-1]).max() < 0.02 * branch.max()
+
+
+def test_elastic_laws_by_their_letters():
+    ε, λ = 3e-4, 25000.0
+    for effect, expected in (
+        (CableHardening(kappa=500.0), λ * ε * (1 + 500 * ε)),
+        (CableHardening(kappa=1e6, exponent=2.0), λ * ε * (1 + 1e6 * ε**2)),
+        (CableCreep(fraction=0.2), λ * ε + 0.2 * λ * (ε - 1e-4)),
+    ):
+        assert elastic(ε, 1e-4, λ, plant(effect).D[0]) == pytest.approx(expected, rel=1e-12)
+
+
+@given(T=st.floats(-20.0, 50.0), K=st.floats(1e-9, 10.0))
+def test_sag_solves_its_equation_and_holds_a_slack_cable(T, K):
+    root = sagging(T, K)
+    assert root > max(0.0, T)
+    assert root - T - K / root**2 == pytest.approx(0, abs=1e-9 * max(1.0, abs(T), K / root**2))
+
+
+def test_the_air_takes_energy():
+    for n in (2.0, 1.5):
+        p = plant(AirDrag(c=0.2, exponent=n))
+        v = np.array([1.0, -2.0, 2.0])
+        F = np.array(drag(tuple(v), p.P))
+        assert pytest.approx(-0.2 * 3.0 ** (n - 1) * v) == F
+        assert drag((0.0, 0.0, 0.0), p.P) == (0.0, 0.0, 0.0)
+
+
+def test_the_frame_shakes_one_exit_point_at_one_frequency():
+    D = plant(FrameVibration(drive=6, x=1e-3, y=0.0, frequency=5.0)).D
+    assert not D[[0, 1, 2, 3, 4, 6, 7], at.SHAKE_X].any()
+    for t in (0.0, 0.013, 0.2):
+        moved, moving = shake(t, D[5])
+        assert moved[0] == pytest.approx(1e-3 * np.sin(10 * np.pi * t))
+        slope = (shake(t + 1e-6, D[5])[0][0] - shake(t - 1e-6, D[5])[0][0]) / 2e-6
+        assert moving[0] == pytest.approx(slope, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize("effect", [CableWeight(sag=True, rho=5e-3), CableCreep(tau=0.05)])
+def test_the_step_is_small_enough(effect):
+    p, u = plant(effect), prbs(0.5)
+    coarse, small = simulate(p, u), simulate(p, u, step=FINE / 4)
+    np.testing.assert_allclose(coarse[:, base.ANGLES], small[:, base.ANGLES], atol=1e-6)
