@@ -1,10 +1,13 @@
 """Estimation over windows: for a robot that a free run would lose.
 
-V(q) = Σ_w min over x_w of ‖ε_w(q, x_w)‖²,   cov(q) = s² (SᵀS)⁺,   S projected (see `windows`)
+    V(q) = Σ_w min over d_w of ‖r_w(q, d_w)‖²,   cov(q) = s² (SᵀS)⁺
+
+r, d and the projected S are those of `identification.shooting`.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -16,10 +19,12 @@ from identification.errors import InputError
 from identification.identifiability import Identifiability, identifiability
 from identification.log import Log
 from identification.noise import noise_floor
+from identification.options import Progress
 from identification.predictor import Plant, Predictor
 from identification.rollout import State
 from identification.sensitivity import refuse_without_effect
-from identification.windows import Windowed, first_states, windowed_residual, windows
+from identification.shooting import Shooting, settle, tangent
+from identification.windows import first_states, windows
 
 
 @dataclass(frozen=True)
@@ -29,18 +34,28 @@ class WindowEstimate:
     Attributes:
         values: the estimates by name.
         std: for white noise, infinite where the windows cannot say, shape (p,).
+        start: starting values, shape (p,).
+        at_bound: which values lie on a bound, shape (p,).
         found: the directions that the windows show.
         residual: y - ŷ of all windows, shape (W, L, ny).
         states: where each window began, W rows.
+        length: of a window [s].
         converged: whether the search ended by itself.
+        tangents: how often all windows were linearised.
+        seconds: wall time [s].
     """
 
     values: dict[str, float]
     std: np.ndarray
+    start: np.ndarray
+    at_bound: np.ndarray
     found: Identifiability
     residual: np.ndarray
     states: State
+    length: float
     converged: bool
+    tangents: int
+    seconds: float
 
     @property
     def rms(self) -> float:
@@ -56,6 +71,7 @@ def estimate_windows(
     start: Mapping[str, float] | None = None,
     tolerance: float = 1e-8,
     max_evaluations: int = 40,
+    progress: Progress | None = None,
 ) -> WindowEstimate:
     """Estimate parameters over windows, the state at the start of each being free.
 
@@ -67,11 +83,13 @@ def estimate_windows(
         start: starting values by name; the plant's own where not given.
         tolerance: relative change of cost and of q at which the search stops.
         max_evaluations: of the windows.
+        progress: is told one line per linearisation.
 
     Raises:
         InputError: a name is unknown or has no effect, or the windows do not fit the log.
         DivergenceError: the start itself cannot be simulated.
     """
+    began = time.perf_counter()
     cut = windows(log, length)
     for name in (*names, *(start or {})):
         plant.parameters[name]
@@ -81,41 +99,66 @@ def estimate_windows(
     predictor = Predictor(plant, log, tuple(names), dict(start or {}))
     sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
     C = np.eye(log.outputs.shape[1]) / sigma
-    begin = windowed_residual(
-        predictor, space, space.encode(first), cut, first_states(predictor, first, cut), C
-    )
-    refuse_without_effect(begin.J.reshape(-1, *begin.J.shape[2:]) * sigma, space.names, log)
-    seen: dict[bytes, Windowed] = {}
-    states = begin.states
-
-    def at(q: np.ndarray) -> Windowed:
-        nonlocal states
-        if q.tobytes() not in seen:
-            seen.clear()
-            seen[q.tobytes()] = windowed_residual(predictor, space, q, cut, states, C)
-        return seen[q.tobytes()]
-
-    def residual(q: np.ndarray) -> np.ndarray:
-        try:
-            return at(q).residual.ravel()
-        except InputError:  # it diverged: the search must go elsewhere
-            return np.full(begin.residual.size, np.inf)
-
-    def jacobian(q: np.ndarray) -> np.ndarray:
-        nonlocal states
-        states = at(q).states  # of an accepted step
-        return at(q).J.reshape(-1, len(q))
-
-    search = least_squares(
-        residual, space.encode(first), jacobian, bounds=(space.lower, space.upper), x_scale="jac",
-        ftol=tolerance, xtol=tolerance, gtol=1e-15, max_nfev=max_evaluations,
+    shooting = Shooting(predictor, space, cut, first_states(predictor, first, cut), C)
+    search = _Search(shooting, space.encode(first), progress)
+    J = search.tangent.projected.reshape(len(cut.starts), -1, len(first))[:, : cut.outputs[0].size]
+    refuse_without_effect(J.reshape(-1, C.shape[0], len(first)) * sigma, space.names, log)
+    end = least_squares(
+        search.residual, space.encode(first), search.jacobian, bounds=(space.lower, space.upper),
+        x_scale="jac", ftol=tolerance, xtol=tolerance, gtol=1e-15, max_nfev=max_evaluations,
     )  # fmt: skip
-    end = at(search.x)
-    found = identifiability(end.J.reshape(-1, len(first)), space.names)
-    freedom = max(1, end.residual.size - end.freedom - len(first))
-    scale = float(np.sqrt(np.sum(end.residual**2) / freedom))
-    values = dict(zip(names, space.decode(search.x).tolist(), strict=True))
+    search.jacobian(end.x)
+    d, r = settle(shooting, search.tangent, end.x)
+    S = search.tangent.projected
+    found = identifiability(S, space.names)
+    # A belief counts as one reading for each state that it bears on.
+    readings = cut.outputs.size + len(d) * int((shooting.first.weight > 0).sum())
+    freedom = max(1, readings - search.tangent.freedom - len(first))
+    scale = float(np.sqrt(np.sum(r**2) / freedom))
     return WindowEstimate(
-        values, scale * found.std * space.slope(search.x), found, end.residual * sigma,
-        end.states, search.status > 0,
-    )  # fmt: skip
+        dict(zip(names, space.decode(end.x).tolist(), strict=True)),
+        scale * found.std * space.slope(end.x),
+        first,
+        space.on_bound(end.x),
+        found,
+        shooting.error(r),
+        shooting.states(d),
+        length,
+        end.status > 0,
+        search.tangents,
+        time.perf_counter() - began,
+    )
+
+
+class _Search:
+    """What `least_squares` calls: the states follow q by the tangent of the last accepted point."""
+
+    def __init__(self, shooting: Shooting, q: np.ndarray, progress: Progress | None) -> None:
+        self.shooting, self.progress = shooting, progress
+        W, nx = len(shooting.cut.starts), len(shooting.first.weight)
+        self.tangents = 0
+        self._linearise(q, np.zeros((W, nx)))
+        self._last = q, *settle(shooting, self.tangent, q)
+
+    def _linearise(self, q: np.ndarray, d: np.ndarray) -> None:
+        self.tangent = tangent(self.shooting, q, d)
+        self.tangents += 1
+        if self.progress is not None:
+            rms = float(np.sqrt(np.mean(self.shooting.error(self.tangent.r) ** 2)))
+            self.progress(f"windows: rms {rms:.4g} after {self.tangents} linearisations")
+
+    def residual(self, q: np.ndarray) -> np.ndarray:
+        if not np.array_equal(self._last[0], q):
+            try:
+                self._last = q, *settle(self.shooting, self.tangent, q)
+            except InputError:  # it diverged: the search must go elsewhere
+                return np.full(self.tangent.r.size, np.inf)
+        return self._last[2].ravel()
+
+    def jacobian(self, q: np.ndarray) -> np.ndarray:
+        self.residual(q)  # least_squares may have tried another point since it accepted this one
+        if not np.array_equal(self.tangent.q, q) or not np.array_equal(
+            self.tangent.d, self._last[1]
+        ):
+            self._linearise(q, self._last[1])
+        return -self.tangent.projected

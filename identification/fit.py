@@ -93,13 +93,12 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
     covariance = _sandwich(S, (estimate.weight * residual) @ estimate.whitener.T, known, prior)
     std_q = np.where(known.undetermined, np.inf, np.sqrt(np.diag(covariance)))
     scale = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
-    near = 1e-6 * np.maximum(1.0, np.abs(q))
     fit, error = _beyond(estimate, validation)
     return Fit(
         estimate,
         std_q * space.slope(q),
         covariance / np.outer(scale, scale),
-        (q - space.lower < near) | (space.upper - q < near),
+        space.on_bound(q),
         found,
         _combinations(found, estimate, covariance),
         residual,

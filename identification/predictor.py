@@ -60,6 +60,13 @@ class Predictor:
     names: tuple[str, ...]
     fixed: Mapping[str, float] = field(default_factory=dict)
 
+    def settings(self, values: np.ndarray) -> tuple[State, Numbers]:
+        """Initial states and model numbers of n value sets (n, p), the fixed values included."""
+        values = np.atleast_2d(values)
+        fixed = {n: v for n, v in self.fixed.items() if n not in self.names}
+        rest = np.broadcast_to(list(fixed.values()), (len(values), len(fixed)))
+        return self.plant.settings((*self.names, *fixed), np.hstack([values, rest]))
+
     def predict(self, values: np.ndarray, samples: int | None = None) -> np.ndarray:
         """Outputs of n value sets over the first samples of the log.
 
@@ -74,10 +81,7 @@ class Predictor:
             DivergenceError: a simulation left the finite numbers.
         """
         log = self.log
-        values = np.atleast_2d(values)
-        fixed = {n: v for n, v in self.fixed.items() if n not in self.names}
-        rest = np.broadcast_to(list(fixed.values()), (len(values), len(fixed)))
-        start, numbers = self.plant.settings((*self.names, *fixed), np.hstack([values, rest]))
+        start, numbers = self.settings(values)
         states = rollout(
             self.plant.model,
             start,
