@@ -12,7 +12,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from identification.coordinates import coordinates
 from identification.errors import InputError
@@ -23,8 +22,14 @@ from identification.options import Progress
 from identification.predictor import Plant, Predictor
 from identification.rollout import State
 from identification.sensitivity import refuse_without_effect
-from identification.shooting import Shooting, settle, tangent
-from identification.windows import first_states, windows
+from identification.shooting import Shooting, Tangent, tangent
+from identification.windows import apart, first_states, windows
+
+BELIEFS = 3  # the states' belief follows the values that were found with the last one
+ROUGH = 1e-2  # relative gain that ends a search which another follows
+FIRST_DAMPING = 1e-2  # of the squared norms of X's and S's columns
+LEAST_DAMPING = 1e-12
+MOST_DAMPING = 1e8
 
 
 @dataclass(frozen=True)
@@ -69,7 +74,7 @@ def estimate_windows(
     names: Sequence[str],
     length: float,
     start: Mapping[str, float] | None = None,
-    tolerance: float = 1e-8,
+    tolerance: float = 1e-6,
     max_evaluations: int = 40,
     progress: Progress | None = None,
 ) -> WindowEstimate:
@@ -82,7 +87,7 @@ def estimate_windows(
         length: of a window [s].
         start: starting values by name; the plant's own where not given.
         tolerance: relative change of cost and of q at which the search stops.
-        max_evaluations: of the windows.
+        max_evaluations: linearisations of the windows, at most.
         progress: is told one line per linearisation.
 
     Raises:
@@ -99,66 +104,91 @@ def estimate_windows(
     predictor = Predictor(plant, log, tuple(names), dict(start or {}))
     sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
     C = np.eye(log.outputs.shape[1]) / sigma
-    shooting = Shooting(predictor, space, cut, first_states(predictor, first, cut), C)
-    search = _Search(shooting, space.encode(first), progress)
-    J = search.tangent.projected.reshape(len(cut.starts), -1, len(first))[:, : cut.outputs[0].size]
-    refuse_without_effect(J.reshape(-1, C.shape[0], len(first)) * sigma, space.names, log)
-    end = least_squares(
-        search.residual, space.encode(first), search.jacobian, bounds=(space.lower, space.upper),
-        x_scale="jac", ftol=tolerance, xtol=tolerance, gtol=1e-15, max_nfev=max_evaluations,
-    )  # fmt: skip
-    search.jacobian(end.x)
-    d, r = settle(shooting, search.tangent, end.x)
-    S = search.tangent.projected
+    q, begun, tangents = space.encode(first), None, 0
+    for k in range(1, BELIEFS + 1):
+        believed = first_states(predictor, space.decode(q), cut)
+        shooting = Shooting(predictor, space, cut, believed, C)
+        d = np.zeros((len(cut.starts), len(believed.weight)))
+        if begun is not None:
+            d = apart(plant.model, believed.states, begun)
+        enough = tolerance if k == BELIEFS else max(ROUGH, tolerance)
+        end = _search(shooting, q, d, enough, max_evaluations, progress)
+        q, begun, tangents = end.q, shooting.states(end.d), tangents + end.tangents
+    S = end.tangent.projected
     found = identifiability(S, space.names)
     # A belief counts as one reading for each state that it bears on.
-    readings = cut.outputs.size + len(d) * int((shooting.first.weight > 0).sum())
-    freedom = max(1, readings - search.tangent.freedom - len(first))
-    scale = float(np.sqrt(np.sum(r**2) / freedom))
+    readings = cut.outputs.size + len(end.d) * int((shooting.first.weight > 0).sum())
+    freedom = max(1, readings - end.tangent.freedom - len(first))
+    scale = float(np.sqrt(np.sum(end.tangent.r**2) / freedom))
     return WindowEstimate(
-        dict(zip(names, space.decode(end.x).tolist(), strict=True)),
-        scale * found.std * space.slope(end.x),
+        dict(zip(names, space.decode(q).tolist(), strict=True)),
+        scale * found.std * space.slope(q),
         first,
-        space.on_bound(end.x),
+        space.on_bound(q),
         found,
-        shooting.error(r),
-        shooting.states(d),
+        shooting.error(end.tangent.r),
+        begun,
         length,
-        end.status > 0,
-        search.tangents,
+        end.converged,
+        tangents,
         time.perf_counter() - began,
     )
 
 
-class _Search:
-    """What `least_squares` calls: the states follow q by the tangent of the last accepted point."""
+@dataclass(frozen=True)
+class _End:
+    """Where the search ended: q (p,), d (W, nx), their tangent, and how it got there."""
 
-    def __init__(self, shooting: Shooting, q: np.ndarray, progress: Progress | None) -> None:
-        self.shooting, self.progress = shooting, progress
-        W, nx = len(shooting.cut.starts), len(shooting.first.weight)
-        self.tangents = 0
-        self._linearise(q, np.zeros((W, nx)))
-        self._last = q, *settle(shooting, self.tangent, q)
+    q: np.ndarray
+    d: np.ndarray
+    tangent: Tangent
+    converged: bool
+    tangents: int
 
-    def _linearise(self, q: np.ndarray, d: np.ndarray) -> None:
-        self.tangent = tangent(self.shooting, q, d)
-        self.tangents += 1
-        if self.progress is not None:
-            rms = float(np.sqrt(np.mean(self.shooting.error(self.tangent.r) ** 2)))
-            self.progress(f"windows: rms {rms:.4g} after {self.tangents} linearisations")
 
-    def residual(self, q: np.ndarray) -> np.ndarray:
-        if not np.array_equal(self._last[0], q):
+def _search(
+    shooting: Shooting,
+    q: np.ndarray,
+    d: np.ndarray,
+    tolerance: float,
+    most: int,
+    progress: Progress | None,
+) -> _End:
+    """Levenberg-Marquardt over q and the states of all windows; steps end at the bounds."""
+    low, high = shooting.space.lower, shooting.space.upper
+    at = tangent(shooting, q, d)
+    refuse_without_effect(*_felt(shooting, at))
+    damping = FIRST_DAMPING
+    for tangents in range(1, most + 1):
+        cost = float(np.sum(at.r**2))
+        if progress is not None:
+            rms = float(np.sqrt(np.mean(shooting.error(at.r) ** 2)))
+            progress(f"windows: rms {rms:.4g} after {tangents} linearisations")
+        while True:
+            dq, dd = at.step(damping)
+            trial = np.clip(q + dq, low, high)
             try:
-                self._last = q, *settle(self.shooting, self.tangent, q)
-            except InputError:  # it diverged: the search must go elsewhere
-                return np.full(self.tangent.r.size, np.inf)
-        return self._last[2].ravel()
+                after = float(np.sum(shooting.residual(trial, d + dd) ** 2))
+            except InputError:  # it diverged, or has no start: it must go elsewhere
+                after = np.inf
+            if after < cost:
+                break
+            if damping > MOST_DAMPING or np.abs(dq).max() < tolerance:
+                return _End(q, d, at, damping <= MOST_DAMPING, tangents)
+            damping *= 5
+        small = np.abs(trial - q).max() < tolerance or cost - after < tolerance * cost
+        q, d, damping = trial, d + dd, max(damping / 10, LEAST_DAMPING)
+        at = tangent(shooting, q, d)
+        if small:
+            return _End(q, d, at, True, tangents + 1)
+    return _End(q, d, at, False, tangents + 1)
 
-    def jacobian(self, q: np.ndarray) -> np.ndarray:
-        self.residual(q)  # least_squares may have tried another point since it accepted this one
-        if not np.array_equal(self.tangent.q, q) or not np.array_equal(
-            self.tangent.d, self._last[1]
-        ):
-            self._linearise(q, self._last[1])
-        return -self.tangent.projected
+
+def _felt(shooting: Shooting, at: Tangent) -> tuple[np.ndarray, tuple[str, ...], Log]:
+    """Sensitivities of the outputs to q, states projected out, for `refuse_without_effect`."""
+    outputs, p = shooting.cut.outputs, at.S.shape[2]
+    J = at.projected.reshape(*at.r.shape, p)[:, : outputs[0].size]
+    J = np.einsum(
+        "ij,njp->nip", np.linalg.inv(shooting.whitener), J.reshape(-1, outputs.shape[2], p)
+    )
+    return J, shooting.space.names, shooting.predictor.log

@@ -44,6 +44,18 @@ def fit_percent(y: FloatArray, y_hat: FloatArray) -> FloatArray:
     return 100 * (1 - ratio)
 
 
+def mean_fit(fit: FloatArray) -> str:
+    """The mean fit in words; outputs that never move have none, and are left out."""
+    moving = fit[~np.isnan(fit)]
+    if not len(moving):
+        return "undefined: no output moves"
+    return f"{moving.mean():.3f} %" + (
+        f" ({len(fit) - len(moving)} of {len(fit)} outputs never move)"
+        if len(moving) < len(fit)
+        else ""
+    )
+
+
 def rms(residual: FloatArray) -> FloatArray:
     """Root mean square (ny,) of each channel of a residual (n, ny), in the channel's unit.
 

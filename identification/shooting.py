@@ -1,13 +1,14 @@
 """Multiple shooting: the windows of a log, explained as well as their initial states can.
 
-    r_w(q, d_w) = [ C (y_w - ŷ_w(q, x̄_w ⊕ d_w)) ; -d_w/s ]       what a window leaves, and its belief
-    X_w = -∂r_w/∂d_w,   S_w = -∂r_w/∂q                            tangent, at the last accepted point
-    d_w ← d_w + X_w⁺ (r_w - S_w Δq),   then d_w ← d_w + X_w⁺ r_w   states follow a move of q
-    S_w ← (I - X_w X_w⁺) S_w                                      what the states cannot make up for
+    r_w(q, d_w) = [ C (y_w - ŷ_w(q, x̄_w ⊕ d_w)) ; -d_w/s ]      what a window leaves; its belief
+    X_w = -∂r_w/∂d_w = U s Vᵀ,  S_w = -∂r_w/∂q                    the tangent at a point
 
-This is variable projection (Golub and Pereyra 1973, in Kaufman's form) with the belief of
-`identification.windows`. A tangent costs 1 + nx + p simulations of the log, all in one batch, and
-is taken at accepted points only; a trial of q costs a few simulations, with the tangent it has.
+    (X_wᵀX_w + μ) Δd_w + X_wᵀS_w Δq = X_wᵀ r_w                    Levenberg-Marquardt, all at once
+    Σ_w S_wᵀX_w Δd_w + (Σ_w S_wᵀS_w + μ) Δq = Σ_w S_wᵀ r_w
+
+Each Δd_w is eliminated by itself, so a window more costs no more than its simulations
+(condensing; Bock 1983). A tangent takes 1 + nx + p simulations of the log, all in one batch; a
+trial step takes one. What q itself is known by is S_w without what the states make up for.
 """
 
 from __future__ import annotations
@@ -23,8 +24,6 @@ from identification.sensitivity import FORWARD_STEP
 from identification.windows import FirstStates, Windows, moved
 
 FELT = 1e-6  # of the strongest direction of a state, each entry scaled to its own effect
-ROUNDS = 4  # of the states at one q, at most
-SETTLED = 1e-3  # relative gain of a round that is the last
 
 
 @dataclass(frozen=True)
@@ -55,7 +54,7 @@ class Shooting:
         Raises:
             DivergenceError: a window left the finite numbers.
         """
-        return self._joined(self._outputs(q[None], [d])[0], d)
+        return self.joined(self.outputs(q[None], [d])[0], d)
 
     def error(self, r: np.ndarray) -> np.ndarray:
         """y - ŷ, shape (W, L, ny), of a residual of `residual`."""
@@ -63,11 +62,12 @@ class Shooting:
         whitened = r[:, : outputs[0].size].reshape(outputs.shape)
         return whitened @ np.linalg.inv(self.whitener).T
 
-    def _joined(self, y: np.ndarray, d: np.ndarray) -> np.ndarray:
+    def joined(self, y: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """r, shape (W, L ny + nx), of outputs (W, L, ny) and d (W, nx)."""
         left = (self.cut.outputs - y) @ self.whitener.T
         return np.hstack([left.reshape(len(d), -1), -d * self.first.weight])
 
-    def _outputs(self, q: np.ndarray, moves: list[np.ndarray]) -> np.ndarray:
+    def outputs(self, q: np.ndarray, moves: list[np.ndarray]) -> np.ndarray:
         """Outputs of k points q (k, p), each over all windows from its d: (k, W, L, ny)."""
         predictor, cut, W = self.predictor, self.cut, len(self.cut.starts)
         model = predictor.plant.model
@@ -87,38 +87,53 @@ class Shooting:
 
 @dataclass(frozen=True)
 class Tangent:
-    """All windows, linearised at a point.
+    """All windows, linearised at a point; the columns of X have the norm 1 in U s Vᵀ.
 
     Attributes:
-        q: where, shape (p,).
-        d: where, shape (W, nx).
         r: residual there, shape (W, m), m = L ny + nx.
         S: -∂r/∂q, shape (W, m, p).
-        U: orthonormal rows of what the states can make up for, zero where not felt, (W, m, nx).
-        pull: X⁺, shape (W, nx, m).
+        U: shape (W, m, nx).
+        s: 0 where no state is felt, shape (W, nx).
+        Vt: shape (W, nx, nx).
+        size: norms of the columns of X, shape (W, nx).
     """
 
-    q: np.ndarray
-    d: np.ndarray
     r: np.ndarray
     S: np.ndarray
     U: np.ndarray
-    pull: np.ndarray
+    s: np.ndarray
+    Vt: np.ndarray
+    size: np.ndarray
 
     @property
     def projected(self) -> np.ndarray:
         """S without what the states can make up for, shape (W m, p)."""
-        S = self.S - self.U @ (np.swapaxes(self.U, 1, 2) @ self.S)
-        return S.reshape(-1, S.shape[2])
+        U = self.U * (self.s > 0)[:, None]
+        return (self.S - U @ (np.swapaxes(U, 1, 2) @ self.S)).reshape(-1, self.S.shape[2])
 
     @property
     def freedom(self) -> int:
         """Directions of all states that are felt."""
-        return int((self.U != 0).any(axis=1).sum())
+        return int((self.s > 0).sum())
+
+    def step(self, damping: float) -> tuple[np.ndarray, np.ndarray]:
+        """The damped step: Δq (p,) and Δd (W, nx)."""
+        against = np.swapaxes(self.U, 1, 2) @ self.S  # Uᵀ S, (W, nx, p)
+        left = np.einsum("wmk,wm->wk", self.U, self.r)
+        share = self.s**2 / (self.s**2 + damping)
+        H = np.einsum("wmp,wmq->pq", self.S, self.S)
+        g = np.einsum("wmp,wm->p", self.S, self.r)
+        H_q = H - np.einsum("wkp,wk,wkq->pq", against, share, against)
+        g_q = g - np.einsum("wkp,wk,wk->p", against, share, left)
+        size = np.sqrt(np.diag(H))
+        scaled = H_q / np.outer(size, size) + damping * np.eye(len(g))
+        dq = np.linalg.lstsq(scaled, g_q / size, rcond=None)[0] / size
+        along = self.s / (self.s**2 + damping) * (left - against @ dq)
+        return dq, np.einsum("wkx,wk->wx", self.Vt, along) / self.size
 
 
 def tangent(shooting: Shooting, q: np.ndarray, d: np.ndarray) -> Tangent:
-    """Linearise all windows at q and d, by forward differences in one batch.
+    """Linearise all windows at q (p,) and d (W, nx), by forward differences in one batch.
 
     Raises:
         DivergenceError: a window left the finite numbers.
@@ -127,35 +142,12 @@ def tangent(shooting: Shooting, q: np.ndarray, d: np.ndarray) -> Tangent:
     h = FORWARD_STEP
     points = np.concatenate([np.tile(q, (1 + nx, 1)), q + h * np.eye(p)])
     moves = [d, *(d + h * e for e in np.eye(nx)), *[d] * p]
-    y = shooting._outputs(points, moves)
-    r = np.stack([shooting._joined(*pair) for pair in zip(y, moves, strict=True)], axis=-1)
+    y = shooting.outputs(points, moves)
+    r = np.stack([shooting.joined(*pair) for pair in zip(y, moves, strict=True)], axis=-1)
     slopes = (r[..., :1] - r[..., 1:]) / h  # (W, m, nx + p)
     X, S = slopes[..., :nx], slopes[..., nx:]
-    size = np.linalg.norm(X, axis=1, keepdims=True)
+    size = np.linalg.norm(X, axis=1)
     size = np.where(size > 0, size, 1.0)
-    U, s, Vt = np.linalg.svd(X / size, full_matrices=False)
-    keep = s > FELT * np.maximum(s[:, :1], np.finfo(float).tiny)
-    U = U * keep[:, None]
-    pull = np.einsum("wkx,wmk->wxm", Vt / np.where(keep, s, 1.0)[..., None], U)
-    return Tangent(q, d, r[..., 0], S, U, pull / np.swapaxes(size, 1, 2))
-
-
-def settle(shooting: Shooting, at: Tangent, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The states that explain the windows best at q: d (W, nx) and r (W, m), from a tangent near.
-
-    Raises:
-        DivergenceError: a window left the finite numbers.
-    """
-    expected = at.r - at.S @ (q - at.q)
-    d = at.d + np.einsum("wxm,wm->wx", at.pull, expected)
-    r = shooting.residual(q, d)
-    for _ in range(ROUNDS):
-        step = np.einsum("wxm,wm->wx", at.pull, r)
-        after = shooting.residual(q, d + step)
-        before, now = np.sum(r**2), np.sum(after**2)
-        if now >= before:
-            break
-        d, r = d + step, after
-        if now > (1 - SETTLED) * before:
-            break
-    return d, r
+    U, s, Vt = np.linalg.svd(X / size[:, None], full_matrices=False)
+    s = np.where(s > FELT * s[:, :1], s, 0.0)
+    return Tangent(r[..., 0], S, U, s, Vt, size)

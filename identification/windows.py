@@ -1,7 +1,7 @@
 """Windows of a log whose initial states are nuisances.
 
     x_w = x̄_w ⊕ d_w,   w = 1..W                     ⊕ in the tangent of qpos, in qvel and in act
-    x̄_w  measured where an output tells (and its rate), else on a free run of the starting values
+    x̄_w  measured where an output tells (and its rate), else on a free run of the values so far
     s_j  = rms motion of state j on that run         how far x_w may well be from x̄_w
 
 A free run adds up all that disturbs the robot, and an unstable one loses it; a window forgets after
@@ -110,11 +110,10 @@ def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> Firs
 
 def _motion(model: mujoco.MjModel, run: State) -> np.ndarray:
     """Rms distance of each tangent coordinate from the start of a run, shape (nx,)."""
-    turned = np.zeros((len(run.qpos), model.nv))
-    for row, qpos in zip(turned, run.qpos, strict=True):
-        mujoco.mj_differentiatePos(model, row, 1.0, run.qpos[0], qpos)
+    first = State(*(np.broadcast_to(x[0], x.shape) for x in (run.qpos, run.qvel, run.act)))
+    far = apart(model, first, run)
     parts = []
-    for part in (turned, run.qvel - run.qvel[0], run.act - run.act[0]):
+    for part in np.split(far, [model.nv, 2 * model.nv], axis=1):
         size = np.sqrt(np.mean(part**2, axis=0))
         parts.append(np.maximum(size, LEAST * size.max(initial=0.0)))
     size = np.concatenate(parts)
@@ -129,3 +128,11 @@ def moved(model: mujoco.MjModel, states: State, step: np.ndarray) -> State:
     for row, d in zip(qpos, steps, strict=True):
         mujoco.mj_integratePos(model, row, np.ascontiguousarray(d[:nv]), 1.0)
     return State(qpos, states.qvel + steps[:, nv : 2 * nv], states.act + steps[:, 2 * nv :])
+
+
+def apart(model: mujoco.MjModel, states: State, others: State) -> np.ndarray:
+    """The steps that move states to others, the inverse of `moved`, shape (W, nx)."""
+    turned = np.zeros((len(states.qpos), model.nv))
+    for row, qpos, other in zip(turned, states.qpos, others.qpos, strict=True):
+        mujoco.mj_differentiatePos(model, row, 1.0, qpos, other)
+    return np.hstack([turned, others.qvel - states.qvel, others.act - states.act])
