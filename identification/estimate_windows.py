@@ -104,13 +104,12 @@ def estimate_windows(
     predictor = Predictor(plant, log, tuple(names), dict(start or {}))
     sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
     C = np.eye(log.outputs.shape[1]) / sigma
-    q, begun, tangents = space.encode(first), None, 0
+    q, tangents = space.encode(first), 0
+    begun = first_states(predictor, first, cut).states
     for k in range(1, BELIEFS + 1):
         believed = first_states(predictor, space.decode(q), cut)
         shooting = Shooting(predictor, space, cut, believed, C)
-        d = np.zeros((len(cut.starts), len(believed.weight)))
-        if begun is not None:
-            d = apart(plant.model, believed.states, begun)
+        d = apart(plant.model, believed.states, begun)
         enough = tolerance if k == BELIEFS else max(ROUGH, tolerance)
         end = _search(shooting, q, d, enough, max_evaluations, progress)
         q, begun, tangents = end.q, shooting.states(end.d), tangents + end.tangents

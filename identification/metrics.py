@@ -49,11 +49,8 @@ def mean_fit(fit: FloatArray) -> str:
     moving = fit[~np.isnan(fit)]
     if not len(moving):
         return "undefined: no output moves"
-    return f"{moving.mean():.3f} %" + (
-        f" ({len(fit) - len(moving)} of {len(fit)} outputs never move)"
-        if len(moving) < len(fit)
-        else ""
-    )
+    still = len(fit) - len(moving)
+    return f"{moving.mean():.3f} %" + (f" ({still} outputs never move)" if still else "")
 
 
 def rms(residual: FloatArray) -> FloatArray:

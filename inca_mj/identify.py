@@ -25,6 +25,7 @@ from inca_mj.twin import build_twin
 
 MECHANICS = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t", "m")
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
+FIRST = 4  # windows that a free run explains first, to start the search over all of them near
 UNKNOWN = ("lambda", "b", "J", "b_v", "b_c", "beta")  # "arbitrary" or re-estimated in the thesis
 
 
@@ -122,10 +123,11 @@ def identify_windows(
 ) -> Identification:
     """Identify the robot over windows of the estimation part, then confirm it in a free run.
 
-    A window begins anywhere: pose, rates and the eight no-load lengths, of which the angles measure
-    none, are fitted for each (see `identification.windows`). The start pose is free all the same,
-    for the springs remember the pretension that it implies. The free run then fits that pose alone,
-    and says with the parameters of the windows how far they carry.
+    The search starts where a free run over the first few windows ends. A window begins anywhere:
+    pose, rates and the eight no-load lengths, of which the angles measure none, are fitted for each
+    (see `identification.windows`). The start pose is free all the same, for the springs remember
+    the pretension that it implies. A free run then fits that pose alone, and says with the
+    parameters of the windows how far they carry.
 
     Args:
         log: what was measured; its split `estimation`, or its first half, is fitted.
@@ -148,6 +150,9 @@ def identify_windows(
     plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
     fitted = log.part("estimation")
     names = tuple(dict.fromkeys((*(free or UNKNOWN), *POSE)))
-    found = estimate_windows(plant, fitted, names, length, progress=progress)
+    time, end = fitted.time, float(fitted.time[0]) + FIRST * length
+    early = fitted.between(float(time[0]), end) if end < time[-1] else fitted
+    near = estimate(plant, early, names, progress=progress).values
+    found = estimate_windows(plant, fitted, names, length, near, progress=progress)
     fit = assess(estimate(plant, fitted, POSE, found.values, progress=progress), log)
     return Identification(log, (fit,), 0, windows=found)

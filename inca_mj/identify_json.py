@@ -46,9 +46,9 @@ def identification_json(
 
 def identification_verdict(result: Identification) -> list[str]:
     """What the fit to believe says, after what its windows and its starts say."""
-    said = verdict(result.fit)
     if result.windows is not None:
-        said = [windows_sentence(result.windows, result.fit), *said]
+        return windows_verdict(result.windows, result.fit)
+    said = verdict(result.fit)
     if result.starts:
         said.append(starts_sentence(result.starts[result.best]))
     return said
@@ -72,16 +72,24 @@ def rows(result: Identification, fit: Fit) -> list[Row]:
     ]
 
 
-def windows_sentence(found: WindowEstimate, fit: Fit) -> str:
-    """What the windows found, and what the numbers below it are of."""
+def windows_verdict(found: WindowEstimate, fit: Fit) -> list[str]:
+    """What the windows found, and how far their parameters carry in a free run."""
     floor = float(np.sqrt(np.mean(fit.floor**2)))
-    return (
-        f"{len(found.residual)} windows of {found.length:g} s leave {found.rms:.3g} rms"
-        + (f", {found.rms / floor:.2f} of the noise floor" if floor > 0 else "")
-        + ("" if found.converged else "; the search ran out of iterations")
-        + ". What follows is said of a free run with their parameters, of which it fits the start"
-        " pose alone."
+    said = ["The search converged." if found.converged else "The search ran out of iterations."]
+    if bound := [n for n, at in zip(found.values, found.at_bound, strict=True) if at]:
+        said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
+    if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
+        said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
+    ratio = f", {found.rms / floor:.2f} of the noise floor {floor:.3g}" if floor > 0 else ""
+    said.append(
+        f"{len(found.residual)} windows of {found.length:g} s leave {found.rms:.3g} rms{ratio}."
     )
+    unseen = "" if fit.validation_rms is None else f" and {fit.validation_rms:.3g} on unseen data"
+    said.append(
+        f"A free run with these parameters, its start pose fitted, leaves {fit.rms:.3g} rms{unseen}:"
+        " there small errors of parameters, and all that disturbs the robot, add up."
+    )
+    return said
 
 
 def starts_sentence(errors: np.ndarray) -> str:

@@ -50,7 +50,7 @@ class Identify:
     seed: int = 0
     """Of the starts after the first."""
     windows: float | None = None
-    """Length [s] of windows that each begin at a state of their own; one free run when not given."""
+    """Length [s] of windows that each begin anywhere; one free run when not given."""
     profile: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME")] = ()
     """Estimated parameters to profile: refit the others at 9 values of each."""
     robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
