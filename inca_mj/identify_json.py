@@ -86,7 +86,7 @@ def windows_verdict(found: WindowEstimate, fit: Fit) -> list[str]:
     )
     unseen = "" if fit.validation_rms is None else f" and {fit.validation_rms:.3g} on unseen data"
     said.append(
-        f"A free run with these parameters, its start pose fitted, leaves {fit.rms:.3g} rms{unseen};"
+        f"A free run with them, its start pose fitted, leaves {fit.rms:.3g} rms{unseen};"
         " there small errors of parameters, and all that disturbs the robot, add up."
     )
     return said
