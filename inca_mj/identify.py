@@ -134,7 +134,7 @@ def identify_windows(
         parameters: nominal values, where the search begins.
         length: of a window [s].
         geometry: anchors of the cables.
-        free: parameters to estimate; what no data sheet says, when empty.
+        free: parameters to estimate; those of drives, cables and platform mass when empty.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
 
@@ -149,7 +149,7 @@ def identify_windows(
         )
     plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
     fitted = log.part("estimation")
-    names = tuple(dict.fromkeys((*(free or UNKNOWN), *POSE)))
+    names = tuple(dict.fromkeys((*(free or MECHANICS), *POSE)))
     time, end = fitted.time, float(fitted.time[0]) + FIRST * length
     early = fitted.between(float(time[0]), end) if end < time[-1] else fitted
     near = estimate(plant, early, names, progress=progress).values
