@@ -51,6 +51,11 @@ class Coordinates:
         """d value/d q, shape (..., p): a std in q times this is a std of the value."""
         return np.where(self.logarithmic, self.decode(q), 1.0)
 
+    def on_bound(self, q: np.ndarray) -> np.ndarray:
+        """Which of q (p,) lie on a bound, shape (p,)."""
+        near = 1e-6 * np.maximum(1.0, np.abs(q))
+        return (q - self.lower < near) | (self.upper - q < near)
+
 
 def coordinates(parameters: ParameterSet, names: Sequence[str], start: np.ndarray) -> Coordinates:
     """Coordinates of some parameters of a set, fit for a search from `start`.

@@ -1,6 +1,8 @@
 """A fit: estimated values with their uncertainty, how well they explain, and what they mean.
 
-    cov(q) = A⁺ B A⁺,   A = Σ_k S_kᵀ S_k,   B = Σ_blocks g_b g_bᵀ,   g_b = Σ_{k in b} S_kᵀ C ε_k
+    cov(q) = A⁺ B A⁺,   A = Σ_k S_kᵀ S_k,   B = Σ_blocks g_b g_bᵀ,   g_b = Σ_{k in b} S_kᵀ ψ_k/c
+
+ψ = C ε and c = 1 for least squares; for a robust loss see `identification.robust`.
 
 The sandwich (White 1980, with blocks for coloured noise) stays right when the noise is not equal
 everywhere, as in the thesis' trial 4 where it is 5 % of each sample. A prior of std s adds 1/s² to
@@ -22,11 +24,13 @@ from identification.identifiability import (
     identifiability,
     known_combinations,
 )
+from identification.information import Information, root_of
 from identification.log import Log
 from identification.metrics import fit_percent, loss, rms
 from identification.noise import noise_floor
 from identification.predictor import Predictor
 from identification.residuals import ResidualTests, correlation_time, residual_tests
+from identification.robust import influence
 from identification.sensitivity import sensitivity
 
 
@@ -47,6 +51,7 @@ class Fit:
         validation_rms: there, over all outputs, or None.
         floor: noise seen in the measurement alone, shape (ny,).
         tests: of the residual.
+        information: what the log says of the parameters at the estimate, for white noise.
     """
 
     estimate: Estimate
@@ -61,6 +66,7 @@ class Fit:
     validation_rms: float | None
     floor: np.ndarray
     tests: ResidualTests
+    information: Information
 
     @property
     def rms(self) -> float:
@@ -90,34 +96,40 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
     found = identifiability(S.reshape(-1, len(q)), space.names)
     prior = np.diag(estimate.prior)
     known = identifiability(np.concatenate([S.reshape(-1, len(q)), prior]), space.names)
-    covariance = _sandwich(S, (estimate.weight * residual) @ estimate.whitener.T, known, prior)
+    error = (estimate.weight * residual) @ estimate.whitener.T
+    covariance = _sandwich(S, *influence(error, estimate.options.loss), error, known, prior)
     std_q = np.where(known.undetermined, np.inf, np.sqrt(np.diag(covariance)))
     scale = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
-    near = 1e-6 * np.maximum(1.0, np.abs(q))
-    fit, error = _beyond(estimate, validation)
+    fit, unseen = _beyond(estimate, validation)
     return Fit(
         estimate,
         std_q * space.slope(q),
         covariance / np.outer(scale, scale),
-        (q - space.lower < near) | (space.upper - q < near),
+        space.on_bound(q),
         found,
         _combinations(found, estimate, covariance),
         residual,
         fit_percent(log.outputs, predicted),
         fit,
-        error,
+        unseen,
         noise_floor(log.outputs),
         residual_tests(residual, log.inputs),
+        Information(space.names, len(q), space.logarithmic, root_of(S.reshape(-1, len(q)))),
     )
 
 
 def _sandwich(
-    S: np.ndarray, error: np.ndarray, found: Identifiability, prior: np.ndarray
+    S: np.ndarray,
+    pull: np.ndarray,
+    share: float,
+    error: np.ndarray,
+    found: Identifiability,
+    prior: np.ndarray,
 ) -> np.ndarray:
     """Covariance of q along the directions that log and prior know, shape (p, p)."""
     n, ny, p = S.shape
     length = min(int(np.ceil(3 * correlation_time(error) - 2)), max(1, n // 30))
-    scores = np.einsum("nip,ni->np", S, error)
+    scores = np.einsum("nip,ni->np", S, pull / share)
     blocks = np.add.reduceat(scores, np.arange(0, n, length), axis=0)
     felt = found.strengths >= BLIND * found.strengths[0]
     inverse = (found.directions[felt].T / found.strengths[felt] ** 2) @ found.directions[felt]

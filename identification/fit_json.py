@@ -29,7 +29,8 @@ def fit_to_json(fit: Fit) -> dict[str, Any]:
             )
         },
         "combinations": [
-            {"name": str(c), "value": value, "std": std} for c, value, std in fit.combinations
+            {"name": str(c), "value": value, "std": _finite(std)}
+            for c, value, std in fit.combinations
         ],
         "fit_percent": _list(fit.fit_percent),
         "validation_fit_percent": _list(fit.validation_fit_percent),

@@ -44,6 +44,15 @@ def fit_percent(y: FloatArray, y_hat: FloatArray) -> FloatArray:
     return 100 * (1 - ratio)
 
 
+def mean_fit(fit: FloatArray) -> str:
+    """The mean fit in words; outputs that never move have none, and are left out."""
+    moving = fit[~np.isnan(fit)]
+    if not len(moving):
+        return "undefined: no output moves"
+    still = len(fit) - len(moving)
+    return f"{moving.mean():.3f} %" + (f" ({still} outputs never move)" if still else "")
+
+
 def rms(residual: FloatArray) -> FloatArray:
     """Root mean square (ny,) of each channel of a residual (n, ny), in the channel's unit.
 

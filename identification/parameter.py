@@ -24,9 +24,11 @@ class Parameter:
         symbol: letter in the equations; `name` when not given.
         about: what it is, in words.
         source: table, data sheet or paper the value was taken from.
+        ties: further paths that follow it, each with the factor by which they do.
 
     Raises:
-        InputError: the bounds are in the wrong order, or the value is outside them.
+        InputError: the bounds are in the wrong order, the value is outside them, or a tie's factor
+            is zero or not finite.
     """
 
     name: str
@@ -38,6 +40,7 @@ class Parameter:
     symbol: str = ""
     about: str = ""
     source: str = ""
+    ties: tuple[tuple[str, float], ...] = ()
 
     def __post_init__(self) -> None:
         if not self.lower < self.upper:
@@ -51,6 +54,17 @@ class Parameter:
                 + f" is outside its range [{self.lower:g}, {self.upper:g}];"
                 " give a value inside it (SI units)"
             )
+        for path, factor in self.ties:
+            if not (isfinite(factor) and factor):
+                raise InputError(
+                    f"parameter {self.name!r} is tied to {path!r} by the factor {factor:g}; give a"
+                    " finite one that is not zero"
+                )
+
+    @property
+    def places(self) -> tuple[tuple[str, float], ...]:
+        """Every path that it writes, with its factor: `where` times 1, then the ties."""
+        return ((self.where, 1.0), *self.ties)
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,8 @@
 """Where a parameter goes: a path such as `joint/motor_*.damping` or `body/platform.inertia[0]`.
 
 A path is `kind/name.attribute` or `kind/name.attribute[column]`; a `*` in the name takes all
-objects that match, and the parameter then writes the same number to each (a tie).
+objects that match, and the parameter then writes the same number to each. Objects that follow with
+a factor are `ties` of the parameter.
 """
 
 from __future__ import annotations

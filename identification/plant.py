@@ -2,6 +2,7 @@
 
     θ_j -> mjModel entry              where = "joint/slide.damping", "body/cart.mass", …
     θ_j -> entry of x₀                where = "qpos[0]", "qvel[3]", "act[1]"
+    c θ_j -> any of these             ties = (("joint/other.damping", c), …)
 
 Nothing else follows from the values. A plant whose start depends on its masses, or whose inertia on
 its shape, implements `identification.predictor.Plant` itself.
@@ -48,19 +49,20 @@ class ModelPlant:
     def __post_init__(self) -> None:
         model, state = copy.copy(self.model), self.start or own_start(self.model)
         start = {f: np.array(getattr(state, f), float).ravel() for f in ("qpos", "qvel", "act")}
-        paths = [p.where for p in self.parameters]
-        twice = [p for p in self.parameters if paths.count(p.where) > 1]
-        if twice:
+        paths = [path for p in self.parameters for path, _ in p.places]
+        twice = next((path for path in paths if paths.count(path) > 1), None)
+        if twice is not None:
+            names = [p.name for p in self.parameters for path, _ in p.places if path == twice]
             raise InputError(
-                f"{' and '.join(p.name for p in twice)} all go to {twice[0].where!r};"
-                " give each parameter a place of its own"
+                f"{' and '.join(names)} all go to {twice!r}; give each parameter a place of its own"
             )
         for parameter in self.parameters:
-            place = start_place(parameter.where, model)
-            if place is None:
-                write(model, resolve(model, parameter.where), parameter.value)
-            else:
-                start[place[0]][place[1]] = parameter.value
+            for path, factor in parameter.places:
+                place = start_place(path, model)
+                if place is None:
+                    write(model, resolve(model, path), factor * parameter.value)
+                else:
+                    start[place[0]][place[1]] = factor * parameter.value
         mujoco.mj_setConst(model, mujoco.MjData(model))
         object.__setattr__(self, "model", model)
         object.__setattr__(self, "start", State(**start))
@@ -79,12 +81,12 @@ class ModelPlant:
         rows = {f: np.tile(getattr(start, f), (len(values), 1)) for f in ("qpos", "qvel", "act")}
         numbers = []
         for name, column in zip(names, values.T, strict=True):
-            where = self.parameters[name].where
-            place = start_place(where, self.model)
-            if place is None:
-                numbers.append((resolve(self.model, where), column))
-            else:
-                rows[place[0]][:, place[1]] = column
+            for path, factor in self.parameters[name].places:
+                place = start_place(path, self.model)
+                if place is None:
+                    numbers.append((resolve(self.model, path), factor * column))
+                else:
+                    rows[place[0]][:, place[1]] = factor * column
         return State(**rows), numbers
 
     def inputs(

@@ -8,7 +8,7 @@ call advance in one `Batch.rollout`: a Jacobian of p columns is one call with 2 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -75,6 +75,23 @@ class Predictor:
     names: tuple[str, ...]
     fixed: Mapping[str, float] = field(default_factory=dict)
 
+    def _every(self, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray]:
+        """Names and values of all that differs from the plant's own, the fixed ones included."""
+        values = np.atleast_2d(values)
+        fixed = {n: v for n, v in self.fixed.items() if n not in self.names}
+        rest = np.broadcast_to(list(fixed.values()), (len(values), len(fixed)))
+        return (*self.names, *fixed), np.hstack([values, rest])
+
+    def settings(self, values: np.ndarray) -> tuple[State, Numbers]:
+        """Initial states and model numbers of n value sets (n, p), the fixed values included."""
+        return self.plant.settings(*self._every(values))
+
+    def inputs(self, values: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+        """What the plant makes of held inputs (steps, nu) for n value sets (n, p)."""
+        names, every = self._every(values)
+        timestep = self.plant.model.opt.timestep
+        return lambda held: self.plant.inputs(names, every, held, timestep)
+
     def predict(self, values: np.ndarray, samples: int | None = None) -> np.ndarray:
         """Outputs of n value sets over the first samples of the log.
 
@@ -89,23 +106,18 @@ class Predictor:
             DivergenceError: a simulation left the finite numbers.
         """
         log = self.log
-        values = np.atleast_2d(values)
-        fixed = {n: v for n, v in self.fixed.items() if n not in self.names}
-        rest = np.broadcast_to(list(fixed.values()), (len(values), len(fixed)))
-        names, every = (*self.names, *fixed), np.hstack([values, rest])
-        start, numbers = self.plant.settings(names, every)
-        timestep = self.plant.model.opt.timestep
+        start, numbers = self.settings(values)
+        columns = output_columns(self.plant.model, log.output_names)
         states = rollout(
             self.plant.model,
             start,
             log.inputs[:samples],
             log.sampling_time,
             numbers=numbers,
-            record=("qpos", "qvel"),
+            record=sorted({field for field, _ in columns}),
             hold_kind=log.hold,
-            before=lambda held: self.plant.inputs(names, every, held, timestep),
+            before=self.inputs(values),
         )
-        columns = output_columns(self.plant.model, log.output_names)
         return np.stack([states[field][:, :, i] for field, i in columns], axis=-1)
 
 

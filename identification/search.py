@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from identification.coordinates import Coordinates
-from identification.errors import InputError
+from identification.errors import DivergenceError, InputError
 from identification.noise import relative_weight, whitener_of
 from identification.options import Options, Progress, Status, prior_weight
 from identification.predictor import Predictor
@@ -27,6 +27,7 @@ from identification.sensitivity import (
 
 ROUGH = 1e-2  # relative gain that ends a horizon which a longer one follows
 HOLD = (1.0, 0.1)  # noise std per unit of q, on a short horizon and on the whole log
+CLOSER = 0.1  # relative growth of a horizon below which a divergence is final
 EXACT = 1e-11  # residual over outputs at which nothing but round-off is left
 
 
@@ -75,9 +76,7 @@ class Search:
         """All horizons, then the weights of relative noise and the covariance of `det`."""
         status: Status = "converged"
         try:
-            for fraction in self.options.horizons:
-                rough = self.options.tolerance if fraction == 1 else ROUGH
-                status = self.solve(self.samples(fraction), max(rough, self.options.tolerance))
+            status = self._grow()
             for _ in range(2 if self.options.relative_noise else 0):
                 predicted = self.predicted(self.best, None)
                 self.weight = relative_weight(predicted, self.options.relative_noise)
@@ -90,6 +89,26 @@ class Search:
                     break
         except KeyboardInterrupt:
             return "stopped"
+        return status
+
+    def _grow(self) -> Status:
+        """All horizons; one that diverges from where the last ended is reached in smaller steps.
+
+        Raises:
+            DivergenceError: the first horizon diverges, or one no longer than a tenth more.
+        """
+        status: Status = "converged"
+        reached, ahead = 0.0, list(self.options.horizons)
+        while ahead:
+            rough = self.options.tolerance if ahead[0] == 1 else ROUGH
+            try:
+                status = self.solve(self.samples(ahead[0]), max(rough, self.options.tolerance))
+            except DivergenceError:
+                if reached == 0 or ahead[0] < (1 + CLOSER) * reached:
+                    raise
+                ahead.insert(0, (reached + ahead[0]) / 2)
+            else:
+                reached = ahead.pop(0)
         return status
 
     def error(self, q: np.ndarray, samples: int | None) -> np.ndarray:

@@ -1,14 +1,16 @@
-"""Multiple shooting: windows of a log whose initial states are nuisances.
+"""Windows of a log whose initial states are nuisances.
 
-    ε_w(q, x_w) = C (y_w - ŷ_w(q, x_w)),   w = 1..W        each window begins at a state of its own
-    X_w = -∂ε_w/∂x_w = U_w Σ_w V_wᵀ                         felt directions of that state only
-    x_w ← x_w + X_w⁺ ε_w                                    Gauss-Newton, for every trial q
-    S_w ← (I - U_w U_wᵀ) S_w                                what the state cannot make up for
+    x_w = x̄_w ⊕ d_w,   w = 1..W                     ⊕ in the tangent of qpos, in qvel and in act
+    x̄_w  measured where an output tells (and its rate), else on a free run of the values so far
+    s_j  = rms motion of state j on that run         how far x_w may well be from x̄_w
 
-This is variable projection (Golub and Pereyra 1973, in Kaufman's form). A free run adds up all that
-disturbs the robot, and an unstable one loses it; a window forgets after its length. The states
-begin at the measured outputs and their rates, and where none is measured on a free run. They move
-in the tangent of qpos (as `mj_integratePos`), in qvel and in act, all in one `Batch.rollout`.
+A free run adds up all that disturbs the robot, and an unstable one loses it; a window forgets after
+its length. How d_w is found is told in `identification.shooting`.
+
+States that no output measures are treated as any other: a pose, a rate, or an activation such as
+the no-load length of a cable begins on the free run and is free within s_j. A direction of states
+that a window hardly feels (a platform and all its cables moved together) then stays where the run
+was, instead of being carried off by the noise.
 """
 
 from __future__ import annotations
@@ -18,14 +20,12 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from identification.coordinates import Coordinates
 from identification.errors import DivergenceError, InputError
 from identification.log import Log
 from identification.predictor import Predictor, output_columns
 from identification.rollout import State, rollout
-from identification.sensitivity import STEP
 
-FELT = 1e-6  # of the strongest direction of a state, each entry scaled to its own effect
+LEAST = 1e-3  # of the largest motion in its field: how far at least a state may be off
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def windows(log: Log, length: float) -> Windows:
     Raises:
         InputError: a window has fewer than 3 samples, or the log is shorter than one.
     """
-    samples = round(length / log.sampling_time)
+    samples = round(length / log.sampling_time) if np.isfinite(length) else 0
     if samples < 3 or samples > len(log):
         raise InputError(
             f"windows of {length:g} s do not fit a log of {log.duration:g} s sampled every"
@@ -61,88 +61,63 @@ def windows(log: Log, length: float) -> Windows:
 
 
 @dataclass(frozen=True)
-class Windowed:
-    """Windows explained as well as their initial states can.
+class FirstStates:
+    """Where the windows are believed to begin.
 
     Attributes:
-        residual: C ε at these states, shape (W, L, ny).
-        J: ∂(C ε)/∂q with the states projected out, shape (W, L, ny, p).
-        states: initial states, W rows.
-        freedom: directions of all states that the outputs feel.
+        states: x̄, W rows.
+        weight: 1/s of each tangent coordinate, 0 where nothing is believed, shape (nx,).
     """
 
-    residual: np.ndarray
-    J: np.ndarray
     states: State
-    freedom: int
+    weight: np.ndarray
 
 
-def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> State:
-    """States at the windows' starts: measured where an output tells, else on a free run."""
+def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> FirstStates:
+    """States at the windows' starts: measured where an output tells, else on a free run.
+
+    Where the free run diverges, what is not measured begins at the plant's start, and may be
+    anywhere.
+
+    Args:
+        predictor: the plant and the log.
+        values: of its free parameters, shape (p,).
+        cut: the windows.
+    """
     plant, log = predictor.plant, predictor.log
-    start, numbers = plant.settings(predictor.names, np.atleast_2d(values))
+    model = plant.model
+    start, numbers = predictor.settings(values)
     fields = ("qpos", "qvel", "act")
     try:
         run = rollout(
-            plant.model, start, log.inputs, log.sampling_time, numbers=numbers, record=fields,
+            model, start, log.inputs, log.sampling_time, numbers=numbers, record=fields,
             hold_kind=log.hold,
         )  # fmt: skip
         rows = {f: np.array(run[f][0, cut.starts]) for f in fields}
+        weight = 1 / _motion(model, State(*(run[f][0] for f in fields)))
     except DivergenceError:
         rows = {f: np.repeat(np.atleast_2d(getattr(start, f)), len(cut.starts), 0) for f in fields}
+        weight = np.zeros(2 * model.nv + model.na)
     rate = np.gradient(log.outputs, log.sampling_time, axis=0)[cut.starts]
-    columns = list(enumerate(output_columns(plant.model, log.output_names)))
+    columns = list(enumerate(output_columns(model, log.output_names)))
     for k, (field, i) in sorted(columns, key=lambda item: item[1][0]):  # a measured rate is last
         rows[field][:, i] = log.outputs[cut.starts, k]
         if field == "qpos":
-            joint = int(np.flatnonzero(plant.model.jnt_qposadr == i)[0])
-            rows["qvel"][:, plant.model.jnt_dofadr[joint]] = rate[:, k]
-    return State(**rows)
+            joint = int(np.flatnonzero(model.jnt_qposadr == i)[0])
+            rows["qvel"][:, model.jnt_dofadr[joint]] = rate[:, k]
+    return FirstStates(State(**rows), weight)
 
 
-def windowed_residual(
-    predictor: Predictor,
-    space: Coordinates,
-    q: np.ndarray,
-    cut: Windows,
-    states: State,
-    whitener: np.ndarray,
-    iterations: int = 3,
-) -> Windowed:
-    """Residual of all windows at q, their states fitted from the given ones.
-
-    Raises:
-        DivergenceError: a window left the finite numbers.
-    """
-    model, W = predictor.plant.model, len(cut.starts)
-    p, nx = len(q), 2 * model.nv + model.na
-    felt = 0
-    for i in range(iterations + 1):
-        last = i == iterations
-        moves = STEP * np.eye(p) if last else np.empty((0, p))
-        sets = space.decode(np.concatenate([q[None], q + moves, q - moves]))
-        shifts = np.concatenate([np.zeros((1, nx)), STEP * np.eye(nx), -STEP * np.eye(nx)])
-        pick = np.concatenate([np.zeros(len(shifts), int), np.arange(1, len(sets))])
-        along = np.concatenate([shifts, np.zeros((len(sets) - 1, nx))])
-        y = _outputs(predictor, sets[pick], [moved(model, states, d) for d in along], cut)
-        y = (y @ whitener.T).reshape(len(pick), W, -1)
-        error = (cut.outputs @ whitener.T).reshape(W, -1) - y[0]
-        ahead, behind, rest = y[1 : nx + 1], y[nx + 1 : 2 * nx + 1], y[2 * nx + 1 :]
-        X = np.moveaxis(ahead - behind, 0, -1) / (2 * STEP)  # (W, L ny, nx)
-        size = np.linalg.norm(X, axis=1, keepdims=True)
-        size = np.where(size > 0, size, 1.0)
-        U, s, Vt = np.linalg.svd(X / size, full_matrices=False)
-        keep = s > FELT * np.maximum(s[:, :1], np.finfo(float).tiny)
-        U, felt = U * keep[:, None], int(keep.sum())
-        if last:
-            S = np.moveaxis(rest[:p] - rest[p:], 0, -1) / (2 * STEP)
-            S = S - U @ (np.swapaxes(U, 1, 2) @ S)
-            shape = cut.outputs.shape
-            return Windowed(error.reshape(shape), -S.reshape(*shape, p), states, felt)
-        part = np.einsum("wnk,wn->wk", U, error) / np.where(keep, s, 1.0)
-        step = np.einsum("wkx,wk->wx", Vt, part) / size[:, 0]
-        states = moved(model, states, step)
-    raise InputError(f"{iterations} iterations of the states; give none or more")
+def _motion(model: mujoco.MjModel, run: State) -> np.ndarray:
+    """Rms distance of each tangent coordinate from the start of a run, shape (nx,)."""
+    first = State(*(np.broadcast_to(x[0], x.shape) for x in (run.qpos, run.qvel, run.act)))
+    far = apart(model, first, run)
+    parts = []
+    for part in np.split(far, [model.nv, 2 * model.nv], axis=1):
+        size = np.sqrt(np.mean(part**2, axis=0))
+        parts.append(np.maximum(size, LEAST * size.max(initial=0.0)))
+    size = np.concatenate(parts)
+    return np.where(size > 0, size, np.inf)  # a field at rest says nothing of how it may move
 
 
 def moved(model: mujoco.MjModel, states: State, step: np.ndarray) -> State:
@@ -155,20 +130,9 @@ def moved(model: mujoco.MjModel, states: State, step: np.ndarray) -> State:
     return State(qpos, states.qvel + steps[:, nv : 2 * nv], states.act + steps[:, 2 * nv :])
 
 
-def _outputs(
-    predictor: Predictor, sets: np.ndarray, starts: list[State], cut: Windows
-) -> np.ndarray:
-    """Outputs of k value sets, each over all windows from its own states: (k, W, L, ny)."""
-    plant, log, W = predictor.plant, predictor.log, len(cut.starts)
-    fixed = {n: v for n, v in predictor.fixed.items() if n not in predictor.names}
-    rest = np.broadcast_to(list(fixed.values()), (len(sets), len(fixed)))
-    _, numbers = plant.settings((*predictor.names, *fixed), np.hstack([sets, rest]))
-    rows = (np.concatenate([getattr(s, f) for s in starts]) for f in ("qpos", "qvel", "act"))
-    states = rollout(
-        plant.model, State(*rows), np.tile(cut.inputs, (len(sets), 1, 1)), log.sampling_time,
-        numbers=[(slot, np.repeat(column, W)) for slot, column in numbers],
-        record=("qpos", "qvel"), hold_kind=log.hold,
-    )  # fmt: skip
-    columns = output_columns(plant.model, log.output_names)
-    y = np.stack([states[field][:, :, i] for field, i in columns], axis=-1)
-    return y.reshape(len(sets), W, *y.shape[1:])
+def apart(model: mujoco.MjModel, states: State, others: State) -> np.ndarray:
+    """The steps that move states to others, the inverse of `moved`, shape (W, nx)."""
+    turned = np.zeros((len(states.qpos), model.nv))
+    for row, qpos, other in zip(turned, states.qpos, others.qpos, strict=True):
+        mujoco.mj_differentiatePos(model, row, 1.0, qpos, other)
+    return np.hstack([turned, others.qvel - states.qvel, others.act - states.act])

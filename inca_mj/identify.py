@@ -7,11 +7,16 @@ fixed at their nominal values and the search begun at step 1's (thesis section 3
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from identification import Log
+from identification.errors import InputError
+from identification.estimate_windows import WindowEstimate, estimate_windows
 from identification.estimation import Options, estimate
 from identification.fit import Fit, assess
+from identification.multistart import estimate_from
 from identification.parameter import ParameterSet
 from inca_mj.comparison import timestep_for
 from inca_mj.geometry import INCA, Geometry
@@ -20,6 +25,7 @@ from inca_mj.twin import build_twin
 
 MECHANICS = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t", "m")
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
+FIRST = 4  # windows that a free run explains first, to start the search over all of them near
 UNKNOWN = ("lambda", "b", "J", "b_v", "b_c", "beta")  # "arbitrary" or re-estimated in the thesis
 
 
@@ -31,16 +37,25 @@ class Identification:
         log: the whole log.
         fits: one, or the two steps.
         best: index of the fit with the smaller error on unseen data.
+        starts: rms of every start of each fit, where more than one was allowed.
+        windows: what the windows found; the fit is then a free run with it, its pose free.
     """
 
     log: Log
     fits: tuple[Fit, ...]
     best: int
+    starts: tuple[np.ndarray, ...] = field(default=())
+    windows: WindowEstimate | None = None
 
     @property
     def fit(self) -> Fit:
         """The fit to believe."""
         return self.fits[self.best]
+
+    @property
+    def values(self) -> dict[str, float]:
+        """What was found, by name: of the windows where there are any, and of the fit."""
+        return {**(self.windows.values if self.windows else {}), **self.fit.estimate.values}
 
 
 def identify(
@@ -51,6 +66,8 @@ def identify(
     options: Options | None = None,
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
+    starts: int = 1,
+    seed: int = 0,
 ) -> Identification:
     """Identify the robot from a log: fitted on its estimation part, confirmed on all of it.
 
@@ -62,23 +79,80 @@ def identify(
         options: how to search.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
+        starts: how many starts each search may try, until one ends near the noise floor.
+        seed: of the starts after the first.
 
     Raises:
-        InputError: a name is unknown or has no effect, or a start has no pretension.
+        InputError: a name is unknown or has no effect, a start has no pretension, or fewer than
+            one start is asked for.
         DivergenceError: the nominal values cannot be simulated.
     """
     plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
     fitted = log.part("estimation")
 
+    tried: list[np.ndarray] = []
+
     def step(names: Sequence[str], start: dict[str, float]) -> Fit:
-        return assess(estimate(plant, fitted, names, start, options, progress), log)
+        if starts == 1:
+            return assess(estimate(plant, fitted, names, start, options, progress), log)
+        found = estimate_from(
+            plant, fitted, names, starts, seed, start, options=options, progress=progress
+        )
+        tried.append(found.rms)
+        return assess(found.best, log)
 
     if free:
-        return Identification(log, (step(tuple(free), {}),), 0)
+        return Identification(log, (step(tuple(free), {}),), 0, tuple(tried))
     all_of_it = step((*MECHANICS, *POSE), {})
     found = all_of_it.estimate.values
     unknown = (*UNKNOWN, *POSE)
     second = step(unknown, {name: found[name] for name in unknown})
     fits = (all_of_it, second)
     errors = [fit.rms if fit.validation_rms is None else fit.validation_rms for fit in fits]
-    return Identification(log, fits, errors.index(min(errors)))
+    return Identification(log, fits, errors.index(min(errors)), tuple(tried))
+
+
+def identify_windows(
+    log: Log,
+    parameters: ParameterSet,
+    length: float,
+    geometry: Geometry = INCA,
+    free: Sequence[str] = (),
+    progress: Callable[[str], None] | None = None,
+    timestep: float = TIMESTEP,
+) -> Identification:
+    """Identify the robot over windows of the estimation part, then confirm it in a free run.
+
+    The search starts where a free run over the first few windows ends. A window begins anywhere:
+    pose, rates and the eight no-load lengths, of which the angles measure none, are fitted for each
+    (see `identification.windows`). The start pose is free all the same, for the springs remember
+    the pretension that it implies. A free run then fits that pose alone, and says with the
+    parameters of the windows how far they carry.
+
+    Args:
+        log: what was measured; its split `estimation`, or its first half, is fitted.
+        parameters: nominal values, where the search begins.
+        length: of a window [s].
+        geometry: anchors of the cables.
+        free: parameters to estimate; those of drives, cables and platform mass when empty.
+        progress: is told one line per accepted step.
+        timestep: largest step of the integrator [s].
+
+    Raises:
+        InputError: the windows do not fit the log, or as `identify`.
+        DivergenceError: the nominal values, or the free run, cannot be simulated.
+    """
+    if free and not set(free) - set(POSE):
+        raise InputError(
+            f"windows cannot find {', '.join(free)} alone: each has a start of its own; name a"
+            f" parameter of the robot too, such as {', '.join(UNKNOWN)}"
+        )
+    plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
+    fitted = log.part("estimation")
+    names = tuple(dict.fromkeys((*(free or MECHANICS), *POSE)))
+    time, end = fitted.time, float(fitted.time[0]) + FIRST * length
+    early = fitted.between(float(time[0]), end) if end < time[-1] else fitted
+    near = estimate(plant, early, names, progress=progress).values
+    found = estimate_windows(plant, fitted, names, length, near, progress=progress)
+    fit = assess(estimate(plant, fitted, POSE, found.values, progress=progress), log)
+    return Identification(log, (fit,), 0, windows=found)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from identification.metrics import mean_fit
 from inca_mj.comparison import Comparison
 from inca_mj.figures import compare_figure, crosscheck_figure, save_png, simulation_figures
 from inca_mj.report import Section, Table
@@ -23,10 +24,17 @@ def compare_verdict(result: Comparison) -> list[str]:
     """What the comparison means, in sentences."""
     fit, error = result.fit_percent, 1e3 * float(result.rms.mean())
     cable = error * result.run.twin.parameters["R"].value
-    worst = int(np.nanargmin(fit))
+    said = [f"The mean fit is {mean_fit(fit)}."]
+    if not np.isnan(fit).all():
+        worst = int(np.nanargmin(fit))
+        said = [
+            f"The twin explains {np.nanmean(fit):.1f} % of the motor angles' motion (mean fit);"
+            f" drive {worst + 1} is worst with {fit[worst]:.1f} %."
+        ]
+    if still := [str(i + 1) for i in np.flatnonzero(np.isnan(fit))]:
+        said.append(f"No fit is said of drives that never move: {', '.join(still)}.")
     return [
-        f"The twin explains {np.nanmean(fit):.1f} % of the motor angles' motion (mean fit);"
-        f" drive {worst + 1} is worst with {fit[worst]:.1f} %.",
+        *said,
         f"The difference is {error:.1f} mrad rms, {cable:.2f} mm of cable.",
     ]
 
@@ -46,7 +54,10 @@ def compare_section(result: Comparison) -> Section:
         figures=(("Measured and simulated motor angles", figure),),
         table=Table(
             ("output", "fit [%]", "rms [mrad]"),
-            tuple((name, float(fit), float(error)) for name, fit, error in rows),
+            tuple(
+                (name, "–" if np.isnan(fit) else float(fit), float(error))
+                for name, fit, error in rows
+            ),
         ),
     )
 

@@ -52,15 +52,12 @@ def linearise(predictor: Predictor, values: np.ndarray) -> LinearPlant:
         DivergenceError: the simulation left the finite numbers.
     """
     plant, log = predictor.plant, predictor.log
-    names = (*predictor.names, *(n for n in predictor.fixed if n not in predictor.names))
-    rest = [v for n, v in predictor.fixed.items() if n not in predictor.names]
-    every = np.array([[*values, *rest]])
-    start, numbers = plant.settings(names, every)
+    start, numbers = predictor.settings(values)
     states = rollout(
         plant.model, start, log.inputs, log.sampling_time, numbers=numbers,
         record=("qpos", "qvel", "act") if plant.model.na else ("qpos", "qvel"),
         hold_kind=log.hold,
-        before=lambda held: plant.inputs(names, every, held, plant.model.opt.timestep),
+        before=predictor.inputs(values),
     )  # fmt: skip
     model = copy.copy(plant.model)
     for slot, column in numbers:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Robot:
+class Values:
     """Which robot: a parameter set, some values of your own, a geometry of your own."""
 
     set: Literal["trial", "simulation"] = "trial"
@@ -27,18 +27,24 @@ class Robot:
     """Values of your own in SI units, such as m=0.2 lambda=26000."""
     geometry: Path | None = None
     """TOML file with exit points and connectors; the built-in ones are assumed."""
-    step: float = 1e-3
-    """Largest step of the integrator [s]; stiff cables and light motors need a smaller one."""
 
     def parameters(self) -> ParameterSet:
         """The parameter set with the values replaced.
 
         Raises:
-            InputError: a value is malformed, unknown or out of bounds.
+            InputError: a value is malformed, unknown, given twice or out of bounds.
         """
+        from identification.errors import InputError
         from inca_mj.parameters import parameter_set
 
-        return parameter_set(self.set, dict(_assignment(text) for text in self.param))
+        values: dict[str, float] = {}
+        for name, value in map(_assignment, self.param):
+            if name in values:
+                raise InputError(
+                    f"--param gives {name} twice, {values[name]:g} and {value:g}; give it once"
+                )
+            values[name] = value
+        return parameter_set(self.set, values)
 
     def place(self) -> Geometry:
         """The geometry.
@@ -49,6 +55,14 @@ class Robot:
         from inca_mj.geometry import INCA, read_geometry
 
         return INCA if self.geometry is None else read_geometry(self.geometry)
+
+
+@dataclass(frozen=True)
+class Robot(Values):
+    """A robot to be simulated."""
+
+    step: float = 1e-3
+    """Largest step of the integrator [s]; stiff cables and light motors need a smaller one."""
 
 
 def _assignment(text: str) -> tuple[str, float]:
@@ -185,5 +199,6 @@ def bar(what: str) -> Callable[[int, int], None]:
     return update
 
 
+values_field: Any = field(default_factory=Values)
 robot_field: Any = field(default_factory=Robot)
 output_field: Any = field(default_factory=Output)

@@ -60,16 +60,20 @@ class Compare:
 
 
 def summary(result: Comparison) -> str:
-    """The comparison as a text table."""
+    """The comparison as a text table; an output that never moves has no fit."""
+    from identification.metrics import mean_fit
+
     rows = [
-        (name, f"{fit:.2f}", f"{1e3 * error:.2f}")
+        (name, "-" if fit != fit else f"{fit:.2f}", f"{1e3 * error:.2f}")
         for name, fit, error in zip(
             result.log.output_names, result.fit_percent, result.rms, strict=True
         )
     ]
-    mean = ("mean", f"{result.fit_percent.mean():.2f}", f"{1e3 * result.rms.mean():.2f}")
     head = f"{result.log.name}: {len(result.log)} samples, {result.log.duration:g} s simulated"
-    return head + "\n" + table(("output", "fit [%]", "rms [mrad]"), [*rows, mean])
+    return (
+        head + "\n" + table(("output", "fit [%]", "rms [mrad]"), rows)
+        + f"\nmean fit {mean_fit(result.fit_percent)}, mean rms {1e3 * result.rms.mean():.2f} mrad"
+    )  # fmt: skip
 
 
 def keep(result: Comparison, out: Path) -> None:

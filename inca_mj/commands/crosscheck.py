@@ -1,4 +1,4 @@
-"""inca crosscheck: two models of one robot that share no code must agree."""
+"""inca crosscheck: two models of one robot that share no code must agree, at steps of its own."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import tyro
 
 from inca_mj.commands.common import (
     Output,
-    Robot,
+    Values,
     do_not_draw,
     folder,
     note,
     output_field,
-    robot_field,
     say,
     say_json,
     table,
+    values_field,
     write_result,
 )
 
@@ -33,7 +33,7 @@ class Crosscheck:
     """Length of each run [s]."""
     states: int = 10_000
     """Random states at which accelerations are compared."""
-    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
+    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
     def run(self) -> int:

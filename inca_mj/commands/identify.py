@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -24,6 +25,7 @@ from inca_mj.commands.common import (
 
 if TYPE_CHECKING:
     from identification.fit import Fit
+    from identification.profiles import Profile
     from inca_mj.identify import Identification
 
 
@@ -43,79 +45,124 @@ class Identify:
     """Robust loss against outliers."""
     horizons: tuple[float, ...] = (0.05, 0.2, 0.5, 1.0)
     """Growing fractions of the data; 1.0 alone is a single free-run fit, as in the thesis."""
+    starts: int = 1
+    """How many starts each search may try, until one ends near the noise floor."""
+    seed: int = 0
+    """Of the starts after the first."""
+    windows: float | None = None
+    """Length [s] of windows that each begin anywhere; one free run when not given."""
+    profile: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME")] = ()
+    """Estimated parameters to profile: refit the others at 9 values of each."""
     robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
     def run(self) -> int:
         """Identify, say, keep."""
         do_not_draw()
-        from identification.estimation import Options
-        from identification.fit_json import fit_to_json
-        from inca_mj.identify import identify
-        from inca_mj.logs import read_inca_log
+        from identification.profiles import profile
+        from inca_mj.identify_json import identification_json, profile_sentence
 
-        result = identify(
-            read_inca_log(self.log),
-            self.robot.parameters(),
-            self.robot.place(),
-            self.free,
-            Options(self.method, self.criterion, self.loss, self.horizons),
-            note,
-            self.robot.step,
-        )
-        best = fit_to_json(result.fit)
-        best["steps"] = [fit_to_json(fit) for fit in result.fits]
+        result = self._identify()
+        profiles = [profile(result.fit.estimate, name) for name in self.profile]
+        best = identification_json(result, profiles, self.seed)
         if self.output.out is not None:
             out = folder(self.output.out)
-            keep(result, out, self.robot)
+            keep(result, profiles, out, self.robot)
             write_result(out / "result.json", self, best)
         if self.output.json:
             say_json(best)
         else:
             for k, fit in enumerate(result.fits, 1):
-                say(f"step {k} of {len(result.fits)}\n{summary(fit)}\n")
+                say(f"step {k} of {len(result.fits)}\n{summary(result, fit)}\n")
+            for known in profiles:
+                say(profile_sentence(known))
             if len(result.fits) > 1:
                 say(f"step {result.best + 1} predicts unseen data best.")
         return 0
 
+    def _identify(self) -> Identification:
+        """What the options ask for.
 
-def summary(fit: Fit) -> str:
+        Raises:
+            InputError: two options do not go together, or as `inca_mj.identify`.
+        """
+        from identification.errors import InputError
+        from identification.estimation import Options
+        from inca_mj.identify import POSE, UNKNOWN, identify, identify_windows
+        from inca_mj.logs import read_inca_log
+
+        options = Options(self.method, self.criterion, self.loss, self.horizons)
+        if self.windows is not None and (options != Options() or self.starts != 1 or self.profile):
+            raise InputError(
+                "--windows is a least-squares search of its own; leave out --criterion, --method,"
+                " --loss, --horizons, --starts and --profile"
+            )
+        log, parameters, place = (
+            read_inca_log(self.log), self.robot.parameters(), self.robot.place()
+        )  # fmt: skip
+        if self.windows is not None:
+            return identify_windows(
+                log, parameters, self.windows, place, self.free, note, self.robot.step
+            )
+        estimated = self.free or (*UNKNOWN, *POSE)
+        for name in self.profile:
+            if name not in estimated:
+                raise InputError(
+                    f"{name!r} is not estimated; profile one of {', '.join(estimated)}"
+                )
+        return identify(
+            log, parameters, place, self.free, options, note, self.robot.step, self.starts,
+            self.seed,
+        )  # fmt: skip
+
+
+def summary(result: Identification, fit: Fit) -> str:
     """A fit as a text table and its verdict."""
+    from identification.metrics import mean_fit
     from identification.verdict import verdict
+    from inca_mj.identify_json import identification_verdict, rows
 
-    known = fit.estimate.predictor.plant.parameters
-    rows = [
-        (name, f"{value:.6g}", "unknown" if std == float("inf") else f"{std:.2g}",
-         known[name].unit, f"{first:.6g}", "at bound" if bound else "")
-        for (name, value), std, first, bound in zip(
-            fit.estimate.values.items(), fit.std, fit.estimate.start, fit.at_bound, strict=True
-        )
+    cells = [
+        (name, f"{value:.6g}", "unknown" if std == float("inf") else f"{std:.2g}", unit,
+         f"{first:.6g}", "at bound" if bound else "")
+        for name, value, std, unit, first, bound in rows(result, fit)
     ]  # fmt: skip
+    seconds = fit.estimate.seconds + (result.windows.seconds if result.windows else 0.0)
     return (
-        table(("parameter", "value", "std", "unit", "start", ""), rows)
-        + f"\nfit {fit.fit_percent.mean():.3f} %, {fit.estimate.seconds:.1f} s\n"
-        + "\n".join(verdict(fit))
+        table(("parameter", "value", "std", "unit", "start", ""), cells)
+        + f"\nfit {mean_fit(fit.fit_percent)}, {seconds:.1f} s\n"
+        + "\n".join(identification_verdict(result) if fit is result.fit else verdict(fit))
     )
 
 
-def keep(result: Identification, out: Path, robot: Robot) -> None:
+def keep(result: Identification, profiles: Sequence[Profile], out: Path, robot: Robot) -> None:
     """Write figures, the one-file report and the identified model into a folder."""
-    from identification.verdict import verdict
     from inca_mj.comparison import compare
+    from inca_mj.identify_json import identification_verdict
     from inca_mj.report import write_report
     from inca_mj.sections import compare_section, model_section, save_figures
-    from inca_mj.sections_fit import fit_section
+    from inca_mj.sections_fit import fit_section, profile_section
+    from inca_mj.sections_information import information_section
 
     plant = result.fit.estimate.predictor.plant
-    final = plant.parameters.with_values(result.fit.estimate.values)
+    final = plant.parameters.with_values(result.values)
     shown = compare(result.log, final, robot.place(), timestep=robot.step)
+    about = (
+        f"What {result.log.name} says of the parameters at their estimate, for white noise of the"
+        " size of the noise floor."
+    )
     sections = [
-        *(fit_section(fit, f"Step {k}") for k, fit in enumerate(result.fits, 1)),
+        *(fit_section(result, fit, f"Step {k}") for k, fit in enumerate(result.fits, 1)),
+        *(profile_section(result.fit, known) for known in profiles),
+        information_section(result.fit.information, about),
         compare_section(shown),
         model_section(shown.run.twin),
     ]
     save_figures(sections, out)
     shown.run.twin.save(out / "model.xml")
     write_report(
-        out / "report.html", f"{result.log.name}: identified", verdict(result.fit), sections
+        out / "report.html",
+        f"{result.log.name}: identified",
+        identification_verdict(result),
+        sections,
     )

@@ -200,3 +200,15 @@ def test_a_negative_seed(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_a_step_that_is_none(capsys: pytest.CaptureFixture[str]) -> None:
     assert "step of 0" in refused(capsys, "compare", LOG, "--step", 0)
+
+
+def test_a_value_given_twice_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    said = refused(capsys, "compare", LOG, "--param", "m=0.2", "m=0.3")
+    assert "gives m twice, 0.2 and 0.3" in said
+
+
+def test_the_cross_check_has_steps_of_its_own(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(["crosscheck", "--step", "0.001"])
+    assert stop.value.code == 2
+    assert "--step" in capsys.readouterr().err

@@ -1,0 +1,26 @@
+"""Figures of a fit."""
+
+from __future__ import annotations
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from identification.profiles import LEVEL, Profile
+from inca_mj.colours import SERIES
+from inca_mj.figures import _STYLE
+
+
+def profile_figure(known: Profile, unit: str) -> Figure:
+    """The rise of the cost against one parameter, with the line of 95 %."""
+    with matplotlib.rc_context(_STYLE):
+        figure = Figure((5.2, 3.2), layout="constrained")
+        ax = figure.subplots()
+        seen = np.isfinite(known.rise)
+        ax.plot(known.values[seen], known.rise[seen], "o-", color=SERIES[0], label="profile")
+        ax.axhline(LEVEL, color=SERIES[1], linestyle="--", label="95 %")
+        ax.axvline(known.estimate, color=SERIES[2], linestyle=":", label="estimate")
+        ax.set_xlabel(f"{known.name} [{unit}]" if unit else known.name)
+        ax.set_ylabel("rise of the cost, in s²")
+        figure.legend(loc="outside upper center", ncols=3)
+    return figure

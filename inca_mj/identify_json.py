@@ -1,0 +1,124 @@
+"""An identification as plain values, for JSON and for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from identification.estimate_windows import WindowEstimate
+from identification.fit import Fit
+from identification.fit_json import fit_to_json
+from identification.profiles import Profile
+from identification.verdict import verdict
+from inca_mj.identify import Identification
+
+# name, value, std, unit, start, on a bound
+Row = tuple[str, float, float, str, float, bool]
+
+
+def identification_json(
+    result: Identification, profiles: Sequence[Profile] = (), seed: int = 0
+) -> dict[str, Any]:
+    """The numbers and the verdict; what is unknown or infinite is null."""
+    record = fit_to_json(result.fit)
+    record["steps"] = [fit_to_json(fit) for fit in result.fits]
+    record["verdict"] = identification_verdict(result)
+    record["seed"] = seed
+    if result.starts:
+        record["starts"] = [[_finite(e) for e in errors] for errors in result.starts]
+    if profiles:
+        record["profiles"] = {p.name: _profile(p) for p in profiles}
+    if (w := result.windows) is not None:
+        record["parameters"] = {
+            name: {"value": value, "std": _finite(std), "unit": unit, "initial": first,
+                   "at_bound": bound}
+            for name, value, std, unit, first, bound in rows(result, result.fit)
+        }  # fmt: skip
+        record["windows"] = {
+            "seconds": w.length, "count": len(w.residual), "rms": w.rms, "converged": w.converged,
+            "linearisations": w.tangents,
+        }  # fmt: skip
+        record["seconds"] += w.seconds
+    return record
+
+
+def identification_verdict(result: Identification) -> list[str]:
+    """What the fit to believe says, after what its windows and its starts say."""
+    if result.windows is not None:
+        return windows_verdict(result.windows, result.fit)
+    said = verdict(result.fit)
+    if result.starts:
+        said.append(starts_sentence(result.starts[result.best]))
+    return said
+
+
+def rows(result: Identification, fit: Fit) -> list[Row]:
+    """A line of the table of parameters each: of the windows, if any, then of the fit."""
+    known = fit.estimate.predictor.plant.parameters
+    w, e = result.windows, fit.estimate
+    parts: list[tuple[Any, ...]] = []
+    if w is not None:
+        parts += [
+            part for part in zip(w.values, w.values.values(), w.std, w.start, w.at_bound,
+                                 strict=True)
+            if part[0] not in e.values
+        ]  # fmt: skip
+    parts += zip(e.values, e.values.values(), fit.std, e.start, fit.at_bound, strict=True)
+    return [
+        (name, float(value), float(std), known[name].unit, float(first), bool(bound))
+        for name, value, std, first, bound in parts
+    ]
+
+
+def windows_verdict(found: WindowEstimate, fit: Fit) -> list[str]:
+    """What the windows found, and how far their parameters carry in a free run."""
+    floor = float(np.sqrt(np.mean(fit.floor**2)))
+    said = ["The search converged." if found.converged else "The search ran out of iterations."]
+    if bound := [n for n, at in zip(found.values, found.at_bound, strict=True) if at]:
+        said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
+    if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
+        said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
+    ratio = f", {found.rms / floor:.2f} of the noise floor {floor:.3g}" if floor > 0 else ""
+    said.append(
+        f"{len(found.residual)} windows of {found.length:g} s leave {found.rms:.3g} rms{ratio}."
+    )
+    unseen = "" if fit.validation_rms is None else f" and {fit.validation_rms:.3g} on unseen data"
+    said.append(
+        f"A free run with them, its start pose fitted, leaves {fit.rms:.3g} rms{unseen};"
+        " there small errors of parameters, and all that disturbs the robot, add up."
+    )
+    return said
+
+
+def starts_sentence(errors: np.ndarray) -> str:
+    """How many starts were needed, and how well they agree."""
+    best = float(errors.min())
+    same = int((errors < 1.01 * best).sum())
+    if len(errors) == 1:
+        return "The first start ended near the noise floor; no other was needed."
+    return (
+        f"{len(errors)} starts were tried; {same} ended within 1 % of the best, {best:.3g} rms,"
+        f" the worst at {float(errors.max()):.3g}."
+    )
+
+
+def profile_sentence(known: Profile) -> str:
+    """The 95 % interval of a profile."""
+    low, high = known.interval
+    said = f"{known.name}: {known.estimate:.6g}, 95 % interval [{low:.6g}, {high:.6g}]"
+    return said + ("; open: the log does not bound it here" if known.open else "")
+
+
+def _profile(known: Profile) -> dict[str, Any]:
+    return {
+        "value": known.estimate,
+        "interval": [_finite(end) for end in known.interval],
+        "values": known.values.tolist(),
+        "rise": [_finite(r) for r in known.rise],
+    }
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
