@@ -1,6 +1,6 @@
 """What each candidate would do to the outputs: its sensitivities, many candidates in one batch.
 
-    S_j = (ŷ(θ, η_j = h_j) - ŷ(θ, 0))/h_j          h_j: a probe that a log would show
+S_j = (ŷ(θ, η_j = h_j) - ŷ(θ, 0))/h_j          h_j: a probe that a log would show
 """
 
 from __future__ import annotations

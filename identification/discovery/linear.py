@@ -63,7 +63,9 @@ def linearise(predictor: Predictor, values: np.ndarray) -> LinearPlant:
     for slot, column in numbers:
         getattr(model, slot.field)[slot.index()] = column[0]
     mujoco.mj_setConst(model, mujoco.MjData(model))
-    F, G, J = _derivatives(model, {k: v[0] for k, v in states.items()}, log.inputs, log.sampling_time)
+    F, G, J = _derivatives(
+        model, {k: v[0] for k, v in states.items()}, log.inputs, log.sampling_time
+    )
     nx, nu, nv = F.shape[1], G.shape[2], model.nv
     block = np.zeros((len(F), nx + nu + nv, nx + nu + nv))
     block[:, :nx] = np.concatenate([F, G, J], axis=2) * log.sampling_time
@@ -71,9 +73,7 @@ def linearise(predictor: Predictor, values: np.ndarray) -> LinearPlant:
     C = np.zeros((log.outputs.shape[1], nx))
     for row, (field, i) in enumerate(output_columns(model, log.output_names)):
         C[row, _tangent(model, field, i)] = 1
-    return LinearPlant(
-        block[:, :nx, :nx], block[:, :nx, nx : nx + nu], C, block[:, :nx, nx + nu :]
-    )
+    return LinearPlant(block[:, :nx, :nx], block[:, :nx, nx : nx + nu], C, block[:, :nx, nx + nu :])
 
 
 def _derivatives(

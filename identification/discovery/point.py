@@ -1,6 +1,6 @@
 """A plant at one set of values: residual, sensitivities and linearisation along the trajectory.
 
-    e = y - ŷ(q),   Φ = ∂ŷ/∂q,   δx_{k+1} = A_k δx_k + B_k δu_k
+e = y - ŷ(q),   Φ = ∂ŷ/∂q,   δx_{k+1} = A_k δx_k + B_k δu_k
 """
 
 from __future__ import annotations

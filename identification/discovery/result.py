@@ -1,0 +1,190 @@
+"""What a discovery found, and what it rests on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from identification.discovery.refit import Refit
+from identification.discovery.score import Score
+from identification.effect import Candidate
+from identification.log import Log
+
+Verdict = Literal["named", "nothing missing", "unknown effect"]
+
+
+@dataclass(frozen=True)
+class Rival:
+    """Another explanation of the same data.
+
+    Attributes:
+        candidate: which.
+        confidence: probability that it is the right one of those considered.
+        alike: cosine between its sensitivity and the named one's, the base projected out.
+    """
+
+    candidate: Candidate
+    confidence: float
+    alike: float
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What an effect does for data that the fit has not seen.
+
+    Attributes:
+        gain: log likelihood of the unseen samples, with it minus without.
+        t: of the gain, by blocks.
+        share: of what was above the noise on the unseen samples, how much it takes away.
+    """
+
+    gain: float
+    t: float
+    share: float
+
+
+@dataclass(frozen=True)
+class Named:
+    """An effect that is missing from the model.
+
+    Attributes:
+        candidate: effect, place, and shapes as estimated.
+        parameters: its sizes and shapes by name: value, std, unit.
+        confidence: probability that this is the effect, calibrated on simulated worlds.
+        rivals: explanations that are not much worse; a look-alike set when `one_of`.
+        one_of: whether the data cannot tell it from its first rival.
+        gain: twice the log likelihood that it adds on the fitted samples.
+        proof: what it does for unseen data.
+    """
+
+    candidate: Candidate
+    parameters: Mapping[str, tuple[float, float, str]]
+    confidence: float
+    rivals: tuple[Rival, ...]
+    one_of: bool
+    gain: float
+    proof: Proof
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Free-run error on the samples that the fit has not seen.
+
+    Attributes:
+        rms: over all outputs, in their unit.
+        fit_percent: per output, shape (ny,).
+    """
+
+    rms: float
+    fit_percent: np.ndarray
+
+
+@dataclass(frozen=True)
+class Detectable:
+    """The smallest effect of a kind that this log would have shown.
+
+    Attributes:
+        candidate: which.
+        size: name of the size.
+        smallest: its magnitude that is found in 9 of 10 logs [unit]; inf when never.
+        unit: SI unit.
+    """
+
+    candidate: Candidate
+    size: str
+    smallest: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Discovery:
+    """The outcome.
+
+    Attributes:
+        log: the whole log; its part `estimation` was fitted, the rest is unseen.
+        verdict: what it comes to.
+        named: the missing effects, the most telling first.
+        unexplained: whether something is left that no named effect explains.
+        noise_rms: of the sensors, estimated from the data.
+        disturbance_rms: what unlogged input errors do to the free run, by the noise model.
+        before: the gap of the nominal model, fitted.
+        after: the gap of the model with the named effects.
+        nominal: the fit without effects.
+        final: the fit with the named effects.
+        predicted_before: free run of the nominal fit over the whole log, shape (N, ny).
+        predicted_after: of the final fit, shape (N, ny).
+        scores: of all candidates on the nominal fit, the best first.
+        remaining: of all candidates on the final fit, the best first.
+        detectable: what could have been seen.
+        located: where the nominal model fails, in sentences.
+        left: where the final model still fails, in sentences; empty when it does not.
+        seconds: wall time by stage [s].
+    """
+
+    log: Log
+    verdict: Verdict
+    named: tuple[Named, ...]
+    unexplained: bool
+    noise_rms: float
+    disturbance_rms: float
+    before: Gap
+    after: Gap
+    nominal: Refit
+    final: Refit
+    predicted_before: np.ndarray
+    predicted_after: np.ndarray
+    scores: tuple[Score, ...]
+    remaining: tuple[Score, ...]
+    detectable: tuple[Detectable, ...]
+    located: tuple[str, ...]
+    left: tuple[str, ...]
+    seconds: Mapping[str, float]
+
+    def to_json(self) -> dict[str, Any]:
+        """The outcome as plain values."""
+        gap = {
+            name: {
+                "rms": g.rms,
+                "fit_percent": [float(f) if np.isfinite(f) else None for f in g.fit_percent],
+            }
+            for name, g in (("before", self.before), ("after", self.after))
+        }
+        return {
+            "verdict": self.verdict,
+            "effects": [_effect_json(named) for named in self.named],
+            "unexplained": self.unexplained,
+            "gap": {
+                "noise_rms": self.noise_rms,
+                "disturbance_rms": self.disturbance_rms,
+                **gap,
+            },
+            "located": [*self.located, *self.left],
+            "detectable": [
+                {"name": d.candidate.effect.name, "where": d.candidate.where, "parameter": d.size,
+                 "smallest": d.smallest if np.isfinite(d.smallest) else None, "unit": d.unit}
+                for d in self.detectable
+            ],
+            "seconds": float(sum(self.seconds.values())),
+        }  # fmt: skip
+
+
+def _effect_json(named: Named) -> dict[str, Any]:
+    return {
+        "name": named.candidate.effect.name,
+        "where": named.candidate.where,
+        "confidence": named.confidence,
+        "parameters": {
+            name: {"value": value, "std": std if np.isfinite(std) else None, "unit": unit}
+            for name, (value, std, unit) in named.parameters.items()
+        },
+        "rivals": [
+            {"name": r.candidate.effect.name, "where": r.candidate.where,
+             "confidence": r.confidence}
+            for r in named.rivals
+        ],
+        "one_of": named.one_of,
+        "proof": {"gain": named.proof.gain, "t": named.proof.t, "share": named.proof.share},
+    }  # fmt: skip
