@@ -1,7 +1,7 @@
 """Parameters as the optimiser sees them: numbers of order one without units.
 
     q = ln(value)       where the value is positive and may not change sign (a mass, a stiffness)
-    q = value           otherwise, in SI units (a position, an angle)
+    q = value/scale     otherwise (a position, an angle, the size of an effect)
 
 A step in q is then a relative change, or metres and radians, of similar weight.
 """
@@ -28,28 +28,31 @@ class Coordinates:
         logarithmic: which have q = ln(value), shape (p,).
         lower: bounds of q, shape (p,).
         upper: bounds of q, shape (p,).
+        scale: of those that are not logarithmic, shape (p,).
     """
 
     names: tuple[str, ...]
     logarithmic: np.ndarray
     lower: np.ndarray
     upper: np.ndarray
+    scale: np.ndarray
 
     def encode(self, values: np.ndarray) -> np.ndarray:
         """Values to q, shape (..., p)."""
-        return np.where(self.logarithmic, np.log(np.where(self.logarithmic, values, 1.0)), values)
+        logarithm = np.log(np.where(self.logarithmic & (np.asarray(values) > 0), values, 1.0))
+        return np.where(self.logarithmic, logarithm, np.asarray(values) / self.scale)
 
     def decode(self, q: np.ndarray) -> np.ndarray:
         """The values of q, shape (..., p)."""
         return np.where(
             self.logarithmic,
             np.exp(np.clip(np.where(self.logarithmic, q, 0.0), -FARTHEST, FARTHEST)),
-            q,
+            q * self.scale,
         )
 
     def slope(self, q: np.ndarray) -> np.ndarray:
         """d value/d q, shape (..., p): a std in q times this is a std of the value."""
-        return np.where(self.logarithmic, self.decode(q), 1.0)
+        return np.where(self.logarithmic, self.decode(q), self.scale)
 
     def on_bound(self, q: np.ndarray) -> np.ndarray:
         """Which of q (p,) lie on a bound, shape (p,)."""
@@ -77,8 +80,10 @@ def coordinates(parameters: ParameterSet, names: Sequence[str], start: np.ndarra
                 " on a bound stays there"
             )
     logarithmic = np.array([r.lower >= 0 and v > 0 for r, v in zip(records, start, strict=True)])
-    lower, upper = (np.array([getattr(r, side) for r in records]) for side in ("lower", "upper"))
+    lower, upper, scale = (
+        np.array([getattr(r, field) for r in records]) for field in ("lower", "upper", "scale")
+    )
     with np.errstate(divide="ignore"):
-        low = np.where(logarithmic, np.log(np.where(logarithmic, lower, 1.0)), lower)
-        high = np.where(logarithmic, np.log(np.where(logarithmic, upper, 1.0)), upper)
-    return Coordinates(tuple(names), logarithmic, low, high)
+        low = np.where(logarithmic, np.log(np.where(logarithmic, lower, 1.0)), lower / scale)
+        high = np.where(logarithmic, np.log(np.where(logarithmic, upper, 1.0)), upper / scale)
+    return Coordinates(tuple(names), logarithmic, low, high, scale)

@@ -83,7 +83,9 @@ class Effect:
     reference: str = ""
 
     def parameter(self, name: str, where: str) -> str:
-        """Name of the plant's parameter for a size or shape at a place."""
+        """Name of the plant's parameter for a size at a place, or for a shape, one for all."""
+        if any(shape.name == name for shape in self.shapes):
+            return f"{self.name}.{name}"
         return f"{self.name}.{name}{self.places[where]}"
 
 

@@ -25,6 +25,7 @@ class Parameter:
         about: what it is, in words.
         source: table, data sheet or paper the value was taken from.
         ties: further paths that follow it, each with the factor by which they do.
+        scale: a magnitude that matters [unit]; a search counts by it a value that may be zero.
 
     Raises:
         InputError: the bounds are in the wrong order, the value is outside them, or a tie's factor
@@ -41,6 +42,7 @@ class Parameter:
     about: str = ""
     source: str = ""
     ties: tuple[tuple[str, float], ...] = ()
+    scale: float = 1.0
 
     def __post_init__(self) -> None:
         if not self.lower < self.upper:

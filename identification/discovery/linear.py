@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 from scipy.linalg import expm
+from threadpoolctl import threadpool_limits
 
 from identification.predictor import Predictor, output_columns
 from identification.rollout import rollout
@@ -32,13 +33,11 @@ class LinearPlant:
         A: transition from each sample to the next, shape (N-1, nx, nx).
         B: effect of an input held over the sample, shape (N-1, nx, nu).
         C: outputs from the state, shape (ny, nx).
-        G: effect of a generalised force held over the sample on the state, shape (N-1, nx, nv).
     """
 
     A: np.ndarray
     B: np.ndarray
     C: np.ndarray
-    G: np.ndarray
 
 
 def linearise(predictor: Predictor, values: np.ndarray) -> LinearPlant:
@@ -63,40 +62,48 @@ def linearise(predictor: Predictor, values: np.ndarray) -> LinearPlant:
     for slot, column in numbers:
         getattr(model, slot.field)[slot.index()] = column[0]
     mujoco.mj_setConst(model, mujoco.MjData(model))
-    F, G, J = _derivatives(
-        model, {k: v[0] for k, v in states.items()}, log.inputs, log.sampling_time
-    )
-    nx, nu, nv = F.shape[1], G.shape[2], model.nv
-    block = np.zeros((len(F), nx + nu + nv, nx + nu + nv))
-    block[:, :nx] = np.concatenate([F, G, J], axis=2) * log.sampling_time
-    block = expm(block)
-    C = np.zeros((log.outputs.shape[1], nx))
+    along = {field: values[0] for field, values in states.items()}
+    F, G = _derivatives(model, along, log.inputs, log.sampling_time)
+    C = np.zeros((log.outputs.shape[1], F.shape[1]))
     for row, (field, i) in enumerate(output_columns(model, log.output_names)):
         C[row, _tangent(model, field, i)] = 1
-    return LinearPlant(block[:, :nx, :nx], block[:, :nx, nx : nx + nu], C, block[:, :nx, nx + nu :])
+    felt = _felt(F, C)
+    F, G, C = F[:, felt][:, :, felt], G[:, felt], C[:, felt]
+    nx, nu = F.shape[1], G.shape[2]
+    block = np.zeros((len(F), nx + nu, nx + nu))
+    block[:, :nx] = np.concatenate([F, G], axis=2) * log.sampling_time
+    with threadpool_limits(1, "blas"):  # the matrices are small; threads only wait for each other
+        block = expm(block)
+    return LinearPlant(block[:, :nx, :nx], block[:, :nx, nx:], C)
+
+
+def _felt(F: np.ndarray, C: np.ndarray) -> np.ndarray:
+    """States that some output feels, shape (nx,)."""
+    links = np.abs(F).max(axis=0) > 0
+    felt = np.any(C != 0, axis=0)
+    while (more := felt | links[felt].any(axis=0)).sum() > felt.sum():
+        felt = more
+    return felt
 
 
 def _derivatives(
     model: mujoco.MjModel, states: dict[str, np.ndarray], inputs: np.ndarray, sampling_time: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """F (N-1, nx, nx), ∂ẋ/∂u (N-1, nx, nu) and ∂ẋ/∂τ (N-1, nx, nv) at all samples but the last."""
+) -> tuple[np.ndarray, np.ndarray]:
+    """F (N-1, nx, nx) and G (N-1, nx, nu) at all samples but the last."""
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
     model.opt.timestep = SHORT
     data = mujoco.MjData(model)
-    nx, nu, nv, n = 2 * model.nv + model.na, model.nu, model.nv, len(inputs) - 1
-    F, G, J = np.empty((n, nx, nx)), np.empty((n, nx, nu)), np.zeros((n, nx, nv))
-    inverse = np.empty((nv, nv))
+    nx, n = 2 * model.nv + model.na, len(inputs) - 1
+    F, G = np.empty((n, nx, nx)), np.empty((n, nx, model.nu))
     for k in range(n):
         data.time = k * sampling_time
         data.qpos, data.qvel, data.ctrl = states["qpos"][k], states["qvel"][k], inputs[k]
         if model.na:
             data.act = states["act"][k]
         mujoco.mjd_transitionFD(model, data, EPS, 1, F[k], G[k], None, None)
-        mujoco.mj_solveM(model, data, inverse, np.eye(nv))
-        J[k, nv : 2 * nv] = inverse
     F -= np.eye(nx)
-    return F / SHORT, G / SHORT, J
+    return F / SHORT, G / SHORT
 
 
 def _tangent(model: mujoco.MjModel, field: str, i: int) -> int:

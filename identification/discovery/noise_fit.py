@@ -9,6 +9,7 @@ by as much as the sensors' noise.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -80,7 +81,12 @@ def likelihood(
 
 
 def fit_noise(
-    plant: LinearPlant, e: np.ndarray, J: np.ndarray, prior: np.ndarray, sampling_time: float
+    plant: LinearPlant,
+    e: np.ndarray,
+    J: np.ndarray,
+    prior: np.ndarray,
+    sampling_time: float,
+    near: Level | None = None,
 ) -> Level:
     """The most likely noise of a residual.
 
@@ -90,23 +96,30 @@ def fit_noise(
         J: sensitivities, shape (N, ny, p).
         prior: 1/std of each parameter's prior, shape (p,).
         sampling_time: [s].
+        near: where one is known from a point nearby: only its size is looked for, roughly.
     """
     with threadpool_limits(1, "blas"):  # the matrices are small; threads only wait for each other
 
-        def at(level: float, time: float) -> Level:
-            ratio = level * unit_ratio(plant, sampling_time, time) if level else 0.0
-            noise = Noise(ratio, time)
+        def at(noise: Noise) -> Level:
             return likelihood(whitener(plant, noise, sampling_time), noise, e, J, prior)
 
-        tried = {(level, TIMES[1]): at(level, TIMES[1]) for level in LEVELS}
+        if near is not None and near.noise.ratio:
+            return _best([at(near.noise.scaled(f)) for f in (1.0, 0.3, 0.05, 0.0)])
+        unit = unit_ratio(plant, sampling_time, TIMES[1])
+        if near is not None:
+            return _best([at(Noise(level * unit, TIMES[1])) for level in (0.0, 0.1, 1.0)])
+        best = _best([at(Noise(level * unit, TIMES[1])) for level in LEVELS])
+        return sharpen(best, at) if best.noise.ratio else best
 
-        def best() -> tuple[float, float]:
-            return max(tried, key=lambda key: tried[key].log_likelihood)
 
-        if best()[0] > 0:
-            for time in TIMES:
-                tried[best()[0], time] = at(best()[0], time)
-            for factor in (1.8, 1 / 1.8, 1.35, 1 / 1.35):
-                level, time = best()
-                tried[level * factor, time] = at(level * factor, time)
-        return tried[best()]
+def sharpen(best: Level, at: Callable[[Noise], Level]) -> Level:
+    """The most likely correlation time, then the most likely ρ, about a level."""
+    for time in TIMES:  # ρ² τ is what a slow plant feels
+        best = _best([best, at(Noise(best.noise.ratio * (best.noise.time / time) ** 0.5, time))])
+    for factor in (1.8, 1 / 1.8, 1.35, 1 / 1.35):
+        best = _best([best, at(best.noise.scaled(factor))])
+    return best
+
+
+def _best(levels: list[Level]) -> Level:
+    return max(levels, key=lambda level: level.log_likelihood)

@@ -14,7 +14,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from identification.discovery.linear import LinearPlant
 
@@ -30,6 +29,10 @@ class Noise:
 
     ratio: float
     time: float
+
+    def scaled(self, factor: float) -> Noise:
+        """The same with another ρ."""
+        return Noise(self.ratio * factor, self.time)
 
 
 @dataclass(frozen=True)
@@ -84,7 +87,7 @@ def whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener
         PC = P @ C.T
         S = C @ PC + np.eye(ny)
         factor = np.linalg.cholesky(S)
-        L[k] = solve_triangular(factor, np.eye(ny), lower=True, check_finite=False)
+        L[k] = np.linalg.inv(factor)
         K[k] = PC @ L[k].T @ L[k]
         log_determinant += 2 * np.log(np.diag(factor)).sum()
         if k < n:

@@ -20,7 +20,7 @@ from identification.discovery.point import Point, point
 from identification.errors import DivergenceError
 
 LARGEST = 0.5  # step of a logarithm: parameters change by at most 65 % at a time
-ENDED = 0.3  # expected fall of the criterion, in units of the noise, that ends the search
+ENDED = 1.0  # expected fall of the criterion, in units of the noise, that ends the search
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Refit:
     steps: int
 
 
-def refit(at: Point, mean: np.ndarray, prior: np.ndarray, steps: int = 6) -> Refit:
+def refit(at: Point, mean: np.ndarray, prior: np.ndarray, steps: int = 10) -> Refit:
     """Estimate the free parameters of a point, from where it is.
 
     Args:
@@ -53,13 +53,15 @@ def refit(at: Point, mean: np.ndarray, prior: np.ndarray, steps: int = 6) -> Ref
     for k in range(steps):
         move, fall, std = _step(at, level, mean, prior)
         if fall < ENDED:
+            level = fit_noise(at.linear, at.e, at.J, prior, at.log.sampling_time)
             return Refit(at, level, std, k)
         try:
             new = point(at.predictor, at.space, at.q + move)
         except DivergenceError:
             new = point(at.predictor, at.space, at.q + move / 4)
-        now = fit_noise(new.linear, new.e, new.J, prior, at.log.sampling_time)
-        at, level = new, now
+        level = fit_noise(new.linear, new.e, new.J, prior, at.log.sampling_time, level)
+        at = new
+    level = fit_noise(at.linear, at.e, at.J, prior, at.log.sampling_time)
     return Refit(at, level, _step(at, level, mean, prior)[2], steps)
 
 
@@ -75,8 +77,8 @@ def _step(
     lower = np.maximum(at.space.lower - at.q, -size)
     upper = np.minimum(at.space.upper - at.q, size)
     scale = np.linalg.norm(rows, axis=0) + 1e-300
-    move = lsq_linear(rows / scale, target, (lower * scale - 1e-12, upper * scale + 1e-12)).x
-    move = move / scale
+    Q, R = np.linalg.qr(rows / scale)
+    move = lsq_linear(R, Q.T @ target, (lower * scale - 1e-12, upper * scale + 1e-12)).x / scale
     fall = float(target @ target - np.sum((target - rows @ move) ** 2))
     covariance = np.linalg.pinv(rows.T @ rows, rcond=1e-14, hermitian=True)
     return move, fall, np.sqrt(np.diag(covariance))

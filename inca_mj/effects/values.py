@@ -42,7 +42,9 @@ def with_effects(parameters: ParameterSet, effects: Sequence[DriveEffect]) -> Pa
 def _size(name: str, size: Size) -> Parameter:
     farthest = FARTHER * size.largest
     lower, upper = (-farthest if size.sign <= 0 else 0.0), (farthest if size.sign >= 0 else 0.0)
-    return Parameter(name, 0.0, size.unit, "effect", lower, upper, size.name, size.about)
+    return Parameter(
+        name, 0.0, size.unit, "effect", lower, upper, size.name, size.about, scale=size.probe
+    )
 
 
 def _shape(name: str, shape: Shape) -> Parameter:

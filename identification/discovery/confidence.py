@@ -1,0 +1,97 @@
+"""How sure a name is: against its rivals, and against what it leaves unexplained.
+
+    P_j ∝ exp(-ΔBIC_j/(2 T))        over the explanations that were refitted in its place
+
+T > 1 because the likelihood believes its noise model; it is a calibration on simulated worlds, as
+is the cap: no effect is certain that was confirmed under one kind of input only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from identification.discovery.columns import Column
+from identification.discovery.extend import Base, prior_of
+from identification.discovery.noise_model import whitener
+from identification.discovery.result import Named, Rival
+from identification.discovery.steps import Accepted, Step
+from identification.effect import Candidate
+
+TEMPERATURE = 10.0
+CAP = 0.95
+LIKELY = 0.2  # a rival as likely as this makes a set
+
+
+def named_of(
+    base: Base,
+    accepted: Sequence[Accepted],
+    final: Step,
+    columns: Sequence[Column],
+    explained: float,
+) -> tuple[Named, ...]:
+    """The accepted effects with their final values and their rivals.
+
+    Args:
+        base: the nominal model.
+        accepted: effects in the order in which they were added.
+        final: the model with all of them.
+        columns: sensitivities of all candidates.
+        explained: share of what should be explained that they explain together, 0 to 1.
+    """
+    at = final.refit.at
+    values = at.values
+    std = dict(zip(at.space.names, final.refit.std * at.space.slope(at.q), strict=True))
+    out = []
+    for new in accepted:
+        mine = new.step.candidates[-1]
+        near = [new.step, *new.others]
+        weights = np.exp([(s.criterion - new.step.criterion) / (2 * TEMPERATURE) for s in near])
+        probability = weights / weights.sum()
+        rivals = [s.candidates[-1] for s in new.others]
+        alike = _alike(base, final, mine, rivals, columns)
+        parameters = {}
+        for name in (*mine.sizes, *mine.fixed):
+            unit = base.plant.parameters[name].unit
+            parameters[base.plant.parameters[name].symbol] = (
+                values[name], float(std.get(name, 0.0)), unit
+            )  # fmt: skip
+        shape = {s.name: values[mine.effect.parameter(s.name, mine.where)]
+                 for s in mine.effect.shapes}  # fmt: skip
+        out.append(
+            Named(
+                replace(mine, shape=shape),
+                parameters,
+                float(min(CAP, probability[0]) * min(1.0, max(0.0, explained))),
+                tuple(
+                    Rival(r, float(p), a)
+                    for r, p, a in zip(rivals, probability[1:], alike, strict=True)
+                ),
+                bool(len(near) > 1 and probability[1:].max() > LIKELY),
+                new.gain,
+                new.proof,
+            )
+        )
+    return tuple(out)
+
+
+def _alike(
+    base: Base, final: Step, mine: Candidate, rivals: Sequence[Candidate], columns: Sequence[Column]
+) -> list[float]:
+    """Cosines between the sensitivity of an effect and those of its rivals, whitened."""
+    known = {(c.candidate.effect.name, c.candidate.where): c.S for c in columns}
+    wanted = [known[c.effect.name, c.where] for c in (mine, *rivals)]
+    at, level = final.refit.at, final.refit.level
+    keep = [i for i, name in enumerate(at.space.names) if name in base.names]
+    with threadpool_limits(1, "blas"):
+        filter_ = whitener(at.linear, level.noise, at.log.sampling_time)
+        W = filter_(np.concatenate([at.J[..., keep], *wanted], axis=2)).reshape(at.e.size, -1)
+    F, S = W[:, : len(keep)], W[:, len(keep) :]
+    ridge = np.diag((prior_of(base, final.refit)[keep] * level.sigma) ** 2)
+    S = S - F @ np.linalg.solve(F.T @ F + ridge, F.T @ S)
+    ends = np.cumsum([w.shape[2] for w in wanted])
+    spans = [np.linalg.qr(S[:, e - w.shape[2] : e])[0] for e, w in zip(ends, wanted, strict=True)]
+    return [float(np.linalg.norm(spans[0].T @ span, 2)) for span in spans[1:]]

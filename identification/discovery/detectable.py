@@ -1,0 +1,48 @@
+"""What the log could have shown: without it "nothing is missing" is not honest.
+
+An effect of size η is found with probability 0.9 at a chance of 0.05/30 when (η/std)² >= 23.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from identification.discovery.result import Detectable
+from identification.discovery.score import Score
+
+NONCENTRALITY = 23.0
+
+
+def detectable(scores: Sequence[Score]) -> tuple[Detectable, ...]:
+    """The smallest size of each effect that would have been found, by effect name.
+
+    Of an effect's places and shapes the least favourable counts, but for one that acts everywhere:
+    there the best scored shape does.
+
+    Args:
+        scores: of all candidates on the final model.
+    """
+    chosen: dict[str, Score] = {}
+    for s in scores:
+        name, before = s.candidate.effect.name, chosen.get(s.candidate.effect.name)
+        if (
+            before is None
+            or (_everywhere(s) and not _everywhere(before))
+            or (not _everywhere(s) and not _everywhere(before) and s.std.max() > before.std.max())
+        ):
+            chosen[name] = s
+    out = []
+    for _, s in sorted(chosen.items()):
+        for size, std in zip(s.candidate.effect.sizes, s.std, strict=True):
+            smallest = float(np.sqrt(NONCENTRALITY) * std)
+            testable = np.isfinite(smallest) and 0 < smallest <= 5 * size.largest
+            out.append(
+                Detectable(s.candidate, size.name, smallest if testable else np.inf, size.unit)
+            )
+    return tuple(out)
+
+
+def _everywhere(s: Score) -> bool:
+    return not s.candidate.effect.places[s.candidate.where]

@@ -1,0 +1,135 @@
+"""Find where a model and a log disagree, name what is missing, add it, prove it.
+
+fit the nominal model  ->  score all candidates  ->  refit the best  ->  prove on unseen data
+                                   ^__________________________________________|   up to 3 times
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+
+from identification.discovery.columns import Column, columns, common, single
+from identification.discovery.confidence import named_of
+from identification.discovery.detectable import detectable
+from identification.discovery.extend import Base
+from identification.discovery.locate import left_over, located
+from identification.discovery.result import Discovery, Verdict
+from identification.discovery.score import Score
+from identification.discovery.steps import Accepted, Step, add, fitted, scores_of
+from identification.effect import Effect
+from identification.errors import InputError
+from identification.log import Log
+
+MOST = 3  # effects
+EXPLAINED = 0.5  # of the gap on unseen data that named effects must close to be more than a guess
+SHORTEST = 200  # samples that can be fitted and split into blocks
+
+
+def discover(
+    base: Base,
+    log: Log,
+    effects: Sequence[Effect],
+    progress: Callable[[str], None] | None = None,
+) -> Discovery:
+    """Name what a model lacks to explain a log.
+
+    Args:
+        base: the nominal model with every candidate effect compiled in, its free parameters and
+            what is known of them.
+        log: its part `estimation` (or first half) is fitted, the rest confirms.
+        effects: the candidates.
+        progress: is told a line per stage.
+
+    Raises:
+        InputError: the log is too short, or a name is unknown.
+        DivergenceError: the nominal model cannot be simulated.
+    """
+    if len(log.part("estimation")) < SHORTEST:
+        raise InputError(
+            f"the log has {len(log.part('estimation'))} samples to fit; discovery needs at least"
+            f" {SHORTEST}, and as many that it does not fit"
+        )
+    say = progress or (lambda line: None)
+    clock = _Clock()
+    nominal = fitted(base, log, (), {})
+    clock("nominal fit")
+    say(f"nominal fit: {1e3 * nominal.unseen.rms:.3g}e-3 on unseen data")
+    sensed = _sensitivities(base, nominal, effects)
+    clock("sensitivities")
+    first = ranked = scores_of(base, nominal, sensed)
+    clock("scores")
+    say(f"{len(ranked)} candidates scored, {ranked[0].candidate.effect.name} first")
+    accepted: list[Accepted] = []
+    step = nominal
+    while len(accepted) < MOST:
+        new = add(base, log, step, ranked, say)
+        clock("refits")
+        if new is None:
+            break
+        accepted.append(new)
+        step = new.step
+        ranked = scores_of(base, step, sensed)
+        clock("scores")
+    kept, step = _backward(base, log, nominal, accepted, step)
+    clock("refits")
+    left = left_over(step, ranked)
+    explained = _explained(nominal, step)
+    named = named_of(base, kept, step, sensed, explained if left else 1.0)
+    verdict: Verdict = "nothing missing"
+    if named and (explained > EXPLAINED or not left):
+        verdict = "named"
+    elif named or left:
+        verdict = "unknown effect"
+        named = ()
+        step = nominal
+    where = located(nominal) if verdict != "nothing missing" else ()
+    return Discovery(
+        log, verdict, named, bool(left), step.refit.level.sigma, step.unseen.disturbance,
+        nominal.unseen.gap(log), step.unseen.gap(log), nominal.refit, step.refit,
+        log.outputs - nominal.unseen.e, log.outputs - step.unseen.e, first, ranked,
+        detectable(ranked), where, tuple(left), clock.seconds,
+    )  # fmt: skip
+
+
+def _sensitivities(base: Base, nominal: Step, effects: Sequence[Effect]) -> tuple[Column, ...]:
+    """Of every effect everywhere, then of the best shape of each at its single places."""
+    everywhere = columns(nominal.refit.at, common(effects))
+    best: dict[str, Score] = {}
+    for s in scores_of(base, nominal, everywhere):
+        best.setdefault(s.candidate.effect.name, s)
+    return everywhere + columns(nominal.refit.at, single([s.candidate for s in best.values()]))
+
+
+def _backward(
+    base: Base, log: Log, nominal: Step, accepted: Sequence[Accepted], step: Step
+) -> tuple[list[Accepted], Step]:
+    """Drop an effect that those found later have made needless."""
+    kept = list(accepted)
+    for old in accepted[:-1]:
+        mine = old.step.candidates[-1]
+        rest = tuple(c for c in step.candidates if c is not mine)
+        without = fitted(base, log, rest, step.refit.at.values)
+        if without.criterion > step.criterion:
+            kept, step = [a for a in kept if a is not old], without
+    return kept, step
+
+
+def _explained(nominal: Step, step: Step) -> float:
+    """Share of the gap on unseen data that is closed."""
+    floor = step.refit.level.sigma**2 + step.unseen.disturbance**2
+    above = nominal.unseen.rms**2 - min(floor, step.unseen.rms**2)
+    return (nominal.unseen.rms**2 - step.unseen.rms**2) / above if above > 0 else 0.0
+
+
+class _Clock:
+    """Wall time by stage."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self.last = time.perf_counter()
+
+    def __call__(self, stage: str) -> None:
+        now = time.perf_counter()
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + now - self.last
+        self.last = now

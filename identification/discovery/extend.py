@@ -1,0 +1,107 @@
+"""A model with some effects: its free parameters, and where their search begins."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from identification.coordinates import Coordinates, coordinates
+from identification.discovery.point import point
+from identification.discovery.refit import Refit, refit
+from identification.effect import Candidate
+from identification.log import Log
+from identification.parameter import Parameter, ParameterSet
+from identification.predictor import Plant, Predictor
+
+SHAPE_STD = 1.0  # prior of a shape's logarithm about the grid value that scored best
+FARTHEST = 3.0  # factor by which a base parameter may leave its nominal value
+SMALL = 1e-3  # of a probe: where the search for a size begins that must not be zero
+
+
+@dataclass(frozen=True)
+class Base:
+    """The nominal model's free parameters and what is known of them.
+
+    Attributes:
+        plant: the model, all candidate effects included.
+        names: its free parameters.
+        std: prior std of each, relative where it is logarithmic, else in its unit, shape (p,).
+    """
+
+    plant: Plant
+    names: tuple[str, ...]
+    std: np.ndarray
+
+
+def fit_with(
+    base: Base,
+    log: Log,
+    candidates: Sequence[Candidate],
+    start: Mapping[str, float],
+    steps: int = 10,
+) -> Refit:
+    """Fit the model with some effects: base parameters, their sizes and their free shapes.
+
+    Args:
+        base: the nominal model.
+        log: what to explain.
+        candidates: the effects.
+        start: values to begin at by name; the plant's own where not given.
+        steps: of Gauss-Newton, at most.
+
+    Raises:
+        DivergenceError: the start cannot be simulated.
+    """
+    parameters = base.plant.parameters
+    sizes = [name for c in candidates for name in c.sizes]
+    shapes = dict.fromkeys(
+        c.effect.parameter(shape.name, c.where)
+        for c in candidates
+        for shape in c.effect.shapes
+        if shape.free
+    )
+    fixed = {n: v for c in candidates for n, v in c.fixed.items() if n not in shapes}
+    names = (*base.names, *sizes, *shapes)
+    own = {**parameters.values(), **{n: v for c in candidates for n, v in c.fixed.items()}}
+    first = np.array([_inside(parameters[n], {**own, **start}[n]) for n in names])
+    space = _plausible(coordinates(parameters, names, first), parameters, base.names)
+    mean = space.encode(np.array([own[n] if n in (*base.names, *shapes) else 0.0 for n in names]))
+    weight = np.concatenate(
+        [1 / base.std, np.zeros(len(sizes)), np.full(len(shapes), 1 / SHAPE_STD)]
+    )
+    mean = np.where(np.isfinite(mean), mean, 0.0)
+    at = point(Predictor(base.plant, log, names, fixed), space, space.encode(first))
+    return refit(at, mean, weight, steps)
+
+
+def _plausible(space: Coordinates, parameters: ParameterSet, names: Sequence[str]) -> Coordinates:
+    """Coordinates whose base parameters stay within a factor of their nominal values.
+
+    A wrong model would carry them anywhere, to imitate what it lacks.
+    """
+    nominal = np.array([parameters[n].value if n in names else 1.0 for n in space.names])
+    bounded = space.logarithmic & np.isin(space.names, names)
+    middle = np.log(np.where(bounded, nominal, 1.0))
+    return replace(
+        space,
+        lower=np.where(bounded, np.maximum(space.lower, middle - np.log(FARTHEST)), space.lower),
+        upper=np.where(bounded, np.minimum(space.upper, middle + np.log(FARTHEST)), space.upper),
+    )
+
+
+def _inside(record: Parameter, value: float) -> float:
+    """A value a little inside its bounds, and a size that is not zero."""
+    if record.lower <= 0 <= record.upper and abs(value) < SMALL * record.scale:
+        value = SMALL * record.scale * (1 if record.upper > 0 else -1)
+    width = min(record.upper - record.lower, 1e300)
+    low, high = record.lower + 1e-9 * width, record.upper - 1e-9 * width
+    return float(np.clip(value, low, high))
+
+
+def prior_of(base: Base, refitted: Refit) -> np.ndarray:
+    """1/std of the priors of a refit's parameters, shape (p,)."""
+    names = refitted.at.space.names
+    known = dict(zip(base.names, 1 / base.std, strict=True))
+    return np.array([known.get(name, 0.0) for name in names])

@@ -1,0 +1,141 @@
+"""Where model and log disagree: which output, when, at which frequency, along with what.
+
+The missing input of each actuator is the Kalman filter's estimate of w (see `noise_model`), and
+what it goes along with is told by the share of its variance that one regressor explains.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from identification.discovery.innovations import whiteness
+from identification.discovery.noise_model import whitener
+from identification.discovery.refit import Refit
+from identification.discovery.score import Score
+from identification.discovery.steps import Step, significant
+
+SURE = 1e-4  # chance at which structure in the innovations is believed
+
+
+def missing_input(fit: Refit) -> np.ndarray:
+    """What the inputs lack for the outputs to be as measured, shape (N, nu), in their unit.
+
+    Zero where the noise model needs no error of the inputs.
+    """
+    at = fit.at
+    nu = at.linear.B.shape[2]
+    with threadpool_limits(1, "blas"):
+        filter_ = whitener(at.linear, fit.level.noise, at.log.sampling_time)
+    if not filter_.A.size:
+        return np.zeros((len(at.e), nu))
+    z = np.zeros(filter_.A.shape[1])
+    out = np.zeros((len(at.e), nu))
+    for k, e in enumerate(at.e):
+        z = z + filter_.K[k] @ (e - filter_.C @ z)
+        out[k] = z[-nu:]
+        if k < len(filter_.A):
+            z = filter_.A[k] @ z
+    return out
+
+
+def regressors(fit: Refit) -> dict[str, np.ndarray]:
+    """What a missing input may go along with, by name: shape (N, nu) each, or (N, 1)."""
+    log = fit.at.log
+    y = log.outputs - fit.at.e
+    rate = np.gradient(y, log.sampling_time, axis=0)
+    u = log.inputs
+    same = u.shape[1] == y.shape[1]
+    out = {"time": log.time[:, None] - log.time.mean()}
+    out["its input"] = u
+    if same:
+        scale = rate.std(axis=0) + 1e-300
+        out |= {
+            "the sign of its rate": np.tanh(3 * rate / scale),
+            "its rate": rate,
+            "the size of its rate": np.abs(rate),
+            "its rate near zero": rate * np.exp(-((rate / (0.3 * scale)) ** 2)),
+            "the square of its rate": rate * np.abs(rate),
+            "its angle": y,
+        }
+    return out
+
+
+def shares(fit: Refit) -> Mapping[str, np.ndarray]:
+    """Share of the missing input's variance that goes along with each regressor, shape (nu,)."""
+    w = missing_input(fit)
+    w = w - w.mean(axis=0)
+    out = {}
+    for name, r in regressors(fit).items():
+        r = np.broadcast_to(r - r.mean(axis=0), w.shape)
+        top = np.sum(r * w, axis=0) ** 2
+        out[name] = top / (np.sum(r**2, axis=0) * np.sum(w**2, axis=0) + 1e-300)
+    return out
+
+
+def located(nominal: Step) -> tuple[str, ...]:
+    """Where the nominal model fails, in sentences."""
+    fit = nominal.refit
+    log, e = fit.at.log, fit.at.e
+    out = []
+    rms = np.sqrt(np.mean(e**2, axis=0))
+    worst = int(rms.argmax())
+    share = rms[worst] ** 2 / np.sum(rms**2)
+    name = log.output_names[worst]
+    unit = log.units.get(name, "")
+    out.append(
+        f"the error is largest on {name}: {rms[worst]:.3g} {unit} rms,"
+        f" {100 * share:.0f} % of all, {rms[worst] / fit.level.sigma:.1f} times the sensors' noise"
+    )
+    energy = np.add.reduceat(
+        np.sum(e**2, axis=1), np.linspace(0, len(e), 10, endpoint=False).astype(int)
+    )
+    late = int(energy.argmax())
+    span = log.duration / 10
+    out.append(
+        f"it is largest from {late * span:.1f} to {(late + 1) * span:.1f} s"
+        f" ({100 * energy[late] / energy.sum():.0f} % of it)"
+    )
+    spectrum = np.sum(np.abs(np.fft.rfft(e - e.mean(axis=0), axis=0)) ** 2, axis=1)
+    f = np.fft.rfftfreq(len(e), log.sampling_time)
+    half = f[int(np.searchsorted(np.cumsum(spectrum), 0.5 * spectrum.sum()))]
+    out.append(f"half of it lies below {max(half, f[1]):.2g} Hz")
+    found = shares(fit)
+    if fit.level.noise.ratio:
+        total = {n: float(np.mean(v)) for n, v in found.items()}
+        best = max(total, key=total.__getitem__)
+        u = log.input_names[0]
+        out.append(
+            f"as an error of the inputs it is {fit.level.input_std:.2g}"
+            f" {log.units.get(u, '')} rms, and {100 * total[best]:.0f} % of that goes along with"
+            f" {best}"
+        )
+    return tuple(out)
+
+
+def left_over(step: Step, scores: Sequence[Score]) -> tuple[str, ...]:
+    """What the final model does not explain, in sentences; empty when it explains all."""
+    log = step.refit.at.log
+    E = step.unseen.innovations
+    white = whiteness(E, log.sampling_time)
+    out = []
+    if white.p_line < SURE:
+        out.append(
+            f"a line at {white.frequency:.2f} Hz on {log.output_names[white.channel]} that no"
+            f" candidate explains (chance {white.p_line:.0e})"
+        )
+    if white.p_louder < SURE:
+        out.append(
+            f"{log.output_names[white.loudest]} is noisier than the others"
+            f" (chance {white.p_louder:.0e})"
+        )
+    if white.p_correlation < SURE:
+        out.append(f"innovations that are not white (chance {white.p_correlation:.0e})")
+    for s in significant(scores)[:1]:
+        out.append(
+            f"something like {s.candidate.effect.name}, {s.candidate.where}, that unseen data do"
+            " not confirm"
+        )
+    return tuple(out)

@@ -1,0 +1,133 @@
+"""The steps of a discovery: score, refit, prove.
+
+A candidate is worth a refit when it explains more than chance at a family-wise error of `ALPHA`,
+by the noise model and by blocks, with a size that is plausible. Of those that were refitted the
+most likely one is chosen, by BIC, and accepted when unseen data say so too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.discovery.columns import Column
+from identification.discovery.extend import Base, fit_with, prior_of
+from identification.discovery.proof import Unseen, prove, unseen
+from identification.discovery.refit import Refit
+from identification.discovery.result import Proof
+from identification.discovery.score import Score, score
+from identification.effect import Candidate
+from identification.errors import DivergenceError, InputError
+from identification.log import Log
+
+ALPHA = 0.01  # family-wise chance of a name where nothing is missing, before the proof
+CONTENDERS = 3  # explanations that are refitted at most
+CLOSE = 0.3  # share of the best gain that makes a contender
+T = 2.0  # t of the proof: 2.5 % one-sided
+SHARE = 0.1  # of the gap on unseen data that an effect must close (Kay-like practice, EMPS)
+
+
+@dataclass(frozen=True)
+class Step:
+    """A model with some effects, fitted and seen on the whole log.
+
+    Attributes:
+        candidates: its effects.
+        refit: the fit on the fitted samples.
+        unseen: the same over the whole log.
+    """
+
+    candidates: tuple[Candidate, ...]
+    refit: Refit
+    unseen: Unseen
+
+    @property
+    def criterion(self) -> float:
+        """BIC, negated and in units of twice the log likelihood."""
+        free = len(self.refit.at.q)
+        return 2 * self.refit.level.log_likelihood - free * float(np.log(len(self.refit.at.log)))
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """An effect that was added.
+
+    Attributes:
+        step: the model with it.
+        proof: on unseen data.
+        gain: of twice the log likelihood over the model without it.
+        others: what else was refitted in its place.
+    """
+
+    step: Step
+    proof: Proof
+    gain: float
+    others: tuple[Step, ...]
+
+
+def fitted(
+    base: Base, whole: Log, candidates: tuple[Candidate, ...], start: Mapping[str, float]
+) -> Step:
+    """A model with some effects, fitted on the estimation part of a log."""
+    fit = fit_with(base, whole.part("estimation"), candidates, start)
+    return Step(candidates, fit, unseen(fit, whole))
+
+
+def scores_of(base: Base, step: Step, columns: Sequence[Column]) -> tuple[Score, ...]:
+    """Scores of all candidates that a model does not have yet."""
+    has = {(c.effect.name, c.where) for c in step.candidates}
+    effects = {c.effect.name for c in step.candidates if not c.effect.places[c.where]}
+    others = [
+        c for c in columns
+        if (c.candidate.effect.name, c.candidate.where) not in has
+        and c.candidate.effect.name not in effects
+    ]  # fmt: skip
+    at = step.refit
+    return score(at.at, at.level, prior_of(base, at), others)
+
+
+def significant(scores: Sequence[Score]) -> list[Score]:
+    """Scores beyond chance with plausible sizes, the best shape of each effect and place."""
+    each: dict[tuple[str, str], Score] = {}
+    for s in scores:
+        likely = max(s.p_value, s.block_p_value) * len(scores) < ALPHA
+        if likely and plausible(s.candidate, s.size) and s.gain > 0:
+            each.setdefault((s.candidate.effect.name, s.candidate.where), s)
+    return list(each.values())
+
+
+def plausible(candidate: Candidate, size: np.ndarray, factor: float = 5.0) -> bool:
+    """Whether sizes have the right sign and are not beyond what physics admits."""
+    for value, s in zip(size, candidate.effect.sizes, strict=True):
+        if s.sign * value < 0 or abs(value) > factor * s.largest:
+            return False
+    return True
+
+
+def add(
+    base: Base, whole: Log, step: Step, ranked: Sequence[Score], say: Callable[[str], None]
+) -> Accepted | None:
+    """The best effect to add to a model, if any is worth it."""
+    found = significant(ranked)
+    if not found:
+        return None
+    contenders = [s for s in found if s.gain > CLOSE * found[0].gain][:CONTENDERS]
+    tried = []
+    for s in contenders:
+        start = {**step.refit.at.values, **dict(zip(s.candidate.sizes, s.size, strict=True))}
+        try:
+            tried.append(fitted(base, whole, (*step.candidates, s.candidate), start))
+        except (DivergenceError, InputError) as error:
+            say(f"{s.candidate.effect.name}, {s.candidate.where}: left out, {error}")
+            continue
+        gain = tried[-1].criterion - step.criterion
+        say(f"{s.candidate.effect.name}, {s.candidate.where}: gain {gain:.0f}")
+    tried.sort(key=lambda t: -t.criterion)
+    for k, new in enumerate(tried):
+        proof = prove(step.unseen, new.unseen)
+        gain = new.criterion - step.criterion
+        if gain > 0 and proof.t > T and proof.share > SHARE:
+            return Accepted(new, proof, gain, tuple(tried[:k] + tried[k + 1 :]))
+    return None
