@@ -109,7 +109,7 @@ def _backward(
     for old in accepted[:-1]:
         mine = old.step.candidates[-1]
         rest = tuple(c for c in step.candidates if c is not mine)
-        without = fitted(base, log, rest, step.refit.at.values)
+        without = fitted(base, log, rest, step.refit.at.values, step)
         if without.criterion > step.criterion:
             kept, step = [a for a in kept if a is not old], without
     return kept, step

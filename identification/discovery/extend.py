@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.coordinates import Coordinates, coordinates
+from identification.discovery.linear import LinearPlant
 from identification.discovery.point import point
 from identification.discovery.refit import Refit, refit
 from identification.effect import Candidate
@@ -41,6 +42,7 @@ def fit_with(
     candidates: Sequence[Candidate],
     start: Mapping[str, float],
     steps: int = 10,
+    linear: LinearPlant | None = None,
 ) -> Refit:
     """Fit the model with some effects: base parameters, their sizes and their free shapes.
 
@@ -50,6 +52,7 @@ def fit_with(
         candidates: the effects.
         start: values to begin at by name; the plant's own where not given.
         steps: of Gauss-Newton, at most.
+        linear: a linearisation nearby, where one is known.
 
     Raises:
         DivergenceError: the start cannot be simulated.
@@ -72,7 +75,7 @@ def fit_with(
         [1 / base.std, np.zeros(len(sizes)), np.full(len(shapes), 1 / SHAPE_STD)]
     )
     mean = np.where(np.isfinite(mean), mean, 0.0)
-    at = point(Predictor(base.plant, log, names, fixed), space, space.encode(first))
+    at = point(Predictor(base.plant, log, names, fixed), space, space.encode(first), linear)
     return refit(at, mean, weight, steps)
 
 

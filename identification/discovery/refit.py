@@ -20,6 +20,7 @@ from identification.discovery.point import Point, point
 from identification.errors import DivergenceError
 
 LARGEST = 0.5  # step of a logarithm: parameters change by at most 65 % at a time
+NEAR = 0.02  # relative change of the parameters after which the linearisation still holds
 ENDED = 1.0  # expected fall of the criterion, in units of the noise, that ends the search
 
 
@@ -55,10 +56,12 @@ def refit(at: Point, mean: np.ndarray, prior: np.ndarray, steps: int = 10) -> Re
         if fall < ENDED:
             level = fit_noise(at.linear, at.e, at.J, prior, at.log.sampling_time)
             return Refit(at, level, std, k)
+        near = np.abs(move[at.space.logarithmic]).max(initial=0.0) < NEAR
+        linear = at.linear if near else None
         try:
-            new = point(at.predictor, at.space, at.q + move)
+            new = point(at.predictor, at.space, at.q + move, linear)
         except DivergenceError:
-            new = point(at.predictor, at.space, at.q + move / 4)
+            new = point(at.predictor, at.space, at.q + move / 4, linear)
         level = fit_noise(new.linear, new.e, new.J, prior, at.log.sampling_time, level)
         at = new
     level = fit_noise(at.linear, at.e, at.J, prior, at.log.sampling_time)
