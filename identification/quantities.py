@@ -1,6 +1,6 @@
 """Quantities as a person writes them: value ± std, an SI prefix, the digits that are known.
 
-    0.00412 ± 0.00021 N m  ->  4.12 ± 0.21 mN m
+0.00412 ± 0.00021 N m  ->  4.12 ± 0.21 mN m
 """
 
 from __future__ import annotations

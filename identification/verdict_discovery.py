@@ -124,8 +124,8 @@ def phrase(candidate: Candidate) -> str:
 
 def sizes(named: Named) -> str:
     """Sizes and shapes of a named effect, each with its std."""
-    about = {s.name: s.about for s in (*named.candidate.effect.sizes,
-                                       *named.candidate.effect.shapes)}  # fmt: skip
+    effect = named.candidate.effect
+    about = {s.name: s.about for s in effect.sizes} | {s.name: s.about for s in effect.shapes}
     return ", ".join(
         f"{name} = {quantity(value, std, unit)}" + (f" ({about[name]})" if about.get(name) else "")
         for name, (value, std, unit) in named.parameters.items()
@@ -135,7 +135,7 @@ def sizes(named: Named) -> str:
 def split_detectable(
     detectable: Sequence[Detectable],
 ) -> tuple[list[Detectable], list[Detectable]]:
-    """Those that would be seen at a plausible size, the clearest first; and those that would not."""
+    """Effects that would be seen at a plausible size, the clearest first; and the others."""
     largest = {id(d): _largest(d) for d in detectable}
     seen = [d for d in detectable if d.smallest <= largest[id(d)]]
     return (
