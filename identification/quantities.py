@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import ceil, floor, isfinite, log10
 
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
@@ -30,6 +31,16 @@ def quantity(value: float, std: float = float("nan"), unit: str = "") -> str:
         return f"{_plain(value, _DIGITS)} {unit}".strip()
     places = max(0, _decimals(std))
     return f"{value:.{places}f} ± {std:.{places}f} {unit}".strip()
+
+
+def alike(values: Sequence[float], unit: str) -> list[str]:
+    """Several values with one prefix, that of the largest, so that they compare at a glance."""
+    known = [abs(v) for v in values if isfinite(v)]
+    factor, name = _scale(max(known, default=0.0), unit, exact=True)
+    return [
+        f"{_plain(v / factor, _DIGITS)} {name}".strip() if isfinite(v) else "unknown"
+        for v in values
+    ]
 
 
 def _scale(magnitude: float, unit: str, exact: bool) -> tuple[float, str]:

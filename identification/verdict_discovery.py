@@ -7,7 +7,7 @@ from math import hypot, isfinite
 
 from identification.discovery.result import Detectable, Discovery, Named
 from identification.effect import Candidate
-from identification.quantities import quantity
+from identification.quantities import alike, quantity
 
 SHOWN = 4  # effects named where more could be
 
@@ -28,17 +28,17 @@ def discovery_verdict(found: Discovery) -> list[str]:
 def nothing(found: Discovery) -> str:
     """Nothing is missing, as far as this log can tell."""
     seen, unseen = split_detectable(found.detectable)
+    left, noise = alike([found.before.rms, floor_rms(found)], output_unit(found))
     said = (
         "Nothing is missing: what the fitted model leaves unexplained is noise,"
-        f" {_size(found, found.before.rms)} rms on unseen data where the sensors and unlogged"
-        f" disturbances make {_size(found, floor_rms(found))}."
+        f" {left} rms on unseen data where the sensors and unlogged disturbances make {noise}."
     )
     if seen:
         listed = "; ".join(f"{phrase(d.candidate)}, {_smallest(d)}" for d in seen[:SHOWN])
         said += f" The log would have shown, in 9 cases of 10, effects as small as: {listed}."
     if unseen:
         names = _unique(d.candidate.effect.name for d in unseen)
-        said += f" It cannot speak of {', '.join(names)}: at no plausible size would it show them."
+        said += f" It cannot speak of {', '.join(names)}: no plausible size would show in it."
     return said
 
 
@@ -90,7 +90,7 @@ def _named(found: Discovery, named: Named) -> str:
     first = "Missing from the model" if named is found.named[0] else "Missing too"
     return (
         f"{first}: {phrase(named.candidate)}, {sizes(named)}"
-        f" (confidence {100 * named.confidence:.0f} %)."
+        f"; confidence {100 * named.confidence:.0f} %."
     )
 
 
@@ -98,11 +98,11 @@ def _proof(found: Discovery) -> str:
     before, after = found.before.rms, found.after.rms
     if not (isfinite(before) and isfinite(after)):
         return "There is no unseen data to prove it on."
+    was, now, noise = alike([before, after, floor_rms(found)], output_unit(found))
     whom = "it" if len(found.named) == 1 else "them"
     said = (
-        f"On data that the fit has not seen, the error falls from {_size(found, before)} to"
-        f" {_size(found, after)} rms with {whom} in the model; the noise is"
-        f" {_size(found, floor_rms(found))}."
+        f"On data that the fit has not seen, the error falls from {was} to {now} rms"
+        f" with {whom} in the model; the noise is {noise}."
     )
     above = before**2 - floor_rms(found) ** 2
     if above > 0:
@@ -164,8 +164,7 @@ def _smallest(d: Detectable) -> str:
 
 
 def _size(found: Discovery, rms: float) -> str:
-    unit = output_unit(found)
-    return quantity(rms, unit=unit) if unit else f"{rms:.3g}"
+    return alike([rms], output_unit(found))[0]
 
 
 def _unique(names: Iterable[str]) -> list[str]:

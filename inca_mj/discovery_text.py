@@ -6,7 +6,7 @@ from math import isfinite
 from typing import Any
 
 from identification.discovery.result import Discovery, Gap
-from identification.quantities import quantity
+from identification.quantities import alike, quantity
 from identification.verdict_discovery import (
     diff_line,
     discovery_verdict,
@@ -49,12 +49,14 @@ def _diff(found: Discovery) -> list[str]:
 def _gap(found: Discovery) -> list[str]:
     unit, floor = output_unit(found), floor_rms(found)
 
-    def line(what: str, gap: Gap) -> str:
-        times = f", {gap.rms / floor:.3g} times the noise" if floor > 0 else ""
-        return f"  {what:<7}{quantity(gap.rms, unit=unit) if unit else f'{gap.rms:.3g}'} rms{times}"
+    before, after = alike([found.before.rms, found.after.rms], unit)
 
-    out = ["error on unseen data:", line("before", found.before)]
-    return [*out, line("after", found.after)] if found.named else out
+    def line(what: str, size: str, gap: Gap) -> str:
+        times = f", {gap.rms / floor:.3g} times the noise" if floor > 0 else ""
+        return f"  {what:<7}{size} rms{times}"
+
+    out = ["error on unseen data:", line("before", before, found.before)]
+    return [*out, line("after", after, found.after)] if found.named else out
 
 
 def _detectable(found: Discovery) -> list[str]:

@@ -7,12 +7,14 @@ from collections.abc import Sequence
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from inca_mj.colours import GREY, INK, MEASURED, SIMULATED
 from inca_mj.figures import _STYLE
 
 BEFORE, AFTER = SIMULATED, MEASURED
 BAND = "#C9CED6"
+FAR = 20.0  # a bar this much shorter than another is lost on a linear axis
 
 
 def gap_figure(
@@ -39,7 +41,7 @@ def gap_figure(
     cuts = np.flatnonzero(np.diff(time) > 1.5 * step) + 1
     shown = np.insert(time, cuts, np.nan)
     with matplotlib.rc_context(_STYLE):
-        figure = Figure((9.0, 0.7 + 1.35 * rows), layout="constrained")
+        figure = Figure((9.0, 0.7 + 1.35 * rows), layout=ConstrainedLayoutEngine(wspace=0.05))
         axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         panels = [axes[row, column] for column in range(columns) for row in range(rows)]
         for k, ax in enumerate(panels):
@@ -82,7 +84,7 @@ def rms_figure(
         bars.append((after, AFTER, "with what was missing"))
     width = 0.8 / len(bars)
     with matplotlib.rc_context(_STYLE):
-        figure = Figure((6.4, 3.2), layout="constrained")
+        figure = Figure((9.0, 3.2), layout="constrained")
         ax = figure.subplots()
         for k, (height, colour, label) in enumerate(bars):
             ax.bar(place + (k - (len(bars) - 1) / 2) * width, height, width, color=colour,
@@ -91,6 +93,9 @@ def rms_figure(
             ax.axhline(floor, color=INK, ls="--", lw=1, label="noise")
         ax.set_xticks(place, [name.replace("_", " ") for name in names], fontsize=8)
         ax.grid(axis="x", visible=False)
+        least = min(float(np.min(height)) for height, _, _ in bars)
+        if 0 < FAR * least < float(np.max(before)):
+            ax.set_yscale("log")
         ax.set_ylabel(f"rms of the error [{unit}]" if unit else "rms of the error")
         figure.legend(loc="outside upper center", ncols=3)
     return figure
@@ -106,7 +111,7 @@ def gains_figure(labels: Sequence[str], gains: np.ndarray, named: Sequence[bool]
     """
     place = np.arange(len(labels))[::-1]
     with matplotlib.rc_context(_STYLE):
-        figure = Figure((6.4, 0.9 + 0.3 * max(3, len(labels))), layout="constrained")
+        figure = Figure((9.0, 0.9 + 0.26 * max(3, len(labels))), layout="constrained")
         ax = figure.subplots()
         shown = np.maximum(np.asarray(gains, float), 0.0)
         colours = [AFTER if is_named else GREY for is_named in named]

@@ -126,8 +126,7 @@ def diff_section(found: Discovery) -> Section:
             )  # fmt: skip
     return Section(
         "What was added",
-        "The model with it is in model.xml and effects.json; `inca_mj.effects.saved.load_twin`"
-        " reads them.",
+        "The model with it is in model.xml and effects.json; inca_mj.load_twin reads them.",
         table=Table(("effect", "law", "parameter", "value", "confidence"), tuple(rows)),
     )
 
@@ -142,9 +141,16 @@ def parameters_section(found: Discovery) -> Section:
         if p.name not in last and p.name not in first:
             continue
         rows.append(
-            (p.name, p.value, nominal.get(p.name), first.get(p.name), values[p.name],
-             last.get(p.name), p.unit)
-        )  # fmt: skip
+            (
+                p.name,
+                None if p.where == "effect" else p.value,  # a candidate's zero is no value
+                nominal.get(p.name),
+                first.get(p.name),
+                values[p.name],
+                last.get(p.name),
+                p.unit,
+            )
+        )
     return Section(
         "The parameters",
         "Nominal; of the fit without effects; of the fit with what is named. A std holds with the"

@@ -106,8 +106,7 @@ def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, 
         f"{found.log.name}: what the model lacks",
         discovery_verdict(found),
         sections,
-        good={"named": True, "nothing missing": True}.get(found.verdict, False)
-        and not found.unexplained,
+        good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
     )
     write_result(out / "result.json", command, as_json(found, model))
     files = {"report": report, "model": model, "effects": effects}

@@ -2,7 +2,7 @@
 
 import pytest
 
-from identification.quantities import quantity
+from identification.quantities import alike, quantity
 
 NAN, INF = float("nan"), float("inf")
 
@@ -30,3 +30,9 @@ NAN, INF = float("nan"), float("inf")
 )
 def test_quantities(value: float, std: float, unit: str, said: str) -> None:
     assert quantity(value, std, unit) == said
+
+
+def test_one_prefix_for_all() -> None:
+    assert alike([0.0805, 0.000499], "rad") == ["80.5 mrad", "0.499 mrad"]
+    assert alike([0.02, float("nan")], "") == ["0.0200", "unknown"]
+    assert alike([], "rad") == []
