@@ -11,6 +11,7 @@ from math import ceil, floor, isfinite, log10
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 _TAKE = ("N", "m", "s", "A", "g", "V", "W", "Hz")  # units that take a prefix where they lead
 _SMALL = ("rad",)  # those that take small ones only: nobody says kiloradian
+_LEAST = 1e-3  # smaller numbers, in units without a prefix, are said as powers of ten
 _DIGITS = 3  # of a value whose std is not known
 
 
@@ -27,6 +28,8 @@ def quantity(value: float, std: float = float("nan"), unit: str = "") -> str:
     known = isfinite(std) and std > 0
     factor, unit = _scale(max(abs(value), std if known else 0.0), unit, exact=std == 0)
     value, std = value / factor, std / factor
+    if known and std < _LEAST:
+        return f"{value:.6g} ± {std:.1e} {unit}".strip()
     if not known:
         return f"{_plain(value, _DIGITS)} {unit}".strip()
     places = max(0, _decimals(std))
@@ -81,5 +84,7 @@ def _decimals(std: float) -> int:
 def _plain(value: float, digits: int) -> str:
     if value == 0 or (value == round(value) and abs(value) < 1e6):
         return f"{value:.0f}"
+    if abs(value) < _LEAST:
+        return f"{value:.{digits - 1}e}"
     places = max(0, digits - ceil(log10(abs(value)) + 1e-12))
     return f"{value:.{places}f}"

@@ -52,7 +52,7 @@ def unknown(found: Discovery) -> str:
             f" model is {_size(found, found.before.rms)} rms off on unseen data"
             + (f", {ratio:.3g} times the noise." if isfinite(ratio) else "."),
             "It is not named here rather than named wrongly.",
-            *found.located,
+            *map(sentence, found.located),
         ]
     )
 
@@ -66,7 +66,7 @@ def unexplained(found: Discovery) -> str:
         [
             f"Something is left beside {more} that no known effect explains: the model is still"
             f" {_size(found, found.after.rms)} rms off on unseen data{times}.",
-            *found.left,
+            *map(sentence, found.left),
         ]
     )
 
@@ -109,6 +109,12 @@ def _proof(found: Discovery) -> str:
         share = min(1.0, max(0.0, (before**2 - after**2) / above))
         said += f" That is {100 * share:.0f} % of the power that was above the noise."
     return said
+
+
+def sentence(clause: str) -> str:
+    """A clause as a sentence."""
+    end = "" if clause.endswith((".", "!", "?")) else "."
+    return clause[:1].upper() + clause[1:] + end
 
 
 def diff_line(named: Named) -> str:

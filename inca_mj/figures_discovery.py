@@ -96,6 +96,8 @@ def rms_figure(
         least = min(float(np.min(height)) for height, _, _ in bars)
         if 0 < FAR * least < float(np.max(before)):
             ax.set_yscale("log")
+            ax.set_ylim(bottom=0.3 * (min(least, floor) if floor > 0 else least))
+            ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
         ax.set_ylabel(f"rms of the error [{unit}]" if unit else "rms of the error")
         figure.legend(loc="outside upper center", ncols=3)
     return figure

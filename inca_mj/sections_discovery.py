@@ -14,6 +14,7 @@ from identification.verdict_discovery import (
     floor_rms,
     output_unit,
     phrase,
+    sentence,
     split_detectable,
 )
 from inca_mj.discovery_model import final_values, std_of
@@ -69,14 +70,14 @@ def where_section(found: Discovery) -> Section:
     """Where the nominal model fails, and where the final one still does."""
     rows, unit = unseen_rows(found), output_unit(found)
     before, after = _errors(found)
-    left = [f"After that: {' '.join(found.left)}"] if found.left else []
+    left = [f"With what is named: {'; '.join(found.left)}."] if found.left else []
     figure = rms_figure(
         _rms(before[rows]), None if after is None else _rms(after[rows]), floor_rms(found),
         found.log.output_names, unit,
     )  # fmt: skip
     return Section(
         "Where it disagrees",
-        "\n\n".join([*found.located, *left]),
+        "\n\n".join([" ".join(map(sentence, found.located)), *left]),
         figures=(("Error by output on unseen data", figure),),
     )
 

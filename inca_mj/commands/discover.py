@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from inca_mj.run import Run
     from inca_mj.twin import Twin
 
+FILMED = 6.0  # [s]; drawing costs several times as long
+
 
 @dataclass(frozen=True)
 class Discover:
@@ -122,12 +124,12 @@ def _base(robot: Twin) -> Twin:
 
 
 def _film(found: Discovery, robot: Twin, run: Run, out: Path) -> Path | None:
-    """Ten seconds of the final twin over the log; None, and a sentence, where it cannot be."""
+    """The final twin over the start of the log; None, and a sentence, where it cannot be."""
     from identification.errors import GraphicsError, InputError
     from inca_mj.film import film
     from inca_mj.logs import pose_of
 
-    shown = run.until(min(10.0, float(run.time[-1])))
+    shown = run.until(min(FILMED, float(run.time[-1])))
     n, pose = len(shown.time), pose_of(found.log)
     try:
         return film(
