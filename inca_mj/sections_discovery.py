@@ -84,14 +84,17 @@ def where_section(found: Discovery) -> Section:
 
 def rivals_section(found: Discovery) -> Section:
     """Who could explain the gap, and how well."""
-    best = found.scores[:BEST]
-    named = {(n.candidate.effect.name, n.candidate.where) for n in found.named}
+    each: dict[str, Score] = {}  # the best place and shape of every effect
+    for score in found.scores:
+        each.setdefault(score.candidate.effect.name, score)
+    best = [*each.values()][:BEST]
+    named = {n.candidate.effect.name for n in found.named}
     figures: tuple[tuple[str, Figure], ...] = ()
     if best:
         figure = gains_figure(
             [label(s) for s in best],
             np.array([s.gain for s in best]),
-            [(s.candidate.effect.name, s.candidate.where) in named for s in best],
+            [s.candidate.effect.name in named for s in best],
         )
         figures = (("Gain of the best candidates on the nominal fit", figure),)
     rows = tuple(
@@ -100,8 +103,8 @@ def rivals_section(found: Discovery) -> Section:
         for r in n.rivals
     )
     text = (
-        "What each candidate would explain of the fitted nominal model's residual, the model's"
-        " parameters tuned again."
+        "What each effect, at its best place and shape, would explain of the fitted nominal model's"
+        " residual, the model's parameters tuned again."
     )
     if not rows and found.named:
         text += "\n\nNo other explanation comes near those that are named."
@@ -144,19 +147,18 @@ def parameters_section(found: Discovery) -> Section:
         rows.append(
             (
                 p.name,
-                None if p.where == "effect" else p.value,  # a candidate's zero is no value
-                nominal.get(p.name),
-                first.get(p.name),
-                values[p.name],
-                last.get(p.name),
-                p.unit,
+                "–" if p.where == "effect" else quantity(p.value, unit=p.unit),
+                _value(nominal.get(p.name), first.get(p.name), p.unit),
+                _value(values[p.name], last.get(p.name), p.unit),
             )
         )
     return Section(
         "The parameters",
-        "Nominal; of the fit without effects; of the fit with what is named. A std holds with the"
-        " model as it is: of a wrong model it is too small.",
-        table=Table(("parameter", "nominal", "without", "std", "with", "std", "unit"), tuple(rows)),
+        "A std holds for the model as it is: that of a wrong model is too small.",
+        table=Table(
+            ("parameter", "nominal", "fitted without effects", "fitted with what is named"),
+            tuple(rows),
+        ),
     )
 
 
@@ -184,6 +186,10 @@ def label(score: Score) -> str:
     where = "" if c.where.startswith("all ") or c.where == "platform" else f" ({c.where})"
     shape = ", ".join(f"{n} = {v:.3g}" for n, v in c.shape.items())
     return c.effect.name.replace("_", " ") + where + (f", {shape}" if shape else "")
+
+
+def _value(value: float | None, std: float | None, unit: str) -> str:
+    return "–" if value is None or std is None else quantity(value, std, unit)
 
 
 def _plausible(d: Detectable) -> str:
