@@ -84,6 +84,7 @@ def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, 
     """Write report, figures, model, effects, result and film into a folder; the paths by kind."""
     from identification.verdict_discovery import discovery_verdict
     from inca_mj import sections_discovery as parts
+    from inca_mj import sections_discovery_tables as tables
     from inca_mj.discovery_model import named_twin, rerun
     from inca_mj.effects.saved import save_twin
     from inca_mj.report import write_report
@@ -96,9 +97,9 @@ def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, 
         parts.gap_section(found),
         parts.where_section(found),
         parts.rivals_section(found),
-        parts.diff_section(found),
-        parts.parameters_section(found),
-        parts.unseen_section(found),
+        tables.diff_section(found),
+        tables.parameters_section(found),
+        tables.unseen_section(found),
         *([film_section(drawn)] if drawn else []),
         model_section(_base(robot)),
     ]
