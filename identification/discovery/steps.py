@@ -81,10 +81,10 @@ def fitted(
         whole: the log.
         candidates: the effects.
         start: values to begin at.
-        near: a model whose linearisation is good enough to begin with.
+        near: a model whose linearisation and noise are good enough to begin with.
     """
-    linear = None if near is None else near.refit.at.linear
-    fit = fit_with(base, whole.part("estimation"), candidates, start, linear=linear)
+    nearby = None if near is None else near.refit
+    fit = fit_with(base, whole.part("estimation"), candidates, start, near=nearby)
     return Step(candidates, fit, unseen(fit, whole))
 
 
