@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.discovery.columns import Column
-from identification.discovery.extend import Base, fit_with, prior_of
+from identification.discovery.extend import Base, fit_with
 from identification.discovery.proof import Unseen, prove, unseen
 from identification.discovery.refit import Refit
 from identification.discovery.result import Proof
@@ -47,7 +47,7 @@ class Step:
     def criterion(self) -> float:
         """BIC, negated and in units of twice the log likelihood."""
         free = len(self.refit.at.q)
-        return 2 * self.refit.level.log_likelihood - free * float(np.log(len(self.refit.at.log)))
+        return 2 * self.refit.log_posterior - free * float(np.log(len(self.refit.at.log)))
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def fitted(
     return Step(candidates, fit, unseen(fit, whole))
 
 
-def scores_of(base: Base, step: Step, columns: Sequence[Column]) -> tuple[Score, ...]:
+def scores_of(step: Step, columns: Sequence[Column]) -> tuple[Score, ...]:
     """Scores of all candidates that a model does not have yet."""
     has = {(c.effect.name, c.where) for c in step.candidates}
     effects = {c.effect.name for c in step.candidates if not c.effect.places[c.where]}
@@ -97,18 +97,25 @@ def scores_of(base: Base, step: Step, columns: Sequence[Column]) -> tuple[Score,
         if (c.candidate.effect.name, c.candidate.where) not in has
         and c.candidate.effect.name not in effects
     ]  # fmt: skip
-    at = step.refit
-    return score(at.at, at.level, prior_of(base, at), others)
+    return score(step.refit, others)
 
 
 def significant(scores: Sequence[Score]) -> list[Score]:
     """Scores beyond chance with plausible sizes, the best shape of each effect and place."""
     each: dict[tuple[str, str], Score] = {}
-    for s in scores:
+    for s in sorted(scores, key=_as_a_whole, reverse=True):
         likely = max(s.p_value, s.block_p_value) * len(scores) < ALPHA
         if likely and plausible(s.candidate, s.size) and s.gain > 0:
             each.setdefault((s.candidate.effect.name, s.candidate.where), s)
-    return list(each.values())
+    return sorted(each.values(), key=lambda s: -s.gain)
+
+
+def _as_a_whole(s: Score) -> float:
+    """Gain of a score, less where its size is not the one that the effect has when it is there."""
+    fixed = [size.present for size in s.candidate.effect.sizes]
+    if fixed[0] is None or s.size[0] <= 0:
+        return s.gain
+    return s.gain * float(np.exp(-abs(np.log(s.size[0] / fixed[0]))))
 
 
 def plausible(candidate: Candidate, size: np.ndarray, factor: float = 5.0) -> bool:
