@@ -26,7 +26,8 @@ ALPHA = 0.01  # family-wise chance of a name where nothing is missing, before th
 CONTENDERS = 3  # explanations that are refitted at most
 CLOSE = 0.3  # share of the best gain that makes a contender
 T = 2.0  # t of the proof: 2.5 % one-sided
-SHARE = 0.1  # of the gap on unseen data that an effect must close (Kay-like practice, EMPS)
+FALL, SHARE = 0.03, 0.1  # of the free run's mean square, and of what is above the sensors' noise
+ELSEWHERE = 0.7  # share of an effect's best gain that makes another place a contender
 
 
 @dataclass(frozen=True)
@@ -126,6 +127,11 @@ def plausible(candidate: Candidate, size: np.ndarray, factor: float = 5.0) -> bo
     return True
 
 
+def holds(proof: Proof) -> bool:
+    """Whether unseen data confirm an effect: beyond chance, and by enough to matter."""
+    return proof.t > T and proof.fall > FALL and proof.above > SHARE
+
+
 def add(
     base: Base, whole: Log, step: Step, ranked: Sequence[Score], say: Callable[[str], None]
 ) -> Accepted | None:
@@ -133,7 +139,13 @@ def add(
     found = significant(ranked)
     if not found:
         return None
-    contenders = [s for s in found if s.gain > CLOSE * found[0].gain][:CONTENDERS]
+    best: dict[str, float] = {}
+    contenders = []
+    for s in found:
+        if s.gain > max(CLOSE * found[0].gain, ELSEWHERE * best.get(s.candidate.effect.name, 0.0)):
+            contenders.append(s)
+            best.setdefault(s.candidate.effect.name, s.gain)
+    contenders = contenders[:CONTENDERS]
     tried = []
     for s in contenders:
         start = {**step.refit.at.values, **dict(zip(s.candidate.sizes, s.size, strict=True))}
@@ -148,6 +160,6 @@ def add(
     for k, new in enumerate(tried):
         proof = prove(step.unseen, new.unseen)
         gain = new.criterion - step.criterion
-        if gain > 0 and proof.t > T and proof.share > SHARE:
+        if gain > 0 and holds(proof):
             return Accepted(new, proof, gain, tuple(tried[:k] + tried[k + 1 :]))
     return None
