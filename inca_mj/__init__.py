@@ -15,12 +15,14 @@ _PUBLIC = {
     "build_twin": "twin",
     "compare": "comparison",
     "load_run": "run",
+    "load_twin": "effects.saved",
     "make_input": "inputs",
     "parameter_set": "parameters",
     "read_geometry": "geometry",
     "read_inca_log": "logs",
     "run_to_log": "logs",
     "save_run": "run",
+    "save_twin": "effects.saved",
     "simulate": "run",
 }
 __all__ = list(_PUBLIC)

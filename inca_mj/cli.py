@@ -14,6 +14,7 @@ import tyro
 from inca_mj.commands.compare import Compare
 from inca_mj.commands.crosscheck import Crosscheck
 from inca_mj.commands.demo import Demo
+from inca_mj.commands.discover import Discover
 from inca_mj.commands.excite import Excite
 from inca_mj.commands.film import Film
 from inca_mj.commands.identify import Identify
@@ -26,6 +27,7 @@ Command = (
     | Annotated[Compare, tyro.conf.subcommand("compare")]
     | Annotated[Crosscheck, tyro.conf.subcommand("crosscheck")]
     | Annotated[Identify, tyro.conf.subcommand("identify")]
+    | Annotated[Discover, tyro.conf.subcommand("discover")]
     | Annotated[Sensitivity, tyro.conf.subcommand("sensitivity")]
     | Annotated[Excite, tyro.conf.subcommand("excite")]
     | Annotated[Trials, tyro.conf.subcommand("trials")]

@@ -26,13 +26,8 @@ def detectable(scores: Sequence[Score]) -> tuple[Detectable, ...]:
     """
     chosen: dict[str, Score] = {}
     for s in scores:
-        name, before = s.candidate.effect.name, chosen.get(s.candidate.effect.name)
-        if (
-            before is None
-            or (_everywhere(s) and not _everywhere(before))
-            or (not _everywhere(s) and not _everywhere(before) and s.std.max() > before.std.max())
-        ):
-            chosen[name] = s
+        name = s.candidate.effect.name
+        chosen[name] = _worse(s, chosen.get(name, s))
     out = []
     for _, s in sorted(chosen.items()):
         for size, std in zip(s.candidate.effect.sizes, s.std, strict=True):
@@ -42,6 +37,13 @@ def detectable(scores: Sequence[Score]) -> tuple[Detectable, ...]:
                 Detectable(s.candidate, size.name, smallest if testable else np.inf, size.unit)
             )
     return tuple(out)
+
+
+def _worse(s: Score, before: Score) -> Score:
+    """Of two places: the one that is everywhere, else the one that is harder to see."""
+    if _everywhere(s) != _everywhere(before):
+        return s if _everywhere(s) else before
+    return before if _everywhere(s) or s.std.max() <= before.std.max() else s
 
 
 def _everywhere(s: Score) -> bool:

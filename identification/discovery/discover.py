@@ -14,6 +14,7 @@ from identification.discovery.confidence import named_of
 from identification.discovery.detectable import detectable
 from identification.discovery.extend import Base
 from identification.discovery.locate import left_over, located
+from identification.discovery.passes import backward, swap
 from identification.discovery.result import Discovery, Verdict
 from identification.discovery.score import Score
 from identification.discovery.steps import Accepted, Step, add, fitted, scores_of
@@ -71,7 +72,10 @@ def discover(
         step = new.step
         ranked = scores_of(base, step, sensed)
         clock("scores")
-    kept, step = _backward(base, log, nominal, accepted, step)
+    kept, step = backward(base, log, accepted, step)
+    kept, step = swap(base, log, nominal, kept, step)
+    if len(accepted) > 1:
+        ranked = scores_of(base, step, sensed)
     clock("refits")
     left = left_over(step, ranked)
     explained = _explained(nominal, step)
@@ -99,20 +103,6 @@ def _sensitivities(base: Base, nominal: Step, effects: Sequence[Effect]) -> tupl
     for s in scores_of(base, nominal, everywhere):
         best.setdefault(s.candidate.effect.name, s)
     return everywhere + columns(nominal.refit.at, single([s.candidate for s in best.values()]))
-
-
-def _backward(
-    base: Base, log: Log, nominal: Step, accepted: Sequence[Accepted], step: Step
-) -> tuple[list[Accepted], Step]:
-    """Drop an effect that those found later have made needless."""
-    kept = list(accepted)
-    for old in accepted[:-1]:
-        mine = old.step.candidates[-1]
-        rest = tuple(c for c in step.candidates if c is not mine)
-        without = fitted(base, log, rest, step.refit.at.values)
-        if without.criterion > step.criterion:
-            kept, step = [a for a in kept if a is not old], without
-    return kept, step
 
 
 def _explained(nominal: Step, step: Step) -> float:

@@ -41,6 +41,7 @@ def fit_with(
     candidates: Sequence[Candidate],
     start: Mapping[str, float],
     steps: int = 10,
+    near: Refit | None = None,
 ) -> Refit:
     """Fit the model with some effects: base parameters, their sizes and their free shapes.
 
@@ -50,6 +51,7 @@ def fit_with(
         candidates: the effects.
         start: values to begin at by name; the plant's own where not given.
         steps: of Gauss-Newton, at most.
+        near: a fit whose linearisation and noise are good enough to begin with.
 
     Raises:
         DivergenceError: the start cannot be simulated.
@@ -72,8 +74,9 @@ def fit_with(
         [1 / base.std, np.zeros(len(sizes)), np.full(len(shapes), 1 / SHAPE_STD)]
     )
     mean = np.where(np.isfinite(mean), mean, 0.0)
-    at = point(Predictor(base.plant, log, names, fixed), space, space.encode(first))
-    return refit(at, mean, weight, steps)
+    known = None if near is None else near.at.linear
+    at = point(Predictor(base.plant, log, names, fixed), space, space.encode(first), known)
+    return refit(at, mean, weight, steps, None if near is None else near.level)
 
 
 def _plausible(space: Coordinates, parameters: ParameterSet, names: Sequence[str]) -> Coordinates:

@@ -24,7 +24,7 @@ class Whiteness:
     Attributes:
         p_correlation: of the portmanteau test over all channels.
         p_line: of the strongest line over all channels.
-        channel: index of the output with the strongest line.
+        channel: index of the output on which that line is the loudest.
         frequency: of that line [Hz].
         p_louder: that the channels have one variance.
         loudest: index of the output with the largest variance.
@@ -49,14 +49,15 @@ def whiteness(E: np.ndarray, sampling_time: float) -> Whiteness:
     I = np.abs(np.fft.rfft(E, axis=0)[1 : (n + 1) // 2]) ** 2
     share = I / I.sum(axis=0)
     M = len(I)
-    at, channel = np.unravel_index(int(share.argmax()), share.shape)
-    line = ny * M * (1 - share[at, channel]) ** (M - 1)
+    at, sharp = np.unravel_index(int(share.argmax()), share.shape)
+    line = ny * M * (1 - share[at, sharp]) ** (M - 1)
+    channel = int(I[at].argmax())  # it is the loudest where it comes from
     ratio = power / power.mean()
     louder = float(n / 2 * np.sum((ratio - 1) ** 2))
     return Whiteness(
         float(chi2.sf(Q, LAGS * ny)),
         float(min(1.0, line)),
-        int(channel),
+        channel,
         float((at + 1) / (n * sampling_time)),
         float(chi2.sf(louder, ny - 1)) if ny > 1 else 1.0,
         int(ratio.argmax()),

@@ -87,6 +87,7 @@ def fit_noise(
     prior: np.ndarray,
     sampling_time: float,
     near: Level | None = None,
+    fine: bool = True,
 ) -> Level:
     """The most likely noise of a residual.
 
@@ -96,7 +97,8 @@ def fit_noise(
         J: sensitivities, shape (N, ny, p).
         prior: 1/std of each parameter's prior, shape (p,).
         sampling_time: [s].
-        near: where one is known from a point nearby: only its size is looked for, roughly.
+        near: where one is known from a point nearby, to begin at.
+        fine: whether ρ and τ are sharpened.
     """
     with threadpool_limits(1, "blas"):  # the matrices are small; threads only wait for each other
 
@@ -104,12 +106,12 @@ def fit_noise(
             return likelihood(whitener(plant, noise, sampling_time), noise, e, J, prior)
 
         if near is not None and near.noise.ratio:
-            return _best([at(near.noise.scaled(f)) for f in (1.0, 0.3, 0.05, 0.0)])
-        unit = unit_ratio(plant, sampling_time, TIMES[1])
-        if near is not None:
-            return _best([at(Noise(level * unit, TIMES[1])) for level in (0.0, 0.1, 1.0)])
-        best = _best([at(Noise(level * unit, TIMES[1])) for level in LEVELS])
-        return sharpen(best, at) if best.noise.ratio else best
+            best = _best([at(near.noise.scaled(f)) for f in (1.0, 0.3, 0.05, 0.0)])
+        else:
+            unit = unit_ratio(plant, sampling_time, TIMES[1])
+            levels = LEVELS if near is None else (0.0, 0.1, 1.0)
+            best = _best([at(Noise(level * unit, TIMES[1])) for level in levels])
+        return sharpen(best, at) if fine and best.noise.ratio else best
 
 
 def sharpen(best: Level, at: Callable[[Noise], Level]) -> Level:

@@ -20,6 +20,7 @@ from identification.discovery.point import Point, point
 from identification.errors import DivergenceError
 
 LARGEST = 0.5  # step of a logarithm: parameters change by at most 65 % at a time
+NEAR = 0.02  # relative change of the parameters after which the linearisation still holds
 ENDED = 1.0  # expected fall of the criterion, in units of the noise, that ends the search
 
 
@@ -40,7 +41,13 @@ class Refit:
     steps: int
 
 
-def refit(at: Point, mean: np.ndarray, prior: np.ndarray, steps: int = 10) -> Refit:
+def refit(
+    at: Point,
+    mean: np.ndarray,
+    prior: np.ndarray,
+    steps: int = 10,
+    near: Level | None = None,
+) -> Refit:
     """Estimate the free parameters of a point, from where it is.
 
     Args:
@@ -48,20 +55,25 @@ def refit(at: Point, mean: np.ndarray, prior: np.ndarray, steps: int = 10) -> Re
         mean: q̄ of the priors, shape (p,).
         prior: 1/std of each prior, zero where there is none, shape (p,).
         steps: at most as many.
+        near: a noise to begin at, where one is known.
     """
-    level = fit_noise(at.linear, at.e, at.J, prior, at.log.sampling_time)
+
+    def noise(at: Point, near: Level | None, fine: bool) -> Level:
+        return fit_noise(at.linear, at.e, at.J, prior, at.log.sampling_time, near, fine)
+
+    level = noise(at, near, fine=False)
     for k in range(steps):
         move, fall, std = _step(at, level, mean, prior)
         if fall < ENDED:
-            level = fit_noise(at.linear, at.e, at.J, prior, at.log.sampling_time)
-            return Refit(at, level, std, k)
+            return Refit(at, noise(at, level, fine=True), std, k)
+        near = np.abs(move[at.space.logarithmic]).max(initial=0.0) < NEAR
+        linear = at.linear if near else None
         try:
-            new = point(at.predictor, at.space, at.q + move)
+            new = point(at.predictor, at.space, at.q + move, linear)
         except DivergenceError:
-            new = point(at.predictor, at.space, at.q + move / 4)
-        level = fit_noise(new.linear, new.e, new.J, prior, at.log.sampling_time, level)
-        at = new
-    level = fit_noise(at.linear, at.e, at.J, prior, at.log.sampling_time)
+            new = point(at.predictor, at.space, at.q + move / 4, linear)
+        at, level = new, noise(new, level, fine=False)
+    level = noise(at, level, fine=True)
     return Refit(at, level, _step(at, level, mean, prior)[2], steps)
 
 

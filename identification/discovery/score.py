@@ -10,9 +10,10 @@ missing looks like input noise until it is there. p-values hold the noise of the
 
     p_j = P(χ²_m > η̂ᵀ S⊥ᵀS⊥ η̂/σ²)          halved where physics admits one sign only,
 
-and are checked by scores summed over blocks, whose scatter needs no noise model (White 1980):
+and are checked by the scatter over blocks of the scores with the candidate, which needs no noise
+model (White 1980):
 
-    LM = sᵀ (Σ_b g_b g_bᵀ)⁻¹ s,  g_b = Σ_{k in b} S⊥ᵀE⊥,     F = LM (B - m)/((B - LM) m)
+    W = η̂ᵀ H (Σ_b g_b g_bᵀ)⁻¹ H η̂ ~ m F(m, B - m),  g_b = Σ_{k in b} S⊥ᵀ(E⊥ - S⊥ η̂),  H = S⊥ᵀS⊥
 """
 
 from __future__ import annotations
@@ -133,6 +134,7 @@ def _score(j: int, column: Column, seen: Sequence[_Projected], nominal: float) -
     statistic = (null[0].rest - null[3]) / (null[0].rest / null[0].samples)
     one_sided = m == 1 and signs[0] != 0
     s = null[0].slices[j]
+    both = with_it.perpendicular
     own = np.trace(null[2])
     return Score(
         column.candidate,
@@ -140,22 +142,24 @@ def _score(j: int, column: Column, seen: Sequence[_Projected], nominal: float) -
         sigma * np.sqrt(np.diag(np.linalg.pinv(H, rcond=1e-12, hermitian=True))),
         float(gain),
         float(chi2.sf(statistic, m)) * (0.5 if one_sided else 1.0),
-        _by_blocks(null[0].perpendicular[..., 0], null[0].perpendicular[..., s], null[1], signs),
+        _by_blocks(both[..., 0], both[..., s], size, H, signs),
         float(own / max(null[0].raw[s.start - 1 : s.stop - 1].sum(), 1e-300)),
         Level(with_it.noise, float(sigma), with_it.log_likelihood(squares)),
     )
 
 
-def _by_blocks(e: np.ndarray, S: np.ndarray, size: np.ndarray, signs: Sequence[int]) -> float:
-    """p-value of the block-robust score test."""
+def _by_blocks(
+    e: np.ndarray, S: np.ndarray, size: np.ndarray, H: np.ndarray, signs: Sequence[int]
+) -> float:
+    """p-value of the block-robust Wald test."""
     m = S.shape[2]
     if m == 1 and signs[0] * size[0] < 0:
         return 1.0
     blocks = min(BLOCKS, len(e) // 10)
     starts = np.linspace(0, len(e), blocks, endpoint=False).astype(int)
-    g = np.add.reduceat(np.einsum("nip,ni->np", S, e), starts, axis=0)
-    s = g.sum(axis=0)
-    LM = float(s @ np.linalg.pinv(g.T @ g, rcond=1e-12, hermitian=True) @ s)
-    F = LM * (blocks - m) / (max(blocks - LM, 1e-9) * m)
-    p = float(f_distribution.sf(F, m, blocks - m))
+    scores = np.einsum("nip,ni->np", S, e - S @ size)
+    g = np.add.reduceat(scores, starts, axis=0)
+    moved = H @ size
+    W = float(moved @ np.linalg.pinv(g.T @ g, rcond=1e-12, hermitian=True) @ moved)
+    p = float(f_distribution.sf(W * (blocks - m) / (blocks * m), m, blocks - m))
     return p / 2 if m == 1 and signs[0] != 0 else p

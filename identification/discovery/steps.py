@@ -68,10 +68,23 @@ class Accepted:
 
 
 def fitted(
-    base: Base, whole: Log, candidates: tuple[Candidate, ...], start: Mapping[str, float]
+    base: Base,
+    whole: Log,
+    candidates: tuple[Candidate, ...],
+    start: Mapping[str, float],
+    near: Step | None = None,
 ) -> Step:
-    """A model with some effects, fitted on the estimation part of a log."""
-    fit = fit_with(base, whole.part("estimation"), candidates, start)
+    """A model with some effects, fitted on the estimation part of a log.
+
+    Args:
+        base: the nominal model.
+        whole: the log.
+        candidates: the effects.
+        start: values to begin at.
+        near: a model whose linearisation and noise are good enough to begin with.
+    """
+    nearby = None if near is None else near.refit
+    fit = fit_with(base, whole.part("estimation"), candidates, start, near=nearby)
     return Step(candidates, fit, unseen(fit, whole))
 
 
@@ -118,7 +131,7 @@ def add(
     for s in contenders:
         start = {**step.refit.at.values, **dict(zip(s.candidate.sizes, s.size, strict=True))}
         try:
-            tried.append(fitted(base, whole, (*step.candidates, s.candidate), start))
+            tried.append(fitted(base, whole, (*step.candidates, s.candidate), start, step))
         except (DivergenceError, InputError) as error:
             say(f"{s.candidate.effect.name}, {s.candidate.where}: left out, {error}")
             continue

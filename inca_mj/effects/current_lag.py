@@ -2,9 +2,10 @@
 
     τ i̇ = u - i,  i(0) = 0: no current before the first sample, as of a delay
 
-u is constant over a step, so the mean of i over it is exact for every τ >= 0:
+u is constant over a step, so mean and moment of i over it (see `impulse`) are exact for every
+τ >= 0: with c = i(t) - u, s = τ/h, k = e^(-1/s),
 
-    i(t + h) = u + (i(t) - u) e^(-h/τ)        mean = u + (i(t) - u) (τ/h) (1 - e^(-h/τ))
+    i(t + h) = u + c k,    m = u + c s (1 - k),    D = c s (s - (s + 1) k - ½ (1 - k))
 """
 
 import numpy as np
@@ -12,17 +13,20 @@ from scipy.signal import lfilter
 
 from identification.effect import Effect, Size
 from inca_mj.effects.hooks import DriveEffect
+from inca_mj.effects.impulse import stepwise
 from inca_mj.effects.places import DRIVES_EACH
 
 
 def inputs(currents: np.ndarray, step: float, p: np.ndarray) -> np.ndarray:
-    """Mean lagged current of every step [A], shape (steps, 8)."""
+    """Lagged current of every step [A], shape (steps, 8)."""
     out = currents.copy()
     for k, tau in enumerate(p[0]):
         if tau > 0:
             u, keep = currents[:, k], np.exp(-step / tau)
             i, _ = lfilter([0.0, 1 - keep], [1.0, -keep], u, zi=[0.0])
-            out[:, k] = u + (i - u) * (tau / step) * (1 - keep)
+            c, s = i - u, tau / step
+            moment = c * s * (s - (s + 1) * keep - (1 - keep) / 2)
+            out[:, k] = stepwise(u + c * s * (1 - keep), moment)
     return out
 
 

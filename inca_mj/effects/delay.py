@@ -2,27 +2,28 @@
 
     i(t) = u(t - τ)
 
-u is constant over a step, so the mean of i over it is exact for every τ >= 0: with τ = (n + f) h,
+u is constant over a step, so mean and moment of i over it (see `impulse`) are exact for every
+τ >= 0: with τ = (n + f) h,
 
-    mean_k = (1 - f) u_(k-n) + f u_(k-n-1)
+    m_k = (1 - f) u_(k-n) + f u_(k-n-1)        D_k = ½ f (1 - f) (u_(k-n) - u_(k-n-1))
 """
 
 import numpy as np
 
 from identification.effect import Effect, Size
 from inca_mj.effects.hooks import DriveEffect
+from inca_mj.effects.impulse import stepwise
 from inca_mj.effects.places import DRIVES_EACH
 
 
 def inputs(currents: np.ndarray, step: float, p: np.ndarray) -> np.ndarray:
-    """Mean delayed current of every step [A], shape (steps, 8)."""
+    """Delayed current of every step [A], shape (steps, 8)."""
     out = currents.copy()
     for k, tau in enumerate(p[0]):
         if tau > 0:
             n, f = divmod(tau / step, 1.0)
-            out[:, k] = (1 - f) * _late(currents[:, k], int(n)) + f * _late(
-                currents[:, k], int(n) + 1
-            )
+            new, old = (_late(currents[:, k], int(n) + more) for more in (0, 1))
+            out[:, k] = stepwise((1 - f) * new + f * old, f * (1 - f) / 2 * (new - old))
     return out
 
 

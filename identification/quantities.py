@@ -1,0 +1,90 @@
+"""Quantities as a person writes them: value ± std, an SI prefix, the digits that are known.
+
+0.00412 ± 0.00021 N m  ->  4.12 ± 0.21 mN m
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil, floor, isfinite, log10
+
+_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
+_TAKE = ("N", "m", "s", "A", "g", "V", "W", "Hz")  # units that take a prefix where they lead
+_SMALL = ("rad",)  # those that take small ones only: nobody says kiloradian
+_LEAST = 1e-3  # smaller numbers, in units without a prefix, are said as powers of ten
+_DIGITS = 3  # of a value whose std is not known
+
+
+def quantity(value: float, std: float = float("nan"), unit: str = "") -> str:
+    """A value with its std and unit.
+
+    Args:
+        value: in `unit`.
+        std: in `unit`; not said when it is not finite or zero.
+        unit: SI unit, "" when dimensionless: small numbers are then said in percent.
+    """
+    if not isfinite(value):
+        return "unknown"
+    known = isfinite(std) and std > 0
+    factor, unit = _scale(max(abs(value), std if known else 0.0), unit, exact=std == 0)
+    value, std = value / factor, std / factor
+    if known and std < _LEAST:
+        return f"{value:.6g} ± {std:.1e} {unit}".strip()
+    if not known:
+        return f"{_plain(value, _DIGITS)} {unit}".strip()
+    places = max(0, _decimals(std))
+    return f"{value:.{places}f} ± {std:.{places}f} {unit}".strip()
+
+
+def alike(values: Sequence[float], unit: str) -> list[str]:
+    """Several values with one prefix, that of the largest, so that they compare at a glance."""
+    known = [abs(v) for v in values if isfinite(v)]
+    factor, name = _scale(max(known, default=0.0), unit, exact=True)
+    return [
+        f"{_plain(v / factor, _DIGITS)} {name}".strip() if isfinite(v) else "unknown"
+        for v in values
+    ]
+
+
+def _scale(magnitude: float, unit: str, exact: bool) -> tuple[float, str]:
+    """Unit to divide by, in the old one, and its name."""
+    if not unit:
+        return (0.01, "%") if magnitude < 1 and not exact else (1.0, "")
+    lead, rest = _lead(unit)
+    base = 1.0
+    if lead == "kg":
+        base, lead = 1e-3, "g"
+    if lead not in (*_TAKE, *_SMALL) or magnitude == 0:
+        return 1.0, unit
+    power = 3 * floor(log10(magnitude / base) / 3 + 1e-9)
+    power = min(max(power, -9), 0 if lead in _SMALL else 6)
+    if unit.startswith("kg") and power == 3:
+        return 1.0, unit
+    # 0.3 m or 0.8 rad/s need no prefix
+    if power == -3 and 0.1 <= magnitude / base < 1 and lead in ("m", "s", "rad", "N", "A"):
+        power = 0
+    return base * 10.0**power, _PREFIXES[power] + lead + rest
+
+
+def _lead(unit: str) -> tuple[str, str]:
+    """The first symbol of a unit, and the rest of it."""
+    end = next((k for k, c in enumerate(unit) if not c.isalpha()), len(unit))
+    # A power belongs to the symbol: mm² is not milli(m²)
+    if end < len(unit) and unit[end] in "^²³0123456789":
+        return "", unit
+    return unit[:end], unit[end:]
+
+
+def _decimals(std: float) -> int:
+    """Decimals that show two digits of a std that starts with 1 to 3, else one."""
+    first = floor(log10(std))
+    return -first + (1 if std / 10.0**first < 3.5 else 0)
+
+
+def _plain(value: float, digits: int) -> str:
+    if value == 0 or (value == round(value) and abs(value) < 1e6):
+        return f"{value:.0f}"
+    if abs(value) < _LEAST:
+        return f"{value:.{digits - 1}e}"
+    places = max(0, digits - ceil(log10(abs(value)) + 1e-12))
+    return f"{value:.{places}f}"

@@ -1,0 +1,177 @@
+"""What a discovery means, in sentences: one paragraph each of what was found and what was not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import hypot, isfinite
+
+from identification.discovery.result import Detectable, Discovery, Named
+from identification.effect import Candidate
+from identification.quantities import alike, quantity
+
+SHOWN = 4  # effects named where more could be
+
+
+def discovery_verdict(found: Discovery) -> list[str]:
+    """The verdict first, then what supports it."""
+    if found.verdict == "nothing missing":
+        return [nothing(found)]
+    if found.verdict == "unknown effect":
+        return [unknown(found)]
+    said = [_named(found, named) for named in found.named]
+    said.append(_proof(found))
+    if found.unexplained:
+        said.append(unexplained(found))
+    return said
+
+
+def nothing(found: Discovery) -> str:
+    """Nothing is missing, as far as this log can tell."""
+    seen, unseen = split_detectable(found.detectable)
+    left, noise = alike([found.before.rms, floor_rms(found)], output_unit(found))
+    said = (
+        "Nothing is missing: what the fitted model leaves unexplained is noise,"
+        f" {left} rms on unseen data where the sensors and unlogged disturbances make {noise}."
+    )
+    if seen:
+        listed = "; ".join(f"{phrase(d.candidate)}, {_smallest(d)}" for d in seen[:SHOWN])
+        said += f" The log would have shown, in 9 cases of 10, effects as small as: {listed}."
+    if unseen:
+        names = _unique(d.candidate.effect.name for d in unseen)
+        said += f" It cannot speak of {', '.join(names)}: no plausible size would show in it."
+    return said
+
+
+def unknown(found: Discovery) -> str:
+    """Something is missing that no known effect explains."""
+    tried = len({s.candidate.effect.name for s in found.scores})
+    ratio = found.before.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
+    return " ".join(
+        [
+            f"Something is missing that none of the {tried} known effects explains: the fitted"
+            f" model is {_size(found, found.before.rms)} rms off on unseen data"
+            + (f", {ratio:.3g} times the noise." if isfinite(ratio) else "."),
+            "It is not named here rather than named wrongly.",
+            *map(sentence, found.located),
+        ]
+    )
+
+
+def unexplained(found: Discovery) -> str:
+    """What is left after the named effects."""
+    more = "what is named" if len(found.named) == 1 else "all that is named"
+    ratio = found.after.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
+    times = f", {ratio:.3g} times the noise" if isfinite(ratio) else ""
+    return " ".join(
+        [
+            f"Something is left beside {more} that no known effect explains: the model is still"
+            f" {_size(found, found.after.rms)} rms off on unseen data{times}.",
+            *map(sentence, found.left),
+        ]
+    )
+
+
+def _named(found: Discovery, named: Named) -> str:
+    """A missing effect; with `one_of` the set of which the data cannot choose."""
+    if named.one_of and named.rivals:
+        rivals = [r for r in named.rivals if r.confidence >= 0.1 * named.confidence] or [
+            named.rivals[0]
+        ]
+        total = named.confidence + sum(r.confidence for r in rivals)
+        each = "; ".join(
+            [f"{phrase(named.candidate)} ({100 * named.confidence:.0f} %)"]
+            + [f"{phrase(r.candidate)} ({100 * r.confidence:.0f} %)" for r in rivals]
+        )
+        return (
+            f"Missing from the model is one of these, which this log cannot tell apart: {each};"
+            f" together {100 * min(total, 1.0):.0f} %. The first is put into the model:"
+            f" {sizes(named)}."
+        )
+    first = "Missing from the model" if named is found.named[0] else "Missing too"
+    return (
+        f"{first}: {phrase(named.candidate)}, {sizes(named)}"
+        f"; confidence {100 * named.confidence:.0f} %."
+    )
+
+
+def _proof(found: Discovery) -> str:
+    before, after = found.before.rms, found.after.rms
+    if not (isfinite(before) and isfinite(after)):
+        return "There is no unseen data to prove it on."
+    was, now, noise = alike([before, after, floor_rms(found)], output_unit(found))
+    whom = "it" if len(found.named) == 1 else "them"
+    said = (
+        f"On data that the fit has not seen, the error falls from {was} to {now} rms"
+        f" with {whom} in the model; the noise is {noise}."
+    )
+    above = before**2 - floor_rms(found) ** 2
+    if above > 0:
+        share = min(1.0, max(0.0, (before**2 - after**2) / above))
+        said += f" That is {100 * share:.0f} % of the power that was above the noise."
+    return said
+
+
+def sentence(clause: str) -> str:
+    """A clause as a sentence."""
+    end = "" if clause.endswith((".", "!", "?")) else "."
+    return clause[:1].upper() + clause[1:] + end
+
+
+def diff_line(named: Named) -> str:
+    """A named effect as a line of a diff of the model."""
+    return f"+ {phrase(named.candidate)}: {sizes(named)}"
+
+
+def phrase(candidate: Candidate) -> str:
+    """An effect and its place in words."""
+    said = candidate.effect.phrase or candidate.effect.name.replace("_", " ")
+    return f"{said}, {candidate.where}"
+
+
+def sizes(named: Named) -> str:
+    """Sizes and shapes of a named effect, each with its std."""
+    effect = named.candidate.effect
+    about = {s.name: s.about for s in effect.sizes} | {s.name: s.about for s in effect.shapes}
+    return ", ".join(
+        f"{name} = {quantity(value, std, unit)}" + (f" ({about[name]})" if about.get(name) else "")
+        for name, (value, std, unit) in named.parameters.items()
+    )
+
+
+def split_detectable(
+    detectable: Sequence[Detectable],
+) -> tuple[list[Detectable], list[Detectable]]:
+    """Effects that would be seen at a plausible size, the clearest first; and the others."""
+    largest = {id(d): _largest(d) for d in detectable}
+    seen = [d for d in detectable if d.smallest <= largest[id(d)]]
+    return (
+        sorted(seen, key=lambda d: d.smallest / largest[id(d)]),
+        [d for d in detectable if not d.smallest <= largest[id(d)]],
+    )
+
+
+def floor_rms(found: Discovery) -> float:
+    """What sensors and unlogged disturbances make of a free run of the true model, rms."""
+    return hypot(found.noise_rms, found.disturbance_rms)
+
+
+def output_unit(found: Discovery) -> str:
+    """The unit of the outputs, "" where the log does not say one for all."""
+    units = {found.log.units.get(name, "") for name in found.log.output_names}
+    return units.pop() if len(units) == 1 else ""
+
+
+def _largest(d: Detectable) -> float:
+    return next((s.largest for s in d.candidate.effect.sizes if s.name == d.size), float("inf"))
+
+
+def _smallest(d: Detectable) -> str:
+    return f"{d.size} {quantity(d.smallest, unit=d.unit)}"
+
+
+def _size(found: Discovery, rms: float) -> str:
+    return alike([rms], output_unit(found))[0]
+
+
+def _unique(names: Iterable[str]) -> list[str]:
+    return list(dict.fromkeys(names))

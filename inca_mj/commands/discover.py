@@ -1,0 +1,145 @@
+"""inca discover LOG: what the model lacks, with proof on unseen data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import tyro
+
+from inca_mj.commands.common import (
+    Output,
+    Values,
+    bar,
+    cannot_draw,
+    do_not_draw,
+    folder,
+    note,
+    output_field,
+    say,
+    say_json,
+    values_field,
+    write_result,
+)
+
+if TYPE_CHECKING:
+    from identification.discovery.result import Discovery
+    from inca_mj.run import Run
+    from inca_mj.twin import Twin
+
+FILMED = 6.0  # [s]; drawing costs several times as long
+
+
+@dataclass(frozen=True)
+class Discover:
+    """Find what the model lacks and prove it on unseen data, or say that it is unknown."""
+
+    log: Annotated[Path, tyro.conf.Positional]
+    """Log to explain; its TOML may name the splits estimation and validation."""
+    film: bool = True
+    """Film the final twin against the log; only with --out."""
+    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+
+    def run(self) -> int:
+        """Discover, say, keep."""
+        blind = ""
+        if self.film and self.output.out is not None:
+            blind = cannot_draw()  # before MuJoCo is imported
+        else:
+            do_not_draw()
+        from inca_mj.discover import discover
+        from inca_mj.discovery_text import discovery_text
+        from inca_mj.logs import read_inca_log
+
+        log, parameters, place = (
+            read_inca_log(self.log), self.robot.parameters(), self.robot.place()
+        )  # fmt: skip
+        out = None if self.output.out is None else folder(self.output.out)
+        found = discover(log, parameters, place, progress=note)
+        if not self.output.json:
+            say(discovery_text(found))
+        files: dict[str, Path] = {}
+        if out is not None:
+            if blind:
+                note(f"no film: {blind}")
+            files = keep(found, out, self, film=self.film and not blind)
+        if self.output.json:
+            say_json(as_json(found, files.get("model")))
+        elif files:
+            say("\n" + "\n".join(f"{what + ':':<8} {path}" for what, path in files.items()))
+        return 0
+
+
+def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
+    """The outcome and the path of its model as plain values; what is not finite is null."""
+    from inca_mj.discovery_text import finite
+
+    record: dict[str, Any] = finite(found.to_json())
+    return {**record, "model": None if model is None else str(model)}
+
+
+def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, Path]:
+    """Write report, figures, model, effects, result and film into a folder; the paths by kind."""
+    from identification.verdict_discovery import discovery_verdict
+    from inca_mj import sections_discovery as parts
+    from inca_mj import sections_discovery_tables as tables
+    from inca_mj.discovery_model import named_twin, rerun
+    from inca_mj.effects.saved import save_twin
+    from inca_mj.report import write_report
+    from inca_mj.sections import film_section, model_section, save_figures
+
+    robot = named_twin(found)
+    model, effects = save_twin(robot, out)
+    drawn = _film(found, robot, rerun(robot, found.log), out) if film else None
+    sections = [
+        parts.gap_section(found),
+        parts.where_section(found),
+        parts.rivals_section(found),
+        tables.diff_section(found),
+        tables.parameters_section(found),
+        tables.unseen_section(found),
+        *([film_section(drawn)] if drawn else []),
+        model_section(_base(robot)),
+    ]
+    save_figures(sections, out)
+    report = write_report(
+        out / "report.html",
+        f"{found.log.name}: what the model lacks",
+        discovery_verdict(found),
+        sections,
+        good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
+    )
+    write_result(out / "result.json", command, as_json(found, model))
+    files = {"report": report, "model": model, "effects": effects}
+    return {**files, "film": drawn} if drawn else files
+
+
+def _base(robot: Twin) -> Twin:
+    """The twin without the zeros of its effects: a table of them says nothing."""
+    from dataclasses import replace
+
+    shown = tuple(p for p in robot.parameters if p.where != "effect" or p.value)
+    return replace(robot, parameters=replace(robot.parameters, records=shown))
+
+
+def _film(found: Discovery, robot: Twin, run: Run, out: Path) -> Path | None:
+    """The final twin over the start of the log; None, and a sentence, where it cannot be."""
+    from identification.errors import GraphicsError, InputError
+    from inca_mj.film import film
+    from inca_mj.logs import pose_of
+
+    shown = run.until(min(FILMED, float(run.time[-1])))
+    n, pose = len(shown.time), pose_of(found.log)
+    try:
+        return film(
+            shown,
+            out / "film.mp4",
+            measured=found.log.outputs[:n],
+            measured_pose=None if pose is None else pose[:n],
+            progress=bar("film"),
+        )
+    except (GraphicsError, InputError) as error:
+        note(f"no film: {error}")
+        return None

@@ -1,0 +1,65 @@
+"""The twin that a discovery ends with: the final fit, and in its law the named effects only."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from identification.discovery.refit import Refit
+from identification.discovery.result import Discovery
+from identification.errors import InputError
+from identification.log import Log
+from inca_mj.effects.values import with_effects
+from inca_mj.run import Run, simulate
+from inca_mj.twin import Twin, build_twin
+
+
+def named_twin(found: Discovery) -> Twin:
+    """The robot at the values of the final fit, with the named effects and no other candidates.
+
+    Raises:
+        InputError: the discovery was not made with a twin of this robot.
+    """
+    plant = found.final.at.predictor.plant
+    if not isinstance(plant, Twin):
+        raise InputError(
+            f"the discovery is of a {type(plant).__name__}, not of a twin; inca_mj.discover makes"
+            " one of a twin"
+        )
+    names = {named.candidate.effect.name for named in found.named}
+    effects = tuple(e for e in plant.effects if e.name in names)
+    base = tuple(p for p in plant.parameters if p.where != "effect")
+    known = with_effects(replace(plant.parameters, records=base), effects)
+    at = final_values(found)
+    return build_twin(
+        known.with_values({p.name: at[p.name] for p in known if p.name in at}),
+        plant.geometry,
+        timestep=plant.model.opt.timestep,
+        effects=effects,
+        settled=plant.settled,
+    )
+
+
+def final_values(found: Discovery) -> dict[str, float]:
+    """Values of all parameters of the final fit, those of the named effects included."""
+    at = found.final.at
+    out = {**at.predictor.plant.parameters.values(), **at.values}
+    for named in found.named:
+        effect, where = named.candidate.effect, named.candidate.where
+        shapes = {shape.name for shape in effect.shapes}
+        for name, (value, _, _) in named.parameters.items():
+            # one shape serves all places
+            key = f"{effect.name}.{name}" if name in shapes else effect.parameter(name, where)
+            out[key] = value
+    return out
+
+
+def std_of(fit: Refit) -> dict[str, float]:
+    """Std of the values of a fit's free parameters, in their units."""
+    space = fit.at.space
+    std = fit.std * space.slope(fit.at.q)
+    return dict(zip(space.names, std.tolist(), strict=True))
+
+
+def rerun(robot: Twin, log: Log) -> Run:
+    """The robot under the currents of a log."""
+    return simulate(robot, log.inputs, log.sampling_time, hold_kind=log.hold)

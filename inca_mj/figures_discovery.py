@@ -1,0 +1,127 @@
+"""Figures of a discovery: the gap on unseen data, where it is, and who could explain it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+from inca_mj.colours import GREY, INK, MEASURED, SIMULATED
+from inca_mj.figures import _STYLE
+
+BEFORE, AFTER = SIMULATED, MEASURED
+BAND = "#C9CED6"
+FAR = 20.0  # a bar this much shorter than another is lost on a linear axis
+
+
+def gap_figure(
+    time: np.ndarray,
+    before: np.ndarray,
+    after: np.ndarray | None,
+    band: float,
+    names: Sequence[str],
+    unit: str,
+) -> Figure:
+    """Errors of the free run, one panel an output, over the band of the noise.
+
+    Args:
+        time: of the unseen samples, shape (N,) [s]; a gap in it is a gap in the lines.
+        before: measured minus predicted by the fitted nominal model, shape (N, ny) [unit].
+        after: the same with the named effects; None when there are none.
+        band: half its width, two std of the noise [unit].
+        names: of the outputs, ny of them.
+        unit: of the outputs.
+    """
+    columns = min(2, len(names))
+    rows = -(-len(names) // columns)
+    step = float(np.median(np.diff(time)))
+    cuts = np.flatnonzero(np.diff(time) > 1.5 * step) + 1
+    shown = np.insert(time, cuts, np.nan)
+    with matplotlib.rc_context(_STYLE):
+        figure = Figure((9.0, 0.7 + 1.35 * rows), layout=ConstrainedLayoutEngine(wspace=0.05))
+        axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+        panels = [axes[row, column] for column in range(columns) for row in range(rows)]
+        for k, ax in enumerate(panels):
+            if k >= len(names):
+                ax.set_axis_off()
+                continue
+            ax.axhspan(-band, band, color=BAND, lw=0, label="noise, ± 2 std")
+            for e, colour, label in ((before, BEFORE, "nominal model, fitted"),
+                                     (after, AFTER, "with what was missing")):  # fmt: skip
+                if e is not None:
+                    ax.plot(shown, np.insert(e[:, k], cuts, np.nan), color=colour, lw=0.9,
+                            label=label)  # fmt: skip
+            ax.set_title(names[k], loc="left", color=INK)
+            ax.set_xlim(time[0], time[-1])
+        for ax in axes[:, 0]:
+            ax.set_ylabel(f"error [{unit}]" if unit else "error")
+        for ax in axes[-1]:
+            ax.set_xlabel("time [s]")
+        figure.legend(
+            *panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=3
+        )  # fmt: skip
+    return figure
+
+
+def rms_figure(
+    before: np.ndarray, after: np.ndarray | None, floor: float, names: Sequence[str], unit: str
+) -> Figure:
+    """Bars of the error of each output before and after, with the line of the noise.
+
+    Args:
+        before: rms by output, shape (ny,) [unit].
+        after: the same with the named effects; None when there are none.
+        floor: rms of the noise [unit].
+        names: of the outputs.
+        unit: of the outputs.
+    """
+    place = np.arange(len(names))
+    bars = [(before, BEFORE, "nominal model, fitted")]
+    if after is not None:
+        bars.append((after, AFTER, "with what was missing"))
+    width = 0.8 / len(bars)
+    with matplotlib.rc_context(_STYLE):
+        figure = Figure((9.0, 3.2), layout="constrained")
+        ax = figure.subplots()
+        for k, (height, colour, label) in enumerate(bars):
+            ax.bar(place + (k - (len(bars) - 1) / 2) * width, height, width, color=colour,
+                   label=label)  # fmt: skip
+        if floor > 0:
+            ax.axhline(floor, color=INK, ls="--", lw=1, label="noise")
+        ax.set_xticks(place, [name.replace("_", " ") for name in names], fontsize=8)
+        ax.grid(axis="x", visible=False)
+        least = min(float(np.min(height)) for height, _, _ in bars)
+        if 0 < FAR * least < float(np.max(before)):
+            ax.set_yscale("log")
+            ax.set_ylim(bottom=0.3 * (min(least, floor) if floor > 0 else least))
+            ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        ax.set_ylabel(f"rms of the error [{unit}]" if unit else "rms of the error")
+        figure.legend(loc="outside upper center", ncols=3)
+    return figure
+
+
+def gains_figure(labels: Sequence[str], gains: np.ndarray, named: Sequence[bool]) -> Figure:
+    """Horizontal bars of what each candidate would explain, the best on top.
+
+    Args:
+        labels: of the candidates.
+        gains: twice the log likelihood that each adds.
+        named: which were named.
+    """
+    place = np.arange(len(labels))[::-1]
+    with matplotlib.rc_context(_STYLE):
+        figure = Figure((9.0, 0.9 + 0.26 * max(3, len(labels))), layout="constrained")
+        ax = figure.subplots()
+        shown = np.maximum(np.asarray(gains, float), 0.0)
+        colours = [AFTER if is_named else GREY for is_named in named]
+        ax.barh(place, shown, 0.7, color=colours)
+        ax.set_yticks(place, list(labels), fontsize=8)
+        ax.grid(axis="y", visible=False)
+        ax.set_xlabel("gain: twice the log likelihood that it adds, at once")
+        if any(named):
+            handles = [matplotlib.patches.Patch(color=c) for c in (AFTER, GREY)]
+            figure.legend(handles, ["named", "not named"], loc="outside upper center", ncols=2)
+    return figure

@@ -1,0 +1,132 @@
+"""What the report of a discovery says, section by section."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from identification.discovery.result import Discovery
+from identification.discovery.score import Score
+from identification.log import halves
+from identification.verdict_discovery import (
+    floor_rms,
+    output_unit,
+    phrase,
+    sentence,
+)
+from inca_mj.figures_discovery import gains_figure, gap_figure, rms_figure
+from inca_mj.report import Section, Table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+BEST = 10  # candidates shown
+
+
+def unseen_rows(found: Discovery) -> np.ndarray:
+    """Which samples the fit has not seen; all, where it has seen all."""
+    splits = found.log.splits or halves(found.log)
+    start, end = splits["estimation"]
+    unseen = (found.log.time < start) | (found.log.time >= end)
+    return unseen if unseen.any() else ~unseen
+
+
+def gap_section(found: Discovery) -> Section:
+    """How the gap shrinks on data that the fit has not seen."""
+    unit, rows = output_unit(found), unseen_rows(found)
+    log, before, after = found.log, *_errors(found)
+    figure = gap_figure(
+        log.time[rows], before[rows], None if after is None else after[rows],
+        2 * floor_rms(found), log.output_names, unit,
+    )  # fmt: skip
+    gaps = [("nominal model, fitted", found.before)]
+    if after is not None:
+        gaps.append(("with what was missing", found.after))
+    fits = [g.fit_percent[np.isfinite(g.fit_percent)] for _, g in gaps]
+    return Section(
+        "The gap on unseen data",
+        "Measured minus simulated, from the currents alone, over samples that no fit has seen. The"
+        " grey band is what the sensors, and disturbances that were not logged, do to a model that"
+        " lacks nothing.",
+        figures=(("Error on unseen data, before and after", figure),),
+        table=Table(
+            ("model", f"rms [{unit}]" if unit else "rms", "times the noise", "mean fit [%]"),
+            tuple(
+                (name, gap.rms, _ratio(gap.rms, floor_rms(found)),
+                 float(fit.mean()) if len(fit) else None)
+                for (name, gap), fit in zip(gaps, fits, strict=True)
+            ),
+        ),
+    )  # fmt: skip
+
+
+def where_section(found: Discovery) -> Section:
+    """Where the nominal model fails, and where the final one still does."""
+    rows, unit = unseen_rows(found), output_unit(found)
+    before, after = _errors(found)
+    left = [f"With what is named: {'; '.join(found.left)}."] if found.left else []
+    figure = rms_figure(
+        _rms(before[rows]), None if after is None else _rms(after[rows]), floor_rms(found),
+        found.log.output_names, unit,
+    )  # fmt: skip
+    return Section(
+        "Where it disagrees",
+        "\n\n".join([" ".join(map(sentence, found.located)), *left]),
+        figures=(("Error by output on unseen data", figure),),
+    )
+
+
+def rivals_section(found: Discovery) -> Section:
+    """Who could explain the gap, and how well."""
+    each: dict[str, Score] = {}  # the best place and shape of every effect
+    for score in found.scores:
+        each.setdefault(score.candidate.effect.name, score)
+    best = [*each.values()][:BEST]
+    named = {n.candidate.effect.name for n in found.named}
+    figures: tuple[tuple[str, Figure], ...] = ()
+    if best:
+        figure = gains_figure(
+            [label(s) for s in best],
+            np.array([s.gain for s in best]),
+            [s.candidate.effect.name in named for s in best],
+        )
+        figures = (("Gain of the best candidates on the nominal fit", figure),)
+    rows = tuple(
+        (phrase(n.candidate), phrase(r.candidate), f"{100 * r.confidence:.0f} %", r.alike)
+        for n in found.named
+        for r in n.rivals
+    )
+    text = (
+        "What each effect, at its best place and shape, would explain of the fitted nominal model's"
+        " residual, the model's parameters tuned again."
+    )
+    if not rows and found.named:
+        text += "\n\nNo other explanation comes near those that are named."
+    return Section(
+        "Who could explain it",
+        text,
+        figures=figures,
+        table=Table(("named", "rival", "confidence", "alike"), rows) if rows else None,
+    )
+
+
+def label(score: Score) -> str:
+    """A candidate's name, place and shapes, short."""
+    c = score.candidate
+    where = "" if c.where.startswith("all ") or c.where == "platform" else f" ({c.where})"
+    shape = ", ".join(f"{n} = {v:.3g}" for n, v in c.shape.items())
+    return c.effect.name.replace("_", " ") + where + (f", {shape}" if shape else "")
+
+
+def _errors(found: Discovery) -> tuple[np.ndarray, np.ndarray | None]:
+    y = found.log.outputs
+    return y - found.predicted_before, y - found.predicted_after if found.named else None
+
+
+def _rms(e: np.ndarray) -> np.ndarray:
+    return np.asarray(np.sqrt(np.mean(e**2, axis=0)))
+
+
+def _ratio(rms: float, floor: float) -> float | None:
+    return rms / floor if floor > 0 else None

@@ -1,0 +1,82 @@
+"""What the report of a discovery says in tables: what was added, parameters, what stays hidden."""
+
+from __future__ import annotations
+
+from identification.discovery.result import Detectable, Discovery
+from identification.quantities import quantity
+from identification.verdict_discovery import phrase, split_detectable
+from inca_mj.discovery_model import final_values, std_of
+from inca_mj.report import Section, Table
+
+
+def diff_section(found: Discovery) -> Section:
+    """What was added to the model, as laws and numbers."""
+    if not found.named:
+        return Section("What was added", "Nothing: the model is the nominal one, fitted.")
+    rows = []
+    for named in found.named:
+        c = named.candidate
+        for k, (name, (value, std, unit)) in enumerate(named.parameters.items()):
+            rows.append(
+                (f"+ {phrase(c)}" if k == 0 else "", c.effect.law if k == 0 else "", name,
+                 quantity(value, std, unit), f"{100 * named.confidence:.0f} %" if k == 0 else "")
+            )  # fmt: skip
+    return Section(
+        "What was added",
+        "The model with it is in model.xml and effects.json; inca_mj.load_twin reads them.",
+        table=Table(("effect", "law", "parameter", "value", "confidence"), tuple(rows)),
+    )
+
+
+def parameters_section(found: Discovery) -> Section:
+    """Nominal values beside those of the first fit and of the last."""
+    plant = found.final.at.predictor.plant
+    first, last = std_of(found.nominal), std_of(found.final)
+    nominal, values = found.nominal.at.values, final_values(found)
+    rows = []
+    for p in plant.parameters:
+        if p.name not in last and p.name not in first:
+            continue
+        rows.append(
+            (
+                p.name,
+                "–" if p.where == "effect" else quantity(p.value, unit=p.unit),
+                _value(nominal.get(p.name), first.get(p.name), p.unit),
+                _value(values[p.name], last.get(p.name), p.unit),
+            )
+        )
+    return Section(
+        "The parameters",
+        "A std holds for the model as it is: that of a wrong model is too small.",
+        table=Table(
+            ("parameter", "nominal", "fitted without effects", "fitted with what is named"),
+            tuple(rows),
+        ),
+    )
+
+
+def unseen_section(found: Discovery) -> Section:
+    """What this log could have shown, and what not."""
+    seen, blind = split_detectable(found.detectable)
+    rows = [(phrase(d.candidate), d.size, quantity(d.smallest, unit=d.unit), _plausible(d))
+            for d in seen]  # fmt: skip
+    rows += [(phrase(d.candidate), d.size, "not by this log", _plausible(d)) for d in blind]
+    return Section(
+        "What it could have seen",
+        "The smallest size of each effect that is found in 9 of 10 logs like this one, beside the"
+        " largest that is plausible. What is missing and smaller stays hidden."
+        if rows
+        else "Not computed for this log.",
+        table=Table(("effect", "size", "smallest seen", "largest plausible"), tuple(rows))
+        if rows
+        else None,
+    )
+
+
+def _value(value: float | None, std: float | None, unit: str) -> str:
+    return "–" if value is None or std is None else quantity(value, std, unit)
+
+
+def _plausible(d: Detectable) -> str:
+    size = next((s for s in d.candidate.effect.sizes if s.name == d.size), None)
+    return "–" if size is None else quantity(size.largest, unit=size.unit)

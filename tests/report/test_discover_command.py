@@ -1,0 +1,106 @@
+"""inca discover as a user meets it, what it finds being given."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from fake_discovery import EFFECTS, found, log
+
+from identification import write_log
+from inca_mj.cli import main
+from inca_mj.effects.saved import load_twin
+
+
+@pytest.fixture(autouse=True)
+def outcome(monkeypatch: pytest.MonkeyPatch) -> list:
+    """What the discovery finds; change its only entry for another."""
+    result = [found()]
+    module = ModuleType("inca_mj.discover")
+    module.discover = lambda *_, **__: result[0]  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "inca_mj.discover", module)
+    return result
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("log") / "second.csv"
+    write_log(log(), path)
+    return path
+
+
+def run(*arguments: object) -> int:
+    return main([str(a) for a in arguments])
+
+
+def test_the_verdict_comes_first(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("discover", path) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("Missing from the model: friction: Stribeck peak, all drives")
+    assert "+ friction: Stribeck peak, all drives: f_s = 4.12 ± 0.21 mN m" in out
+
+
+def test_json_is_the_contract(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("discover", path, "--json") == 0
+    out = capsys.readouterr().out
+    assert out.count("\n") == 1
+    record = json.loads(out)
+    assert {"verdict", "effects", "unexplained", "gap", "located", "model", "seconds"} <= set(
+        record
+    )
+    assert record["verdict"] == "named"
+    assert record["model"] is None
+    (effect,) = record["effects"]
+    assert (effect["name"], effect["where"]) == ("stribeck_friction", "all drives")
+    assert set(record["gap"]["before"]) == {"rms", "fit_percent"}
+
+
+@pytest.mark.parametrize(
+    ("case", "says"),
+    [
+        ({}, "Missing from the model"),
+        ({"verdict": "nothing missing"}, "Nothing is missing"),
+        ({"verdict": "unknown effect", "unexplained": True}, "none of the 3 known effects"),
+        ({"one_of": True, "unexplained": True, "several": True}, "is one of these"),
+    ],
+)
+def test_a_folder_of_results_is_whole(
+    case: dict, says: str, path: Path, tmp_path: Path, outcome: list,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    outcome[0] = found(**case)
+    assert run("discover", path, "--out", tmp_path, "--no-film", "--json") == 0
+    record = json.loads(capsys.readouterr().out)
+    assert record["model"] == str(tmp_path / "model.xml")
+    names = {p.name for p in tmp_path.iterdir()}
+    assert {"report.html", "result.json", "model.xml", "effects.json",
+            "error-on-unseen-data-before-and-after.png", "error-by-output-on-unseen-data.png",
+            "gain-of-the-best-candidates-on-the-nominal-fit.png"} <= names  # fmt: skip
+    page = (tmp_path / "report.html").read_text()
+    assert page.index(says) < page.index("The gap on unseen data")
+    assert ">nan<" not in page
+    assert 'src="http' not in page
+    kept = json.loads((tmp_path / "result.json").read_text())
+    assert kept["verdict"] == record["verdict"]
+    assert {"python", "mujoco"} <= set(kept["versions"])
+    twin = load_twin(tmp_path, EFFECTS)
+    assert {e.name for e in twin.effects} == {e["name"] for e in record["effects"]}
+
+
+def test_bad_input_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("discover", tmp_path / "none.csv") == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.count("\n") == 1
+
+
+def test_the_demo_opens_with_the_verdict_and_ends_with_the_report(
+    path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("demo", path, "--no-film", "--out", tmp_path / "demo") == 0
+    out = capsys.readouterr().out
+    assert out.startswith("Missing from the model: ")
+    assert f"report:  {tmp_path / 'demo' / 'report.html'}" in out

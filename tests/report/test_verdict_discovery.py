@@ -1,0 +1,74 @@
+"""Each outcome has its paragraph, and no two can be taken for each other."""
+
+from dataclasses import replace
+
+import pytest
+from fake_discovery import found
+
+from identification.discovery.result import Gap
+from identification.verdict_discovery import diff_line, discovery_verdict
+from inca_mj.discovery_text import discovery_text
+
+
+def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
+    said = discovery_verdict(found())
+    assert said[0] == (
+        "Missing from the model: friction: Stribeck peak, all drives, f_s = 4.12 ± 0.21 mN m"
+        " (height of the peak), v_s = 1.88 ± 0.10 rad/s (its half width); confidence 97 %."
+    )
+    assert "On data that the fit has not seen, the error falls from" in said[1]
+    assert said[1].count("mrad") == 3
+    assert len(said) == 2
+
+
+def test_look_alikes_are_a_set() -> None:
+    first = discovery_verdict(found(one_of=True))[0]
+    assert first.startswith("Missing from the model is one of these, which this log cannot tell")
+    assert "Stribeck peak, all drives (61 %)" in first
+    assert "drive 3 (36 %)" in first
+    assert "together 97 %" in first
+
+
+def test_what_is_left_is_said_last() -> None:
+    said = discovery_verdict(found(unexplained=True))
+    assert said[-1].startswith("Something is left beside what is named that no known effect")
+    assert said[-1].endswith("The error is largest at drive 3.")
+
+
+def test_two_effects_are_two_sentences() -> None:
+    said = discovery_verdict(found(several=True))
+    assert said[1].startswith("Missing too: ")
+    assert "delta = 20.0 ± 3.0 %" in said[1]
+
+
+def test_nothing_missing_says_what_would_have_been_seen() -> None:
+    (said,) = discovery_verdict(found("nothing missing"))
+    assert said.startswith("Nothing is missing: ")
+    assert "Stribeck peak, all drives, f_s 200 µN m" in said
+    assert "It cannot speak of delay" in said
+
+
+def test_an_unknown_effect_is_not_named() -> None:
+    (said,) = discovery_verdict(found("unknown effect"))
+    assert said.startswith("Something is missing that none of the 3 known effects explains")
+    assert "The error grows at low speed." in said
+    assert "Stribeck" not in said
+
+
+@pytest.mark.parametrize("verdict", ["named", "nothing missing", "unknown effect"])
+def test_text_begins_with_the_verdict_and_holds_no_nan(verdict: str) -> None:
+    outcome = found(verdict)
+    text = discovery_text(outcome)
+    assert text.startswith(discovery_verdict(outcome)[0])
+    assert "nan" not in text
+    assert ("+ friction: Stribeck peak" in text) == (verdict == "named")
+
+
+def test_a_diff_line_reads_as_one() -> None:
+    (named,) = found().named
+    assert diff_line(named).startswith("+ friction: Stribeck peak, all drives: f_s = 4.12 ± 0.21")
+
+
+def test_no_unseen_data_is_said() -> None:
+    none = Gap(float("nan"), found().before.fit_percent)
+    assert "no unseen data" in discovery_verdict(replace(found(), before=none, after=none))[1]
