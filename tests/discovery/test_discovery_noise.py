@@ -15,7 +15,9 @@ def cart(samples=150):
     """A double integrator with friction, as a drive is; force in, position out."""
     A = np.array([[1, STEP], [0, 0.96]])
     B = np.array([[STEP**2 / 2], [STEP]])
-    return LinearPlant(np.tile(A, (samples - 1, 1, 1)), np.tile(B, (samples - 1, 1, 1)), np.eye(2)[:1])
+    return LinearPlant(
+        np.tile(A, (samples - 1, 1, 1)), np.tile(B, (samples - 1, 1, 1)), np.eye(2)[:1]
+    )
 
 
 def drawn(plant, noise, rng, n):

@@ -120,5 +120,3 @@ def test_chances_are_uniform_where_nothing_is_missing(ratio):
         blocks += [s.block_p_value for s in found]
     assert kstest(p, "uniform").pvalue > 0.01
     assert kstest(blocks, "uniform").pvalue > 0.01
-
-
