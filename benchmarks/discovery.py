@@ -25,6 +25,23 @@ from pathlib import Path
 from typing import Any
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+# Names of sizes in labels, by effect and size here, as far as they mean the same.
+LABELS = {
+    "stribeck": ("stribeck_friction", "f_s"), "asym": ("asymmetric_friction", "f_a"),
+    "load": ("load_dependent_friction", "mu"), "quad": ("quadratic_friction", "c"),
+    "bc1": ("friction_mismatch", "delta"), "cog_c": ("cogging", "a"), "cog_s": ("cogging", "b"),
+    "tau_e": ("current_lag", "tau"), "delay": ("delay", "tau"),
+    "kt_t": ("torque_constant_drift", "alpha"), "kt1": ("torque_constant_mismatch", "delta"),
+    "ecc_c": ("drum_eccentricity", "a"), "ecc_s": ("drum_eccentricity", "b"),
+    "layer": ("drum_layering", "h"), "R1": ("drum_radius_mismatch", "delta"),
+    "back": ("backlash", "h"), "k3": ("spring_hardening", "k_3"),
+    "hyst": ("spring_hysteresis", "eta"), "kap": ("cable_hardening", "kappa"),
+    "mx": ("cable_creep", "c"), "rp": ("pulley_radius", "r_p"), "rho": ("cable_weight", "rho"),
+    "drag": ("air_drag", "c"),
+    **{f"{a}{x}": (name, x) for a, name in
+       (("a", "anchor_offset"), ("c", "com_offset"), ("f", "external_force")) for x in "xyz"},
+}  # fmt: skip
+WORLDS = {"delay": "tau", "fraction": "c"}  # the same of the worlds
 RATIOS = (1.0, 3.0, 10.0)  # of what cannot be absorbed to the noise, drawn by chance
 
 
@@ -56,15 +73,20 @@ def practice_tasks(folder: Path, only: str) -> Iterator[dict[str, Any]]:
 
 def practice_truth(label: dict[str, Any], names: list[str]) -> dict[str, Any]:
     """A label as the truth of a row."""
-    where, size = label["where"], label["size"]
-    each = [size.get(n) if isinstance(size.get(n), dict) else size for n in names]
-    drives = where if isinstance(where, list) else [where] * len(names)
+    where, drives = label["where"], None
+    if where is not None:
+        drives = [f"drive {w}" for w in (where if isinstance(where, list) else [where])]
+    sizes: dict[str, dict[str, float]] = {name: {} for name in names}
+    for key, value in label["size"].items():
+        name, size = LABELS.get(key, ("", ""))
+        if name in sizes:
+            sizes[name][size] = value
     return {
-        "kind": label["kind"], "ratio": label["ratio"],
+        "kind": label["kind"],
+        "ratio": label["ratio"],
         "effects": [
-            {"name": n, "where": f"drive {w}" if isinstance(w, int) else w,
-             "sizes": {k: v for k, v in (s or {}).items() if isinstance(v, int | float)}}
-            for n, w, s in zip(names, drives, each, strict=True)
+            {"name": n, "where": drives[min(i, len(drives) - 1)] if drives else None,
+             "sizes": sizes[n]} for i, n in enumerate(names)
         ],
     }  # fmt: skip
 
@@ -97,9 +119,9 @@ def world_tasks(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
 def log_of(task: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
     """The log of a task, and its truth."""
     if "practice" in task:
-        from identification.read import read_log
+        from inca_mj.logs import read_inca_log
 
-        return read_log(Path(task["practice"])), task["truth"]
+        return read_inca_log(task["practice"]), task["truth"]
     from inca_mj.worlds import Setting, draw_effect, world
 
     effects = [
@@ -118,7 +140,7 @@ def log_of(task: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         "other_shape": any(task["other_shape"]),
         "effects": [
             {"name": e.name, "where": e.where,
-             "sizes": {s: float(getattr(e, s)) for s in e.sizes}} for e in truth.effects
+             "sizes": {WORLDS.get(s, s): float(getattr(e, s)) for s in e.sizes}} for e in truth.effects
         ],
     }  # fmt: skip
 

@@ -28,7 +28,7 @@ def linear_plant(rng, samples=40, nx=3, nu=2, ny=2):
 
 def response(plant):
     """Outputs of all samples from inputs of all samples, shape (N ny, N nu)."""
-    n, nx, nu = plant.B.shape
+    n, _, nu = plant.B.shape
     ny = len(plant.C)
     out = np.zeros((n + 1, ny, n + 1, nu))
     for j in range(n):

@@ -15,9 +15,8 @@ def cart(samples=150):
     """A double integrator with friction, as a drive is; force in, position out."""
     A = np.array([[1, STEP], [0, 0.96]])
     B = np.array([[STEP**2 / 2], [STEP]])
-    return LinearPlant(
-        np.tile(A, (samples - 1, 1, 1)), np.tile(B, (samples - 1, 1, 1)), np.eye(2)[:1]
-    )
+    A, B = (np.tile(M, (samples - 1, 1, 1)) for M in (A, B))
+    return LinearPlant(A, B, np.array([[1.0, 0.0]]))
 
 
 def drawn(plant, noise, rng, n):
