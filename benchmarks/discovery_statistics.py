@@ -1,0 +1,161 @@
+"""What a study of discoveries comes to: rates with their intervals, confusions, calibration."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+BINS = 10
+Row = Mapping[str, Any]
+
+
+def wilson(hits: int, of: int, z: float = 1.96) -> dict[str, Any]:
+    """A rate and its 95 % interval (Wilson 1927)."""
+    if not of:
+        return {"value": None, "low": 0.0, "high": 1.0, "hits": 0, "of": 0}
+    p, w = hits / of, z * z / of
+    half = z * math.sqrt(p * (1 - p) / of + w / (4 * of))
+    low, high = ((p + w / 2 + sign * half) / (1 + w) for sign in (-1, 1))
+    return {"value": p, "low": max(0.0, low), "high": min(1.0, high), "hits": hits, "of": of}
+
+
+def rate(rows: Iterable[Row], test: Callable[[Row], bool]) -> dict[str, Any]:
+    """Share of rows that pass a test."""
+    outcomes = [test(row) for row in rows]
+    return wilson(sum(outcomes), len(outcomes))
+
+
+def first(row: Row) -> str:
+    """The answer's first name, or its verdict where it names nothing."""
+    named = row["answer"]["named"]
+    return named[0]["name"] if named else row["answer"]["verdict"]
+
+
+def right(row: Row) -> bool:
+    """The first name is one of the true ones."""
+    return first(row) in {e["name"] for e in row["truth"]["effects"]}
+
+
+def in_set(row: Row) -> bool:
+    """The first name, or the one other that the data cannot tell from it, is true."""
+    named = row["answer"]["named"]
+    return bool(named) and any(
+        name in {e["name"] for e in row["truth"]["effects"]}
+        for name in (named[0]["name"], *(named[0]["set"][:1]))
+    )
+
+
+def all_found(row: Row) -> bool:
+    """Every true effect is named and nothing else is."""
+    return {n["name"] for n in row["answer"]["named"]} == {
+        e["name"] for e in row["truth"]["effects"]
+    }
+
+
+def matched(rows: Sequence[Row]) -> list[tuple[Mapping[str, Any], Mapping[str, Any]]]:
+    """Named effects whose name is true, each with the truth."""
+    out = []
+    for row in rows:
+        true = {e["name"]: e for e in row["truth"]["effects"]}
+        out += [(n, true[n["name"]]) for n in row["answer"]["named"] if n["name"] in true]
+    return out
+
+
+def size_errors(rows: Sequence[Row]) -> list[float]:
+    """|estimate/true - 1| of all sizes that have one name in model and truth."""
+    return [
+        abs(value / true["sizes"][size] - 1)
+        for named, true in matched(rows)
+        for size, value in named["sizes"].items()
+        if true["sizes"].get(size)
+    ]
+
+
+def signs(rows: Sequence[Row]) -> dict[str, Any]:
+    """Share of those sizes with the right sign."""
+    outcomes = [
+        value * true["sizes"][size] > 0
+        for named, true in matched(rows)
+        for size, value in named["sizes"].items()
+        if true["sizes"].get(size)
+    ]
+    return wilson(sum(outcomes), len(outcomes))
+
+
+def places(rows: Sequence[Row]) -> dict[str, Any]:
+    """Share of true names at the right place (drive)."""
+    outcomes = [named["where"] == true["where"] for named, true in matched(rows) if true["where"]]
+    return wilson(sum(outcomes), len(outcomes))
+
+
+def calibration(rows: Sequence[Row]) -> dict[str, Any]:
+    """Of the confidence of first names: expected calibration error and Brier score."""
+    pairs = [
+        (r["answer"]["named"][0]["confidence"], right(r)) for r in rows if r["answer"]["named"]
+    ]
+    if not pairs:
+        return {"ece": None, "brier": None, "of": 0, "bins": []}
+    bins: dict[int, list[tuple[float, bool]]] = {}
+    for pair in pairs:
+        bins.setdefault(min(BINS - 1, int(BINS * pair[0])), []).append(pair)
+    means = [
+        {"confidence": sum(c for c, _ in b) / len(b), "right": sum(r for _, r in b) / len(b),
+         "of": len(b)}
+        for _, b in sorted(bins.items())
+    ]  # fmt: skip
+    return {
+        "ece": sum(m["of"] * abs(m["confidence"] - m["right"]) for m in means) / len(pairs),
+        "brier": sum((c - r) ** 2 for c, r in pairs) / len(pairs),
+        "of": len(pairs),
+        "bins": means,
+    }
+
+
+def median(values: Sequence[float]) -> float | None:
+    """The middle one; None of none."""
+    ordered = sorted(values)
+    n = len(ordered)
+    return (ordered[(n - 1) // 2] + ordered[n // 2]) / 2 if n else None
+
+
+def summary(rows: Sequence[Row]) -> dict[str, Any]:
+    """Of all rows that did not fail."""
+    done = [row for row in rows if "error" not in row]
+    kind = {k: [r for r in done if r["truth"]["kind"] == k]
+            for k in ("null", "single", "pair", "unknown")}  # fmt: skip
+    known = kind["single"] + kind["pair"]
+    confusion: dict[str, Counter[str]] = {}
+    for row in done:
+        names = [e["name"] for e in row["truth"]["effects"]]
+        true = "+".join(sorted(names)) or "nothing"
+        confusion.setdefault(true, Counter())[first(row)] += 1
+    return {
+        "logs": len(done),
+        "failed": len(rows) - len(done),
+        "first_name_right": rate(known, right),
+        "first_name_right_single": rate(kind["single"], right),
+        "right_or_in_set_of_two": rate(known, in_set),
+        "wrong_name_accepted": rate(known, lambda r: bool(r["answer"]["named"]) and not right(r)),
+        "singles_exactly": rate(kind["single"], all_found),
+        "pairs_exactly": rate(kind["pair"], all_found),
+        "sign_right": signs(known),
+        "place_right": places(known),
+        "null_without_name": rate(kind["null"], lambda r: not r["answer"]["named"]),
+        "null_nothing_missing": rate(
+            kind["null"], lambda r: r["answer"]["verdict"] == "nothing missing"
+        ),
+        "unknown_flagged": rate(
+            kind["unknown"], lambda r: r["answer"]["verdict"] == "unknown effect"
+        ),
+        "unknown_wrongly_named": rate(kind["unknown"], lambda r: bool(r["answer"]["named"])),
+        "known_called_unknown": rate(known, lambda r: r["answer"]["verdict"] == "unknown effect"),
+        "gap_closed_median": median(
+            [r["answer"]["gap_closed"] for r in known if r["answer"]["gap_closed"] is not None]
+        ),
+        "size_error_median": median(size_errors(known)),
+        "seconds_median": median([r["seconds"] for r in done]),
+        "calibration": calibration(done),
+        "confusion": {true: dict(row) for true, row in sorted(confusion.items())},
+    }

@@ -1,0 +1,32 @@
+"""The robot's own discovery on logs of the independent reference; some seconds each.
+
+Logs of 6 s and five candidates: enough to name what is large, at a tenth of the price.
+"""
+
+import pytest
+
+from inca_mj.discover import discover
+from inca_mj.effects.catalogue import CATALOGUE
+from inca_mj.worlds import Setting, effect, world
+
+FEW = ("load_dependent_friction", "stribeck_friction", "air_drag", "external_force", "com_offset")
+FIVE = tuple(e for e in CATALOGUE if e.name in FEW)
+SHORT = Setting(duration=6.0)
+
+
+def test_load_dependent_friction_is_named():
+    log, truth = world(3, [effect("load_dependent_friction")], ratio=6.0, setting=SHORT)
+    answer = discover(log, effects=FIVE)
+    assert answer.verdict == "named"
+    named = answer.named[0]
+    assert named.candidate.effect.name == "load_dependent_friction"
+    assert named.candidate.where == "all drives"
+    value, std, _ = named.parameters["mu"]
+    assert value == pytest.approx(truth.sizes[0]["mu"], abs=max(4 * std, 0.01))
+    assert answer.after.rms < 0.7 * answer.before.rms
+
+
+def test_where_nothing_is_missing_nothing_is_named():
+    answer = discover(world(4, setting=SHORT).log, effects=FIVE)
+    assert answer.verdict == "nothing missing"
+    assert {d.candidate.effect.name for d in answer.detectable} == set(FEW)

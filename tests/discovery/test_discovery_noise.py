@@ -1,0 +1,89 @@
+"""The level of the noise is found again in what it makes."""
+
+import numpy as np
+import pytest
+from discovery_cases import STEP, covariance, linear_plant
+
+from identification.discovery.linear import LinearPlant
+from identification.discovery.noise_fit import fit_noise, likelihood, unit_ratio
+from identification.discovery.noise_model import Noise, whitener
+
+SIGMA = 2e-3
+
+
+def cart(samples=150):
+    """A double integrator with friction, as a drive is; force in, position out."""
+    A = np.array([[1, STEP], [0, 0.96]])
+    B = np.array([[STEP**2 / 2], [STEP]])
+    A, B = (np.tile(M, (samples - 1, 1, 1)) for M in (A, B))
+    return LinearPlant(A, B, np.array([[1.0, 0.0]]))
+
+
+def drawn(plant, noise, rng, n):
+    V = covariance(plant, noise)
+    samples, ny = len(plant.B) + 1, len(plant.C)
+    all_ = SIGMA * np.linalg.cholesky(V) @ rng.standard_normal((len(V), n))
+    return all_.T.reshape(n, samples, ny)
+
+
+def test_ratio_and_sigma_are_recovered_within_their_scatter():
+    rng, plant, truth = np.random.default_rng(1), cart(250), Noise(300.0, 0.1)
+    J = rng.standard_normal((250, 1, 2))
+    found = [fit_noise(plant, e, J, np.zeros(2), STEP) for e in drawn(plant, truth, rng, 8)]
+    # ρ √τ is what a slow plant feels: it is known better than either.
+    felt = np.log([f.noise.ratio * f.noise.time**0.5 / (300 * 0.1**0.5) for f in found])
+    sigma = np.array([f.sigma for f in found]) / SIGMA
+    assert abs(np.median(felt)) < 0.35
+    assert np.abs(felt).max() < 1.0
+    assert abs(sigma.mean() - 1) < 0.07
+    assert np.abs(sigma - 1).max() < 0.25
+
+
+def test_the_correlation_time_is_told_from_others():
+    rng, plant = np.random.default_rng(2), cart(250)
+    J = np.zeros((250, 1, 0))
+    for time in (0.03, 0.3):
+        e = drawn(plant, Noise(400.0, time), rng, 1)[0]
+        assert time / 3.5 < fit_noise(plant, e, J, np.zeros(0), STEP).noise.time < 3.5 * time
+
+
+def test_where_there_is_none_it_finds_none_or_what_no_output_notices():
+    rng, plant = np.random.default_rng(3), cart()
+    unit = unit_ratio(plant, STEP, 0.03)
+    J = rng.standard_normal((150, 1, 2))
+    found = [
+        fit_noise(plant, SIGMA * rng.standard_normal((150, 1)), J, np.zeros(2), STEP)
+        for _ in range(12)
+    ]
+    assert np.mean([f.noise.ratio == 0 for f in found]) >= 0.4
+    assert max(f.noise.ratio for f in found) < 0.5 * unit
+
+
+def test_its_level_is_no_less_likely_than_the_truth():
+    rng, plant, truth = np.random.default_rng(4), cart(), Noise(300.0, 0.1)
+    J = rng.standard_normal((150, 1, 2))
+    for e in drawn(plant, truth, rng, 5):
+        found = fit_noise(plant, e, J, np.zeros(2), STEP)
+        true = likelihood(whitener(plant, truth, STEP), truth, e, J, np.zeros(2))
+        assert found.log_likelihood > true.log_likelihood - 1.5
+
+
+def test_the_likelihood_is_the_dense_gaussian_with_the_parameters_at_their_best():
+    rng = np.random.default_rng(5)
+    plant, noise = linear_plant(rng), Noise(0.5, 0.1)
+    e, J = rng.standard_normal((40, 2)), rng.standard_normal((40, 2, 3))
+    V, F = covariance(plant, noise), J.reshape(80, 3)
+    iV = np.linalg.inv(V)
+    rest = e.ravel() - F @ np.linalg.solve(F.T @ iV @ F, F.T @ iV @ e.ravel())
+    squares = rest @ iV @ rest
+    found = likelihood(whitener(plant, noise, STEP), noise, e, J, np.zeros(3))
+    assert found.sigma == pytest.approx(np.sqrt(squares / 80), rel=1e-9)
+    dense = -0.5 * (80 * np.log(squares / 80) + np.linalg.slogdet(V)[1])
+    assert found.log_likelihood == pytest.approx(dense, rel=1e-9)
+
+
+def test_at_the_unit_ratio_input_errors_move_the_outputs_by_sigma():
+    plant = linear_plant(np.random.default_rng(6))
+    unit = unit_ratio(plant, STEP, 0.1)
+    moved = np.diag(covariance(plant, Noise(unit, 0.1))) - 1
+    assert moved.reshape(40, 2)[1:].mean() == pytest.approx(1, rel=1e-9)

@@ -1,0 +1,122 @@
+"""Scores are what a dense generalised least squares gains by a column."""
+
+import numpy as np
+import pytest
+from discovery_cases import column, covariance, linear_plant, point_of
+from scipy.stats import chi2, kstest
+
+from identification.discovery.noise_fit import Level
+from identification.discovery.noise_model import Noise
+from identification.discovery.score import SMALLER, score
+
+N, NY, P = 60, 2, 3
+
+
+def case(seed, ratio=0.0):
+    rng = np.random.default_rng(seed)
+    plant = linear_plant(rng, N)
+    noise = Noise(ratio, 0.1)
+    J, S = rng.standard_normal((N, NY, P)), rng.standard_normal((N, NY, 2))
+    e = (np.linalg.cholesky(covariance(plant, noise)) @ rng.standard_normal(N * NY)).reshape(N, NY)
+    return plant, noise, e + 0.3 * S[..., 0], J, S
+
+
+def squares(V, e, F, ridge):
+    """Least squares with covariance V and ridge rows: sum of squares and coefficients."""
+    factor = np.linalg.cholesky(V)
+    rows = np.vstack([np.linalg.solve(factor, F), ridge])
+    target = np.concatenate([np.linalg.solve(factor, e.ravel()), np.zeros(len(ridge))])
+    c = np.linalg.lstsq(rows, target, rcond=None)[0]
+    return np.sum((target - rows @ c) ** 2), c, rows
+
+
+@pytest.mark.parametrize(("seed", "ratio"), [(1, 0.0), (2, 0.5), (3, 3.0)])
+def test_gain_size_and_std_are_those_of_brute_force(seed, ratio):
+    plant, noise, e, J, S = case(seed, ratio)
+    prior, sigma = np.array([0.0, 2.0, 5.0]), 1.3
+    (s,) = score(point_of(plant, e, J), Level(noise, sigma, 0.0), prior, [column(S)])
+    n, F = N * NY, J.reshape(N * NY, P)
+    G = np.hstack([F, S.reshape(n, 2)])
+    ridge = np.hstack([np.diag(prior * sigma), np.zeros((P, 2))])
+    best = {}
+    for share in SMALLER if ratio else (1.0,):
+        V = covariance(plant, noise.scaled(share))
+        det = np.linalg.slogdet(V)[1]
+        for name, columns, rows in (("without", F, ridge[:, :P]), ("with", G, ridge)):
+            found = squares(V, e, columns, rows)
+            log_likelihood = -0.5 * (n * np.log(found[0] / n) + det)
+            best.setdefault(name, []).append((log_likelihood, *found))
+    without, with_it = (max(best[name], key=lambda b: b[0]) for name in ("without", "with"))
+    assert s.gain == pytest.approx(2 * (with_it[0] - without[0]), rel=1e-8)
+    np.testing.assert_allclose(s.size, with_it[2][P:], rtol=1e-8)
+    H = np.linalg.inv(with_it[3].T @ with_it[3])[P:, P:]
+    np.testing.assert_allclose(s.std, np.sqrt(np.diag(H) * with_it[1] / n), rtol=1e-8)
+    k = int(np.argmax([b[0] for b in best["without"]]))
+    fall = (best["without"][k][1] - best["with"][k][1]) / (best["without"][k][1] / n)
+    assert s.p_value == pytest.approx(chi2.sf(fall, 2), rel=1e-6)
+    assert s.level.sigma == pytest.approx(np.sqrt(with_it[1] / n), rel=1e-8)
+
+
+def test_mixing_the_base_columns_and_scaling_the_effect_change_no_gain():
+    plant, noise, e, J, S = case(4, 0.5)
+    M = np.random.default_rng(0).standard_normal((P, P))
+    level, free = Level(noise, 1.0, 0.0), np.zeros(P)
+    (one,) = score(point_of(plant, e, J), level, free, [column(S)])
+    (two,) = score(point_of(plant, e, J @ M), level, free, [column(1e3 * S)])
+    for name in ("gain", "p_value", "block_p_value", "identifiable"):
+        assert getattr(two, name) == pytest.approx(getattr(one, name), rel=1e-6), name
+    np.testing.assert_allclose(1e3 * two.size, one.size, rtol=1e-7)
+
+
+def test_what_the_base_can_imitate_is_not_identifiable():
+    plant, noise, e, J, _ = case(5, 0.5)
+    S = (J @ np.array([1.0, -2.0, 0.5]))[..., None]
+    level = Level(noise, 1.0, 0.0)
+    (s,) = score(point_of(plant, e, J), level, np.zeros(P), [column(S)])
+    assert s.identifiable < 1e-12
+    (held,) = score(point_of(plant, e, J), level, np.full(P, 1e6), [column(S)])
+    assert held.identifiable > 0.99
+
+
+def test_an_effect_of_the_wrong_sign_gains_nothing():
+    plant, noise, e, J, S = case(6)
+    S = S[..., :1]
+    level = Level(noise, 1.0, 0.0)
+    right, wrong = (
+        score(point_of(plant, e, J), level, np.zeros(P), [column(S, sign)])[0] for sign in (1, -1)
+    )
+    assert right.size[0] > 0
+    assert right.gain > 5
+    assert wrong.gain == pytest.approx(0, abs=1e-9)
+    assert wrong.p_value >= 0.5
+    assert wrong.block_p_value == 1
+
+
+def test_the_best_comes_first():
+    plant, noise, e, J, S = case(7)
+    columns = [column(S[..., 1:], name="other"), column(S[..., :1], name="true")]
+    found = score(point_of(plant, e, J), Level(noise, 1.0, 0.0), np.zeros(P), columns)
+    assert [s.candidate.effect.name for s in found] == ["true", "other"]
+    assert found[0].gain >= found[1].gain
+
+
+@pytest.mark.parametrize("ratio", [0.0, 1.0])
+def test_chances_are_uniform_where_nothing_is_missing(ratio):
+    """Effects enter as slow forces, as missing physics does, so that colour matters."""
+    rng = np.random.default_rng(8)
+    samples = 160
+    plant = linear_plant(rng, samples)
+    noise = Noise(ratio, 0.1)
+    factor = np.linalg.cholesky(covariance(plant, noise))
+    t = np.arange(samples)[:, None, None]
+    J = np.cos(t * rng.uniform(0, 0.3, (NY, P)) + rng.uniform(0, 6, (NY, P)))
+    S = np.cos(t * rng.uniform(0, 0.6, (NY, 12)) + rng.uniform(0, 6, (NY, 12)))
+    columns = [column(S[..., k : k + 2], name=f"e{k}") for k in range(0, 12, 2)]
+    p, blocks = [], []
+    for _ in range(60):
+        e = (factor @ rng.standard_normal(samples * NY)).reshape(samples, NY)
+        found = score(point_of(plant, e, J), Level(noise, 1.0, 0.0), np.zeros(P), columns)
+        p += [s.p_value for s in found]
+        blocks += [s.block_p_value for s in found]
+    assert kstest(p, "uniform").pvalue > 0.01
+    assert kstest(blocks, "uniform").pvalue > 0.01

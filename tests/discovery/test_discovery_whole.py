@@ -1,0 +1,78 @@
+"""A whole discovery on a slider, where INCA cannot be imported."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from discovery_cases import EFFECTS, STEP, base, record, slider, wander
+
+from identification import InputError
+from identification.discovery.discover import SHORTEST, discover
+
+ROOT = Path(__file__).parents[2]
+ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02}
+
+
+def found(error=0.0, **sizes):
+    error = error + wander(500, 0.03, 0.1, seed=8)
+    return discover(base(), record(slider(**ROBOT, **sizes), 500, seed=7, error=error), EFFECTS)
+
+
+def test_a_hidden_spring_is_named_where_inca_cannot_be_imported():
+    code = """
+import sys
+sys.modules["inca_mj"] = None
+from test_discovery_whole import found
+answer = found(**{"spring.k": 9.0})
+(named,) = answer.named
+value, std, unit = named.parameters["k"]
+wrong = (
+    answer.verdict != "named" or named.candidate.effect.name != "spring" or unit != "N/m"
+    or abs(value - 9) > 4 * std or named.proof.t < 2 or named.proof.share < 0.8
+)
+sys.exit(wrong)
+"""
+    subprocess.run(
+        [sys.executable, "-c", code], check=True, cwd=Path(__file__).parent,
+        env={"PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "size"), [("offset.f", -0.8), ("rubbing.c", 1.0)])
+def test_what_is_hidden_is_named_with_its_size(name, size):
+    answer = found(**{name: size})
+    assert answer.verdict == "named"
+    (named,) = answer.named
+    assert named.candidate.effect.name == name.split(".")[0]
+    value, std, _ = named.parameters[name.split(".")[1]]
+    assert value == pytest.approx(size, abs=4 * std)
+    assert std < 0.2 * abs(size)
+    assert 0.5 < named.confidence <= 0.95
+    assert answer.after.rms < answer.before.rms
+
+
+def test_where_nothing_is_missing_it_says_so_and_what_it_would_have_seen():
+    answer = found()
+    assert answer.verdict == "nothing missing"
+    assert not answer.named
+    assert not answer.located
+    assert {d.candidate.effect.name for d in answer.detectable} == {e.name for e in EFFECTS}
+    assert all(0 < d.smallest < np.inf for d in answer.detectable)
+    np.testing.assert_array_equal(answer.predicted_before, answer.predicted_after)
+
+
+def test_what_no_candidate_explains_is_unknown():
+    t = STEP * np.arange(500)[:, None]
+    answer = found(error=0.5 * np.sin(2 * np.pi * 2.3 * t))
+    assert answer.verdict == "unknown effect"
+    assert not answer.named
+    assert answer.unexplained
+    assert answer.located
+    assert answer.left
+
+
+def test_a_log_that_is_too_short_is_refused():
+    with pytest.raises(InputError, match=f"at least {SHORTEST}"):
+        discover(base(), record(slider(), 2 * SHORTEST - 10), EFFECTS)
