@@ -193,11 +193,13 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     The nominal model is fitted once to a log without noise's luck, the columns are taken once;
     each draw puts an encoder's noise, and the inputs' error through the linearised plant, on it.
     """
+    from dataclasses import replace
+
     import numpy as np
     from threadpoolctl import threadpool_limits
 
     from identification.discovery.columns import columns, common, single
-    from identification.discovery.extend import Base, fit_with, prior_of
+    from identification.discovery.extend import Base, fit_with
     from identification.discovery.noise_fit import fit_noise
     from identification.discovery.score import score
     from identification.discovery.steps import significant
@@ -213,11 +215,11 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     plant = build_twin(timestep=timestep_for(whole.sampling_time, TIMESTEP), effects=CATALOGUE)
     base = Base(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
     fit = fit_with(base, whole.part("estimation"), (), {})
-    at, prior = fit.at, prior_of(base, fit)
+    at, prior = fit.at, fit.prior
     effects = [e.effect for e in CATALOGUE]
     sensed = columns(at, common(effects))
     best: dict[str, Any] = {}
-    for s in score(at, fit.level, prior, sensed):
+    for s in score(fit, sensed):
         best.setdefault(s.candidate.effect.name, s.candidate)
     sensed += columns(at, single([*best.values()]))
     y = at.log.outputs - at.e
@@ -236,7 +238,7 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
         point = type(at)(at.predictor, at.space, at.q, e, at.J, at.linear)
         with threadpool_limits(1, "blas"):
             level = fit_noise(at.linear, e, at.J, prior, at.log.sampling_time)
-            scores = score(point, level, prior, sensed)
+            scores = score(replace(fit, at=point, level=level, mean=at.q), sensed)
         false = [f"{s.candidate.effect.name}, {s.candidate.where}" for s in significant(scores)]
         smallest = [min(getattr(s, n) for s in scores) for n in ("p_value", "block_p_value")]
         rows.append({
@@ -313,7 +315,7 @@ def line(row: dict[str, Any]) -> str:
 
 
 def kept(out: Path, keys: set[str]) -> list[dict[str, Any]]:
-    """Rows of a file whose keys (or robots) are asked for; the last of each, without broken lines."""
+    """Rows of a file whose keys (or robots) are asked for; the last of each, no broken lines."""
     rows = {}
     for text in out.read_text().splitlines() if out.exists() else ():
         try:

@@ -100,6 +100,5 @@ def _inside(record: Parameter, value: float) -> float:
     """A value a little inside its bounds, and a size that is not zero."""
     if record.lower <= 0 <= record.upper and abs(value) < SMALL * record.scale:
         value = SMALL * record.scale * (1 if record.upper > 0 else -1)
-    width = min(record.upper - record.lower, 1e300)
-    low, high = record.lower + 1e-9 * width, record.upper - 1e-9 * width
-    return float(np.clip(value, low, high))
+    margin = 1e-9 * max(abs(value), record.scale)
+    return float(np.clip(value, record.lower + margin, record.upper - margin))

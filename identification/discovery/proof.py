@@ -1,12 +1,12 @@
 """Proof on unseen data: does an effect predict samples better that no fit has seen?
 
-    ℓ_k = -½ (‖E_k‖²/σ² + log det S_k + 2 n_y log σ)       predictive log density of sample k
-    t = mean(Δ_b)/(std(Δ_b)/√B),   Δ_b = Σ_{k in b} ℓ_k(with) - ℓ_k(without)
+    Δ_b = ½ Σ_{k in b} ‖E_k(without)‖² - ‖E_k(with)‖²        over blocks b of unseen samples
+    t = mean(Δ_b)/(std(Δ_b)/√B)
 
     share = (rms²(without) - rms²(with))/(rms²(without) - σ² - d²)
 
-Each model has its own noise, as estimated on the fitted samples; d is what its input errors do to
-a free run.
+Both residuals pass the filter of the model without the effect, so that neither predictor follows
+the data more closely than the other; d is what input errors do to a free run.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.noise_model import whitener
+from identification.discovery.noise_model import Whitener, whitener
 from identification.discovery.point import beyond
 from identification.discovery.refit import Refit
 from identification.discovery.result import Gap, Proof
@@ -34,7 +34,7 @@ class Unseen:
         refit: the fit.
         e: free-run residual, shape (N, ny).
         innovations: whitened, in units of σ, shape (N, ny).
-        density: log density of each sample, shape (N,).
+        filter: what whitened them.
         first: first unseen sample.
         disturbance: rms of what input errors do to the free run on the unseen samples.
     """
@@ -42,7 +42,7 @@ class Unseen:
     refit: Refit
     e: np.ndarray
     innovations: np.ndarray
-    density: np.ndarray
+    filter: Whitener
     first: int
     disturbance: float
 
@@ -67,13 +67,8 @@ def unseen(fit: Refit, whole: Log) -> Unseen:
         filter_ = whitener(at.linear, fit.level.noise, whole.sampling_time)
         E = filter_(at.e) / fit.level.sigma
         moved = _disturbed(filter_.A, filter_.C, fit.level.noise.ratio, at.linear.B.shape[2])
-    ny = at.e.shape[1]
-    logdet = np.zeros(len(at.e))
-    if filter_.L.size:
-        logdet = -2 * np.log(np.abs(np.diagonal(filter_.L, axis1=1, axis2=2))).sum(axis=1)
-    density = -0.5 * ((E**2).sum(axis=1) + logdet + 2 * ny * np.log(fit.level.sigma))
     disturbance = fit.level.sigma * np.sqrt(moved[first:].mean()) if moved.size else 0.0
-    return Unseen(fit, at.e, E, density, first, float(disturbance))
+    return Unseen(fit, at.e, E, filter_, first, float(disturbance))
 
 
 def _disturbed(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -> np.ndarray:
@@ -93,7 +88,10 @@ def _disturbed(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -> np.ndarra
 
 def prove(without: Unseen, with_it: Unseen) -> Proof:
     """What the second of two fits does for the unseen samples."""
-    gain = (with_it.density - without.density)[with_it.first :]
+    with threadpool_limits(1, "blas"):
+        E = without.filter(with_it.e) / without.refit.level.sigma
+    fewer = np.sum(without.innovations**2 - E**2, axis=1) / 2
+    gain = fewer[with_it.first :]
     starts = np.linspace(0, len(gain), min(BLOCKS, len(gain) // 5), endpoint=False).astype(int)
     blocks = np.add.reduceat(gain, starts)
     scatter = blocks.std(ddof=1) / np.sqrt(len(blocks))

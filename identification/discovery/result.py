@@ -36,7 +36,7 @@ class Proof:
     """What an effect does for data that the fit has not seen.
 
     Attributes:
-        gain: log likelihood of the unseen samples, with it minus without.
+        gain: log likelihood of the unseen samples, with it minus without, under one noise.
         t: of the gain, by blocks.
         share: of what was above noise and input errors in the free run, how much it takes away.
         fall: of the mean square of the free run, relative.

@@ -13,6 +13,7 @@ from identification.discovery.columns import Column
 from identification.discovery.extend import Base
 from identification.discovery.linear import LinearPlant
 from identification.discovery.point import Point
+from identification.discovery.refit import Refit
 from identification.effect import Candidate, Effect, Size
 from identification.plant import ModelPlant
 from identification.predictor import Predictor
@@ -72,6 +73,11 @@ def point_of(plant, e, J):
     space = Coordinates(names, np.zeros(p, bool), -wide, wide, np.ones(p))
     log = SimpleNamespace(sampling_time=STEP)
     return Point(SimpleNamespace(log=log), space, np.zeros(p), e, J, plant)
+
+
+def fit_of(at, level, prior):
+    """A fit that is where its priors say."""
+    return Refit(at, level, np.zeros(len(at.q)), at.q, prior, 0)
 
 
 SLIDER = """<mujoco>

@@ -33,8 +33,8 @@ def test_what_is_there_is_proved_and_what_is_proved_can_be_disproved(sprung):
     assert proof.t > 2
     assert proof.gain > 0
     assert 0.5 < proof.share <= 1.2
-    assert back.t == pytest.approx(-proof.t)
-    assert back.gain == pytest.approx(-proof.gain)
+    assert back.t < -2
+    assert back.gain < 0
     assert back.share <= 0
 
 
@@ -48,17 +48,12 @@ def test_the_unseen_samples_are_those_after_the_fitted_ones(sprung):
     assert seen.gap(log).rms == seen.rms
 
 
-def test_the_density_of_all_fitted_samples_is_their_likelihood(sprung):
-    _, _, with_it = sprung
-    seen, level = with_it.unseen, with_it.refit.level
-    n = seen.first
-    E = seen.innovations[:n]
-    log_determinant = -2 * (seen.density[:n].sum() + 0.5 * np.sum(E**2)) - 2 * n * np.log(
-        level.sigma
-    )
-    expected = -0.5 * (2 * n * np.log(level.sigma) + log_determinant)
-    # The level lets the parameters move a last step, by less than the noise.
-    assert level.log_likelihood - 0.5 < expected <= level.log_likelihood + 1e-6
+def test_both_are_seen_through_the_filter_of_the_first(sprung):
+    _, without, with_it = sprung
+    first, second = without.unseen, with_it.unseen
+    E = first.filter(second.e) / without.refit.level.sigma
+    fewer = 0.5 * np.sum(first.innovations**2 - E**2, axis=1)[first.first :]
+    assert prove(first, second).gain == pytest.approx(fewer.sum())
 
 
 def test_with_the_truth_the_free_run_errs_by_sensors_and_inputs(sprung):
@@ -70,7 +65,6 @@ def test_with_the_truth_the_free_run_errs_by_sensors_and_inputs(sprung):
     assert STEP * len(seen.e) == pytest.approx(8.0)
 
 
-@pytest.mark.xfail(strict=True, reason="the density of unseen data takes the parameters as known")
 def test_what_closes_the_gap_is_proved_where_the_inputs_have_no_noise():
     """The wrong model's predictor follows the data; the right one's free run errs by its std."""
     log = record(slider(mass=2.2, damping=2.7, x0=0.01, v0=0.02, **{"spring.k": 5.0}), seed=7)
