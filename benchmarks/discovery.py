@@ -140,7 +140,8 @@ def log_of(task: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         "other_shape": any(task["other_shape"]),
         "effects": [
             {"name": e.name, "where": e.where,
-             "sizes": {WORLDS.get(s, s): float(getattr(e, s)) for s in e.sizes}} for e in truth.effects
+             "sizes": {WORLDS.get(s, s): float(getattr(e, s)) for s in e.sizes}}
+            for e in truth.effects
         ],
     }  # fmt: skip
 
