@@ -140,7 +140,8 @@ def log_of(task: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         "other_shape": any(task["other_shape"]),
         "effects": [
             {"name": e.name, "where": e.where,
-             "sizes": {WORLDS.get(s, s): float(getattr(e, s)) for s in e.sizes}} for e in truth.effects
+             "sizes": {WORLDS.get(s, s): float(getattr(e, s)) for s in e.sizes}}
+            for e in truth.effects
         ],
     }  # fmt: skip
 
@@ -313,7 +314,7 @@ def line(row: dict[str, Any]) -> str:
 
 
 def kept(out: Path, keys: set[str]) -> list[dict[str, Any]]:
-    """Rows of a file whose keys (or robots) are asked for; the last of each, without broken lines."""
+    """Rows of a file whose keys (or robots) are asked for, the last of each."""
     rows = {}
     for text in out.read_text().splitlines() if out.exists() else ():
         try:
