@@ -113,7 +113,7 @@ def test_chances_are_uniform_where_nothing_is_missing(ratio):
     S = np.cos(t * rng.uniform(0, 0.6, (NY, 12)) + rng.uniform(0, 6, (NY, 12)))
     columns = [column(S[..., k : k + 2], name=f"e{k}") for k in range(0, 12, 2)]
     p, blocks = [], []
-    for _ in range(60):
+    for _ in range(40):
         e = (factor @ rng.standard_normal(samples * NY)).reshape(samples, NY)
         found = score(point_of(plant, e, J), Level(noise, 1.0, 0.0), np.zeros(P), columns)
         p += [s.p_value for s in found]
