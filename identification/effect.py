@@ -26,6 +26,8 @@ class Size:
         probe: the magnitude at which its sensitivity is taken [unit].
         sign: 1 or -1 where physics admits only that sign, else 0.
         about: what it is, in words.
+        present: the value it has when the effect is there, where it can have but one: then its
+            shapes are what is estimated.
     """
 
     name: str
@@ -34,6 +36,7 @@ class Size:
     probe: float
     sign: Sign = 0
     about: str = ""
+    present: float | None = None
 
 
 @dataclass(frozen=True)
@@ -107,6 +110,18 @@ class Candidate:
     def sizes(self) -> tuple[str, ...]:
         """The plant's parameters that are zero without it."""
         return tuple(self.effect.parameter(s.name, self.where) for s in self.effect.sizes)
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """Those of its sizes that are estimated."""
+        own = zip(self.sizes, self.effect.sizes, strict=True)
+        return tuple(name for name, size in own if size.present is None)
+
+    @property
+    def whole(self) -> dict[str, float]:
+        """Values of those that can have but one."""
+        own = zip(self.sizes, self.effect.sizes, strict=True)
+        return {name: size.present for name, size in own if size.present is not None}
 
     @property
     def fixed(self) -> dict[str, float]:

@@ -15,7 +15,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from identification.discovery.columns import Column
-from identification.discovery.extend import Base, prior_of
+from identification.discovery.extend import Base
 from identification.discovery.noise_model import whitener
 from identification.discovery.result import Named, Rival
 from identification.discovery.steps import Accepted, Step
@@ -90,7 +90,7 @@ def _alike(
         filter_ = whitener(at.linear, level.noise, at.log.sampling_time)
         W = filter_(np.concatenate([at.J[..., keep], *wanted], axis=2)).reshape(at.e.size, -1)
     F, S = W[:, : len(keep)], W[:, len(keep) :]
-    ridge = np.diag((prior_of(base, final.refit)[keep] * level.sigma) ** 2)
+    ridge = np.diag((final.refit.prior[keep] * level.sigma) ** 2)
     S = S - F @ np.linalg.solve(F.T @ F + ridge, F.T @ S)
     ends = np.cumsum([w.shape[2] for w in wanted])
     spans = [np.linalg.qr(S[:, e - w.shape[2] : e])[0] for e, w in zip(ends, wanted, strict=True)]

@@ -58,7 +58,7 @@ def discover(
     say(f"nominal fit: {1e3 * nominal.unseen.rms:.3g}e-3 on unseen data")
     sensed = _sensitivities(base, nominal, effects)
     clock("sensitivities")
-    first = ranked = scores_of(base, nominal, sensed)
+    first = ranked = scores_of(nominal, sensed)
     clock("scores")
     say(f"{len(ranked)} candidates scored, {ranked[0].candidate.effect.name} first")
     accepted: list[Accepted] = []
@@ -70,12 +70,12 @@ def discover(
             break
         accepted.append(new)
         step = new.step
-        ranked = scores_of(base, step, sensed)
+        ranked = scores_of(step, sensed)
         clock("scores")
     kept, step = backward(base, log, accepted, step)
     kept, step = swap(base, log, nominal, kept, step)
     if len(accepted) > 1:
-        ranked = scores_of(base, step, sensed)
+        ranked = scores_of(step, sensed)
     clock("refits")
     left = left_over(step, ranked)
     explained = _explained(nominal, step)
@@ -100,7 +100,7 @@ def _sensitivities(base: Base, nominal: Step, effects: Sequence[Effect]) -> tupl
     """Of every effect everywhere, then of the best shape of each at its single places."""
     everywhere = columns(nominal.refit.at, common(effects))
     best: dict[str, Score] = {}
-    for s in scores_of(base, nominal, everywhere):
+    for s in scores_of(nominal, everywhere):
         best.setdefault(s.candidate.effect.name, s)
     return everywhere + columns(nominal.refit.at, single([s.candidate for s in best.values()]))
 

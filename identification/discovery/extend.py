@@ -57,14 +57,16 @@ def fit_with(
         DivergenceError: the start cannot be simulated.
     """
     parameters = base.plant.parameters
-    sizes = [name for c in candidates for name in c.sizes]
+    sizes = [name for c in candidates for name in c.free]
     shapes = dict.fromkeys(
         c.effect.parameter(shape.name, c.where)
         for c in candidates
         for shape in c.effect.shapes
         if shape.free
     )
-    fixed = {n: v for c in candidates for n, v in c.fixed.items() if n not in shapes}
+    fixed = {
+        n: v for c in candidates for n, v in (*c.fixed.items(), *c.whole.items()) if n not in shapes
+    }
     names = (*base.names, *sizes, *shapes)
     own = {**parameters.values(), **{n: v for c in candidates for n, v in c.fixed.items()}}
     first = np.array([_inside(parameters[n], {**own, **start}[n]) for n in names])
@@ -101,10 +103,3 @@ def _inside(record: Parameter, value: float) -> float:
     width = min(record.upper - record.lower, 1e300)
     low, high = record.lower + 1e-9 * width, record.upper - 1e-9 * width
     return float(np.clip(value, low, high))
-
-
-def prior_of(base: Base, refitted: Refit) -> np.ndarray:
-    """1/std of the priors of a refit's parameters, shape (p,)."""
-    names = refitted.at.space.names
-    known = dict(zip(base.names, 1 / base.std, strict=True))
-    return np.array([known.get(name, 0.0) for name in names])

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from identification.discovery.extend import Base
 from identification.discovery.proof import prove
-from identification.discovery.steps import SHARE, Accepted, Step, T, fitted
+from identification.discovery.steps import Accepted, Step, fitted, holds
 from identification.log import Log
 
 HOPELESS = 0.5  # share of an effect's gain that a rival must have had to be tried again
@@ -51,7 +51,7 @@ def swap(
                 base, log, (*rest, theirs), {**step.refit.at.values, **rival.refit.at.values}, step
             )
             proof = prove(nominal.unseen, new.unseen)
-            if new.criterion > step.criterion and proof.t > T and proof.share > SHARE:
+            if new.criterion > step.criterion and holds(proof):
                 others = (replace(step, candidates=(*rest, mine)),)
                 gain = old.gain + new.criterion - step.criterion
                 kept[i] = Accepted(new, old.proof, gain, others)

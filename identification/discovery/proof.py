@@ -100,5 +100,12 @@ def prove(without: Unseen, with_it: Unseen) -> Proof:
     t = float(blocks.mean() / scatter) if scatter > 0 else 0.0
     floor = with_it.refit.level.sigma**2 + with_it.disturbance**2
     above = without.rms**2 - min(floor, with_it.rms**2)
-    share = (without.rms**2 - with_it.rms**2) / above if above > 0 else 0.0
-    return Proof(float(gain.sum()), t, float(share))
+    closed = without.rms**2 - with_it.rms**2
+    sensed = without.rms**2 - min(with_it.refit.level.sigma, with_it.rms) ** 2
+    return Proof(
+        float(gain.sum()),
+        t,
+        float(closed / above) if above > 0 else 0.0,
+        float(closed / without.rms**2),
+        float(closed / sensed) if sensed > 0 else 0.0,
+    )

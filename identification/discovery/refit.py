@@ -32,13 +32,24 @@ class Refit:
         at: the plant at the estimate.
         level: the noise.
         std: of q, by the likelihood's curvature, shape (p,).
+        mean: q̄ of the priors, shape (p,).
+        prior: 1/std of each prior, zero where there is none, shape (p,).
         steps: Gauss-Newton steps taken.
     """
 
     at: Point
     level: Level
     std: np.ndarray
+    mean: np.ndarray
+    prior: np.ndarray
     steps: int
+
+    @property
+    def log_posterior(self) -> float:
+        """Log likelihood less what the priors hold against the estimate."""
+        return self.level.log_likelihood - 0.5 * float(
+            np.sum(((self.at.q - self.mean) * self.prior) ** 2)
+        )
 
 
 def refit(
@@ -65,7 +76,7 @@ def refit(
     for k in range(steps):
         move, fall, std = _step(at, level, mean, prior)
         if fall < ENDED:
-            return Refit(at, noise(at, level, fine=True), std, k)
+            return Refit(at, noise(at, level, fine=True), std, mean, prior, k)
         near = np.abs(move[at.space.logarithmic]).max(initial=0.0) < NEAR
         linear = at.linear if near else None
         try:
@@ -74,7 +85,7 @@ def refit(
             new = point(at.predictor, at.space, at.q + move / 4, linear)
         at, level = new, noise(new, level, fine=False)
     level = noise(at, level, fine=True)
-    return Refit(at, level, _step(at, level, mean, prior)[2], steps)
+    return Refit(at, level, _step(at, level, mean, prior)[2], mean, prior, steps)
 
 
 def _step(

@@ -38,12 +38,16 @@ class Proof:
     Attributes:
         gain: log likelihood of the unseen samples, with it minus without.
         t: of the gain, by blocks.
-        share: of what was above the noise on the unseen samples, how much it takes away.
+        share: of what was above noise and input errors in the free run, how much it takes away.
+        fall: of the mean square of the free run, relative.
+        above: of the mean square above the sensors' noise, how much it takes away.
     """
 
     gain: float
     t: float
     share: float
+    fall: float
+    above: float
 
 
 @dataclass(frozen=True)

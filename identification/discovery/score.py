@@ -29,7 +29,7 @@ from threadpoolctl import threadpool_limits
 from identification.discovery.columns import Column
 from identification.discovery.noise_fit import Level
 from identification.discovery.noise_model import Noise, whitener
-from identification.discovery.point import Point
+from identification.discovery.refit import Refit
 from identification.effect import Candidate
 
 BLOCKS = 40
@@ -61,24 +61,20 @@ class Score:
     level: Level
 
 
-def score(
-    at: Point, level: Level, prior: np.ndarray, columns: Sequence[Column]
-) -> tuple[Score, ...]:
-    """Score candidates at a point, the best first.
+def score(fit: Refit, columns: Sequence[Column]) -> tuple[Score, ...]:
+    """Score candidates on a fitted model, the best first.
 
     Args:
-        at: the fitted model.
-        level: its noise.
-        prior: 1/std of the priors of its parameters, shape (p,).
+        fit: the model.
         columns: sensitivities of the candidates.
     """
+    at, noise = fit.at, fit.level.noise
     stacked = np.concatenate([at.e[..., None], at.J, *(c.S for c in columns)], axis=2)
     with threadpool_limits(1, "blas"):
         seen = [
-            _Projected(at, Noise(level.noise.ratio * share, level.noise.time), stacked,
-                       prior * level.sigma, columns)
-            for share in (SMALLER if level.noise.ratio else (1.0,))
-        ]  # fmt: skip
+            _Projected(fit, noise.scaled(share), stacked, columns)
+            for share in (SMALLER if noise.ratio else (1.0,))
+        ]
         nominal = max(p.log_likelihood(p.rest) for p in seen)
         out = [_score(j, column, seen, nominal) for j, column in enumerate(columns)]
     return tuple(sorted(out, key=lambda s: -s.gain))
@@ -88,23 +84,27 @@ class _Projected:
     """Residual and columns under one noise, with the base parameters projected out."""
 
     def __init__(
-        self, at: Point, noise: Noise, stacked: np.ndarray, ridge: np.ndarray,
-        columns: Sequence[Column],
-    ) -> None:  # fmt: skip
+        self, fit: Refit, noise: Noise, stacked: np.ndarray, columns: Sequence[Column]
+    ) -> None:
+        at = fit.at
         filter_ = whitener(at.linear, noise, at.log.sampling_time)
         W = filter_(stacked)
         p = at.J.shape[2]
         self.noise, self.samples, self.log_determinant = noise, at.e.size, filter_.log_determinant
-        F = W[..., 1 : 1 + p].reshape(-1, p)
         rest = np.delete(W, np.s_[1 : 1 + p], axis=2)
-        flat = rest.reshape(len(F), -1)
-        C = np.linalg.solve(F.T @ F + np.diag(ridge**2), F.T @ flat)
+        flat = rest.reshape(at.e.size, -1)
         self.raw = np.einsum("ij,ij->j", flat, flat)[1:]
+        # The priors are measurements like others: rows below the samples, in units of σ.
+        ridge = fit.prior * fit.level.sigma
+        F = np.vstack([W[..., 1 : 1 + p].reshape(-1, p), np.diag(ridge)])
+        below = np.zeros((p, flat.shape[1]))
+        below[:, 0] = ridge * (fit.mean - at.q)
+        flat = np.vstack([flat, below])
+        C = np.linalg.lstsq(F.T @ F, F.T @ flat, rcond=1e-14)[0]
         flat = flat - F @ C
-        # With priors the projection is oblique: their part of the criterion belongs to the Gram.
-        self.gram = flat.T @ flat + C.T @ (C * (ridge**2)[:, None])
+        self.gram = flat.T @ flat
         self.rest = float(self.gram[0, 0])
-        self.perpendicular = flat.reshape(*rest.shape)
+        self.perpendicular = flat[: at.e.size].reshape(*rest.shape)
         ends = 1 + np.cumsum([c.S.shape[2] for c in columns])
         self.slices = [slice(e - c.S.shape[2], e) for c, e in zip(columns, ends, strict=True)]
 

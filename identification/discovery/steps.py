@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.discovery.columns import Column
-from identification.discovery.extend import Base, fit_with, prior_of
+from identification.discovery.extend import Base, fit_with
 from identification.discovery.proof import Unseen, prove, unseen
 from identification.discovery.refit import Refit
 from identification.discovery.result import Proof
@@ -26,7 +26,8 @@ ALPHA = 0.01  # family-wise chance of a name where nothing is missing, before th
 CONTENDERS = 3  # explanations that are refitted at most
 CLOSE = 0.3  # share of the best gain that makes a contender
 T = 2.0  # t of the proof: 2.5 % one-sided
-SHARE = 0.1  # of the gap on unseen data that an effect must close (Kay-like practice, EMPS)
+FALL, SHARE = 0.03, 0.1  # of the free run's mean square, and of what is above the sensors' noise
+ELSEWHERE = 0.7  # share of an effect's best gain that makes another place a contender
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Step:
     def criterion(self) -> float:
         """BIC, negated and in units of twice the log likelihood."""
         free = len(self.refit.at.q)
-        return 2 * self.refit.level.log_likelihood - free * float(np.log(len(self.refit.at.log)))
+        return 2 * self.refit.log_posterior - free * float(np.log(len(self.refit.at.log)))
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ def fitted(
     return Step(candidates, fit, unseen(fit, whole))
 
 
-def scores_of(base: Base, step: Step, columns: Sequence[Column]) -> tuple[Score, ...]:
+def scores_of(step: Step, columns: Sequence[Column]) -> tuple[Score, ...]:
     """Scores of all candidates that a model does not have yet."""
     has = {(c.effect.name, c.where) for c in step.candidates}
     effects = {c.effect.name for c in step.candidates if not c.effect.places[c.where]}
@@ -97,18 +98,25 @@ def scores_of(base: Base, step: Step, columns: Sequence[Column]) -> tuple[Score,
         if (c.candidate.effect.name, c.candidate.where) not in has
         and c.candidate.effect.name not in effects
     ]  # fmt: skip
-    at = step.refit
-    return score(at.at, at.level, prior_of(base, at), others)
+    return score(step.refit, others)
 
 
 def significant(scores: Sequence[Score]) -> list[Score]:
     """Scores beyond chance with plausible sizes, the best shape of each effect and place."""
     each: dict[tuple[str, str], Score] = {}
-    for s in scores:
+    for s in sorted(scores, key=_as_a_whole, reverse=True):
         likely = max(s.p_value, s.block_p_value) * len(scores) < ALPHA
         if likely and plausible(s.candidate, s.size) and s.gain > 0:
             each.setdefault((s.candidate.effect.name, s.candidate.where), s)
-    return list(each.values())
+    return sorted(each.values(), key=lambda s: -s.gain)
+
+
+def _as_a_whole(s: Score) -> float:
+    """Gain of a score, less where its size is not the one that the effect has when it is there."""
+    fixed = [size.present for size in s.candidate.effect.sizes]
+    if fixed[0] is None or s.size[0] <= 0:
+        return s.gain
+    return s.gain * float(np.exp(-abs(np.log(s.size[0] / fixed[0]))))
 
 
 def plausible(candidate: Candidate, size: np.ndarray, factor: float = 5.0) -> bool:
@@ -119,6 +127,11 @@ def plausible(candidate: Candidate, size: np.ndarray, factor: float = 5.0) -> bo
     return True
 
 
+def holds(proof: Proof) -> bool:
+    """Whether unseen data confirm an effect: beyond chance, and by enough to matter."""
+    return proof.t > T and proof.fall > FALL and proof.above > SHARE
+
+
 def add(
     base: Base, whole: Log, step: Step, ranked: Sequence[Score], say: Callable[[str], None]
 ) -> Accepted | None:
@@ -126,7 +139,13 @@ def add(
     found = significant(ranked)
     if not found:
         return None
-    contenders = [s for s in found if s.gain > CLOSE * found[0].gain][:CONTENDERS]
+    best: dict[str, float] = {}
+    contenders = []
+    for s in found:
+        if s.gain > max(CLOSE * found[0].gain, ELSEWHERE * best.get(s.candidate.effect.name, 0.0)):
+            contenders.append(s)
+            best.setdefault(s.candidate.effect.name, s.gain)
+    contenders = contenders[:CONTENDERS]
     tried = []
     for s in contenders:
         start = {**step.refit.at.values, **dict(zip(s.candidate.sizes, s.size, strict=True))}
@@ -141,6 +160,6 @@ def add(
     for k, new in enumerate(tried):
         proof = prove(step.unseen, new.unseen)
         gain = new.criterion - step.criterion
-        if gain > 0 and proof.t > T and proof.share > SHARE:
+        if gain > 0 and holds(proof):
             return Accepted(new, proof, gain, tuple(tried[:k] + tried[k + 1 :]))
     return None

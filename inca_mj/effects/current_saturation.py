@@ -25,7 +25,17 @@ CURRENT_SATURATION = DriveEffect(
     Effect(
         "current_saturation",
         "i clipped at ±i_max",
-        (Size("c", "", 1.0, 1.0, sign=1, about="share of the clipping, 1 when there is a limit"),),
+        (
+            Size(
+                "c",
+                "",
+                1.0,
+                0.02,
+                sign=1,
+                present=1.0,
+                about="share of the clipping, 1 when there is a limit",
+            ),
+        ),
         (Shape("i_max", "A", GRID, 0.05, 20.0, about="the limit"),),
         DRIVES_EACH,
         "motor: current clipped",
