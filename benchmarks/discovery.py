@@ -19,6 +19,7 @@ import time
 import traceback
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import replace
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -198,7 +199,7 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     from threadpoolctl import threadpool_limits
 
     from identification.discovery.columns import columns, common, single
-    from identification.discovery.extend import Base, fit_with, prior_of
+    from identification.discovery.extend import Base, fit_with
     from identification.discovery.noise_fit import fit_noise
     from identification.discovery.score import score
     from identification.discovery.steps import significant
@@ -214,11 +215,11 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     plant = build_twin(timestep=timestep_for(whole.sampling_time, TIMESTEP), effects=CATALOGUE)
     base = Base(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
     fit = fit_with(base, whole.part("estimation"), (), {})
-    at, prior = fit.at, prior_of(base, fit)
+    at, prior = fit.at, fit.prior
     effects = [e.effect for e in CATALOGUE]
     sensed = columns(at, common(effects))
     best: dict[str, Any] = {}
-    for s in score(at, fit.level, prior, sensed):
+    for s in score(fit, sensed):
         best.setdefault(s.candidate.effect.name, s.candidate)
     sensed += columns(at, single([*best.values()]))
     y = at.log.outputs - at.e
@@ -237,7 +238,7 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
         point = type(at)(at.predictor, at.space, at.q, e, at.J, at.linear)
         with threadpool_limits(1, "blas"):
             level = fit_noise(at.linear, e, at.J, prior, at.log.sampling_time)
-            scores = score(point, level, prior, sensed)
+            scores = score(replace(fit, at=point, level=level, mean=at.q), sensed)
         false = [f"{s.candidate.effect.name}, {s.candidate.where}" for s in significant(scores)]
         smallest = [min(getattr(s, n) for s in scores) for n in ("p_value", "block_p_value")]
         rows.append({

@@ -13,6 +13,8 @@ from identification.discovery.columns import Column
 from identification.discovery.extend import Base
 from identification.discovery.linear import LinearPlant
 from identification.discovery.point import Point
+from identification.discovery.refit import Refit
+from identification.discovery.score import score
 from identification.effect import Candidate, Effect, Size
 from identification.plant import ModelPlant
 from identification.predictor import Predictor
@@ -72,6 +74,12 @@ def point_of(plant, e, J):
     space = Coordinates(names, np.zeros(p, bool), -wide, wide, np.ones(p))
     log = SimpleNamespace(sampling_time=STEP)
     return Point(SimpleNamespace(log=log), space, np.zeros(p), e, J, plant)
+
+
+def scored(at, level, prior, columns, mean=None):
+    """Scores at a point, as if a fit with these priors had ended there."""
+    mean = np.zeros(len(prior)) if mean is None else mean
+    return score(Refit(at, level, np.ones(len(prior)), mean, prior, 0), columns)
 
 
 SLIDER = """<mujoco>

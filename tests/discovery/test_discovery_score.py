@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from discovery_cases import column, covariance, linear_plant, point_of
+from discovery_cases import column, covariance, linear_plant, point_of, scored
 from scipy.stats import chi2, kstest
 
 from identification.discovery.noise_fit import Level
 from identification.discovery.noise_model import Noise
-from identification.discovery.score import SMALLER, score
+from identification.discovery.score import SMALLER
 
 N, NY, P = 60, 2, 3
 
@@ -21,11 +21,11 @@ def case(seed, ratio=0.0):
     return plant, noise, e + 0.3 * S[..., 0], J, S
 
 
-def squares(V, e, F, ridge):
-    """Least squares with covariance V and ridge rows: sum of squares and coefficients."""
+def squares(V, e, F, ridge, below):
+    """Least squares with covariance V and rows of the priors: sum of squares, coefficients."""
     factor = np.linalg.cholesky(V)
     rows = np.vstack([np.linalg.solve(factor, F), ridge])
-    target = np.concatenate([np.linalg.solve(factor, e.ravel()), np.zeros(len(ridge))])
+    target = np.concatenate([np.linalg.solve(factor, e.ravel()), below])
     c = np.linalg.lstsq(rows, target, rcond=None)[0]
     return np.sum((target - rows @ c) ** 2), c, rows
 
@@ -33,8 +33,8 @@ def squares(V, e, F, ridge):
 @pytest.mark.parametrize(("seed", "ratio"), [(1, 0.0), (2, 0.5), (3, 3.0)])
 def test_gain_size_and_std_are_those_of_brute_force(seed, ratio):
     plant, noise, e, J, S = case(seed, ratio)
-    prior, sigma = np.array([0.0, 2.0, 5.0]), 1.3
-    (s,) = score(point_of(plant, e, J), Level(noise, sigma, 0.0), prior, [column(S)])
+    prior, sigma, mean = np.array([0.0, 2.0, 5.0]), 1.3, np.array([7.0, 0.4, -0.3])
+    (s,) = scored(point_of(plant, e, J), Level(noise, sigma, 0.0), prior, [column(S)], mean)
     n, F = N * NY, J.reshape(N * NY, P)
     G = np.hstack([F, S.reshape(n, 2)])
     ridge = np.hstack([np.diag(prior * sigma), np.zeros((P, 2))])
@@ -43,7 +43,7 @@ def test_gain_size_and_std_are_those_of_brute_force(seed, ratio):
         V = covariance(plant, noise.scaled(share))
         det = np.linalg.slogdet(V)[1]
         for name, columns, rows in (("without", F, ridge[:, :P]), ("with", G, ridge)):
-            found = squares(V, e, columns, rows)
+            found = squares(V, e, columns, rows, sigma * prior * mean)
             log_likelihood = -0.5 * (n * np.log(found[0] / n) + det)
             best.setdefault(name, []).append((log_likelihood, *found))
     without, with_it = (max(best[name], key=lambda b: b[0]) for name in ("without", "with"))
@@ -61,8 +61,8 @@ def test_mixing_the_base_columns_and_scaling_the_effect_change_no_gain():
     plant, noise, e, J, S = case(4, 0.5)
     M = np.random.default_rng(0).standard_normal((P, P))
     level, free = Level(noise, 1.0, 0.0), np.zeros(P)
-    (one,) = score(point_of(plant, e, J), level, free, [column(S)])
-    (two,) = score(point_of(plant, e, J @ M), level, free, [column(1e3 * S)])
+    (one,) = scored(point_of(plant, e, J), level, free, [column(S)])
+    (two,) = scored(point_of(plant, e, J @ M), level, free, [column(1e3 * S)])
     for name in ("gain", "p_value", "block_p_value", "identifiable"):
         assert getattr(two, name) == pytest.approx(getattr(one, name), rel=1e-6), name
     np.testing.assert_allclose(1e3 * two.size, one.size, rtol=1e-7)
@@ -72,9 +72,9 @@ def test_what_the_base_can_imitate_is_not_identifiable():
     plant, noise, e, J, _ = case(5, 0.5)
     S = (J @ np.array([1.0, -2.0, 0.5]))[..., None]
     level = Level(noise, 1.0, 0.0)
-    (s,) = score(point_of(plant, e, J), level, np.zeros(P), [column(S)])
+    (s,) = scored(point_of(plant, e, J), level, np.zeros(P), [column(S)])
     assert s.identifiable < 1e-12
-    (held,) = score(point_of(plant, e, J), level, np.full(P, 1e6), [column(S)])
+    (held,) = scored(point_of(plant, e, J), level, np.full(P, 1e6), [column(S)])
     assert held.identifiable > 0.99
 
 
@@ -83,7 +83,7 @@ def test_an_effect_of_the_wrong_sign_gains_nothing():
     S = S[..., :1]
     level = Level(noise, 1.0, 0.0)
     right, wrong = (
-        score(point_of(plant, e, J), level, np.zeros(P), [column(S, sign)])[0] for sign in (1, -1)
+        scored(point_of(plant, e, J), level, np.zeros(P), [column(S, sign)])[0] for sign in (1, -1)
     )
     assert right.size[0] > 0
     assert right.gain > 5
@@ -95,7 +95,7 @@ def test_an_effect_of_the_wrong_sign_gains_nothing():
 def test_the_best_comes_first():
     plant, noise, e, J, S = case(7)
     columns = [column(S[..., 1:], name="other"), column(S[..., :1], name="true")]
-    found = score(point_of(plant, e, J), Level(noise, 1.0, 0.0), np.zeros(P), columns)
+    found = scored(point_of(plant, e, J), Level(noise, 1.0, 0.0), np.zeros(P), columns)
     assert [s.candidate.effect.name for s in found] == ["true", "other"]
     assert found[0].gain >= found[1].gain
 
@@ -115,7 +115,7 @@ def test_chances_are_uniform_where_nothing_is_missing(ratio):
     p, blocks = [], []
     for _ in range(40):
         e = (factor @ rng.standard_normal(samples * NY)).reshape(samples, NY)
-        found = score(point_of(plant, e, J), Level(noise, 1.0, 0.0), np.zeros(P), columns)
+        found = scored(point_of(plant, e, J), Level(noise, 1.0, 0.0), np.zeros(P), columns)
         p += [s.p_value for s in found]
         blocks += [s.block_p_value for s in found]
     assert kstest(p, "uniform").pvalue > 0.01
