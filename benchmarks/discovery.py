@@ -19,6 +19,7 @@ import time
 import traceback
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import replace
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -316,7 +317,11 @@ def line(row: dict[str, Any]) -> str:
 
 
 def kept(out: Path, keys: set[str]) -> list[dict[str, Any]]:
+<<<<<<< HEAD
     """Rows of a file whose keys (or robots) are asked for; the last of each, no broken lines."""
+=======
+    """Rows of a file whose keys (or robots) are asked for, the last of each."""
+>>>>>>> dtests
     rows = {}
     for text in out.read_text().splitlines() if out.exists() else ():
         try:

@@ -74,6 +74,8 @@ class Effect:
         places: where it may act, in words, each with its parameters' suffix: {"all drives": "",
             "drive 1": "@1"}; parameters are called `effect.size` + suffix.
         phrase: "{where}: " follows; e.g. "friction: Stribeck peak".
+        probes: multiples of the sizes' probes at which its sensitivity is taken, where the outputs
+            follow its size only nearly in proportion.
         reference: table, paper or book of the law.
     """
 
@@ -84,6 +86,7 @@ class Effect:
     places: Mapping[str, str] = field(default_factory=dict, hash=False)
     phrase: str = ""
     reference: str = ""
+    probes: tuple[float, ...] = (1.0,)
 
     def parameter(self, name: str, where: str) -> str:
         """Name of the plant's parameter for a size at a place, or for a shape, one for all."""
@@ -100,11 +103,13 @@ class Candidate:
         effect: which.
         where: at which of its places.
         shape: values of its shapes by name, in their units.
+        probe: multiple of its sizes' probes, one of the effect's.
     """
 
     effect: Effect
     where: str
     shape: Mapping[str, float]
+    probe: float = 1.0
 
     @property
     def sizes(self) -> tuple[str, ...]:

@@ -38,14 +38,18 @@ def common(effects: Sequence[Effect]) -> tuple[Candidate, ...]:
     for effect in effects:
         everywhere = [where for where, suffix in effect.places.items() if not suffix]
         for where in everywhere or effect.places:
-            out += [Candidate(effect, where, shape) for shape in shapes(effect)]
+            out += [
+                Candidate(effect, where, shape, probe)
+                for shape in shapes(effect)
+                for probe in effect.probes
+            ]
     return tuple(out)
 
 
 def single(best: Sequence[Candidate]) -> tuple[Candidate, ...]:
     """The same effects at each of their single places, with the shapes given."""
     return tuple(
-        Candidate(c.effect, where, c.shape)
+        Candidate(c.effect, where, c.shape, c.probe)
         for c in best
         if not c.effect.places[c.where]
         for where, suffix in c.effect.places.items()
@@ -100,7 +104,7 @@ def _batch(at: Point, group: list[Candidate], predicted: np.ndarray) -> list[Col
     for c in group:
         for name, size in zip(c.sizes, c.effect.sizes, strict=True):
             row = dict(zip(names, nominal, strict=True))
-            probe = -size.probe if size.sign < 0 else size.probe
+            probe = (-size.probe if size.sign < 0 else size.probe) * c.probe
             rows.append([*{**row, **c.fixed, name: row[name] + probe}.values()])
             probes.append(probe)
     moved = Predictor(at.predictor.plant, at.log, tuple(names)).predict(np.array(rows))

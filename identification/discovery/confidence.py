@@ -49,16 +49,16 @@ def named_of(
     for new in accepted:
         mine = new.step.candidates[-1]
         near = [new.step, *new.others]
-        weights = np.exp([(s.criterion - new.step.criterion) / (2 * TEMPERATURE) for s in near])
+        worth = np.array([s.criterion for s in near])
+        weights = np.exp((worth - worth.max()) / (2 * TEMPERATURE))
         probability = weights / weights.sum()
         rivals = [s.candidates[-1] for s in new.others]
         alike = _alike(base, final, mine, rivals, columns)
         parameters = {}
         for name in (*mine.sizes, *mine.fixed):
-            unit = base.plant.parameters[name].unit
-            parameters[base.plant.parameters[name].symbol] = (
-                values[name], float(std.get(name, 0.0)), unit
-            )  # fmt: skip
+            record = base.plant.parameters[name]
+            symbol = record.symbol or record.name
+            parameters[symbol] = values[name], float(std.get(name, 0.0)), record.unit
         shape = {s.name: values[mine.effect.parameter(s.name, mine.where)]
                  for s in mine.effect.shapes}  # fmt: skip
         out.append(
@@ -78,12 +78,23 @@ def named_of(
     return tuple(out)
 
 
+def _nearest(candidate: Candidate, columns: Sequence[Column]) -> np.ndarray:
+    """The sensitivity whose shapes are nearest to a candidate's."""
+
+    def far(c: Column) -> float:
+        return sum(abs(c.candidate.shape[n] - v) for n, v in candidate.shape.items())
+
+    return min(columns, key=far).S
+
+
 def _alike(
     base: Base, final: Step, mine: Candidate, rivals: Sequence[Candidate], columns: Sequence[Column]
 ) -> list[float]:
     """Cosines between the sensitivity of an effect and those of its rivals, whitened."""
-    known = {(c.candidate.effect.name, c.candidate.where): c.S for c in columns}
-    wanted = [known[c.effect.name, c.where] for c in (mine, *rivals)]
+    known: dict[tuple[str, str], list[Column]] = {}
+    for c in columns:
+        known.setdefault((c.candidate.effect.name, c.candidate.where), []).append(c)
+    wanted = [_nearest(c, known[c.effect.name, c.where]) for c in (mine, *rivals)]
     at, level = final.refit.at, final.refit.level
     keep = [i for i, name in enumerate(at.space.names) if name in base.names]
     with threadpool_limits(1, "blas"):

@@ -9,6 +9,8 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from identification.discovery.columns import Column, columns, common, single
 from identification.discovery.confidence import named_of
 from identification.discovery.detectable import detectable
@@ -50,6 +52,12 @@ def discover(
         raise InputError(
             f"the log has {len(log.part('estimation'))} samples to fit; discovery needs at least"
             f" {SHORTEST}, and as many that it does not fit"
+        )
+    fitted_part = log.part("estimation")
+    if not np.array_equal(fitted_part.inputs, log.inputs[: len(fitted_part)]):
+        raise InputError(
+            "the log's part 'estimation' does not begin where the log begins; discovery fits the"
+            " beginning and confirms on the rest: change the split in the log's TOML"
         )
     say = progress or (lambda line: None)
     clock = _Clock()

@@ -2,19 +2,23 @@
 
 import numpy as np
 import pytest
+<<<<<<< HEAD
 from discovery_cases import column, fit_of, linear_plant, point_of
+=======
+from discovery_cases import column, linear_plant, point_of, scored
+>>>>>>> dtests
 from scipy.stats import chi2, ncx2
 
 from identification.discovery.detectable import NONCENTRALITY, detectable
 from identification.discovery.noise_fit import Level
 from identification.discovery.noise_model import Noise
-from identification.discovery.score import Score, score
+from identification.discovery.score import Score
 from identification.effect import Candidate, Effect, Size
 
 PLACES = {"all": "", "drive 1": "@1", "drive 2": "@2"}
 
 
-def scored(where, std, places=PLACES, largest=10.0):
+def score_of(where, std, places=PLACES, largest=10.0):
     of = Effect("push", "f", (Size("a", "N", largest, 1e-3),), places=places)
     return Score(
         Candidate(of, where, {}), np.zeros(1), np.array([std]), 0.0, 1.0, 1.0, 1.0,
@@ -28,22 +32,22 @@ def test_the_noncentrality_is_that_of_nine_in_ten_at_the_chance_of_thirty():
 
 
 def test_the_smallest_size_follows_the_std():
-    (d,) = detectable([scored("all", 0.1)])
+    (d,) = detectable([score_of("all", 0.1)])
     assert d.smallest == pytest.approx(0.1 * np.sqrt(NONCENTRALITY))
     assert (d.size, d.unit, d.candidate.where) == ("a", "N", "all")
 
 
 @pytest.mark.parametrize("std", [11.0, np.inf, 0.0])
 def test_what_would_have_to_be_beyond_physics_is_never_seen(std):
-    (d,) = detectable([scored("all", std)])
+    (d,) = detectable([score_of("all", std)])
     assert d.smallest == np.inf
 
 
 def test_everywhere_counts_before_single_places_and_the_worst_of_those():
-    some = [scored("drive 1", 0.1), scored("all", 0.2), scored("drive 2", 0.5)]
+    some = [score_of("drive 1", 0.1), score_of("all", 0.2), score_of("drive 2", 0.5)]
     assert detectable(some)[0].smallest == pytest.approx(0.2 * np.sqrt(NONCENTRALITY))
     single = {k: v for k, v in PLACES.items() if v}
-    some = [scored(where, std, single) for where, std in (("drive 1", 0.1), ("drive 2", 0.5))]
+    some = [score_of(where, std, single) for where, std in (("drive 1", 0.1), ("drive 2", 0.5))]
     assert detectable(some)[0].candidate.where == "drive 2"
 
 
@@ -51,13 +55,22 @@ def test_an_effect_of_that_size_is_found_in_nine_of_ten_logs():
     rng = np.random.default_rng(1)
     plant, level = linear_plant(rng, 80), Level(Noise(0.0, 0.1), 1.0, 0.0)
     J, S = rng.standard_normal((80, 2, 3)), rng.standard_normal((80, 2, 1))
+<<<<<<< HEAD
     (clean,) = score(
         fit_of(point_of(plant, rng.standard_normal((80, 2)), J), level, np.zeros(3)), [column(S)]
+=======
+    (clean,) = scored(
+        point_of(plant, rng.standard_normal((80, 2)), J), level, np.zeros(3), [column(S)]
+>>>>>>> dtests
     )
     size = np.sqrt(NONCENTRALITY) * clean.std[0] / clean.level.sigma
     found = 0
     for _ in range(200):
         e = rng.standard_normal((80, 2)) + size * S[..., 0]
+<<<<<<< HEAD
         (s,) = score(fit_of(point_of(plant, e, J), level, np.zeros(3)), [column(S)])
+=======
+        (s,) = scored(point_of(plant, e, J), level, np.zeros(3), [column(S)])
+>>>>>>> dtests
         found += s.p_value < 0.05 / 30
     assert 0.85 < found / 200 <= 1
