@@ -195,8 +195,6 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     The nominal model is fitted once to a log without noise's luck, the columns are taken once;
     each draw puts an encoder's noise, and the inputs' error through the linearised plant, on it.
     """
-    from dataclasses import replace
-
     import numpy as np
     from threadpoolctl import threadpool_limits
 
@@ -317,11 +315,7 @@ def line(row: dict[str, Any]) -> str:
 
 
 def kept(out: Path, keys: set[str]) -> list[dict[str, Any]]:
-<<<<<<< HEAD
-    """Rows of a file whose keys (or robots) are asked for; the last of each, no broken lines."""
-=======
     """Rows of a file whose keys (or robots) are asked for, the last of each."""
->>>>>>> dtests
     rows = {}
     for text in out.read_text().splitlines() if out.exists() else ():
         try:

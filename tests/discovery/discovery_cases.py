@@ -14,10 +14,7 @@ from identification.discovery.extend import Base
 from identification.discovery.linear import LinearPlant
 from identification.discovery.point import Point
 from identification.discovery.refit import Refit
-<<<<<<< HEAD
-=======
 from identification.discovery.score import score
->>>>>>> dtests
 from identification.effect import Candidate, Effect, Size
 from identification.plant import ModelPlant
 from identification.predictor import Predictor
@@ -79,16 +76,10 @@ def point_of(plant, e, J):
     return Point(SimpleNamespace(log=log), space, np.zeros(p), e, J, plant)
 
 
-<<<<<<< HEAD
-def fit_of(at, level, prior):
-    """A fit that is where its priors say."""
-    return Refit(at, level, np.zeros(len(at.q)), at.q, prior, 0)
-=======
 def scored(at, level, prior, columns, mean=None):
     """Scores at a point, as if a fit with these priors had ended there."""
     mean = np.zeros(len(prior)) if mean is None else mean
     return score(Refit(at, level, np.ones(len(prior)), mean, prior, 0), columns)
->>>>>>> dtests
 
 
 SLIDER = """<mujoco>

@@ -2,11 +2,7 @@
 
 import numpy as np
 import pytest
-<<<<<<< HEAD
-from discovery_cases import column, fit_of, linear_plant, point_of
-=======
 from discovery_cases import column, linear_plant, point_of, scored
->>>>>>> dtests
 from scipy.stats import chi2, ncx2
 
 from identification.discovery.detectable import NONCENTRALITY, detectable
@@ -55,22 +51,13 @@ def test_an_effect_of_that_size_is_found_in_nine_of_ten_logs():
     rng = np.random.default_rng(1)
     plant, level = linear_plant(rng, 80), Level(Noise(0.0, 0.1), 1.0, 0.0)
     J, S = rng.standard_normal((80, 2, 3)), rng.standard_normal((80, 2, 1))
-<<<<<<< HEAD
-    (clean,) = score(
-        fit_of(point_of(plant, rng.standard_normal((80, 2)), J), level, np.zeros(3)), [column(S)]
-=======
     (clean,) = scored(
         point_of(plant, rng.standard_normal((80, 2)), J), level, np.zeros(3), [column(S)]
->>>>>>> dtests
     )
     size = np.sqrt(NONCENTRALITY) * clean.std[0] / clean.level.sigma
     found = 0
     for _ in range(200):
         e = rng.standard_normal((80, 2)) + size * S[..., 0]
-<<<<<<< HEAD
-        (s,) = score(fit_of(point_of(plant, e, J), level, np.zeros(3)), [column(S)])
-=======
         (s,) = scored(point_of(plant, e, J), level, np.zeros(3), [column(S)])
->>>>>>> dtests
         found += s.p_value < 0.05 / 30
     assert 0.85 < found / 200 <= 1

@@ -2,11 +2,7 @@
 
 import numpy as np
 import pytest
-<<<<<<< HEAD
-from discovery_cases import column, covariance, fit_of, linear_plant, point_of
-=======
 from discovery_cases import column, covariance, linear_plant, point_of, scored
->>>>>>> dtests
 from scipy.stats import chi2, kstest
 
 from identification.discovery.noise_fit import Level
@@ -37,13 +33,8 @@ def squares(V, e, F, ridge, below):
 @pytest.mark.parametrize(("seed", "ratio"), [(1, 0.0), (2, 0.5), (3, 3.0)])
 def test_gain_size_and_std_are_those_of_brute_force(seed, ratio):
     plant, noise, e, J, S = case(seed, ratio)
-<<<<<<< HEAD
-    prior, sigma = np.array([0.0, 2.0, 5.0]), 1.3
-    (s,) = score(fit_of(point_of(plant, e, J), Level(noise, sigma, 0.0), prior), [column(S)])
-=======
     prior, sigma, mean = np.array([0.0, 2.0, 5.0]), 1.3, np.array([7.0, 0.4, -0.3])
     (s,) = scored(point_of(plant, e, J), Level(noise, sigma, 0.0), prior, [column(S)], mean)
->>>>>>> dtests
     n, F = N * NY, J.reshape(N * NY, P)
     G = np.hstack([F, S.reshape(n, 2)])
     ridge = np.hstack([np.diag(prior * sigma), np.zeros((P, 2))])
@@ -70,13 +61,8 @@ def test_mixing_the_base_columns_and_scaling_the_effect_change_no_gain():
     plant, noise, e, J, S = case(4, 0.5)
     M = np.random.default_rng(0).standard_normal((P, P))
     level, free = Level(noise, 1.0, 0.0), np.zeros(P)
-<<<<<<< HEAD
-    (one,) = score(fit_of(point_of(plant, e, J), level, free), [column(S)])
-    (two,) = score(fit_of(point_of(plant, e, J @ M), level, free), [column(1e3 * S)])
-=======
     (one,) = scored(point_of(plant, e, J), level, free, [column(S)])
     (two,) = scored(point_of(plant, e, J @ M), level, free, [column(1e3 * S)])
->>>>>>> dtests
     for name in ("gain", "p_value", "block_p_value", "identifiable"):
         assert getattr(two, name) == pytest.approx(getattr(one, name), rel=1e-6), name
     np.testing.assert_allclose(1e3 * two.size, one.size, rtol=1e-7)
@@ -86,15 +72,9 @@ def test_what_the_base_can_imitate_is_not_identifiable():
     plant, noise, e, J, _ = case(5, 0.5)
     S = (J @ np.array([1.0, -2.0, 0.5]))[..., None]
     level = Level(noise, 1.0, 0.0)
-<<<<<<< HEAD
-    (s,) = score(fit_of(point_of(plant, e, J), level, np.zeros(P)), [column(S)])
-    assert s.identifiable < 1e-12
-    (held,) = score(fit_of(point_of(plant, e, J), level, np.full(P, 1e6)), [column(S)])
-=======
     (s,) = scored(point_of(plant, e, J), level, np.zeros(P), [column(S)])
     assert s.identifiable < 1e-12
     (held,) = scored(point_of(plant, e, J), level, np.full(P, 1e6), [column(S)])
->>>>>>> dtests
     assert held.identifiable > 0.99
 
 
@@ -103,12 +83,7 @@ def test_an_effect_of_the_wrong_sign_gains_nothing():
     S = S[..., :1]
     level = Level(noise, 1.0, 0.0)
     right, wrong = (
-<<<<<<< HEAD
-        score(fit_of(point_of(plant, e, J), level, np.zeros(P)), [column(S, sign)])[0]
-        for sign in (1, -1)
-=======
         scored(point_of(plant, e, J), level, np.zeros(P), [column(S, sign)])[0] for sign in (1, -1)
->>>>>>> dtests
     )
     assert right.size[0] > 0
     assert right.gain > 5
@@ -120,11 +95,7 @@ def test_an_effect_of_the_wrong_sign_gains_nothing():
 def test_the_best_comes_first():
     plant, noise, e, J, S = case(7)
     columns = [column(S[..., 1:], name="other"), column(S[..., :1], name="true")]
-<<<<<<< HEAD
-    found = score(fit_of(point_of(plant, e, J), Level(noise, 1.0, 0.0), np.zeros(P)), columns)
-=======
     found = scored(point_of(plant, e, J), Level(noise, 1.0, 0.0), np.zeros(P), columns)
->>>>>>> dtests
     assert [s.candidate.effect.name for s in found] == ["true", "other"]
     assert found[0].gain >= found[1].gain
 
@@ -144,11 +115,7 @@ def test_chances_are_uniform_where_nothing_is_missing(ratio):
     p, blocks = [], []
     for _ in range(40):
         e = (factor @ rng.standard_normal(samples * NY)).reshape(samples, NY)
-<<<<<<< HEAD
-        found = score(fit_of(point_of(plant, e, J), Level(noise, 1.0, 0.0), np.zeros(P)), columns)
-=======
         found = scored(point_of(plant, e, J), Level(noise, 1.0, 0.0), np.zeros(P), columns)
->>>>>>> dtests
         p += [s.p_value for s in found]
         blocks += [s.block_p_value for s in found]
     assert kstest(p, "uniform").pvalue > 0.01
