@@ -18,6 +18,9 @@ from identification.discovery.score import Score
 from identification.discovery.steps import Step, significant
 
 SURE = 1e-4  # chance at which structure in the innovations is believed
+CERTAIN = (
+    1e-6  # family-wise chance at which an effect that unseen data refused is a sign of another
+)
 
 
 def missing_input(fit: Refit) -> np.ndarray:
@@ -133,7 +136,11 @@ def left_over(step: Step, scores: Sequence[Score]) -> tuple[str, ...]:
         )
     if white.p_correlation < SURE:
         out.append(f"innovations that are not white (chance {white.p_correlation:.0e})")
-    for s in significant(scores)[:1]:
+    # What unseen data refused was chance, unless chance is out of the question.
+    certain = [
+        s for s in significant(scores) if max(s.p_value, s.block_p_value) * len(scores) < CERTAIN
+    ]
+    for s in certain[:1]:
         out.append(
             f"something like {s.candidate.effect.name}, {s.candidate.where}, that unseen data do"
             " not confirm"
