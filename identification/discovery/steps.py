@@ -14,6 +14,7 @@ import numpy as np
 
 from identification.discovery.columns import Column
 from identification.discovery.extend import Base, fit_with
+from identification.discovery.innovations import whiteness
 from identification.discovery.proof import Unseen, prove, unseen
 from identification.discovery.refit import Refit
 from identification.discovery.result import Proof
@@ -127,6 +128,16 @@ def plausible(candidate: Candidate, size: np.ndarray, factor: float = 5.0) -> bo
     return True
 
 
+def _criterion(step: Step) -> float:
+    return step.criterion
+
+
+def _structured(step: Step) -> bool:
+    """Whether the fitted samples' innovations are not white."""
+    E = step.unseen.innovations[: len(step.refit.at.log)]
+    return whiteness(E, step.refit.at.log.sampling_time).p_correlation < 1e-6
+
+
 def holds(proof: Proof) -> bool:
     """Whether unseen data confirm an effect: beyond chance, and by enough to matter."""
     return proof.t > T and proof.fall > FALL and proof.above > SHARE
@@ -146,11 +157,16 @@ def add(
             contenders.append(s)
             best.setdefault(s.candidate.effect.name, s.gain)
     contenders = contenders[:CONTENDERS]
-    tried = []
+    tried: list[Step] = []
     for s in contenders:
-        start = {**step.refit.at.values, **dict(zip(s.candidate.sizes, s.size, strict=True))}
+        sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
+        more = (*step.candidates, s.candidate)
         try:
-            tried.append(fitted(base, whole, (*step.candidates, s.candidate), start, step))
+            new = fitted(base, whole, more, {**step.refit.at.values, **sizes}, step)
+            if not tried and _structured(new):  # a wrong model may have led the search astray
+                named = {n: step.refit.at.values[n] for c in step.candidates for n in c.free}
+                new = max(new, fitted(base, whole, more, {**named, **sizes}), key=_criterion)
+            tried.append(new)
         except (DivergenceError, InputError) as error:
             say(f"{s.candidate.effect.name}, {s.candidate.where}: left out, {error}")
             continue

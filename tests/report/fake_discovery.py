@@ -58,7 +58,7 @@ def fit(values: dict[str, float]) -> Refit:
     q = space.encode(np.array([values[n] for n in names]))
     shape = log().outputs.shape
     at = Point(predictor, space, q, np.zeros(shape), np.zeros((*shape, len(q))), None)
-    return Refit(at, _level(), np.full(len(q), 0.02), 3)
+    return Refit(at, _level(), np.full(len(q), 0.02), q, np.zeros(len(q)), 3)
 
 
 def found(verdict="named", *, one_of=False, unexplained=False, several=False) -> Discovery:
@@ -93,7 +93,7 @@ def _stribeck(one_of: bool) -> Named:
 
 
 def _proof() -> Proof:
-    return Proof(450.0, 12.0, 0.98)
+    return Proof(450.0, 12.0, 0.98, 0.97, 0.98)
 
 
 def _level() -> Level:
