@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from discovery_cases import column, linear_plant, point_of, scored
-from scipy.stats import chi2, ncx2
+from scipy.stats import f, ncf
 
 from identification.discovery.detectable import NONCENTRALITY, detectable
 from identification.discovery.noise_fit import Level
 from identification.discovery.noise_model import Noise
-from identification.discovery.score import Score
+from identification.discovery.score import BLOCKS, Score
 from identification.effect import Candidate, Effect, Size
 
 PLACES = {"all": "", "drive 1": "@1", "drive 2": "@2"}
@@ -22,9 +22,9 @@ def score_of(where, std, places=PLACES, largest=10.0):
     )  # fmt: skip
 
 
-def test_the_noncentrality_is_that_of_nine_in_ten_at_the_chance_of_thirty():
-    power = ncx2.sf(chi2.isf(0.05 / 30, 1), 1, NONCENTRALITY)
-    assert 0.9 < power < 0.96
+def test_the_noncentrality_is_that_of_nine_in_ten_by_blocks_over_two_hundred_candidates():
+    demanded = f.isf(0.01 / 200, 1, BLOCKS - 1)
+    assert 0.87 < ncf.sf(demanded, 1, BLOCKS - 1, NONCENTRALITY) < 0.93
 
 
 def test_the_smallest_size_follows_the_std():
