@@ -39,7 +39,7 @@ class Coordinates:
 
     def encode(self, values: np.ndarray) -> np.ndarray:
         """Values to q, shape (..., p)."""
-        logarithm = np.log(np.where(self.logarithmic & (np.asarray(values) > 0), values, 1.0))
+        logarithm = np.log(np.where(self.logarithmic, values, 1.0))
         return np.where(self.logarithmic, logarithm, np.asarray(values) / self.scale)
 
     def decode(self, q: np.ndarray) -> np.ndarray:

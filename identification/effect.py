@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 Sign = Literal[-1, 0, 1]
+FARTHEST = 5.0  # of the largest plausible size
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,11 @@ class Size:
     sign: Sign = 0
     about: str = ""
     present: float | None = None
+
+    @property
+    def farthest(self) -> float:
+        """The bound of a search, beyond which a size is not believed [unit]."""
+        return FARTHEST * self.largest
 
 
 @dataclass(frozen=True)

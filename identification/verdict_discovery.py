@@ -96,8 +96,6 @@ def _named(found: Discovery, named: Named) -> str:
 
 def _proof(found: Discovery) -> str:
     before, after = found.before.rms, found.after.rms
-    if not (isfinite(before) and isfinite(after)):
-        return "There is no unseen data to prove it on."
     was, now, noise = alike([before, after, floor_rms(found)], output_unit(found))
     whom = "it" if len(found.named) == 1 else "them"
     said = (

@@ -2,8 +2,9 @@
 
     P_j ∝ exp(-ΔBIC_j/(2 T))        over the explanations that were refitted in its place
 
-T > 1 because the likelihood believes its noise model; it is a calibration on simulated worlds, as
-is the cap: no effect is certain that was confirmed under one kind of input only.
+T > 1 because the likelihood believes its noise model, and the cap because no effect is certain that
+was confirmed under one kind of input only. Both are judgement: `benchmarks/discovery.py` prints how
+well the confidence is calibrated on simulated worlds.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ def detectable(scores: Sequence[Score]) -> tuple[Detectable, ...]:
     for _, s in sorted(chosen.items()):
         for size, std in zip(s.candidate.effect.sizes, s.std, strict=True):
             smallest = float(np.sqrt(NONCENTRALITY) * std)
-            testable = np.isfinite(smallest) and 0 < smallest <= 5 * size.largest
+            testable = np.isfinite(smallest) and 0 < smallest <= size.farthest
             out.append(
                 Detectable(s.candidate, size.name, smallest if testable else np.inf, size.unit)
             )

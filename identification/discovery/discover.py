@@ -17,6 +17,7 @@ from identification.discovery.detectable import detectable
 from identification.discovery.extend import Base
 from identification.discovery.locate import left_over, located
 from identification.discovery.passes import backward, swap
+from identification.discovery.proof import prove
 from identification.discovery.result import Discovery, Verdict
 from identification.discovery.score import Score
 from identification.discovery.steps import Accepted, Step, add, fitted, scores_of
@@ -26,7 +27,7 @@ from identification.log import Log
 
 MOST = 3  # effects
 EXPLAINED = 0.5  # of the gap on unseen data that named effects must close to be more than a guess
-SHORTEST = 200  # samples that can be fitted and split into blocks
+SHORTEST = 200  # samples to fit, and as many to confirm: blocks of 5 and 10 samples at least
 
 
 def discover(
@@ -48,17 +49,7 @@ def discover(
         InputError: the log is too short, or a name is unknown.
         DivergenceError: the nominal model cannot be simulated.
     """
-    if len(log.part("estimation")) < SHORTEST:
-        raise InputError(
-            f"the log has {len(log.part('estimation'))} samples to fit; discovery needs at least"
-            f" {SHORTEST}, and as many that it does not fit"
-        )
-    fitted_part = log.part("estimation")
-    if not np.array_equal(fitted_part.inputs, log.inputs[: len(fitted_part)]):
-        raise InputError(
-            "the log's part 'estimation' does not begin where the log begins; discovery fits the"
-            " beginning and confirms on the rest: change the split in the log's TOML"
-        )
+    _refuse_unfit(log)
     say = progress or (lambda line: None)
     clock = _Clock()
     nominal = fitted(base, log, (), {})
@@ -85,22 +76,21 @@ def discover(
     if len(accepted) > 1:
         ranked = scores_of(step, sensed)
     clock("refits")
-    left = left_over(step, ranked)
-    explained = _explained(nominal, step)
+    left = left_over(step)
+    explained = prove(nominal.unseen, step.unseen).share
     named = named_of(base, kept, step, sensed, explained if left else 1.0)
     verdict: Verdict = "nothing missing"
     if named and (explained > EXPLAINED or not left):
         verdict = "named"
     elif named or left:
         verdict = "unknown effect"
-        named = ()
-        step = nominal
+        named, step, ranked = (), nominal, first
     where = located(nominal) if verdict != "nothing missing" else ()
     return Discovery(
         log, verdict, named, bool(left), step.refit.level.sigma, step.unseen.disturbance,
         nominal.unseen.gap(log), step.unseen.gap(log), nominal.refit, step.refit,
         log.outputs - nominal.unseen.e, log.outputs - step.unseen.e, first, ranked,
-        detectable(ranked), where, tuple(left), clock.seconds,
+        detectable(ranked), where, left, clock.seconds,
     )  # fmt: skip
 
 
@@ -113,11 +103,20 @@ def _sensitivities(base: Base, nominal: Step, effects: Sequence[Effect]) -> tupl
     return everywhere + columns(nominal.refit.at, single([s.candidate for s in best.values()]))
 
 
-def _explained(nominal: Step, step: Step) -> float:
-    """Share of the gap on unseen data that is closed."""
-    floor = step.refit.level.sigma**2 + step.unseen.disturbance**2
-    above = nominal.unseen.rms**2 - min(floor, step.unseen.rms**2)
-    return (nominal.unseen.rms**2 - step.unseen.rms**2) / above if above > 0 else 0.0
+def _refuse_unfit(log: Log) -> None:
+    """Refuse a log that cannot be fitted at its beginning and confirmed on the rest."""
+    part = log.part("estimation")
+    n, rest = len(part), len(log) - len(part)
+    if min(n, rest) < SHORTEST:
+        raise InputError(
+            f"the log has {n} samples to fit and {rest} that are not fitted; discovery needs at"
+            f" least {SHORTEST} of each: record longer, or change the split in the log's TOML"
+        )
+    if not np.array_equal(part.inputs, log.inputs[:n]):
+        raise InputError(
+            "the log's part 'estimation' does not begin where the log begins; discovery fits the"
+            " beginning and confirms on the rest: change the split in the log's TOML"
+        )
 
 
 class _Clock:

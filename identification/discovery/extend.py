@@ -71,13 +71,13 @@ def fit_with(
     own = {**parameters.values(), **{n: v for c in candidates for n, v in c.fixed.items()}}
     first = np.array([_inside(parameters[n], {**own, **start}[n]) for n in names])
     space = _plausible(coordinates(parameters, names, first), parameters, base.names)
-    mean = space.encode(np.array([own[n] if n in (*base.names, *shapes) else 0.0 for n in names]))
+    known = {*base.names, *shapes}  # a size has no prior, and its mean no meaning
+    mean = space.encode(np.where([n in known for n in names], [own[n] for n in names], first))
     weight = np.concatenate(
         [1 / base.std, np.zeros(len(sizes)), np.full(len(shapes), 1 / SHAPE_STD)]
     )
-    mean = np.where(np.isfinite(mean), mean, 0.0)
-    known = None if near is None else near.at.linear
-    at = point(Predictor(base.plant, log, names, fixed), space, space.encode(first), known)
+    linear = None if near is None else near.at.linear
+    at = point(Predictor(base.plant, log, names, fixed), space, space.encode(first), linear)
     return refit(at, mean, weight, steps, None if near is None else near.level)
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.stats import chi2
 
 LAGS = 20
+SURE = 1e-4  # chance at which structure in innovations is believed
 
 
 @dataclass(frozen=True)

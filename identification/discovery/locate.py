@@ -6,21 +6,17 @@ what it goes along with is told by the share of its variance that one regressor 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.innovations import whiteness
+from identification.discovery.innovations import SURE, whiteness
 from identification.discovery.noise_model import whitener
 from identification.discovery.refit import Refit
-from identification.discovery.score import Score
-from identification.discovery.steps import Step, significant
+from identification.discovery.steps import Step
 
-SURE = 1e-4  # chance at which structure in the innovations is believed
-CERTAIN = (
-    1e-6  # family-wise chance at which an effect that unseen data refused is a sign of another
-)
+TELLING = 0.1  # share of the missing input that is worth a sentence
 
 
 def missing_input(fit: Refit) -> np.ndarray:
@@ -66,15 +62,17 @@ def regressors(fit: Refit) -> dict[str, np.ndarray]:
     return out
 
 
-def shares(fit: Refit) -> Mapping[str, np.ndarray]:
-    """Share of the missing input's variance that goes along with each regressor, shape (nu,)."""
+def shares(fit: Refit) -> Mapping[str, float]:
+    """Share of the missing inputs' power that goes along with each regressor, 0 to 1 each."""
     w = missing_input(fit)
     w = w - w.mean(axis=0)
+    power = np.sum(w**2) + 1e-300
     out = {}
     for name, r in regressors(fit).items():
         r = np.broadcast_to(r - r.mean(axis=0), w.shape)
-        top = np.sum(r * w, axis=0) ** 2
-        out[name] = top / (np.sum(r**2, axis=0) * np.sum(w**2, axis=0) + 1e-300)
+        out[name] = float(
+            np.sum(np.sum(r * w, axis=0) ** 2 / (np.sum(r**2, axis=0) + 1e-300)) / power
+        )
     return out
 
 
@@ -105,20 +103,18 @@ def located(nominal: Step) -> tuple[str, ...]:
     f = np.fft.rfftfreq(len(e), log.sampling_time)
     half = f[int(np.searchsorted(np.cumsum(spectrum), 0.5 * spectrum.sum()))]
     out.append(f"half of it lies below {max(half, f[1]):.2g} Hz")
-    found = shares(fit)
     if fit.level.noise.ratio:
-        total = {n: float(np.mean(v)) for n, v in found.items()}
-        best = max(total, key=total.__getitem__)
-        u = log.input_names[0]
-        out.append(
-            f"as an error of the inputs it is {fit.level.input_std:.2g}"
-            f" {log.units.get(u, '')} rms, and {100 * total[best]:.0f} % of that goes along with"
-            f" {best}"
-        )
+        found = shares(fit)
+        best = max(found, key=found.__getitem__)
+        said = f"as an error of the inputs it is {fit.level.input_std:.2g}"
+        said += f" {log.units.get(log.input_names[0], '')} rms"
+        if found[best] >= TELLING:
+            said += f", and {100 * found[best]:.0f} % of its power goes along with {best}"
+        out.append(said)
     return tuple(out)
 
 
-def left_over(step: Step, scores: Sequence[Score]) -> tuple[str, ...]:
+def left_over(step: Step) -> tuple[str, ...]:
     """What the final model does not explain, in sentences; empty when it explains all."""
     log = step.refit.at.log
     E = step.unseen.innovations
@@ -136,13 +132,4 @@ def left_over(step: Step, scores: Sequence[Score]) -> tuple[str, ...]:
         )
     if white.p_correlation < SURE:
         out.append(f"innovations that are not white (chance {white.p_correlation:.0e})")
-    # What unseen data refused was chance, unless chance is out of the question.
-    certain = [
-        s for s in significant(scores) if max(s.p_value, s.block_p_value) * len(scores) < CERTAIN
-    ]
-    for s in certain[:1]:
-        out.append(
-            f"something like {s.candidate.effect.name}, {s.candidate.where}, that unseen data do"
-            " not confirm"
-        )
     return tuple(out)

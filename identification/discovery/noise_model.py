@@ -54,7 +54,7 @@ class Whitener:
     log_determinant: float
 
     def __call__(self, e: np.ndarray) -> np.ndarray:
-        """Innovations of e, shape (n, ny) or (n, ny, p) for n <= N samples, in units of σ."""
+        """Innovations of e, shape (n, ny) or (n, ny, p) for n <= N samples; their std is σ."""
         if not self.A.size:
             return np.array(e)
         columns = e.reshape(*e.shape[:2], -1)

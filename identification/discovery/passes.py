@@ -7,12 +7,14 @@ swap:     an effect gives way to one that was refitted in its place, when that o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from identification.discovery.extend import Base
 from identification.discovery.proof import prove
 from identification.discovery.steps import Accepted, Step, fitted, holds
+from identification.effect import Candidate
+from identification.errors import DivergenceError, InputError
 from identification.log import Log
 
 HOPELESS = 0.5  # share of an effect's gain that a rival must have had to be tried again
@@ -26,8 +28,8 @@ def backward(
     for old in accepted[:-1]:
         mine = old.step.candidates[-1]
         rest = tuple(c for c in step.candidates if c is not mine)
-        without = fitted(base, log, rest, step.refit.at.values, step)
-        if without.criterion > step.criterion:
+        without = _tried(base, log, rest, step.refit.at.values, step)
+        if without is not None and without.criterion > step.criterion:
             kept, step = [a for a in kept if a is not old], without
     return kept, step
 
@@ -47,9 +49,10 @@ def swap(
             theirs = rival.candidates[-1]
             if any(theirs.effect.name == c.effect.name for c in rest):
                 continue
-            new = fitted(
-                base, log, (*rest, theirs), {**step.refit.at.values, **rival.refit.at.values}, step
-            )
+            start = {**step.refit.at.values, **rival.refit.at.values}
+            new = _tried(base, log, (*rest, theirs), start, step)
+            if new is None:
+                continue
             proof = prove(nominal.unseen, new.unseen)
             if new.criterion > step.criterion and holds(proof):
                 others = (replace(step, candidates=(*rest, mine)),)
@@ -58,3 +61,13 @@ def swap(
                 step = new
                 break
     return kept or list(accepted), step
+
+
+def _tried(
+    base: Base, log: Log, candidates: tuple[Candidate, ...], start: Mapping[str, float], near: Step
+) -> Step | None:
+    """A model with some effects; None where it cannot be simulated."""
+    try:
+        return fitted(base, log, candidates, start, near)
+    except (DivergenceError, InputError):
+        return None

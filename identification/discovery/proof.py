@@ -61,8 +61,6 @@ def unseen(fit: Refit, whole: Log) -> Unseen:
     """A fit, predicted over the whole log."""
     at = beyond(fit.at, whole)
     first = len(fit.at.log)
-    if first > 0.9 * len(whole):
-        first = 0  # nothing is unseen: what was fitted must serve
     with threadpool_limits(1, "blas"):
         filter_ = whitener(at.linear, fit.level.noise, whole.sampling_time)
         E = filter_(at.e) / fit.level.sigma

@@ -77,8 +77,8 @@ def refit(
         move, fall, std = _step(at, level, mean, prior)
         if fall < ENDED:
             return Refit(at, noise(at, level, fine=True), std, mean, prior, k)
-        near = np.abs(move[at.space.logarithmic]).max(initial=0.0) < NEAR
-        linear = at.linear if near else None
+        moved = np.abs(move[at.space.logarithmic]).max(initial=0.0)
+        linear = at.linear if moved < NEAR else None
         try:
             new = point(at.predictor, at.space, at.q + move, linear)
         except DivergenceError:

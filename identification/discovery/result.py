@@ -57,7 +57,7 @@ class Named:
     Attributes:
         candidate: effect, place, and shapes as estimated.
         parameters: its sizes and shapes by name: value, std, unit.
-        confidence: probability that this is the effect, calibrated on simulated worlds.
+        confidence: how sure the name is among its rivals, 0 to 1; see `confidence`.
         rivals: explanations that are not much worse; a look-alike set when `one_of`.
         one_of: whether the data cannot tell it from its first rival.
         gain: twice the log likelihood that it adds on the fitted samples.

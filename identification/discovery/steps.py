@@ -14,7 +14,7 @@ import numpy as np
 
 from identification.discovery.columns import Column
 from identification.discovery.extend import Base, fit_with
-from identification.discovery.innovations import whiteness
+from identification.discovery.innovations import SURE, whiteness
 from identification.discovery.proof import Unseen, prove, unseen
 from identification.discovery.refit import Refit
 from identification.discovery.result import Proof
@@ -120,10 +120,10 @@ def _as_a_whole(s: Score) -> float:
     return s.gain * float(np.exp(-abs(np.log(s.size[0] / fixed[0]))))
 
 
-def plausible(candidate: Candidate, size: np.ndarray, factor: float = 5.0) -> bool:
+def plausible(candidate: Candidate, size: np.ndarray) -> bool:
     """Whether sizes have the right sign and are not beyond what physics admits."""
     for value, s in zip(size, candidate.effect.sizes, strict=True):
-        if s.sign * value < 0 or abs(value) > factor * s.largest:
+        if s.sign * value < 0 or abs(value) > s.farthest:
             return False
     return True
 
@@ -135,7 +135,7 @@ def _criterion(step: Step) -> float:
 def _structured(step: Step) -> bool:
     """Whether the fitted samples' innovations are not white."""
     E = step.unseen.innovations[: len(step.refit.at.log)]
-    return whiteness(E, step.refit.at.log.sampling_time).p_correlation < 1e-6
+    return whiteness(E, step.refit.at.log.sampling_time).p_correlation < SURE
 
 
 def holds(proof: Proof) -> bool:

@@ -39,7 +39,7 @@ DELAY = DriveEffect(
         places=DRIVES_EACH,
         phrase="motor: current comes late",
         reference="Åström, Hägglund 2006",
-        probes=(1.0, 8.0, 30.0),  # beyond a sample the outputs do not follow in proportion
+        probes=(1.0, 40**0.5, 40.0),  # to the largest: the outputs follow it only nearly
     ),
     inputs=inputs,
 )

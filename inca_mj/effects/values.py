@@ -19,8 +19,6 @@ from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.layout import Layout, Place
 from inca_mj.geometry import DRIVES, Geometry
 
-FARTHER = 5.0  # bounds of a search, in units of the largest plausible size
-
 
 def records(effects: Sequence[DriveEffect]) -> tuple[Parameter, ...]:
     """The parameters of some effects: `name.size` at all its places, `name.shape` once."""
@@ -40,8 +38,8 @@ def with_effects(parameters: ParameterSet, effects: Sequence[DriveEffect]) -> Pa
 
 
 def _size(name: str, size: Size) -> Parameter:
-    farthest = FARTHER * size.largest
-    lower, upper = (-farthest if size.sign <= 0 else 0.0), (farthest if size.sign >= 0 else 0.0)
+    lower = -size.farthest if size.sign <= 0 else 0.0
+    upper = size.farthest if size.sign >= 0 else 0.0
     return Parameter(
         name, 0.0, size.unit, "effect", lower, upper, size.name, size.about, scale=size.probe
     )

@@ -1,11 +1,8 @@
 """Each outcome has its paragraph, and no two can be taken for each other."""
 
-from dataclasses import replace
-
 import pytest
 from fake_discovery import found
 
-from identification.discovery.result import Gap
 from identification.verdict_discovery import diff_line, discovery_verdict
 from inca_mj.discovery_text import discovery_text
 
@@ -67,8 +64,3 @@ def test_text_begins_with_the_verdict_and_holds_no_nan(verdict: str) -> None:
 def test_a_diff_line_reads_as_one() -> None:
     (named,) = found().named
     assert diff_line(named).startswith("+ friction: Stribeck peak, all drives: f_s = 4.12 ± 0.21")
-
-
-def test_no_unseen_data_is_said() -> None:
-    none = Gap(float("nan"), found().before.fit_percent)
-    assert "no unseen data" in discovery_verdict(replace(found(), before=none, after=none))[1]
