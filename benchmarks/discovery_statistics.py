@@ -64,12 +64,22 @@ def matched(rows: Sequence[Row]) -> list[tuple[Mapping[str, Any], Mapping[str, A
 
 
 def size_errors(rows: Sequence[Row]) -> list[float]:
-    """|estimate/true - 1| of all sizes that have one name in model and truth."""
+    """|estimate - truth| / |truth| of true names, over the sizes that the truth gives."""
+    out = []
+    for named, true in matched(rows):
+        sizes = {s: v for s, v in true["sizes"].items() if s in named["sizes"]}
+        if any(sizes.values()):
+            off = math.hypot(*(named["sizes"][s] - v for s, v in sizes.items()))
+            out.append(off / math.hypot(*sizes.values()))
+    return out
+
+
+def gaps(rows: Sequence[Row]) -> list[float]:
+    """Shares of the gap above the noise that are closed on unseen data, of right first names."""
     return [
-        abs(value / true["sizes"][size] - 1)
-        for named, true in matched(rows)
-        for size, value in named["sizes"].items()
-        if true["sizes"].get(size)
+        r["answer"]["gap_closed"]
+        for r in rows
+        if r["answer"]["named"] and right(r) and r["answer"]["gap_closed"] is not None
     ]
 
 
@@ -151,10 +161,12 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
         ),
         "unknown_wrongly_named": rate(kind["unknown"], lambda r: bool(r["answer"]["named"])),
         "known_called_unknown": rate(known, lambda r: r["answer"]["verdict"] == "unknown effect"),
-        "gap_closed_median": median(
-            [r["answer"]["gap_closed"] for r in known if r["answer"]["gap_closed"] is not None]
-        ),
+        "gap_closed_median": median(gaps(known)),
+        "gap_closed_90_percent": wilson(sum(g >= 0.9 for g in gaps(known)), len(gaps(known))),
         "size_error_median": median(size_errors(known)),
+        "size_within_10_percent": wilson(
+            sum(s <= 0.1 for s in size_errors(known)), len(size_errors(known))
+        ),
         "seconds_median": median([r["seconds"] for r in done]),
         "calibration": calibration(done),
         "confusion": {true: dict(row) for true, row in sorted(confusion.items())},
