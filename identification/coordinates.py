@@ -8,7 +8,7 @@ A step in q is then a relative change, or metres and radians, of similar weight.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,6 +50,10 @@ class Coordinates:
             q * self.scale,
         )
 
+    def inside(self, q: np.ndarray) -> np.ndarray:
+        """The point inside the bounds nearest to q, shape (..., p)."""
+        return np.clip(q, self.lower, self.upper)
+
     def slope(self, q: np.ndarray) -> np.ndarray:
         """d value/d q, shape (..., p): a std in q times this is a std of the value."""
         return np.where(self.logarithmic, self.decode(q), self.scale)
@@ -60,8 +64,19 @@ class Coordinates:
         return (q - self.lower < near) | (self.upper - q < near)
 
 
-def coordinates(parameters: ParameterSet, names: Sequence[str], start: np.ndarray) -> Coordinates:
+def coordinates(
+    parameters: ParameterSet,
+    names: Sequence[str],
+    start: np.ndarray,
+    linear: Collection[str] = (),
+) -> Coordinates:
     """Coordinates of some parameters of a set, fit for a search from `start`.
+
+    Args:
+        parameters: the set.
+        names: which are free.
+        start: their values, shape (p,).
+        linear: those of them that are not logarithmic though they are positive.
 
     Raises:
         InputError: nothing is free, a name occurs twice, or a start lies outside its bounds.
@@ -79,7 +94,10 @@ def coordinates(parameters: ParameterSet, names: Sequence[str], start: np.ndarra
                 + f" must lie inside ({record.lower:g}, {record.upper:g}); a search that starts"
                 " on a bound stays there"
             )
-    logarithmic = np.array([r.lower >= 0 and v > 0 for r, v in zip(records, start, strict=True)])
+    logarithmic = np.array(
+        [r.lower >= 0 and v > 0 and r.name not in linear
+         for r, v in zip(records, start, strict=True)]
+    )  # fmt: skip
     lower, upper, scale = (
         np.array([getattr(r, field) for r in records]) for field in ("lower", "upper", "scale")
     )

@@ -40,7 +40,7 @@ def fit_with(
     log: Log,
     candidates: Sequence[Candidate],
     start: Mapping[str, float],
-    steps: int = 10,
+    steps: int = 20,
     near: Refit | None = None,
 ) -> Refit:
     """Fit the model with some effects: base parameters, their sizes and their free shapes.
@@ -50,7 +50,7 @@ def fit_with(
         log: what to explain.
         candidates: the effects.
         start: values to begin at by name; the plant's own where not given.
-        steps: of Gauss-Newton, at most.
+        steps: at most as many.
         near: a fit whose linearisation and noise are good enough to begin with.
 
     Raises:
@@ -69,8 +69,9 @@ def fit_with(
     }
     names = (*base.names, *sizes, *shapes)
     own = {**parameters.values(), **{n: v for c in candidates for n, v in c.fixed.items()}}
-    first = np.array([_inside(parameters[n], {**own, **start}[n]) for n in names])
-    space = _plausible(coordinates(parameters, names, first), parameters, base.names)
+    begin = {**own, **start, **{n: _there(parameters[n], {**own, **start}[n]) for n in sizes}}
+    first = np.array([_inside(parameters[n], begin[n]) for n in names])
+    space = _plausible(coordinates(parameters, names, first, linear=sizes), parameters, base.names)
     known = {*base.names, *shapes}  # a size has no prior, and its mean no meaning
     mean = space.encode(np.where([n in known for n in names], [own[n] for n in names], first))
     weight = np.concatenate(
@@ -96,9 +97,13 @@ def _plausible(space: Coordinates, parameters: ParameterSet, names: Sequence[str
     )
 
 
+def _there(record: Parameter, value: float) -> float:
+    """A size that is not zero."""
+    least = SMALL * record.scale
+    return value if abs(value) > least else least * (1 if record.upper > 0 else -1)
+
+
 def _inside(record: Parameter, value: float) -> float:
-    """A value a little inside its bounds, and a size that is not zero."""
-    if record.lower <= 0 <= record.upper and abs(value) < SMALL * record.scale:
-        value = SMALL * record.scale * (1 if record.upper > 0 else -1)
+    """A value a little inside its bounds."""
     margin = 1e-9 * max(abs(value), record.scale)
     return float(np.clip(value, record.lower + margin, record.upper - margin))

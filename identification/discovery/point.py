@@ -63,7 +63,7 @@ def point(
     Raises:
         DivergenceError: a simulation left the finite numbers.
     """
-    inside = np.clip(q, space.lower, space.upper)
+    inside = space.inside(q)
     moves = np.where(inside + STEP > space.upper, -STEP, STEP)
     values = space.decode(np.vstack([inside, inside + np.diag(moves)]))
     predicted = predictor.predict(values)

@@ -1,4 +1,4 @@
-"""Estimation by prediction errors of the Kalman predictor, in a few Gauss-Newton steps.
+"""Estimation by prediction errors of the Kalman predictor, in a few steps of Levenberg-Marquardt.
 
     min_q  ‖E(q)‖²/σ² + Σ ((q_j - q̄_j)/s_j)²,      E: innovations of e = y - ŷ(q)
 
@@ -15,13 +15,15 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from identification.discovery.noise_fit import Level, fit_noise
-from identification.discovery.noise_model import whitener
+from identification.discovery.noise_model import Whitener, whitener
 from identification.discovery.point import Point, point
 from identification.errors import DivergenceError
 
 LARGEST = 0.5  # step of a logarithm: parameters change by at most 65 % at a time
 NEAR = 0.02  # relative change of the parameters after which the linearisation still holds
 ENDED = 1.0  # expected fall of the criterion, in units of the noise, that ends the search
+DAMPED = 1e-4  # μ after the first step that failed; the rows' columns have length 1
+TRIES = 6  # of a step, each damped ten times as much
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,7 @@ class Refit:
         std: of q, by the likelihood's curvature, shape (p,).
         mean: q̄ of the priors, shape (p,).
         prior: 1/std of each prior, zero where there is none, shape (p,).
-        steps: Gauss-Newton steps taken.
+        steps: taken.
     """
 
     at: Point
@@ -56,7 +58,7 @@ def refit(
     at: Point,
     mean: np.ndarray,
     prior: np.ndarray,
-    steps: int = 10,
+    steps: int = 20,
     near: Level | None = None,
 ) -> Refit:
     """Estimate the free parameters of a point, from where it is.
@@ -73,35 +75,77 @@ def refit(
         return fit_noise(at.linear, at.e, at.J, prior, at.log.sampling_time, near, fine)
 
     level = noise(at, near, fine=False)
-    for k in range(steps):
-        move, fall, std = _step(at, level, mean, prior)
+    μ, taken = 0.0, 0
+    while taken < steps:
+        problem = _linearised(at, level, mean, prior)
+        move, fall = problem.step(0.0)
         if fall < ENDED:
-            return Refit(at, noise(at, level, fine=True), std, mean, prior, k)
+            break
+        for _ in range(TRIES):
+            if μ:
+                move, fall = problem.step(μ)
+            if problem.cost(at.q + move) < problem.cost_here:
+                break
+            μ = max(10 * μ, DAMPED)
+        else:
+            break
+        μ = μ / 10 if μ > DAMPED else 0.0
         moved = np.abs(move[at.space.logarithmic]).max(initial=0.0)
-        linear = at.linear if moved < NEAR else None
-        try:
-            new = point(at.predictor, at.space, at.q + move, linear)
-        except DivergenceError:
-            new = point(at.predictor, at.space, at.q + move / 4, linear)
-        at, level = new, noise(new, level, fine=False)
+        at = point(at.predictor, at.space, at.q + move, at.linear if moved < NEAR else None)
+        level, taken = noise(at, level, fine=False), taken + 1
     level = noise(at, level, fine=True)
-    return Refit(at, level, _step(at, level, mean, prior)[2], mean, prior, steps)
+    return Refit(at, level, _linearised(at, level, mean, prior).std(), mean, prior, taken)
 
 
-def _step(
-    at: Point, level: Level, mean: np.ndarray, prior: np.ndarray
-) -> tuple[np.ndarray, float, np.ndarray]:
-    """The Gauss-Newton step, how far the criterion would fall, and the std of q."""
+@dataclass(frozen=True)
+class _Problem:
+    """The criterion about a point: rows of the innovations and of the priors, in units of σ."""
+
+    at: Point
+    level: Level
+    mean: np.ndarray
+    prior: np.ndarray
+    filter: Whitener
+    rows: np.ndarray
+    target: np.ndarray
+
+    @property
+    def cost_here(self) -> float:
+        """The criterion at the point itself."""
+        return float(self.target @ self.target)
+
+    def step(self, μ: float) -> tuple[np.ndarray, float]:
+        """The step of Levenberg and Marquardt, and how far the criterion would fall."""
+        at, size = self.at, np.where(self.at.space.logarithmic, LARGEST, np.inf)
+        lower = np.maximum(at.space.lower - at.q, -size)
+        upper = np.minimum(at.space.upper - at.q, size)
+        scale = np.linalg.norm(self.rows, axis=0) + 1e-300
+        Q, R = np.linalg.qr(self.rows / scale)
+        square = np.vstack([R, np.sqrt(μ) * np.eye(len(scale))])
+        target = np.concatenate([Q.T @ self.target, np.zeros(len(scale))])
+        bounds = (lower * scale - 1e-12, upper * scale + 1e-12)
+        move = lsq_linear(square, target, bounds).x / scale
+        return move, self.cost_here - float(np.sum((self.target - self.rows @ move) ** 2))
+
+    def cost(self, q: np.ndarray) -> float:
+        """The criterion elsewhere, by the same filter; infinite where nothing can be simulated."""
+        at = self.at
+        try:
+            predicted = at.predictor.predict(at.space.decode(at.space.inside(q)))[0]
+        except DivergenceError:
+            return np.inf
+        E = self.filter(at.log.outputs - predicted) / self.level.sigma
+        return float(np.sum(E**2) + np.sum((self.prior * (self.mean - q)) ** 2))
+
+    def std(self) -> np.ndarray:
+        """Std of q by the curvature, shape (p,)."""
+        covariance = np.linalg.pinv(self.rows.T @ self.rows, rcond=1e-14, hermitian=True)
+        return np.sqrt(np.diag(covariance))
+
+
+def _linearised(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray) -> _Problem:
+    """The criterion about a point."""
     filter_ = whitener(at.linear, level.noise, at.log.sampling_time)
     E, F = filter_(at.e).ravel() / level.sigma, filter_(at.J).reshape(at.e.size, -1) / level.sigma
-    rows = np.vstack([F, np.diag(prior)])
-    target = np.concatenate([E, prior * (mean - at.q)])
-    size = np.where(at.space.logarithmic, LARGEST, np.inf)
-    lower = np.maximum(at.space.lower - at.q, -size)
-    upper = np.minimum(at.space.upper - at.q, size)
-    scale = np.linalg.norm(rows, axis=0) + 1e-300
-    Q, R = np.linalg.qr(rows / scale)
-    move = lsq_linear(R, Q.T @ target, (lower * scale - 1e-12, upper * scale + 1e-12)).x / scale
-    fall = float(target @ target - np.sum((target - rows @ move) ** 2))
-    covariance = np.linalg.pinv(rows.T @ rows, rcond=1e-14, hermitian=True)
-    return move, fall, np.sqrt(np.diag(covariance))
+    rows, target = np.vstack([F, np.diag(prior)]), np.concatenate([E, prior * (mean - at.q)])
+    return _Problem(at, level, mean, prior, filter_, rows, target)

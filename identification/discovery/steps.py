@@ -138,6 +138,19 @@ def _structured(step: Step) -> bool:
     return whiteness(E, step.refit.at.log.sampling_time).p_correlation < SURE
 
 
+def _from_nominal(base: Base, whole: Log, step: Step, best: Step) -> Step:
+    """The better of a fit and of one that begins at the nominal values.
+
+    A wrong model may have led the base parameters astray, too far to come back.
+    """
+    old = {n: step.refit.at.values[n] for c in step.candidates for n in c.free}
+    new = {n: best.refit.at.values[n] for n in best.candidates[-1].free}
+    try:
+        return max(best, fitted(base, whole, best.candidates, {**old, **new}), key=_criterion)
+    except (DivergenceError, InputError):
+        return best
+
+
 def holds(proof: Proof) -> bool:
     """Whether unseen data confirm an effect: beyond chance, and by enough to matter."""
     return proof.t > T and proof.fall > FALL and proof.above > SHARE
@@ -163,16 +176,15 @@ def add(
         more = (*step.candidates, s.candidate)
         try:
             new = fitted(base, whole, more, {**step.refit.at.values, **sizes}, step)
-            if not tried and _structured(new):  # a wrong model may have led the search astray
-                named = {n: step.refit.at.values[n] for c in step.candidates for n in c.free}
-                new = max(new, fitted(base, whole, more, {**named, **sizes}), key=_criterion)
-            tried.append(new)
         except (DivergenceError, InputError) as error:
             say(f"{s.candidate.effect.name}, {s.candidate.where}: left out, {error}")
             continue
-        gain = tried[-1].criterion - step.criterion
+        gain = new.criterion - step.criterion
         say(f"{s.candidate.effect.name}, {s.candidate.where}: gain {gain:.0f}")
-    tried.sort(key=lambda t: -t.criterion)
+        tried.append(new)
+    tried.sort(key=_criterion, reverse=True)
+    if tried and _structured(tried[0]):
+        tried[0] = _from_nominal(base, whole, step, tried[0])
     for k, new in enumerate(tried):
         proof = prove(step.unseen, new.unseen)
         gain = new.criterion - step.criterion
