@@ -107,7 +107,7 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
         covariance / np.outer(scale, scale),
         space.on_bound(q),
         found,
-        _combinations(found, estimate, covariance),
+        combinations_of(found, estimate, covariance),
         residual,
         fit_percent(log.outputs, predicted),
         fit,
@@ -137,7 +137,7 @@ def _sandwich(
     return inverse @ (freedom * blocks.T @ blocks + prior**2) @ inverse
 
 
-def _combinations(
+def combinations_of(
     found: Identifiability, estimate: Estimate, covariance: np.ndarray
 ) -> tuple[tuple[Combination, float, float], ...]:
     """Products of parameters with value and std (of the product)."""

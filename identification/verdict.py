@@ -13,15 +13,17 @@ if TYPE_CHECKING:
 
 # The floor bounds the noise from above and errs by a few percent itself.
 ABOVE = 1.2
+HOLDS = 1.2  # times the fitted residual, on unseen data
 LEVEL = 0.01  # of the residual's tests: one false alarm in a hundred
 
 
 def verdict(fit: Fit) -> list[str]:
     """Sentences: did it converge, what can be known, is the model enough, does it hold unseen."""
-    return [*_search(fit), *_identifiable(fit), *_enough(fit), *_unseen(fit)]
+    return [*search_sentences(fit), *identifiable_sentences(fit), *_enough(fit), *_unseen(fit)]
 
 
-def _search(fit: Fit) -> list[str]:
+def search_sentences(fit: Fit) -> list[str]:
+    """How the search ended."""
     said = {
         "converged": "The search converged.",
         "iterations": "The search ran out of iterations; start nearer, or allow more.",
@@ -33,7 +35,8 @@ def _search(fit: Fit) -> list[str]:
     return [said]
 
 
-def _identifiable(fit: Fit) -> list[str]:
+def identifiable_sentences(fit: Fit) -> list[str]:
+    """What can be known of the parameters."""
     found = fit.found
     if not len(found.blind):
         values = np.array(list(fit.estimate.values.values()))
@@ -57,12 +60,17 @@ def _identifiable(fit: Fit) -> list[str]:
     return sentences
 
 
+def coloured_outputs(fit: Fit) -> int:
+    """How many outputs' residuals are not white."""
+    return int((fit.tests.white < LEVEL / len(fit.tests.white)).sum())
+
+
 def _enough(fit: Fit) -> list[str]:
     floor = float(np.sqrt(np.mean(fit.floor**2)))
     ratio = fit.rms / floor if floor > 0 else np.inf
     sentences = [f"The residual is {fit.rms:.3g} rms, {ratio:.2f} of the noise floor {floor:.3g}."]
     dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
-    coloured = int((fit.tests.white < LEVEL / len(fit.tests.white)).sum())
+    coloured = coloured_outputs(fit)
     if ratio > ABOVE:
         sentences.append(
             "That is more than noise: the model lacks something, or the robot was disturbed."
@@ -87,7 +95,7 @@ def _unseen(fit: Fit) -> list[str]:
     ratio = fit.validation_rms / fit.rms if fit.rms > 0 else np.inf
     held = (
         "what was fitted holds there too"
-        if ratio < 1.2
+        if ratio < HOLDS
         else "it does not hold: too many parameters, or an effect missing"
     )
     return [

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from identification.discovery.refit import Refit
 from identification.discovery.result import Discovery
 from identification.errors import InputError
+from identification.kalman.refit import Refit
 from identification.log import Log
 from inca_mj.effects.values import with_effects
 from inca_mj.run import Run, simulate

@@ -16,6 +16,7 @@ from identification.errors import InputError
 from identification.estimate_windows import WindowEstimate, estimate_windows
 from identification.estimation import Options, estimate
 from identification.fit import Fit, assess
+from identification.kalman.estimate import InnovationsFit, estimate_innovations
 from identification.multistart import estimate_from
 from identification.parameter import ParameterSet
 from inca_mj.comparison import timestep_for
@@ -39,6 +40,7 @@ class Identification:
         best: index of the fit with the smaller error on unseen data.
         starts: rms of every start of each fit, where more than one was allowed.
         windows: what the windows found; the fit is then a free run with it, its pose free.
+        innovations: where the fit is one of innovations.
     """
 
     log: Log
@@ -46,6 +48,7 @@ class Identification:
     best: int
     starts: tuple[np.ndarray, ...] = field(default=())
     windows: WindowEstimate | None = None
+    innovations: InnovationsFit | None = None
 
     @property
     def fit(self) -> Fit:
@@ -156,3 +159,31 @@ def identify_windows(
     found = estimate_windows(plant, fitted, names, length, near, progress=progress)
     fit = assess(estimate(plant, fitted, POSE, found.values, progress=progress), log)
     return Identification(log, (fit,), 0, windows=found)
+
+
+def identify_innovations(
+    log: Log,
+    parameters: ParameterSet,
+    geometry: Geometry = INCA,
+    free: Sequence[str] = (),
+    progress: Callable[[str], None] | None = None,
+    timestep: float = TIMESTEP,
+) -> Identification:
+    """Identify the robot by its innovations: the currents may err by more than the log says.
+
+    Args:
+        log: what was measured; its split `estimation`, or its first half, is fitted.
+        parameters: nominal values, where the search begins.
+        geometry: anchors of the cables.
+        free: parameters to estimate; all and the pose when empty.
+        progress: is told one line per accepted step.
+        timestep: largest step of the integrator [s].
+
+    Raises:
+        InputError: as `identify`.
+        DivergenceError: the nominal values cannot be simulated.
+    """
+    plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
+    names = tuple(free) or (*MECHANICS, *POSE)
+    found = estimate_innovations(plant, log, names, progress=progress)
+    return Identification(log, (found.fit,), 0, innovations=found)

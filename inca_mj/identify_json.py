@@ -10,8 +10,15 @@ import numpy as np
 from identification.estimate_windows import WindowEstimate
 from identification.fit import Fit
 from identification.fit_json import fit_to_json
+from identification.kalman.estimate import InnovationsFit
 from identification.profiles import Profile
-from identification.verdict import verdict
+from identification.verdict import (
+    HOLDS,
+    coloured_outputs,
+    identifiable_sentences,
+    search_sentences,
+    verdict,
+)
 from inca_mj.identify import Identification
 
 # name, value, std, unit, start, on a bound
@@ -28,6 +35,12 @@ def identification_json(
     record["seed"] = seed
     if result.starts:
         record["starts"] = [[_finite(e) for e in errors] for errors in result.starts]
+    if (found := result.innovations) is not None:
+        record["innovations"] = {
+            "rms": found.rms, "validation_rms": found.validation_rms,
+            "sensor_std": found.level.sigma, "input_error_std": found.level.input_std,
+            "input_error_time": found.level.noise.time if found.level.noise.ratio else None,
+        }  # fmt: skip
     if profiles:
         record["profiles"] = {p.name: _profile(p) for p in profiles}
     if (w := result.windows) is not None:
@@ -46,6 +59,8 @@ def identification_json(
 
 def identification_verdict(result: Identification) -> list[str]:
     """What the fit to believe says, after what its windows and its starts say."""
+    if result.innovations is not None:
+        return innovations_verdict(result.innovations)
     if result.windows is not None:
         return windows_verdict(result.windows, result.fit)
     said = verdict(result.fit)
@@ -88,6 +103,39 @@ def windows_verdict(found: WindowEstimate, fit: Fit) -> list[str]:
     said.append(
         f"A free run with them, its start pose fitted, leaves {fit.rms:.3g} rms{unseen};"
         " there small errors of parameters, and all that disturbs the robot, add up."
+    )
+    return said
+
+
+def innovations_verdict(found: InnovationsFit) -> list[str]:
+    """What an estimate by innovations says: of the noise, then of the fit."""
+    fit, noise = found.fit, found.level
+    said = [*search_sentences(fit), *identifiable_sentences(fit)]
+    if noise.noise.ratio:
+        log = fit.estimate.predictor.log
+        unit = log.units.get(log.input_names[0], "")
+        said.append(
+            f"The inputs err by {noise.input_std:.2g} {unit} rms beside what the log says, for"
+            f" {noise.noise.time:g} s at a time; the sensors' noise is {noise.sigma:.3g}."
+        )
+    else:
+        said.append(f"The inputs are as the log says; the sensors' noise is {noise.sigma:.3g}.")
+    if found.validation_rms is not None:
+        ratio = found.validation_rms / found.rms
+        held = "the model holds there too" if ratio < HOLDS else "the model does not hold there"
+        said.append(
+            f"One step ahead it errs by {found.rms:.3g} rms,"
+            f" by {found.validation_rms:.3g} on unseen data: {held}."
+        )
+        said.append(
+            f"A free run errs by {fit.rms:.3g}, by {fit.validation_rms:.3g} on unseen data;"
+            " there all that disturbs the robot adds up."
+        )
+    said.append(
+        "The innovations are white: the model suffices."
+        if not coloured_outputs(fit)
+        else f"The innovations of {coloured_outputs(fit)} outputs are coloured: the model lacks"
+        " something; `inca discover` looks for it."
     )
     return said
 

@@ -11,9 +11,9 @@ from itertools import product
 
 import numpy as np
 
-from identification.discovery.point import Point
 from identification.effect import Candidate, Effect
 from identification.errors import DivergenceError, InputError
+from identification.kalman.point import Point
 from identification.predictor import Predictor
 
 BATCH = 48  # simulations at a time: bounds the memory of their trajectories

@@ -17,10 +17,10 @@ from threadpoolctl import threadpool_limits
 
 from identification.discovery.columns import Column
 from identification.discovery.extend import Base
-from identification.discovery.noise_model import whitener
 from identification.discovery.result import Named, Rival
 from identification.discovery.steps import Accepted, Step
 from identification.effect import Candidate
+from identification.kalman.noise_model import whitener
 
 TEMPERATURE = 10.0
 CAP = 0.95

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.coordinates import Coordinates, coordinates
-from identification.discovery.point import point
-from identification.discovery.refit import Refit, refit
 from identification.effect import Candidate
+from identification.kalman.point import point
+from identification.kalman.refit import Refit, refit
 from identification.log import Log
 from identification.parameter import Parameter, ParameterSet
 from identification.predictor import Plant, Predictor

@@ -12,9 +12,9 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from identification.discovery.innovations import SURE, whiteness
-from identification.discovery.noise_model import whitener
-from identification.discovery.refit import Refit
 from identification.discovery.steps import Step
+from identification.kalman.noise_model import whitener
+from identification.kalman.refit import Refit
 
 TELLING = 0.1  # share of the missing input that is worth a sentence
 

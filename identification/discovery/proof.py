@@ -16,10 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.noise_model import Whitener, whitener
-from identification.discovery.point import beyond
-from identification.discovery.refit import Refit
 from identification.discovery.result import Gap, Proof
+from identification.kalman.noise_model import Whitener, whitener
+from identification.kalman.point import beyond
+from identification.kalman.refit import Refit
 from identification.log import Log
 from identification.metrics import fit_percent
 

@@ -8,9 +8,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from identification.discovery.refit import Refit
 from identification.discovery.score import Score
 from identification.effect import Candidate
+from identification.kalman.refit import Refit
 from identification.log import Log
 
 Verdict = Literal["named", "nothing missing", "unknown effect"]

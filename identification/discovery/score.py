@@ -27,10 +27,10 @@ from scipy.stats import f as f_distribution
 from threadpoolctl import threadpool_limits
 
 from identification.discovery.columns import Column
-from identification.discovery.noise_fit import Level
-from identification.discovery.noise_model import Noise, whitener
-from identification.discovery.refit import Refit
 from identification.effect import Candidate
+from identification.kalman.noise_fit import Level
+from identification.kalman.noise_model import Noise, whitener
+from identification.kalman.refit import Refit
 
 BLOCKS = 40
 SMALLER = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # noise of the inputs to try, in units of the nominal

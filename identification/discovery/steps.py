@@ -16,11 +16,11 @@ from identification.discovery.columns import Column
 from identification.discovery.extend import Base, fit_with
 from identification.discovery.innovations import SURE, whiteness
 from identification.discovery.proof import Unseen, prove, unseen
-from identification.discovery.refit import Refit
 from identification.discovery.result import Proof
 from identification.discovery.score import Score, score
 from identification.effect import Candidate
 from identification.errors import DivergenceError, InputError
+from identification.kalman.refit import Refit
 from identification.log import Log
 
 ALPHA = 0.01  # family-wise chance of a name where nothing is missing, before the proof

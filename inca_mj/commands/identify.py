@@ -51,6 +51,8 @@ class Identify:
     """Of the starts after the first."""
     windows: float | None = None
     """Length [s] of windows that each begin anywhere; one free run when not given."""
+    innovations: bool = False
+    """Also estimate an unlogged error of the currents, by a Kalman predictor."""
     profile: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME")] = ()
     """Estimated parameters to profile: refit the others at 9 values of each."""
     robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
@@ -88,15 +90,26 @@ class Identify:
         """
         from identification.errors import InputError
         from identification.estimation import Options
-        from inca_mj.identify import POSE, UNKNOWN, identify, identify_windows
+        from inca_mj.identify import (
+            POSE,
+            UNKNOWN,
+            identify,
+            identify_innovations,
+            identify_windows,
+        )
         from inca_mj.logs import read_inca_log
 
         options = Options(self.method, self.criterion, self.loss, self.horizons)
-        if self.windows is not None and (options != Options() or self.starts != 1 or self.profile):
+        alone = "--windows" if self.windows is not None else "--innovations"
+        if (self.windows is not None or self.innovations) and (
+            options != Options() or self.starts != 1 or self.profile
+        ):
             raise InputError(
-                "--windows is a least-squares search of its own; leave out --criterion, --method,"
+                f"{alone} is a search of its own; leave out --criterion, --method,"
                 " --loss, --horizons, --starts and --profile"
             )
+        if self.windows is not None and self.innovations:
+            raise InputError("--windows and --innovations are two searches; choose one")
         log, parameters, place = (
             read_inca_log(self.log), self.robot.parameters(), self.robot.place()
         )  # fmt: skip
@@ -104,6 +117,8 @@ class Identify:
             return identify_windows(
                 log, parameters, self.windows, place, self.free, note, self.robot.step
             )
+        if self.innovations:
+            return identify_innovations(log, parameters, place, self.free, note, self.robot.step)
         estimated = self.free or (*UNKNOWN, *POSE)
         for name in self.profile:
             if name not in estimated:

@@ -103,6 +103,19 @@ def test_windows_can_be_asked_for(log: Path, capsys: pytest.CaptureFixture[str])
     assert "do not fit" in refused(capsys, log, "--windows", "nan")
 
 
+def test_innovations_tell_the_noise_of_sensors_and_currents(
+    log: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    result = say(capsys, log, *FREE, "--innovations")
+    assert set(result["parameters"]) == set(TRUTH)
+    for name, value in TRUTH.items():
+        assert abs(result["parameters"][name]["value"] / value - 1) < 0.2
+    assert 1e-4 < result["innovations"]["sensor_std"] < 2.5e-3
+    assert "One step ahead it errs by" in " ".join(result["verdict"])
+    assert "search of its own" in refused(capsys, log, "--innovations", "--starts", "2")
+    assert "choose one" in refused(capsys, log, "--innovations", "--windows", "0.25")
+
+
 def test_an_output_that_never_moves_has_no_fit_and_no_nan(
     log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -11,11 +11,11 @@ from identification import Log, Parameter, ParameterSet
 from identification.coordinates import Coordinates
 from identification.discovery.columns import Column
 from identification.discovery.extend import Base
-from identification.discovery.linear import LinearPlant
-from identification.discovery.point import Point
-from identification.discovery.refit import Refit
 from identification.discovery.score import score
 from identification.effect import Candidate, Effect, Size
+from identification.kalman.linear import LinearPlant
+from identification.kalman.point import Point
+from identification.kalman.refit import Refit
 from identification.plant import ModelPlant
 from identification.predictor import Predictor
 

@@ -6,10 +6,10 @@ from discovery_cases import column, linear_plant, point_of, scored
 from scipy.stats import f, ncf
 
 from identification.discovery.detectable import NONCENTRALITY, detectable
-from identification.discovery.noise_fit import Level
-from identification.discovery.noise_model import Noise
 from identification.discovery.score import BLOCKS, Score
 from identification.effect import Candidate, Effect, Size
+from identification.kalman.noise_fit import Level
+from identification.kalman.noise_model import Noise
 
 PLACES = {"all": "", "drive 1": "@1", "drive 2": "@2"}
 

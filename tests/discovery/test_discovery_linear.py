@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from identification import Log, ParameterSet
-from identification.discovery.linear import linearise
+from identification.kalman.linear import linearise
 from identification.plant import ModelPlant
 from identification.predictor import Predictor
 from identification.rollout import State, rollout

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from discovery_cases import STEP, covariance, linear_plant
 
-from identification.discovery.linear import LinearPlant
-from identification.discovery.noise_fit import fit_noise, likelihood, unit_ratio
-from identification.discovery.noise_model import Noise, whitener
+from identification.kalman.linear import LinearPlant
+from identification.kalman.noise_fit import fit_noise, likelihood, unit_ratio
+from identification.kalman.noise_model import Noise, whitener
 
 SIGMA = 2e-3
 

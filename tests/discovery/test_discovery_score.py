@@ -5,9 +5,9 @@ import pytest
 from discovery_cases import column, covariance, linear_plant, point_of, scored
 from scipy.stats import chi2, kstest
 
-from identification.discovery.noise_fit import Level
-from identification.discovery.noise_model import Noise
 from identification.discovery.score import SMALLER
+from identification.kalman.noise_fit import Level
+from identification.kalman.noise_model import Noise
 
 N, NY, P = 60, 2, 3
 

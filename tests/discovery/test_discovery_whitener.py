@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from discovery_cases import STEP, covariance, linear_plant
 
-from identification.discovery.noise_model import Noise, whitener
+from identification.kalman.noise_model import Noise, whitener
 
 
 @pytest.mark.parametrize(("seed", "ratio", "time"), [(1, 0.3, 0.05), (2, 2.0, 0.2), (3, 0.01, 1.0)])

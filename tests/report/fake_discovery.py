@@ -7,13 +7,13 @@ import numpy as np
 
 from identification import Predictor, fit_percent
 from identification.coordinates import coordinates
-from identification.discovery.noise_fit import Level
-from identification.discovery.noise_model import Noise
-from identification.discovery.point import Point
-from identification.discovery.refit import Refit
 from identification.discovery.result import Detectable, Discovery, Gap, Named, Proof, Rival
 from identification.discovery.score import Score
 from identification.effect import Candidate
+from identification.kalman.noise_fit import Level
+from identification.kalman.noise_model import Noise
+from identification.kalman.point import Point
+from identification.kalman.refit import Refit
 from inca_mj.effects.delay import DELAY
 from inca_mj.effects.friction_mismatch import FRICTION_MISMATCH
 from inca_mj.effects.stribeck_friction import STRIBECK_FRICTION

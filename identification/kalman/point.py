@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.coordinates import Coordinates
-from identification.discovery.linear import LinearPlant, linearise
+from identification.kalman.linear import LinearPlant, linearise
 from identification.log import Log
 from identification.predictor import Predictor
 

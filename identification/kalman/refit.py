@@ -9,19 +9,22 @@ criterion is tame from afar, and at the truth it is maximum likelihood.
 
 from __future__ import annotations
 
+from collections import deque
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from identification.discovery.noise_fit import Level, fit_noise
-from identification.discovery.noise_model import Whitener, whitener
-from identification.discovery.point import Point, point
 from identification.errors import DivergenceError
+from identification.kalman.noise_fit import Level, fit_noise
+from identification.kalman.noise_model import Whitener, whitener
+from identification.kalman.point import Point, point
 
 LARGEST = 0.5  # step of a logarithm: parameters change by at most 65 % at a time
 NEAR = 0.02  # relative change of the parameters after which the linearisation still holds
-ENDED = 1.0  # expected fall of the criterion, in units of the noise, that ends the search
+ENDED = 0.1  # expected fall of the criterion, in units of the noise, that ends the search
 DAMPED = 1e-4  # μ after the first step that failed; the rows' columns have length 1
 TRIES = 6  # of a step, each damped ten times as much
 
@@ -70,17 +73,33 @@ def refit(
         steps: at most as many.
         near: a noise to begin at, where one is known.
     """
+    seen = deque(enumerate(islice(descent(at, mean, prior, near), steps + 1)), maxlen=1)
+    taken, (end, level) = seen[0]
+    return finished(end, level, mean, prior, taken)
 
-    def noise(at: Point, near: Level | None, fine: bool) -> Level:
-        return fit_noise(at.linear, at.e, at.J, prior, at.log.sampling_time, near, fine)
 
-    level = noise(at, near, fine=False)
-    μ, taken = 0.0, 0
-    while taken < steps:
+def descent(
+    at: Point, mean: np.ndarray, prior: np.ndarray, near: Level | None = None
+) -> Iterator[tuple[Point, Level]]:
+    """The points of a search, each with its noise, from the first to where nothing is gained.
+
+    Args:
+        at: where to begin.
+        mean: q̄ of the priors, shape (p,).
+        prior: 1/std of each prior, zero where there is none, shape (p,).
+        near: a noise to begin at, where one is known; it is sharpened before the search ends.
+    """
+    level = noise_at(at, prior, near, fine=False)
+    yield at, level
+    μ, fine = 0.0, False
+    while True:
         problem = _linearised(at, level, mean, prior)
         move, fall = problem.step(0.0)
+        if fall < ENDED and fine:
+            return
         if fall < ENDED:
-            break
+            level, fine = noise_at(at, prior, level, fine=True), True
+            continue
         for _ in range(TRIES):
             if μ:
                 move, fall = problem.step(μ)
@@ -88,13 +107,23 @@ def refit(
                 break
             μ = max(10 * μ, DAMPED)
         else:
-            break
+            return
         μ = μ / 10 if μ > DAMPED else 0.0
         moved = np.abs(move[at.space.logarithmic]).max(initial=0.0)
         at = point(at.predictor, at.space, at.q + move, at.linear if moved < NEAR else None)
-        level, taken = noise(at, level, fine=False), taken + 1
-    level = noise(at, level, fine=True)
+        level = noise_at(at, prior, level, fine=fine)
+        yield at, level
+
+
+def finished(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray, taken: int) -> Refit:
+    """The end of a search, with its noise sharpened."""
+    level = noise_at(at, prior, level, fine=True)
     return Refit(at, level, _linearised(at, level, mean, prior).std(), mean, prior, taken)
+
+
+def noise_at(at: Point, prior: np.ndarray, near: Level | None, fine: bool) -> Level:
+    """The most likely noise of a point's residual."""
+    return fit_noise(at.linear, at.e, at.J, prior, at.log.sampling_time, near, fine)
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.linear import LinearPlant
-from identification.discovery.noise_model import Noise, Whitener, whitener
+from identification.kalman.linear import LinearPlant
+from identification.kalman.noise_model import Noise, Whitener, whitener
 
 TIMES = (0.01, 0.03, 0.1, 0.3)  # correlation times of the inputs' error to try [s]
 LEVELS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # ρ/ρ₀ to try

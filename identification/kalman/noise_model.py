@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.discovery.linear import LinearPlant
+from identification.kalman.linear import LinearPlant
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,173 @@
+"""Estimation where the inputs are not what the log says: innovations instead of a free run.
+
+    e_k = y_k - ŷ_k(q) = noise of the sensors + what an unlogged error of the inputs did
+
+A free run adds up what disturbs the plant, so that its residual is many times the noise and its
+parameters are bent. The Kalman predictor corrects itself with each sample; how much the inputs err,
+and for how long, is estimated with the parameters by maximum likelihood (Ljung 1999, section 7.4).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from identification.coordinates import coordinates
+from identification.errors import InputError
+from identification.estimation import Estimate
+from identification.fit import Fit, assess, combinations_of
+from identification.identifiability import identifiability
+from identification.information import root_of
+from identification.kalman.linear import linearise
+from identification.kalman.noise_fit import Level
+from identification.kalman.noise_model import Noise, whitener
+from identification.kalman.point import Point, point
+from identification.kalman.refit import Refit, descent, finished
+from identification.log import Log
+from identification.options import Options, Progress, Status, prior_weight
+from identification.predictor import Plant, Predictor
+from identification.residuals import residual_tests
+from identification.sensitivity import refuse_without_effect, without_effect
+
+FEWEST = 50  # samples of a log whose noise can be split into that of sensors and of inputs
+HOLD = 0.1  # 1/std of a ridge on q that keeps what no output feels where it is
+
+
+@dataclass(frozen=True)
+class InnovationsFit:
+    """Estimates of the innovations, and what they leave.
+
+    Attributes:
+        fit: values; std, correlation and tests are those of the innovations, residual and fit
+            percentages those of a free run.
+        level: the noise of sensors and inputs.
+        innovations: of the whole log, scaled to the sensors' noise, shape (N, ny).
+        first: first sample that was not fitted.
+    """
+
+    fit: Fit
+    level: Level
+    innovations: np.ndarray
+    first: int
+
+    @property
+    def rms(self) -> float:
+        """Of the innovations on the fitted samples."""
+        return float(np.sqrt(np.mean(self.innovations[: self.first] ** 2)))
+
+    @property
+    def validation_rms(self) -> float | None:
+        """Of the innovations on the samples that were not fitted; None when there are none."""
+        rest = self.innovations[self.first :]
+        return float(np.sqrt(np.mean(rest**2))) if len(rest) > 2 else None
+
+
+def estimate_innovations(
+    plant: Plant,
+    log: Log,
+    names: Sequence[str],
+    start: Mapping[str, float] | None = None,
+    priors: Mapping[str, float] | None = None,
+    progress: Progress | None = None,
+    steps: int = 30,
+) -> InnovationsFit:
+    """Estimate parameters by the innovations of a log's part `estimation`; confirm on the rest.
+
+    An interrupt (Ctrl-C) ends the search and keeps the best values so far.
+
+    Args:
+        plant: the model, with nominal values for whatever is not named.
+        log: what was measured.
+        names: the free parameters.
+        start: starting values by name; the plant's own where not given.
+        priors: std by name of q about the start (of ln(value) where q is a logarithm).
+        progress: is told one line per accepted step.
+        steps: at most as many.
+
+    Raises:
+        InputError: a name is unknown or has no effect, or the log is too short.
+        DivergenceError: the start cannot be simulated.
+    """
+    began = time.perf_counter()
+    options = Options(priors=dict(priors or {}))
+    part = log.part("estimation")
+    if len(part) < FEWEST:
+        raise InputError(
+            f"the log has {len(part)} samples to fit; innovations need at least {FEWEST}"
+        )
+    for name in (*names, *(start or {}), *options.priors):
+        plant.parameters[name]
+    own = {**plant.parameters.values(), **(start or {})}
+    first = np.array([own[name] for name in names])
+    space = coordinates(plant.parameters, names, first)
+    predictor = Predictor(plant, part, tuple(names), dict(start or {}))
+    mean = space.encode(first)
+    prior = np.maximum(prior_weight(options, names), HOLD)
+    begun = point(predictor, space, mean)
+    if without_effect(begun.J, part.outputs).any():
+        refuse_without_effect(begun.J, space.names, part)
+    seen = [(begun, Level(Noise(0.0, 1.0), 1.0, 0.0))]
+    status = _search(descent(begun, mean, prior), seen, steps, progress)
+    taken = max(0, len(seen) - 2)
+    end = finished(*seen[-1], mean, prior, taken)
+    ends = Estimate(
+        predictor, space, first, end.at.q, np.eye(part.outputs.shape[1]) / end.level.sigma,
+        np.ones_like(part.outputs), options, taken + 1, taken + 1, status, 0.0,
+    )  # fmt: skip
+    fit = _of_innovations(end, assess(ends, log))
+    E = innovations(end, log)
+    fit = replace(fit, estimate=replace(ends, seconds=time.perf_counter() - began))
+    return InnovationsFit(fit, end.level, E, len(part))
+
+
+def _search(
+    points: Iterator[tuple[Point, Level]],
+    seen: list[tuple[Point, Level]],
+    steps: int,
+    progress: Progress | None,
+) -> Status:
+    """Follow a search until it ends, adding its points to `seen`."""
+    try:
+        for k, (at, level) in enumerate(points):
+            seen.append((at, level))
+            if progress is not None:
+                progress(f"step {k}: sensors {level.sigma:.4g}, inputs {level.input_std:.3g} rms")
+            if k == steps:
+                return "iterations"
+    except KeyboardInterrupt:
+        return "stopped"
+    return "converged"
+
+
+def innovations(end: Refit, whole: Log) -> np.ndarray:
+    """Innovations over a log of which a fit has seen the beginning, shape (N, ny)."""
+    at = end.at
+    predictor = replace(at.predictor, log=whole)
+    values = at.space.decode(at.q)
+    with threadpool_limits(1, "blas"):
+        filter_ = whitener(linearise(predictor, values), end.level.noise, whole.sampling_time)
+        return filter_(whole.outputs - predictor.predict(values)[0])
+
+
+def _of_innovations(end: Refit, fit: Fit) -> Fit:
+    """A fit with the uncertainty and the tests of its innovations."""
+    at, σ = end.at, end.level.sigma
+    with threadpool_limits(1, "blas"):
+        filter_ = whitener(at.linear, end.level.noise, at.log.sampling_time)
+        E, S = filter_(at.e), filter_(at.J).reshape(at.e.size, -1) / σ
+    found = identifiability(S, at.space.names)
+    covariance = np.linalg.pinv(S.T @ S + np.diag(end.prior**2), hermitian=True)
+    std = np.sqrt(np.diag(covariance))
+    return replace(
+        fit,
+        std=np.where(found.undetermined, np.inf, std) * at.space.slope(at.q),
+        correlation=covariance / np.outer(std, std),
+        found=found,
+        combinations=combinations_of(found, fit.estimate, covariance),
+        information=replace(fit.information, root=root_of(S)),
+        tests=residual_tests(E, at.log.inputs),
+    )
