@@ -66,6 +66,39 @@ def gap_figure(
     return figure
 
 
+def force_figure(
+    time: np.ndarray, force: np.ndarray, names: Sequence[str], units: Sequence[str]
+) -> Figure:
+    """Forces that a model lacks, one panel a degree of freedom.
+
+    Args:
+        time: shape (N,) [s].
+        force: shape (N, k), in their units.
+        names: of the degrees of freedom, k of them.
+        units: N or N m, k of them.
+    """
+    rows = -(-len(names) // 2)
+    with matplotlib.rc_context(_STYLE):
+        figure = Figure((9.0, 0.4 + 1.2 * rows), layout="constrained")
+        axes = figure.subplots(rows, 2, sharex=True, squeeze=False)
+        panels = [axes[row, column] for column in range(2) for row in range(rows)]
+        for k, ax in enumerate(panels):
+            if k >= len(names):
+                ax.set_axis_off()
+                continue
+            mine = [u == units[k] for u in units]
+            top = 1.05 * float(np.abs(force[:, mine]).max()) or 1.0
+            unit, factor = ("mN m", 1e3) if units[k] == "N m" else (units[k], 1.0)
+            ax.plot(time, factor * force[:, k], color=SIMULATED, lw=0.9)
+            ax.axhline(0, color=GREY, lw=0.6)
+            ax.set_ylim(-factor * top, factor * top)
+            ax.set_title(f"{names[k].replace('_', ' ')} [{unit}]", loc="left", color=INK)
+            ax.set_xlim(time[0], time[-1])
+        for ax in axes[-1]:
+            ax.set_xlabel("time [s]")
+    return figure
+
+
 def rms_figure(
     before: np.ndarray, after: np.ndarray | None, floor: float, names: Sequence[str], unit: str
 ) -> Figure:

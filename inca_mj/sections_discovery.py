@@ -15,7 +15,7 @@ from identification.verdict_discovery import (
     phrase,
     sentence,
 )
-from inca_mj.figures_discovery import gains_figure, gap_figure, rms_figure
+from inca_mj.figures_discovery import force_figure, gains_figure, gap_figure, rms_figure
 from inca_mj.report import Section, Table
 
 if TYPE_CHECKING:
@@ -70,10 +70,15 @@ def where_section(found: Discovery) -> Section:
         _rms(before[rows]), None if after is None else _rms(after[rows]), floor_rms(found),
         found.log.output_names, unit,
     )  # fmt: skip
+    forces = tuple(
+        (f"Force on {m.where} that the nominal model lacks",
+         force_figure(found.log.time[: len(m.force)], m.force, m.names, m.units))
+        for m in found.missing
+    )  # fmt: skip
     return Section(
         "Where it disagrees",
         "\n\n".join([" ".join(map(sentence, found.located)), *left]),
-        figures=(("Error by output on unseen data", figure),),
+        figures=(("Error by output on unseen data", figure), *forces),
     )
 
 

@@ -16,6 +16,7 @@ from identification.discovery.confidence import named_of
 from identification.discovery.detectable import detectable
 from identification.discovery.extend import Base
 from identification.discovery.locate import left_over, located
+from identification.discovery.missing import missing_forces
 from identification.discovery.passes import backward, swap
 from identification.discovery.proof import prove
 from identification.discovery.result import Discovery, Verdict
@@ -85,12 +86,13 @@ def discover(
     elif named or left:
         verdict = "unknown effect"
         named, step, ranked = (), nominal, first
-    where = located(nominal) if verdict != "nothing missing" else ()
+    missing = missing_forces(nominal.refit) if verdict != "nothing missing" else ()
+    where = located(nominal, missing) if verdict != "nothing missing" else ()
     return Discovery(
         log, verdict, named, bool(left), step.refit.level.sigma, step.unseen.disturbance,
         nominal.unseen.gap(log), step.unseen.gap(log), nominal.refit, step.refit,
         log.outputs - nominal.unseen.e, log.outputs - step.unseen.e, first, ranked,
-        detectable(ranked), where, left, clock.seconds,
+        detectable(ranked), where, left, missing, clock.seconds,
     )  # fmt: skip
 
 

@@ -1,47 +1,24 @@
 """Where model and log disagree: which output, when, at which frequency, along with what.
 
-The missing input of each actuator is the Kalman filter's estimate of w (see `noise_model`), and
-what it goes along with is told by the share of its variance that one regressor explains.
+What a missing force goes along with is told by the share of its power that one regressor explains.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from identification.discovery.innovations import SURE, whiteness
+from identification.discovery.missing import MissingForce
 from identification.discovery.steps import Step
-from identification.kalman.noise_model import whitener
 from identification.kalman.refit import Refit
 
-TELLING = 0.1  # share of the missing input that is worth a sentence
-
-
-def missing_input(fit: Refit) -> np.ndarray:
-    """What the inputs lack for the outputs to be as measured, shape (N, nu), in their unit.
-
-    Zero where the noise model needs no error of the inputs.
-    """
-    at = fit.at
-    nu = at.linear.B.shape[2]
-    with threadpool_limits(1, "blas"):
-        filter_ = whitener(at.linear, fit.level.noise, at.log.sampling_time)
-    if not filter_.A.size:
-        return np.zeros((len(at.e), nu))
-    z = np.zeros(filter_.A.shape[1])
-    out = np.zeros((len(at.e), nu))
-    for k, e in enumerate(at.e):
-        z = z + filter_.K[k] @ (e - filter_.C @ z)
-        out[k] = z[-nu:]
-        if k < len(filter_.A):
-            z = filter_.A[k] @ z
-    return out
+TELLING = 0.1  # share of a missing force that is worth a sentence
 
 
 def regressors(fit: Refit) -> dict[str, np.ndarray]:
-    """What a missing input may go along with, by name: shape (N, nu) each, or (N, 1)."""
+    """What a missing force may go along with, by name: shape (N, ny) each, or (N, 1)."""
     log = fit.at.log
     y = log.outputs - fit.at.e
     rate = np.gradient(y, log.sampling_time, axis=0)
@@ -62,21 +39,20 @@ def regressors(fit: Refit) -> dict[str, np.ndarray]:
     return out
 
 
-def shares(fit: Refit) -> Mapping[str, float]:
-    """Share of the missing inputs' power that goes along with each regressor, 0 to 1 each."""
-    w = missing_input(fit)
-    w = w - w.mean(axis=0)
+def shares(fit: Refit, force: np.ndarray) -> Mapping[str, float]:
+    """Share of a force's power (N, k) that goes along with each regressor, 0 to 1 each."""
+    w = force - force.mean(axis=0)
     power = np.sum(w**2) + 1e-300
     out = {}
     for name, r in regressors(fit).items():
-        r = np.broadcast_to(r - r.mean(axis=0), w.shape)
-        out[name] = float(
-            np.sum(np.sum(r * w, axis=0) ** 2 / (np.sum(r**2, axis=0) + 1e-300)) / power
-        )
+        if r.shape[1] in (1, w.shape[1]):
+            r = np.broadcast_to(r - r.mean(axis=0), w.shape)
+            along = np.sum(r * w, axis=0) ** 2 / (np.sum(r**2, axis=0) + 1e-300)
+            out[name] = float(np.sum(along) / power)
     return out
 
 
-def located(nominal: Step) -> tuple[str, ...]:
+def located(nominal: Step, missing: Sequence[MissingForce]) -> tuple[str, ...]:
     """Where the nominal model fails, in sentences."""
     fit = nominal.refit
     log, e = fit.at.log, fit.at.e
@@ -103,15 +79,24 @@ def located(nominal: Step) -> tuple[str, ...]:
     f = np.fft.rfftfreq(len(e), log.sampling_time)
     half = f[int(np.searchsorted(np.cumsum(spectrum), 0.5 * spectrum.sum()))]
     out.append(f"half of it lies below {max(half, f[1]):.2g} Hz")
-    if fit.level.noise.ratio:
-        found = shares(fit)
-        best = max(found, key=found.__getitem__)
-        said = f"as an error of the inputs it is {fit.level.input_std:.2g}"
-        said += f" {log.units.get(log.input_names[0], '')} rms"
-        if found[best] >= TELLING:
-            said += f", and {100 * found[best]:.0f} % of its power goes along with {best}"
-        out.append(said)
-    return tuple(out)
+    return (*out, *(_acting(fit, m) for m in missing))
+
+
+def _acting(fit: Refit, missing: MissingForce) -> str:
+    """A missing force, its size, its share, and what it goes along with."""
+    sizes = []
+    for unit in dict.fromkeys(missing.units):
+        mine = [u == unit for u in missing.units]
+        sizes.append(f"{np.sqrt(np.mean(missing.force[:, mine] ** 2)):.2g} {unit}")
+    said = (
+        f"forces of {' and '.join(sizes)} rms on {missing.where} would explain"
+        f" {100 * missing.share:.0f} % of it"
+    )
+    found = shares(fit, missing.force)
+    best = max(found, key=found.__getitem__)
+    if found[best] >= TELLING:
+        said += f"; {100 * found[best]:.0f} % of their power goes along with {best}"
+    return said
 
 
 def left_over(step: Step) -> tuple[str, ...]:

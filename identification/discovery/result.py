@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from identification.discovery.missing import MissingForce
 from identification.discovery.score import Score
 from identification.effect import Candidate
 from identification.kalman.refit import Refit
@@ -125,6 +126,7 @@ class Discovery:
         detectable: what could have been seen.
         located: where the nominal model fails, in sentences.
         left: where the final model still fails, in sentences; empty when it does not.
+        missing: the forces that the nominal model lacks, by where they act.
         seconds: wall time by stage [s].
     """
 
@@ -145,6 +147,7 @@ class Discovery:
     detectable: tuple[Detectable, ...]
     located: tuple[str, ...]
     left: tuple[str, ...]
+    missing: tuple[MissingForce, ...]
     seconds: Mapping[str, float]
 
     def to_json(self) -> dict[str, Any]:
@@ -170,6 +173,12 @@ class Discovery:
                 {"name": d.candidate.effect.name, "where": d.candidate.where, "parameter": d.size,
                  "smallest": d.smallest if np.isfinite(d.smallest) else None, "unit": d.unit}
                 for d in self.detectable
+            ],
+            "missing_forces": [
+                {"where": m.where, "names": list(m.names), "units": list(m.units),
+                 "rms": np.sqrt(np.mean(m.force**2, axis=0)).tolist(), "gain": m.gain,
+                 "share": m.share}
+                for m in self.missing
             ],
             "seconds": float(sum(self.seconds.values())),
         }  # fmt: skip

@@ -11,6 +11,7 @@ from MuJoCo's own finite differences of one short Euler step.
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -40,12 +41,13 @@ class LinearPlant:
     C: np.ndarray
 
 
-def linearise(predictor: Predictor, values: np.ndarray) -> LinearPlant:
+def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = ()) -> LinearPlant:
     """Linearise a plant along the trajectory that it predicts for one value set.
 
     Args:
         predictor: plant and log.
         values: shape (p,), in the parameters' units.
+        forces: degrees of freedom on whose generalised forces B shall act, instead of the inputs.
 
     Raises:
         DivergenceError: the simulation left the finite numbers.
@@ -63,7 +65,7 @@ def linearise(predictor: Predictor, values: np.ndarray) -> LinearPlant:
         getattr(model, slot.field)[slot.index()] = column[0]
     mujoco.mj_setConst(model, mujoco.MjData(model))
     along = {field: values[0] for field, values in states.items()}
-    F, G = _derivatives(model, along, log.inputs, log.sampling_time)
+    F, G = _derivatives(model, along, log.inputs, log.sampling_time, forces)
     C = np.zeros((log.outputs.shape[1], F.shape[1]))
     for row, (field, i) in enumerate(output_columns(model, log.output_names)):
         C[row, _tangent(model, field, i)] = 1
@@ -87,7 +89,11 @@ def _felt(F: np.ndarray, C: np.ndarray) -> np.ndarray:
 
 
 def _derivatives(
-    model: mujoco.MjModel, states: dict[str, np.ndarray], inputs: np.ndarray, sampling_time: float
+    model: mujoco.MjModel,
+    states: dict[str, np.ndarray],
+    inputs: np.ndarray,
+    sampling_time: float,
+    forces: Sequence[int],
 ) -> tuple[np.ndarray, np.ndarray]:
     """F (N-1, nx, nx) and G (N-1, nx, nu) at all samples but the last."""
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
@@ -96,14 +102,22 @@ def _derivatives(
     data = mujoco.MjData(model)
     nx, n = 2 * model.nv + model.na, len(inputs) - 1
     F, G = np.empty((n, nx, nx)), np.empty((n, nx, model.nu))
+    unit, pushed = np.eye(model.nv)[list(forces)], np.empty((n, len(forces), model.nv))
     for k in range(n):
         data.time = k * sampling_time
         data.qpos, data.qvel, data.ctrl = states["qpos"][k], states["qvel"][k], inputs[k]
         if model.na:
             data.act = states["act"][k]
         mujoco.mjd_transitionFD(model, data, EPS, 1, F[k], G[k], None, None)
-    F -= np.eye(nx)
-    return F / SHORT, G / SHORT
+        if forces:
+            mujoco.mj_forward(model, data)
+            mujoco.mj_solveM(model, data, pushed[k], unit)
+    F = (F - np.eye(nx)) / SHORT
+    if forces:
+        G = np.zeros((n, nx, len(forces)))
+        G[:, model.nv : 2 * model.nv] = np.moveaxis(pushed, 1, 2)
+        return F, G
+    return F, G / SHORT
 
 
 def _tangent(model: mujoco.MjModel, field: str, i: int) -> int:

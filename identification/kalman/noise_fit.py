@@ -9,7 +9,7 @@ by as much as the sensors' noise.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -88,6 +88,7 @@ def fit_noise(
     sampling_time: float,
     near: Level | None = None,
     fine: bool = True,
+    levels: Sequence[float] = LEVELS,
 ) -> Level:
     """The most likely noise of a residual.
 
@@ -99,6 +100,7 @@ def fit_noise(
         sampling_time: [s].
         near: where one is known from a point nearby, to begin at.
         fine: whether ρ and τ are sharpened.
+        levels: ρ/ρ₀ to try where no noise is known.
     """
     with threadpool_limits(1, "blas"):  # the matrices are small; threads only wait for each other
 
@@ -109,8 +111,8 @@ def fit_noise(
             best = _best([at(near.noise.scaled(f)) for f in (1.0, 0.3, 0.05, 0.0)])
         else:
             unit = unit_ratio(plant, sampling_time, TIMES[1])
-            levels = LEVELS if near is None else (0.0, 0.1, 1.0)
-            best = _best([at(Noise(level * unit, TIMES[1])) for level in levels])
+            tried = levels if near is None else (0.0, 0.1, 1.0)
+            best = _best([at(Noise(level * unit, TIMES[1])) for level in tried])
         return sharpen(best, at) if fine and best.noise.ratio else best
 
 

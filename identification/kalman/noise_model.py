@@ -68,21 +68,28 @@ class Whitener:
         return out.reshape(e.shape)
 
 
-def whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
-    """The whitening filter for a level of noise; the start is known (its errors are parameters)."""
+def augmented(
+    plant: LinearPlant, noise: Noise, sampling_time: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """A (N-1, nz, nz), C (ny, nz), P at the first sample and Q, both over σ², of z = (x, w)."""
     n, nx, nu = plant.B.shape
-    ny = len(plant.C)
-    if noise.ratio == 0:
-        return Whitener(np.empty((0, 0, 0)), plant.C, np.empty(0), np.empty(0), 0.0)
     a = np.exp(-sampling_time / noise.time)
     A = np.zeros((n, nx + nu, nx + nu))
     A[:, :nx, :nx], A[:, :nx, nx:] = plant.A, plant.B
     A[:, nx:, nx:] = a * np.eye(nu)
-    C = np.hstack([plant.C, np.zeros((ny, nu))])
+    C = np.hstack([plant.C, np.zeros((len(plant.C), nu))])
     P = np.zeros((nx + nu, nx + nu))
-    steady = noise.ratio**2 * np.eye(nu)
-    P[nx:, nx:] = steady
-    K, L, log_determinant = np.empty((n + 1, nx + nu, ny)), np.empty((n + 1, ny, ny)), 0.0
+    P[nx:, nx:] = noise.ratio**2 * np.eye(nu)
+    return A, C, P, (1 - a**2) * P
+
+
+def whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
+    """The whitening filter for a level of noise; the start is known (its errors are parameters)."""
+    n, ny = len(plant.B), len(plant.C)
+    if noise.ratio == 0:
+        return Whitener(np.empty((0, 0, 0)), plant.C, np.empty(0), np.empty(0), 0.0)
+    A, C, P, Q = augmented(plant, noise, sampling_time)
+    K, L, log_determinant = np.empty((n + 1, len(P), ny)), np.empty((n + 1, ny, ny)), 0.0
     for k in range(n + 1):
         PC = P @ C.T
         S = C @ PC + np.eye(ny)
@@ -91,7 +98,6 @@ def whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener
         K[k] = PC @ L[k].T @ L[k]
         log_determinant += 2 * np.log(np.diag(factor)).sum()
         if k < n:
-            P = A[k] @ (P - K[k] @ PC.T) @ A[k].T
-            P[nx:, nx:] += (1 - a**2) * steady
+            P = A[k] @ (P - K[k] @ PC.T) @ A[k].T + Q
             P = (P + P.T) / 2
     return Whitener(A, C, K, L, log_determinant)

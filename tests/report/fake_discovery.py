@@ -7,6 +7,7 @@ import numpy as np
 
 from identification import Predictor, fit_percent
 from identification.coordinates import coordinates
+from identification.discovery.missing import MissingForce
 from identification.discovery.result import Detectable, Discovery, Gap, Named, Proof, Rival
 from identification.discovery.score import Score
 from identification.effect import Candidate
@@ -79,8 +80,15 @@ def found(verdict="named", *, one_of=False, unexplained=False, several=False) ->
         before, after, scores, scores[1:],
         (Detectable(STRIBECK, "f_s", 2e-4, "N m"), Detectable(LATE, "tau", np.inf, "s")),
         ("The error grows at low speed.",), ("The error is largest at drive 3.",) * unexplained,
+        () if verdict == "nothing missing" else (_pushed(),),
         {"fit": 1.5, "score": 2.0},
     )  # fmt: skip
+
+
+def _pushed() -> MissingForce:
+    names = tuple(f"roller_{k}" for k in range(1, 9))
+    force = 1e-3 * np.random.default_rng(5).standard_normal((50, 8))
+    return MissingForce("the actuated joints", names, ("N m",) * 8, force, 812.0, 0.93)
 
 
 def _stribeck(one_of: bool) -> Named:

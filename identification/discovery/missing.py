@@ -1,0 +1,100 @@
+"""The missing force: what would have to act, and where, for the nominal model to be right.
+
+    M δv̇ = … + r w,    w: a first-order process of the level that makes the residual most likely
+
+r weighs each by how much it moves the outputs, so that newtons and newton metres compare. One group
+of degrees of freedom at a time, the actuated joints or a free body. Both may explain all: where few
+outputs are measured, a force elsewhere does nearly the same, and only a law tells the place.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from identification.kalman.linear import LinearPlant, linearise
+from identification.kalman.noise_fit import TIMES, fit_noise, unit_ratio
+from identification.kalman.refit import Refit
+from identification.kalman.smoother import smooth
+
+AXES = ("x", "y", "z")
+FREE, SLIDE = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_SLIDE)
+
+
+@dataclass(frozen=True)
+class MissingForce:
+    """Forces on some degrees of freedom that would explain a residual.
+
+    Attributes:
+        where: "the drives' joints" or the name of a free body.
+        names: of the degrees of freedom, k of them.
+        units: N or N m, k of them.
+        force: the smoothed estimate over the fitted samples, shape (N, k).
+        gain: twice the log likelihood that it adds to a model without.
+        share: of the residual's mean square that it explains.
+    """
+
+    where: str
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    force: np.ndarray
+    gain: float
+    share: float
+
+
+def missing_forces(fit: Refit) -> tuple[MissingForce, ...]:
+    """The missing force of every group of degrees of freedom."""
+    at = fit.at
+    groups = _groups(at.predictor.plant.model)
+    dofs = [d for _, of, _, _ in groups for d in of]
+    plant = linearise(at.predictor, at.space.decode(at.q), forces=dofs)
+    Ts, out, done = at.log.sampling_time, [], 0
+    with threadpool_limits(1, "blas"):
+        for where, of, names, units in groups:
+            B = plant.B[:, :, done : done + len(of)]
+            done += len(of)
+            if not B.any():
+                continue
+            each = [unit_ratio(LinearPlant(plant.A, b[:, :, None], plant.C), Ts, TIMES[1])
+                    for b in np.moveaxis(B, 2, 0)]  # fmt: skip
+            mine = LinearPlant(plant.A, B * each, plant.C)
+            level = fit_noise(mine, at.e, at.J, fit.prior, Ts, fine=False)
+            none = fit_noise(mine, at.e, at.J, fit.prior, Ts, levels=(0.0,), fine=False)
+            force, part = smooth(mine, level.noise, at.e, Ts)
+            out.append(
+                MissingForce(
+                    where, names, units, force * each,
+                    2 * (level.log_likelihood - none.log_likelihood),
+                    1 - float(np.mean((at.e - part) ** 2) / np.mean(at.e**2)),
+                )
+            )  # fmt: skip
+    return tuple(out)
+
+
+def _groups(
+    model: mujoco.MjModel,
+) -> list[tuple[str, list[int], tuple[str, ...], tuple[str, ...]]]:
+    """Name, degrees of freedom, their names and units: actuated joints first, then free bodies."""
+    transmission = int(mujoco.mjtTrn.mjTRN_JOINT)
+    actuated = [
+        int(model.actuator_trnid[i, 0]) for i in range(model.nu)
+        if model.actuator_trntype[i] == transmission
+    ]  # fmt: skip
+    joints = [j for j in dict.fromkeys(actuated) if model.jnt_type[j] != FREE]
+    out = []
+    if joints:
+        out.append((
+            "the actuated joints",
+            [int(model.jnt_dofadr[j]) for j in joints],
+            tuple(model.joint(j).name for j in joints),
+            tuple("N" if model.jnt_type[j] == SLIDE else "N m" for j in joints),
+        ))  # fmt: skip
+    for j in np.flatnonzero(model.jnt_type == FREE):
+        first = int(model.jnt_dofadr[j])
+        names = tuple(f"{kind} {axis}" for kind in ("force", "torque") for axis in AXES)
+        body = model.body(int(model.jnt_bodyid[j])).name
+        out.append((body, list(range(first, first + 6)), names, ("N",) * 3 + ("N m",) * 3))
+    return out
