@@ -85,7 +85,7 @@ def _named(found: Discovery, named: Named) -> str:
         return (
             f"Missing from the model is one of these, which this log cannot tell apart: {each};"
             f" together {100 * min(total, 1.0):.0f} %. The first is put into the model:"
-            f" {sizes(named)}."
+            f" {sizes(named)}." + (f" {named.advice}" if named.advice else "")
         )
     first = "Missing from the model" if named is found.named[0] else "Missing too"
     return (

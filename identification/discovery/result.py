@@ -63,6 +63,7 @@ class Named:
         one_of: whether the data cannot tell it from its first rival.
         gain: twice the log likelihood that it adds on the fitted samples.
         proof: what it does for unseen data.
+        advice: the experiment that would tell it from its rival, in a sentence.
     """
 
     candidate: Candidate
@@ -72,6 +73,7 @@ class Named:
     one_of: bool
     gain: float
     proof: Proof
+    advice: str = ""
 
 
 @dataclass(frozen=True)
@@ -199,5 +201,6 @@ def _effect_json(named: Named) -> dict[str, Any]:
             for r in named.rivals
         ],
         "one_of": named.one_of,
+        "advice": named.advice or None,
         "proof": {"gain": named.proof.gain, "t": named.proof.t, "share": named.proof.share},
     }  # fmt: skip

@@ -1,0 +1,50 @@
+"""The input that tells look-alikes apart: laws of its distance."""
+
+from dataclasses import replace
+
+import pytest
+from fake_discovery import LATE, MISMATCH, STRIBECK, found
+
+from identification.verdict_discovery import discovery_verdict
+from inca_mj.tell_apart import Contrast, _distance, sentence, tell_apart, told
+
+
+@pytest.fixture(scope="module")
+def at():
+    return found(one_of=True).final.at
+
+
+def test_an_effect_imitates_itself(at) -> None:
+    other = _distance(at, at.log, STRIBECK, LATE, 1e-3)
+    own = _distance(at, at.log, STRIBECK, STRIBECK, 1e-3)
+    assert own < 1e-6 * other
+
+
+def test_half_the_noise_is_twice_the_distance(at) -> None:
+    one, two = (_distance(at, at.log, STRIBECK, MISMATCH, s) for s in (1e-3, 5e-4))
+    assert two == pytest.approx(2 * one)
+
+
+def test_a_longer_record_tells_more(at) -> None:
+    log = at.log
+    half = replace(
+        log, time=log.time[:50], inputs=log.inputs[:50], outputs=log.outputs[:50], extras={}
+    )
+    assert _distance(at, half, STRIBECK, MISMATCH, 1e-3) < _distance(
+        at, log, STRIBECK, MISMATCH, 1e-3
+    )
+
+
+def test_the_advice_names_the_best_input_and_stands_in_the_verdict() -> None:
+    outcome = found(one_of=True)
+    contrast = tell_apart(outcome, outcome.named[0])
+    assert contrast is not None
+    advised = told(outcome)
+    assert advised.named[0].advice == sentence(contrast)
+    assert advised.named[0].advice in discovery_verdict(advised)[0]
+    assert told(found()).named[0].advice == ""
+
+
+def test_an_input_that_tells_no_better_is_not_advised() -> None:
+    assert sentence(Contrast("a step", 3.0, 2.5)).startswith("No input that was tried")
+    assert "under a step would tell them apart" in sentence(Contrast("a step", 40.0, 2.5))
