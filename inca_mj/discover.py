@@ -35,6 +35,7 @@ def discover(
     effects: Sequence[DriveEffect] = CATALOGUE,
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
+    settled: bool = False,
 ) -> Discovery:
     """Name the physical effect that the twin lacks to explain a log, and prove it.
 
@@ -45,12 +46,14 @@ def discover(
         effects: candidates; the catalogue of 25 by default.
         progress: is told a line per stage.
         timestep: largest step of the integrator [s].
+        settled: whether the robot had stood for a while with what the twin lacks when the log
+            began, so that it starts at rest; else it was held where the nominal one rests.
 
     Raises:
         InputError: the log is too short, or its start has no pretension.
         DivergenceError: the nominal model cannot be simulated.
     """
     step = timestep_for(log.sampling_time, timestep)
-    plant = build_twin(parameters, geometry, timestep=step, effects=effects)
+    plant = build_twin(parameters, geometry, timestep=step, effects=effects, settled=settled)
     base = Base(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
     return told(search(base, log, [e.effect for e in effects], progress))

@@ -39,6 +39,8 @@ class Discover:
     """Log to explain; its TOML may name the splits estimation and validation."""
     film: bool = True
     """Film the final twin against the log; only with --out."""
+    settled: bool = False
+    """The robot stood at rest by itself, with what the twin lacks, when the log began."""
     robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
@@ -57,7 +59,7 @@ class Discover:
             read_inca_log(self.log), self.robot.parameters(), self.robot.place()
         )  # fmt: skip
         out = None if self.output.out is None else folder(self.output.out)
-        found = discover(log, parameters, place, progress=note)
+        found = discover(log, parameters, place, progress=note, settled=self.settled)
         if not self.output.json:
             say(discovery_text(found))
         files: dict[str, Path] = {}
