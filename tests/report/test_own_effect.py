@@ -1,6 +1,5 @@
 """The example of a user's own effect: it acts, it can be kept, and it is found."""
 
-import importlib.util
 import runpy
 from pathlib import Path
 
@@ -37,9 +36,6 @@ def test_it_is_kept_and_asked_for_by_name(own: dict, tmp_path: Path) -> None:
     assert again.parameters["winding_friction.c"].value == 5e-4
 
 
-@pytest.mark.skipif(
-    importlib.util.find_spec("inca_mj.discover") is None, reason="there is no search yet"
-)
 def test_it_is_found(own: dict) -> None:
     found = own["find"](
         own["log_with_it"](4.0), effects=(STRIBECK_FRICTION, own["WINDING_FRICTION"])
