@@ -23,12 +23,12 @@ import mujoco
 import numpy as np
 from numba import njit, types
 
+from identification.native.memory import load_byte, load_constant, load_double, store_double
 from inca_mj import law
 from inca_mj.effects.compose import rates, total
 from inca_mj.effects.hooks import Drive
 from inca_mj.effects.layout import KEY, Layout
 from inca_mj.fields import D, M, cable, double, drive, integer, word
-from inca_mj.memory import load_byte, load_constant, load_double, store_double
 from inca_mj.platform import connector, dof, platform, push, span, velocity, wrench
 
 _USER = int(mujoco.mjtSensor.mjSENS_USER)

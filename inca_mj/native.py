@@ -13,7 +13,7 @@ import mujoco
 from numba import cfunc
 
 from identification.errors import InputError
-from inca_mj import structs
+from identification.native import structs
 from inca_mj.callbacks import SIGNATURES, callbacks
 from inca_mj.effects.layout import Layout
 from inca_mj.fields import FIELDS
