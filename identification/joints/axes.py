@@ -17,10 +17,12 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.log import Log
+from identification.noise import noise_floor
 from identification.predictor import output_columns
 
 Kind = Literal["hinge", "slide"]
 SMOOTH = 0.01  # v₀ of the smooth sign, of the top speed
+NOISE, SHARE = 5.0, 0.1  # a difference of noise, in its std, may be so much of the largest
 
 _KINDS: dict[int, Kind] = {
     int(mujoco.mjtJoint.mjJNT_HINGE): "hinge",
@@ -86,9 +88,9 @@ def axes(model: mujoco.MjModel, log: Log) -> tuple[Axis, ...]:
 def _axis(model: mujoco.MjModel, log: Log, j: int, seen: list[tuple[str, np.ndarray]]) -> Axis:
     h = log.sampling_time
     columns = dict(seen)
-    rate = columns["qvel"] if "qvel" in columns else np.gradient(columns["qpos"], h)
-    way = columns["qpos"] if "qpos" in columns else np.cumsum(rate) * h
-    speed, travel = float(np.abs(rate).max()), float(np.ptp(way))
+    way = columns["qpos"] if "qpos" in columns else np.cumsum(columns["qvel"]) * h
+    rates = columns["qvel"] if "qvel" in columns else _rate(way, h)
+    speed, travel = float(np.abs(rates).max()), float(np.ptp(way))
     drives = drives_of(model, j)
     force = sum(abs(_at_full(model, i)) * float(np.abs(log.inputs[:, _control(model, i)]).max())
                 for i in drives)  # fmt: skip
@@ -97,6 +99,16 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, seen: list[tuple[str, np.ndar
     name = model.joint(j).name
     return Axis(name, _KINDS[int(model.jnt_type[j])], force, speed, travel,
                 all(_plain(model, i) for i in drives))  # fmt: skip
+
+
+def _rate(way: np.ndarray, h: float) -> np.ndarray:
+    """Difference quotients over the shortest lag at which noise does not make their largest."""
+    noise, lag = float(noise_floor(way[:, None])[0]), 1
+    while True:
+        rate = (way[lag:] - way[:-lag]) / (lag * h)
+        if NOISE * noise < SHARE * lag * h * np.abs(rate).max() or 8 * lag > len(way):
+            return rate
+        lag *= 2
 
 
 def drives_of(model: mujoco.MjModel, j: int) -> list[int]:

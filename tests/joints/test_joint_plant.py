@@ -16,7 +16,7 @@ from joint_cases import (
 )
 
 from identification import InputError, Parameter
-from identification.joints.axes import SMOOTH, Axis
+from identification.joints.axes import SMOOTH, Axis, axes
 from identification.joints.catalogue import joint_effects
 from identification.joints.inputs import clipped, delayed, drifting, lagged
 from identification.joints.plant import candidates, joint_plant
@@ -64,6 +64,14 @@ def test_axes_are_read_off_the_log_and_hinges_apart_from_slides():
     assert names["slide_offset"].effect.sizes[0].unit == "N"
     assert names["offset"].effect.sizes[0].unit == "N m"
     assert "slide_load_dependent_friction" not in names
+
+
+def test_the_noise_of_a_sensor_does_not_make_a_top_speed():
+    y = 0.2 * np.sin(3 * STEP * np.arange(600))[:, None]
+    noise = 3e-3 * np.random.default_rng(0).standard_normal(y.shape)
+    (axis,) = axes(slider().model, slider_log(np.ones((600, 1)), y + noise))
+    assert np.abs(np.diff(y + noise, axis=0)).max() / STEP > 1.0
+    assert axis.speed == pytest.approx(0.6, rel=0.15)
 
 
 def test_what_cannot_be_is_refused():
