@@ -16,6 +16,7 @@ from scipy.stats import chi2
 
 LAGS = 20
 SURE = 1e-4  # chance at which structure in innovations is believed
+MATTERS = 0.03  # share of their power below which structure is no missing effect, as in `steps`
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,7 @@ class Whiteness:
 
     Attributes:
         p_correlation: of the portmanteau test over all channels.
+        predictable: share of the power that the correlations would predict, beyond chance's.
         p_line: of the strongest line over all channels.
         channel: index of the output on which that line is the loudest.
         frequency: of that line [Hz].
@@ -32,11 +34,17 @@ class Whiteness:
     """
 
     p_correlation: float
+    predictable: float
     p_line: float
     channel: int
     frequency: float
     p_louder: float
     loudest: int
+
+    @property
+    def correlated(self) -> bool:
+        """Whether samples are correlated beyond chance, and by enough to matter."""
+        return self.p_correlation < SURE and self.predictable > MATTERS
 
 
 def whiteness(E: np.ndarray, sampling_time: float) -> Whiteness:
@@ -57,6 +65,7 @@ def whiteness(E: np.ndarray, sampling_time: float) -> Whiteness:
     louder = float(n / 2 * np.sum((ratio - 1) ** 2))
     return Whiteness(
         float(chi2.sf(Q, LAGS * ny)),
+        float(np.sum(r**2) / ny - LAGS / n),
         float(min(1.0, line)),
         channel,
         float((at + 1) / (n * sampling_time)),

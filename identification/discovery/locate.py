@@ -115,6 +115,9 @@ def left_over(step: Step) -> tuple[str, ...]:
             f"{log.output_names[white.loudest]} is noisier than the others"
             f" (chance {white.p_louder:.0e})"
         )
-    if white.p_correlation < SURE:
-        out.append(f"innovations that are not white (chance {white.p_correlation:.0e})")
+    if white.correlated:
+        out.append(
+            f"innovations that are not white: {100 * white.predictable:.0f} % of their power"
+            f" follows from the samples before (chance {white.p_correlation:.0e})"
+        )
     return tuple(out)

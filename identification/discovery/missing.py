@@ -16,7 +16,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from identification.kalman.linear import LinearPlant, linearise
-from identification.kalman.noise_fit import TIMES, fit_noise, unit_ratio
+from identification.kalman.noise_fit import TIME, fit_noise, unit_ratio
 from identification.kalman.refit import Refit
 from identification.kalman.smoother import smooth
 
@@ -58,7 +58,7 @@ def missing_forces(fit: Refit) -> tuple[MissingForce, ...]:
             done += len(of)
             if not B.any():
                 continue
-            each = [unit_ratio(LinearPlant(plant.A, b[:, :, None], plant.C), Ts, TIMES[1])
+            each = [unit_ratio(LinearPlant(plant.A, b[:, :, None], plant.C), Ts, TIME)
                     for b in np.moveaxis(B, 2, 0)]  # fmt: skip
             mine = LinearPlant(plant.A, B * each, plant.C)
             level = fit_noise(mine, at.e, at.J, fit.prior, Ts, fine=False)

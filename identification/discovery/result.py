@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -151,56 +151,3 @@ class Discovery:
     left: tuple[str, ...]
     missing: tuple[MissingForce, ...]
     seconds: Mapping[str, float]
-
-    def to_json(self) -> dict[str, Any]:
-        """The outcome as plain values."""
-        gap = {
-            name: {
-                "rms": g.rms,
-                "fit_percent": [float(f) if np.isfinite(f) else None for f in g.fit_percent],
-            }
-            for name, g in (("before", self.before), ("after", self.after))
-        }
-        return {
-            "verdict": self.verdict,
-            "effects": [_effect_json(named) for named in self.named],
-            "unexplained": self.unexplained,
-            "gap": {
-                "noise_rms": self.noise_rms,
-                "disturbance_rms": self.disturbance_rms,
-                **gap,
-            },
-            "located": [*self.located, *self.left],
-            "detectable": [
-                {"name": d.candidate.effect.name, "where": d.candidate.where, "parameter": d.size,
-                 "smallest": d.smallest if np.isfinite(d.smallest) else None, "unit": d.unit}
-                for d in self.detectable
-            ],
-            "missing_forces": [
-                {"where": m.where, "names": list(m.names), "units": list(m.units),
-                 "rms": np.sqrt(np.mean(m.force**2, axis=0)).tolist(), "gain": m.gain,
-                 "share": m.share}
-                for m in self.missing
-            ],
-            "seconds": float(sum(self.seconds.values())),
-        }  # fmt: skip
-
-
-def _effect_json(named: Named) -> dict[str, Any]:
-    return {
-        "name": named.candidate.effect.name,
-        "where": named.candidate.where,
-        "confidence": named.confidence,
-        "parameters": {
-            name: {"value": value, "std": std if np.isfinite(std) else None, "unit": unit}
-            for name, (value, std, unit) in named.parameters.items()
-        },
-        "rivals": [
-            {"name": r.candidate.effect.name, "where": r.candidate.where,
-             "confidence": r.confidence}
-            for r in named.rivals
-        ],
-        "one_of": named.one_of,
-        "advice": named.advice or None,
-        "proof": {"gain": named.proof.gain, "t": named.proof.t, "share": named.proof.share},
-    }  # fmt: skip

@@ -14,7 +14,7 @@ import numpy as np
 
 from identification.discovery.columns import Column
 from identification.discovery.extend import Base, fit_with
-from identification.discovery.innovations import SURE, whiteness
+from identification.discovery.innovations import whiteness
 from identification.discovery.proof import Unseen, prove, unseen
 from identification.discovery.result import Proof
 from identification.discovery.score import Score, score
@@ -135,7 +135,7 @@ def _criterion(step: Step) -> float:
 def _structured(step: Step) -> bool:
     """Whether the fitted samples' innovations are not white."""
     E = step.unseen.innovations[: len(step.refit.at.log)]
-    return whiteness(E, step.refit.at.log.sampling_time).p_correlation < SURE
+    return whiteness(E, step.refit.at.log.sampling_time).correlated
 
 
 def _from_nominal(base: Base, whole: Log, step: Step, best: Step) -> Step:

@@ -18,7 +18,8 @@ from threadpoolctl import threadpool_limits
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_model import Noise, Whitener, whitener
 
-TIMES = (0.01, 0.03, 0.1, 0.3)  # correlation times of the inputs' error to try [s]
+TIME = 0.03  # correlation time of the inputs' error at which a search begins [s]
+FIRST, LAST = 1.6, 1.15  # factors of the pattern search
 LEVELS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # ρ/ρ₀ to try
 
 
@@ -110,19 +111,37 @@ def fit_noise(
         if near is not None and near.noise.ratio:
             best = _best([at(near.noise.scaled(f)) for f in (1.0, 0.3, 0.05, 0.0)])
         else:
-            unit = unit_ratio(plant, sampling_time, TIMES[1])
+            unit = unit_ratio(plant, sampling_time, TIME)
             tried = levels if near is None else (0.0, 0.1, 1.0)
-            best = _best([at(Noise(level * unit, TIMES[1])) for level in tried])
-        return sharpen(best, at) if fine and best.noise.ratio else best
+            best = _best([at(Noise(level * unit, TIME)) for level in tried])
+        return sharpen(best, at, sampling_time / 3) if fine and best.noise.ratio else best
 
 
-def sharpen(best: Level, at: Callable[[Noise], Level]) -> Level:
-    """The most likely correlation time, then the most likely ρ, about a level."""
-    for time in TIMES:  # ρ² τ is what a slow plant feels
-        best = _best([best, at(Noise(best.noise.ratio * (best.noise.time / time) ** 0.5, time))])
-    for factor in (1.8, 1 / 1.8, 1.35, 1 / 1.35):
-        best = _best([best, at(best.noise.scaled(factor))])
+def sharpen(best: Level, at: Callable[[Noise], Level], shortest: float) -> Level:
+    """The most likely noise near a level: a pattern search over ln ρ√τ and ln τ.
+
+    What a slow plant feels is ρ²τ, so that the two directions are nearly independent.
+
+    Args:
+        best: where to begin.
+        at: the level of a noise.
+        shortest: correlation time, below which the error is white [s].
+    """
+    step, alone = FIRST, True  # ρ alone first: at a wrong ρ a wrong τ is likely
+    while step > LAST:
+        near = [(step, 1.0), (1 / step, 1.0)]
+        near += [] if alone else [(1.0, step**2), (1.0, step**-2)]
+        new = _best([best, *(at(_moved(best.noise, r, τ, shortest)) for r, τ in near)])
+        if new is best:
+            step, alone = (step, False) if alone else (step**0.5, False)
+        best = new
     return best
+
+
+def _moved(noise: Noise, felt: float, time: float, shortest: float) -> Noise:
+    """A noise whose ρ√τ and τ are multiplied."""
+    longer = max(noise.time * time, shortest)
+    return Noise(noise.ratio * felt * (noise.time / longer) ** 0.5, longer)
 
 
 def _best(levels: list[Level]) -> Level:

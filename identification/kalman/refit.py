@@ -99,6 +99,7 @@ def descent(
             return
         if fall < ENDED:
             level, fine = noise_at(at, prior, level, fine=True), True
+            yield at, level
             continue
         for _ in range(TRIES):
             if μ:
@@ -111,13 +112,12 @@ def descent(
         μ = μ / 10 if μ > DAMPED else 0.0
         moved = np.abs(move[at.space.logarithmic]).max(initial=0.0)
         at = point(at.predictor, at.space, at.q + move, at.linear if moved < NEAR else None)
-        level = noise_at(at, prior, level, fine=fine)
+        level = noise_at(at, prior, level, fine=False)
         yield at, level
 
 
 def finished(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray, taken: int) -> Refit:
-    """The end of a search, with its noise sharpened."""
-    level = noise_at(at, prior, level, fine=True)
+    """The end of a search."""
     return Refit(at, level, _linearised(at, level, mean, prior).std(), mean, prior, taken)
 
 

@@ -76,9 +76,10 @@ class Discover:
 
 def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
     """The outcome and the path of its model as plain values; what is not finite is null."""
+    from identification.discovery.discovery_json import discovery_to_json
     from inca_mj.discovery_text import finite
 
-    record: dict[str, Any] = finite(found.to_json())
+    record: dict[str, Any] = finite(discovery_to_json(found))
     return {**record, "model": None if model is None else str(model)}
 
 

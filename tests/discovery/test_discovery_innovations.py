@@ -62,3 +62,15 @@ def test_a_constant_is_no_line():
     same = whiteness(white(5), H)
     assert shifted.p_line == pytest.approx(same.p_line, rel=1e-6)
     assert shifted.p_correlation == pytest.approx(same.p_correlation, rel=1e-6)
+
+
+@pytest.mark.parametrize("a", [0.1, 0.3, 0.6])
+def test_the_predictable_share_is_the_sum_of_squared_correlations(a):
+    rng = np.random.default_rng(5)
+    E = rng.standard_normal((20000, 4))
+    for k in range(1, len(E)):
+        E[k] += a * E[k - 1]
+    w = whiteness(E, H)
+    assert w.predictable == pytest.approx(a**2 / (1 - a**2), rel=0.1)
+    assert w.p_correlation < 1e-4  # beyond chance in all three, but of the first too little
+    assert w.correlated == (a > 0.1)
