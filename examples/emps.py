@@ -34,11 +34,12 @@ RECORDS = (
     Parameter("v_0", 0.0, "m/s", "qvel[0]", scale=1e-2),
 )
 KNOWN = np.array([0.3, 0.3, 0.3, 5.0, 1.0, 1.0])  # 30 %, 5 N, and for the start 1 mm, 10 mm/s
-FIT, SEARCH = 10, 20  # ms between samples: of the fit, of the discovery
+EVERY = 10  # samples of 1 ms
+HORIZON = 0.2  # of predictions [s]: an axis integrates what disturbs it, and a free run drifts
 
 
-def read_emps(path, every):
-    """A log of EMPS with every n-th sample [ms], the voltage between them as straight lines."""
+def read_emps(path, every=EVERY):
+    """A log of EMPS with every n-th sample, the voltage between them as straight lines."""
     data = loadmat(path)
     names = {"input_names": ("drive",), "output_names": ("position",)}
     time = np.arange(len(data["qm"])) * 1e-3
@@ -48,21 +49,21 @@ def read_emps(path, every):
 
 def main(folder):
     """Fit, discover, confirm on the other record."""
-    log, pulses = (read_emps(folder / f"DATA_EMPS{s}.mat", FIT) for s in ("", "_PULSES"))
+    log, pulses = (read_emps(folder / f"DATA_EMPS{s}.mat") for s in ("", "_PULSES"))
     plant = joint_plant(MODEL, RECORDS, log)
-    fit = estimate_windows(plant, log, tuple(START), 0.2, START)
+    fit = estimate_windows(plant, log, tuple(START), HORIZON, START)
     for (name, value), std in zip(fit.values.items(), fit.std, strict=True):
         print(f"{name:28} {value:7.2f} ± {std:.2f}, published {PUBLISHED[name]:7.2f}"
               f" ({100 * (value / PUBLISHED[name] - 1):+.1f} %)")  # fmt: skip
 
-    slow, free = read_emps(folder / "DATA_EMPS.mat", SEARCH), tuple(p.name for p in RECORDS)
-    found = discover(Base(plant, free, KNOWN), slow, candidates(plant, free), print)
+    free = tuple(p.name for p in RECORDS)
+    found = discover(Base(plant, free, KNOWN, HORIZON), log, candidates(plant, free), print)
     print(found.verdict, "| unexplained:", found.unexplained)
     for named in found.named:
         print(named.candidate.effect.name, named.parameters, f"confidence {named.confidence:.2f}")
 
     more = {n: v for n, v in found.final.at.values.items() if n not in free}  # its sizes
-    best = estimate_windows(plant, log, (*START, *more), 0.2, {**fit.values, **more})
+    best = estimate_windows(plant, log, (*START, *more), HORIZON, {**fit.values, **more})
     print({name: round(value, 2) for name, value in best.values.items()})
     for name, record in (("DATA_EMPS", log), ("PULSES, to which nothing was fitted", pulses)):
         for length in (0.1, 0.2, 0.5):

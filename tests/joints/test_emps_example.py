@@ -31,7 +31,7 @@ def test_the_model_holds_the_published_values():
     reason="EMPS_DATA names no folder with DATA_EMPS.mat; get it from nonlinearbenchmark.org",
 )
 def test_published_values_and_what_they_lack_come_out_of_the_records():
-    log, pulses = (emps.read_emps(DATA / f"DATA_EMPS{s}.mat", emps.FIT) for s in ("", "_PULSES"))
+    log, pulses = (emps.read_emps(DATA / f"DATA_EMPS{s}.mat") for s in ("", "_PULSES"))
     plant = joint_plant(emps.MODEL, emps.RECORDS, log)
     size = "asymmetric_viscous_friction.d_a@slide"
     fit = estimate_windows(plant, log, tuple(emps.START), 0.2, emps.START, tolerance=1e-4)
