@@ -16,10 +16,12 @@ from joint_cases import (
 )
 
 from identification import InputError, Parameter
+from identification.estimate_windows import estimate_windows
 from identification.joints.axes import SMOOTH, Axis, axes
 from identification.joints.catalogue import joint_effects
 from identification.joints.inputs import clipped, delayed, drifting, lagged
 from identification.joints.plant import candidates, joint_plant
+from identification.window_error import window_error
 
 
 def test_a_single_joint_has_one_place_and_two_have_a_common_one():
@@ -128,3 +130,13 @@ def test_joints_and_cables_live_in_one_process():
     np.testing.assert_array_equal(before, run(slider(), log, **{"offset.f_0@slide": 0.2}))
     native.install()
     np.testing.assert_array_equal(cables, simulate(build_twin(), make_input("prbs", 0.2)).angles)
+
+
+def test_windows_see_what_the_plant_makes_of_its_inputs():
+    u = steps(200, hold=7)
+    delay = {"delay.tau@force": 0.017}
+    log = slider_log(u, run(slider(), slider_log(u), **delay))
+    late = window_error(slider(), log, 0.25, delay)
+    assert np.abs(late).max() < 1e-9 < 1e-4 < np.abs(window_error(slider(), log, 0.25)).max()
+    fit = estimate_windows(slider(), log, ("mass", "damping"), 0.25, {"mass": 2.3, **delay})
+    assert fit.values["mass"] == pytest.approx(2.0, rel=1e-5)
