@@ -100,7 +100,7 @@ def test_windows_can_be_asked_for(log: Path, capsys: pytest.CaptureFixture[str])
         assert abs(result["parameters"][name]["value"] / value - 1) < 0.1
     assert "windows of 0.25 s leave" in " ".join(result["verdict"])
     assert "search of its own" in refused(capsys, log, "--windows", "0.25", "--loss", "huber")
-    assert "do not fit" in refused(capsys, log, "--windows", "nan")
+    assert "give a length above 0" in refused(capsys, log, "--windows", "nan")
 
 
 def test_innovations_tell_the_noise_of_sensors_and_currents(
