@@ -16,6 +16,7 @@ from inca_mj.commands.common import (
     folder,
     note,
     output_field,
+    refuse_folder,
     robot_field,
     say,
     say_json,
@@ -64,11 +65,12 @@ class Identify:
         from identification.profiles import profile
         from inca_mj.identify_json import identification_json, profile_sentence
 
-        out = None if self.output.out is None else folder(self.output.out)
+        refuse_folder(self.output.out)
         result = self._identify()
         profiles = [profile(result.fit.estimate, name) for name in self.profile]
         best = identification_json(result, profiles, self.seed)
-        if out is not None:
+        if self.output.out is not None:
+            out = folder(self.output.out)
             keep(result, profiles, out, self.robot)
             write_result(out / "result.json", self, best)
         if self.output.json:
