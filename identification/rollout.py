@@ -30,6 +30,7 @@ UNDERIVED = {
     "numeric_data",
     "dof_damping",
     "jnt_stiffness",
+    "jnt_user",
 }
 
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from identification.coordinates import Coordinates
 from identification.predictor import Predictor, output_columns
-from identification.rollout import State, rollout
+from identification.rollout import State, hold, rollout, substeps
 from identification.sensitivity import FORWARD_STEP
 from identification.windows import FirstStates, Windows, moved
 
@@ -69,20 +69,39 @@ class Shooting:
 
     def outputs(self, q: np.ndarray, moves: list[np.ndarray]) -> np.ndarray:
         """Outputs of k points q (k, p), each over all windows from its d: (k, W, L, ny)."""
-        predictor, cut, W = self.predictor, self.cut, len(self.cut.starts)
+        predictor, W = self.predictor, len(self.cut.starts)
         model = predictor.plant.model
         _, numbers = predictor.settings(self.space.decode(q))
         starts = [self.states(d) for d in moves]
         rows = (np.concatenate([getattr(s, f) for s in starts]) for f in ("qpos", "qvel", "act"))
+        inputs, every, hold_kind = self._inputs(self.space.decode(q))
         run = rollout(
-            model, State(*rows), np.tile(cut.inputs, (len(q), 1, 1)),
-            predictor.log.sampling_time,
+            model, State(*rows), inputs, predictor.log.sampling_time / every,
             numbers=[(slot, np.repeat(column, W)) for slot, column in numbers],
-            record=("qpos", "qvel"), hold_kind=predictor.log.hold,
+            record=("qpos", "qvel"), hold_kind=hold_kind,
         )  # fmt: skip
+        run = {field: states[:, ::every] for field, states in run.items()}
         columns = output_columns(model, predictor.log.output_names)
         y = np.stack([run[field][:, :, i] for field, i in columns], axis=-1)
         return y.reshape(len(q), W, *y.shape[1:])
+
+    def _inputs(self, values: np.ndarray) -> tuple[np.ndarray, int, str]:
+        """Inputs of all windows of k value sets, how many of them a sample has, and their hold.
+
+        What a plant makes of its inputs depends on those before the window.
+        """
+        predictor, cut, log = self.predictor, self.cut, self.predictor.log
+        every = substeps(log.sampling_time, predictor.plant.model.opt.timestep)
+        held = hold(log.inputs, every, log.hold)
+        made = predictor.inputs(values)(held)
+        if made is held:
+            return np.tile(cut.inputs, (len(values), 1, 1)), 1, log.hold
+        last = np.zeros((*made.shape[:-2], 1, made.shape[-1]))  # is not reached
+        made = np.broadcast_to(np.concatenate([made, last], axis=-2),
+                               (len(values), len(held) + 1, held.shape[1]))  # fmt: skip
+        steps = np.arange((cut.inputs.shape[1] - 1) * every + 1)
+        rows = every * cut.starts[:, None] + steps
+        return made[:, rows].reshape(-1, len(steps), held.shape[1]), every, "zoh"
 
 
 @dataclass(frozen=True)

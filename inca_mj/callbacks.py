@@ -23,12 +23,13 @@ import mujoco
 import numpy as np
 from numba import njit, types
 
+from identification.joints.callback import add_joint_forces
+from identification.native.memory import load_byte, load_constant, load_double, store_double
 from inca_mj import law
 from inca_mj.effects.compose import rates, total
 from inca_mj.effects.hooks import Drive
 from inca_mj.effects.layout import KEY, Layout
 from inca_mj.fields import D, M, cable, double, drive, integer, word
-from inca_mj.memory import load_byte, load_constant, load_double, store_double
 from inca_mj.platform import connector, dof, platform, push, span, velocity, wrench
 
 _USER = int(mujoco.mjtSensor.mjSENS_USER)
@@ -137,6 +138,7 @@ def callbacks(layout: Layout) -> dict[str, Callable[..., Any]]:
         )  # fmt: skip
 
     def passive(m, d):  # type: ignore[no-untyped-def]
+        add_joint_forces(m, d)  # of other models in this process
         if not _is_ours(m):
             return
         qfrc = word(d, D.qfrc_passive)

@@ -13,7 +13,8 @@ import mujoco
 from numba import cfunc
 
 from identification.errors import InputError
-from inca_mj import structs
+from identification.joints.native import carries, carry
+from identification.native import structs
 from inca_mj.callbacks import SIGNATURES, callbacks
 from inca_mj.effects.layout import Layout
 from inca_mj.fields import FIELDS
@@ -51,7 +52,7 @@ def _compiled(layout: Layout) -> dict[str, Any]:
     """The callbacks, compiled once a process: a disk cache would outlive a MuJoCo upgrade."""
     _check_structs()
     return {
-        name: _keep(cfunc(SIGNATURES[name], error_model="numpy")(function).ctypes)
+        name: _keep(name, cfunc(SIGNATURES[name], error_model="numpy")(function).ctypes)
         for name, function in callbacks(layout).items()
     }
 
@@ -59,9 +60,9 @@ def _compiled(layout: Layout) -> dict[str, Any]:
 _OURS: list[Any] = []  # every callback ever compiled here; MuJoCo holds bare pointers to them
 
 
-def _keep(callback: Any) -> Any:
+def _keep(name: str, callback: Any) -> Any:
     _OURS.append(callback)
-    return callback
+    return carry(callback) if name == "passive" else callback
 
 
 def install(layout: Layout | None = None) -> None:
@@ -77,7 +78,8 @@ def install(layout: Layout | None = None) -> None:
     compiled = _compiled(layout or Layout())
     for name in compiled:
         present = getattr(mujoco, f"get_mjcb_{name}")()
-        if present is not None and not any(present is own for own in _OURS):
+        known = any(present is own for own in _OURS) or carries(present)
+        if present is not None and not known:
             raise InputError(
                 f"another library has installed mjcb_{name}, and MuJoCo holds one a process;"
                 f" release it with mujoco.set_mjcb_{name}(None), or use a process of its own"

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from numba import njit
 
+from identification.native.memory import load_constant, load_double, store_double
 from inca_mj.effects.hooks import Platform
 from inca_mj.fields import D, M, double, integer, word
-from inca_mj.memory import load_constant, load_double, store_double
 
 
 @njit

@@ -90,7 +90,7 @@ def discover(
     where = located(nominal, missing) if verdict != "nothing missing" else ()
     return Discovery(
         log, verdict, named, bool(left), step.refit.level.sigma, step.unseen.disturbance,
-        nominal.unseen.gap(log), step.unseen.gap(log), nominal.refit, step.refit,
+        nominal.unseen.gap, step.unseen.gap, nominal.refit, step.refit,
         log.outputs - nominal.unseen.e, log.outputs - step.unseen.e, first, ranked,
         detectable(ranked), where, left, missing, clock.seconds,
     )  # fmt: skip

@@ -28,11 +28,14 @@ class Base:
         plant: the model, all candidate effects included.
         names: its free parameters.
         std: prior std of each, relative where it is logarithmic, else in its unit, shape (p,).
+        horizon: over which predictions are judged [s]; None for a free run of the whole log, which
+            says little of a robot that integrates what disturbs it.
     """
 
     plant: Plant
     names: tuple[str, ...]
     std: np.ndarray
+    horizon: float | None = None
 
 
 def fit_with(

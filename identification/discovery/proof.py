@@ -6,7 +6,8 @@
     share = (rms²(without) - rms²(with))/(rms²(without) - σ² - d²)
 
 Both residuals pass the filter of the model without the effect, so that neither predictor follows
-the data more closely than the other; d is what input errors do to a free run.
+the data more closely than the other. rms is that of a free run, d what input errors do to it; where
+a free run drifts by them, rms and d are those over a horizon (see `identification.window_error`).
 """
 
 from __future__ import annotations
@@ -16,12 +17,16 @@ from dataclasses import dataclass
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from identification.discovery.disturbed import disturbed, disturbed_windows
 from identification.discovery.result import Gap, Proof
+from identification.errors import InputError
 from identification.kalman.noise_model import Whitener, whitener
 from identification.kalman.point import beyond
 from identification.kalman.refit import Refit
 from identification.log import Log
 from identification.metrics import fit_percent
+from identification.window_error import window_error
+from identification.windows import windows
 
 BLOCKS = 20
 
@@ -36,7 +41,9 @@ class Unseen:
         innovations: whitened, in units of σ, shape (N, ny).
         filter: what whitened them.
         first: first unseen sample.
-        disturbance: rms of what input errors do to the free run on the unseen samples.
+        disturbance: rms of what input errors do to the error that is judged.
+        measured: outputs of the unseen samples that are judged, shape (n, ny).
+        judged: error there, of the free run or over the horizon, shape (n, ny).
     """
 
     refit: Refit
@@ -45,43 +52,48 @@ class Unseen:
     filter: Whitener
     first: int
     disturbance: float
+    measured: np.ndarray
+    judged: np.ndarray
 
     @property
     def rms(self) -> float:
-        """Of the free run on the unseen samples."""
-        return float(np.sqrt(np.mean(self.e[self.first :] ** 2)))
+        """Of the error that is judged."""
+        return float(np.sqrt(np.mean(self.judged**2)))
 
-    def gap(self, log: Log) -> Gap:
-        """The free-run error on the unseen samples of a log."""
-        measured = log.outputs[self.first :]
-        return Gap(self.rms, fit_percent(measured, measured - self.e[self.first :]))
+    @property
+    def gap(self) -> Gap:
+        """The error on the unseen samples."""
+        return Gap(self.rms, fit_percent(self.measured, self.measured - self.judged))
 
 
-def unseen(fit: Refit, whole: Log) -> Unseen:
-    """A fit, predicted over the whole log."""
+def unseen(fit: Refit, whole: Log, horizon: float | None = None) -> Unseen:
+    """A fit, predicted over the whole log.
+
+    Args:
+        fit: on the beginning of the log.
+        whole: the log.
+        horizon: of the errors that are judged [s]; those of the free run when None.
+    """
     at = beyond(fit.at, whole)
     first = len(fit.at.log)
     with threadpool_limits(1, "blas"):
         filter_ = whitener(at.linear, fit.level.noise, whole.sampling_time)
         E = filter_(at.e) / fit.level.sigma
-        moved = _disturbed(filter_.A, filter_.C, fit.level.noise.ratio, at.linear.B.shape[2])
-    disturbance = fit.level.sigma * np.sqrt(moved[first:].mean()) if moved.size else 0.0
-    return Unseen(fit, at.e, E, filter_, first, float(disturbance))
-
-
-def _disturbed(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -> np.ndarray:
-    """Variance that input errors put on the outputs of a free run, mean over them, shape (N,)."""
-    if not A.size:
-        return np.zeros(0)
-    P = np.zeros(A.shape[1:])
-    P[-nu:, -nu:] = ratio**2 * np.eye(nu)
-    out = [0.0]
-    for step in A:
-        a = step[-1, -1]
-        P = step @ P @ step.T
-        P[-nu:, -nu:] += (1 - a**2) * ratio**2 * np.eye(nu)
-        out.append(float(np.einsum("ij,jk,ik->", C, P, C)) / len(C))
-    return np.array(out)
+        nu, ratio = at.linear.B.shape[2], fit.level.noise.ratio
+        measured, judged = whole.outputs[first:], at.e[first:]
+        if horizon is None:
+            moved = disturbed(filter_.A, filter_.C, ratio, nu)[first:]
+        else:
+            errors = window_error(at.predictor.plant, whole, horizon, at.values)
+            starts = windows(whole, horizon).starts
+            late, L = starts >= first, errors.shape[1]
+            if not late.any():
+                raise InputError(f"no window of {horizon:g} s begins in the unseen samples")
+            judged = errors[late].reshape(-1, errors.shape[2])
+            measured = windows(whole, horizon).outputs[late].reshape(judged.shape)
+            moved = disturbed_windows(filter_, ratio, nu, starts[late], L)
+    disturbance = fit.level.sigma * np.sqrt(moved.mean()) if moved.size else 0.0
+    return Unseen(fit, at.e, E, filter_, first, float(disturbance), measured, judged)
 
 
 def prove(without: Unseen, with_it: Unseen) -> Proof:

@@ -87,7 +87,7 @@ def fitted(
     """
     nearby = None if near is None else near.refit
     fit = fit_with(base, whole.part("estimation"), candidates, start, near=nearby)
-    return Step(candidates, fit, unseen(fit, whole))
+    return Step(candidates, fit, unseen(fit, whole, base.horizon))
 
 
 def scores_of(step: Step, columns: Sequence[Column]) -> tuple[Score, ...]:

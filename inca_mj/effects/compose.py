@@ -12,9 +12,9 @@ from typing import Any
 
 from numba import njit
 
+from identification.native.memory import load_constant, load_double, store_double
 from inca_mj.effects.hooks import Drive, DriveEffect
 from inca_mj.effects.layout import Layout, Place
-from inca_mj.memory import load_constant, load_double, store_double
 
 Function = Callable[..., Any]
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from identification.effect import Shape, Size
+from identification.effect_parameters import effect_parameters
 from identification.parameter import Parameter, ParameterSet
 from identification.paths import Slot
 from identification.predictor import Numbers
@@ -22,12 +22,7 @@ from inca_mj.geometry import DRIVES, Geometry
 
 def records(effects: Sequence[DriveEffect]) -> tuple[Parameter, ...]:
     """The parameters of some effects: `name.size` at all its places, `name.shape` once."""
-    out = []
-    for effect in (e.effect for e in effects):
-        for size in effect.sizes:
-            out += [_size(effect.parameter(size.name, w), size) for w in effect.places]
-        out += [_shape(f"{effect.name}.{shape.name}", shape) for shape in effect.shapes]
-    return tuple(out)
+    return tuple(record for e in effects for record in effect_parameters(e.effect))
 
 
 def with_effects(parameters: ParameterSet, effects: Sequence[DriveEffect]) -> ParameterSet:
@@ -35,21 +30,6 @@ def with_effects(parameters: ParameterSet, effects: Sequence[DriveEffect]) -> Pa
     known = {p.name for p in parameters}
     new = tuple(p for p in records(effects) if p.name not in known)
     return replace(parameters, records=(*parameters.records, *new))
-
-
-def _size(name: str, size: Size) -> Parameter:
-    lower = -size.farthest if size.sign <= 0 else 0.0
-    upper = size.farthest if size.sign >= 0 else 0.0
-    return Parameter(
-        name, 0.0, size.unit, "effect", lower, upper, size.name, size.about, scale=size.probe
-    )
-
-
-def _shape(name: str, shape: Shape) -> Parameter:
-    middle = shape.grid[len(shape.grid) // 2]
-    return Parameter(
-        name, middle, shape.unit, "effect", shape.lower, shape.upper, shape.name, shape.about
-    )
 
 
 def drive_values(effect: DriveEffect, values: Mapping[str, float]) -> np.ndarray:

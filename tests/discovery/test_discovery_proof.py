@@ -45,7 +45,7 @@ def test_the_unseen_samples_are_those_after_the_fitted_ones(sprung):
     fit = without.refit
     np.testing.assert_allclose(seen.e[: seen.first], fit.at.e, atol=1e-12)
     assert seen.rms == pytest.approx(np.sqrt(np.mean(seen.e[seen.first :] ** 2)))
-    assert seen.gap(log).rms == seen.rms
+    assert seen.gap.rms == seen.rms
 
 
 def test_both_are_seen_through_the_filter_of_the_first(sprung):

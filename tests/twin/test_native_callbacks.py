@@ -10,8 +10,9 @@ import pytest
 from mujoco.batch import Batch
 
 from identification.errors import DivergenceError, InputError
+from identification.native import structs
 from identification.rollout import State
-from inca_mj import law, native, structs
+from inca_mj import law, native
 from inca_mj.inputs import make_input
 from inca_mj.run import simulate
 from inca_mj.twin import build_twin

@@ -1,0 +1,94 @@
+"""Another robot than INCA: EMPS, a real axis with a ball screw; what do its published values lack?
+
+    M v̇ = g u - F_v v - f_c tanh(v/v₀) + f_0           u [V] -> v̇; g is known
+
+The data are DATA_EMPS.mat and DATA_EMPS_PULSES.mat of Janot, Gautier, Brunot (2019); see
+nonlinearbenchmark.org.
+Run it: python examples/emps.py FOLDER
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from scipy.io import loadmat
+
+from identification import Log, Parameter, Predictor
+from identification.decimate import decimate
+from identification.discovery.discover import discover
+from identification.discovery.extend import Base
+from identification.estimate_windows import estimate_windows
+from identification.joints.plant import candidates, joint_plant
+from identification.window_error import window_error
+
+MODEL = Path(__file__).parents[1] / "models" / "emps.xml"
+F_C, F_0 = "coulomb_friction.f_c@slide", "offset.f_0@slide"
+PUBLISHED = {"M": 95.11, "F_v": 203.5, F_C: 20.39, F_0: 3.16}  # ours pushes: theirs is -3.16
+START = {"M": 70.0, "F_v": 150.0, F_C: 30.0, F_0: 0.1}  # where the fit begins
+RECORDS = (
+    Parameter("M", 95.11, "kg", "body/carriage.mass", lower=0.0),
+    Parameter("F_v", 203.5, "N s/m", "joint/slide.damping", lower=0.0),
+    Parameter(F_C, 20.39, "N", "effect", lower=0.0, about="Coulomb level"),
+    Parameter(F_0, 3.16, "N", "effect", about="constant force"),
+    Parameter("x_0", 0.0, "m", "qpos[0]", scale=1e-3),
+    Parameter("v_0", 0.0, "m/s", "qvel[0]", scale=1e-2),
+)
+KNOWN = np.array([0.3, 0.3, 0.3, 5.0, 1.0, 1.0])  # 30 %, 5 N, and for the start 1 mm, 10 mm/s
+EVERY = 10  # samples of 1 ms
+HORIZON = 0.2  # of predictions [s]: an axis integrates what disturbs it, and a free run drifts
+
+
+def read_emps(path, every=EVERY):
+    """A log of EMPS with every n-th sample, the voltage between them as straight lines."""
+    data = loadmat(path)
+    names = {"input_names": ("drive",), "output_names": ("position",)}
+    time = np.arange(len(data["qm"])) * 1e-3
+    units = {"drive": "V", "position": "m"}
+    return decimate(Log(time, data["vir"], data["qm"], **names, units=units), every)
+
+
+def main(folder):
+    """Fit, discover, confirm on the other record."""
+    log, pulses = (read_emps(folder / f"DATA_EMPS{s}.mat") for s in ("", "_PULSES"))
+    plant = joint_plant(MODEL, RECORDS, log)
+    fit = estimate_windows(plant, log, tuple(START), HORIZON, START)
+    for (name, value), std in zip(fit.values.items(), fit.std, strict=True):
+        print(f"{name:28} {value:7.2f} ± {std:.2f}, published {PUBLISHED[name]:7.2f}"
+              f" ({100 * (value / PUBLISHED[name] - 1):+.1f} %)")  # fmt: skip
+
+    free = tuple(p.name for p in RECORDS)
+    found = discover(Base(plant, free, KNOWN, HORIZON), log, candidates(plant, free), print)
+    print(found.verdict, "| unexplained:", found.unexplained)
+    for named in found.named:
+        print(named.candidate.effect.name, named.parameters, f"confidence {named.confidence:.2f}")
+
+    more = {n: v for n, v in found.final.at.values.items() if n not in free}  # its sizes
+    best = estimate_windows(plant, log, (*START, *more), HORIZON, {**fit.values, **more})
+    print({name: round(value, 2) for name, value in best.values.items()})
+    for name, record in (("DATA_EMPS", log), ("PULSES, to which nothing was fitted", pulses)):
+        for length in (0.1, 0.2, 0.5):
+            a, b = (mean_square(plant, record, length, e.values) for e in (fit, best))
+            print(f"{name}, {length} s windows: rms {1e6 * a**0.5:.1f} -> {1e6 * b**0.5:.1f} µm,"
+                  f" mean square {100 * (b / a - 1):+.0f} %")  # fmt: skip
+        a, b = (free_run(plant, record, e) for e in (fit, best))
+        print(f"{name}, free run of {record.duration:.0f} s: rms {a:.4f} -> {b:.4f} m")
+
+
+def mean_square(plant, log, length, values):
+    """Of the error in windows whose starts are free [m^2]."""
+    return np.mean(window_error(plant, log, length, values) ** 2)
+
+
+def free_run(plant, log, fit):
+    """Rms error of the whole record from where its first window begins [m]; it drifts."""
+    start = {"x_0": fit.states.qpos[0, 0], "v_0": fit.states.qvel[0, 0]}
+    y = Predictor(plant, log, (), {**fit.values, **start}).predict(np.empty((1, 0)))[0]
+    return np.sqrt(np.mean((log.outputs - y) ** 2))
+
+
+if __name__ == "__main__":
+    where = Path(sys.argv[1] if len(sys.argv) > 1 else "data/emps")
+    if (where / "DATA_EMPS.mat").exists():
+        main(where)
+    else:
+        print(f"{where} has no DATA_EMPS.mat; get it from nonlinearbenchmark.org and say where")

@@ -1,0 +1,66 @@
+"""How well a model with given values predicts a log over a horizon, wherever it begins.
+
+r_w = y_w - ŷ_w(θ, x̄_w ⊕ d_w),   d_w the state at the start of window w that explains it best
+
+A free run of a robot that integrates its input drifts by whatever disturbs it; over a window the
+error is the model's. Nothing of the model is fitted here, so that a log which no fit has seen
+compares two models fairly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from identification.coordinates import Coordinates
+from identification.errors import DivergenceError
+from identification.log import Log
+from identification.noise import noise_floor
+from identification.predictor import Plant, Predictor
+from identification.shooting import Shooting, tangent
+from identification.windows import first_states, windows
+
+STEPS = 8  # of Gauss and Newton, at most
+ENDED = 1e-3  # relative fall of the squared error that ends them
+
+
+def window_error(
+    plant: Plant, log: Log, length: float, values: Mapping[str, float] | None = None
+) -> np.ndarray:
+    """Errors of the outputs in windows of a log, each from its own best state.
+
+    Args:
+        plant: the model.
+        log: what was measured.
+        length: of a window [s].
+        values: parameters that are not the plant's own.
+
+    Returns:
+        Shape (W, L, ny), in the outputs' unit.
+
+    Raises:
+        InputError: the windows do not fit the log, or a name is unknown.
+        DivergenceError: the model cannot be simulated.
+    """
+    none, cut = np.zeros(0), windows(log, length)
+    predictor = Predictor(plant, log, (), dict(values or {}))
+    space = Coordinates((), none.astype(bool), none, none, none)
+    sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
+    believed = first_states(predictor, none, cut)
+    shooting = Shooting(predictor, space, cut, believed, np.eye(log.outputs.shape[1]) / sigma)
+    d = np.zeros((len(cut.starts), 2 * plant.model.nv + plant.model.na))
+    at = tangent(shooting, none, d)
+    for _ in range(STEPS):
+        along = np.einsum("wmk,wm->wk", at.U, at.r) * (at.s > 0) / np.where(at.s > 0, at.s, 1.0)
+        move = np.einsum("wkx,wk->wx", at.Vt, along) / at.size
+        try:
+            new = tangent(shooting, none, d + move)
+        except DivergenceError:
+            break
+        fell = np.sum(at.r**2) - np.sum(new.r**2)
+        if fell > 0:
+            d, at = d + move, new
+        if fell < ENDED * np.sum(at.r**2):
+            break
+    return shooting.error(at.r)

@@ -1,0 +1,45 @@
+"""The error over a horizon: that of the sensors for a right model, whatever pushed it before."""
+
+import numpy as np
+import pytest
+from estimation_plants import record, slider
+
+from identification import Log
+from identification.window_error import window_error
+
+NOISE = 1e-4
+
+
+def noisy(**values):
+    log = record(slider(**values), ("position",), n=200)
+    y = log.outputs + NOISE * np.random.default_rng(3).standard_normal(log.outputs.shape)
+    return Log(log.time, log.inputs, y, log.input_names, log.output_names)
+
+
+def test_a_right_model_leaves_the_noise_less_what_each_start_takes():
+    log = noisy(x0=0.3, v0=-0.2)
+    error = window_error(slider(), log, 0.4)  # its start is another: windows have their own
+    assert error.shape == (10, 20, 1)
+    assert np.sqrt(np.mean(error**2)) == pytest.approx(NOISE * np.sqrt(18 / 20), rel=0.1)
+
+
+def test_a_wrong_model_leaves_more_the_longer_the_horizon():
+    log = noisy()
+    short, long = (window_error(slider(), log, s, {"mass": 3.0}) for s in (0.4, 2.0))
+    assert 2 * NOISE < np.sqrt(np.mean(short**2)) < 0.5 * np.sqrt(np.mean(long**2))
+
+
+def test_the_start_of_a_window_is_the_best_there_is():
+    """Against least squares over position and rate of a linear plant's window."""
+    log = noisy()
+    error = window_error(slider(), log, 0.4, {"damping": 4.0})[0, :, 0]
+    plant = slider(damping=4.0)
+    free, right, fast = (
+        record(plant.__class__(plant.model, plant.parameters.with_values(start)), ("position",),
+               inputs=log.inputs[:20]).outputs[:, 0]
+        for start in ({"x0": 0.0, "v0": 0.0}, {"x0": 1.0, "v0": 0.0}, {"x0": 0.0, "v0": 1.0})
+    )  # fmt: skip
+    X = np.stack([right - free, fast - free], axis=1)
+    y = log.outputs[:20, 0] - free
+    expected = y - X @ np.linalg.lstsq(X, y, rcond=None)[0]
+    np.testing.assert_allclose(error, expected, atol=1e-8)
