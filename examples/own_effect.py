@@ -28,7 +28,7 @@ WINDING_FRICTION = DriveEffect(
     Effect(
         "winding_friction",
         law="-c |φ| tanh(β ω)",
-        sizes=(Size("c", "N m/rad", largest=2e-3, probe=1e-4, sign=1, about="growth per turn"),),
+        sizes=(Size("c", "N m/rad", largest=2e-3, probe=1e-4, sign=1, about="growth per radian"),),
         places=DRIVES_EACH,  # on all drives alike, or on one
         phrase="friction: grows with what is wound",
     ),

@@ -20,6 +20,7 @@ from identification.noise import noise_floor
 from identification.predictor import Plant
 
 ENOUGH = 1.5  # times the noise floor: a search that ends below needs no other
+ELSEWHERE = 0.1  # of the spread, for what is no logarithm: a pose is known to centimetres
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,8 @@ def estimate_from(
         n: how many starts at most, the given one included.
         seed: of the other starts.
         start: starting values by name; the plant's own where not given.
-        spread: largest distance of a start in q: relative for a positive parameter, else m or rad.
+        spread: largest distance of a start in ln(value) of a positive parameter; of others a
+            tenth, in units of their scale (m, rad).
         options: how to search.
         progress: is told one line per accepted step.
 
@@ -73,11 +75,16 @@ def estimate_from(
     floor = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2)))
     best: Estimate | None = None
     errors: list[float] = []
-    for row in values:
+    for k, row in enumerate(values):
         begin = {**(start or {}), **dict(zip(names, row.tolist(), strict=True))}
         try:
             found = estimate(plant, log, names, begin, options, progress)
             error = _rms(found)
+        except InputError:
+            if k == 0:
+                raise
+            errors.append(np.inf)  # a start that the plant cannot have
+            continue
         except DivergenceError as lost:
             errors.append(np.inf)
             reason = lost
@@ -95,7 +102,8 @@ def estimate_from(
 def _around(space: Coordinates, first: np.ndarray, n: int, spread: float, seed: int) -> np.ndarray:
     """The first start and n - 1 others around it, inside the bounds, shape (n, p)."""
     q = space.encode(first)
-    low, high = np.maximum(space.lower, q - spread), np.minimum(space.upper, q + spread)
+    reach = np.where(space.logarithmic, spread, ELSEWHERE * spread)
+    low, high = np.maximum(space.lower, q - reach), np.minimum(space.upper, q + reach)
     share = np.random.default_rng(seed).uniform(0.01, 0.99, (n - 1, len(q)))
     return np.concatenate([first[None], space.decode(low + share * (high - low))])
 

@@ -45,8 +45,12 @@ class Options:
 
     def __post_init__(self) -> None:
         h = self.horizons
-        if not h or h[0] <= 0 or h[-1] != 1 or any(np.diff(h) <= 0):
+        if not h or not h[0] > 0 or h[-1] != 1 or not all(np.diff(h) > 0):
             raise InputError(f"horizons {h} must grow to 1, such as {HORIZONS}")
+        if self.method == "lm" and self.loss != "linear":
+            raise InputError(
+                f"method 'lm' knows no robust loss; leave out {self.loss!r}, or search by 'trf'"
+            )
         for name, std in self.priors.items():
             if not std > 0:
                 raise InputError(f"the prior of {name} has std {std:g}; give a positive one")

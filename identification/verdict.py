@@ -44,7 +44,9 @@ def identifiable_sentences(fit: Fit) -> list[str]:
         weak = [n for n, r in zip(found.names, relative, strict=True) if r > 0.5]
         said = f"All {len(found.names)} directions of the parameters are felt by the outputs."
         if weak:
-            said += f" Too weakly for this noise: {', '.join(weak)}, whose std is half the value."
+            said += (
+                f" Too weakly for this noise: {', '.join(weak)}, their std exceeds half the value."
+            )
         return [said]
     unknown = [n for n, u in zip(found.names, found.undetermined, strict=True) if u]
     sentences = [
@@ -84,6 +86,8 @@ def _enough(fit: Fit) -> list[str]:
             f"{coloured} outputs' residuals are coloured, none depends on the input: noise that is"
             " not white, or an effect that the input does not excite."
         )
+    elif ratio > ABOVE:
+        sentences.append("It is white and independent of the input: look at the sensors first.")
     else:
         sentences.append("The residual is white and independent of the input: the model suffices.")
     return sentences

@@ -107,6 +107,8 @@ def identify(
     if free:
         return Identification(log, (step(tuple(free), {}),), 0, tuple(tried))
     all_of_it = step((*MECHANICS, *POSE), {})
+    if all_of_it.estimate.status == "stopped":
+        return Identification(log, (all_of_it,), 0, tuple(tried))
     found = all_of_it.estimate.values
     unknown = (*UNKNOWN, *POSE)
     second = step(unknown, {name: found[name] for name in unknown})
@@ -145,6 +147,8 @@ def identify_windows(
         InputError: the windows do not fit the log, or as `identify`.
         DivergenceError: the nominal values, or the free run, cannot be simulated.
     """
+    if not length > 0:
+        raise InputError(f"windows of {length:g} s hold nothing; give a length above 0")
     if free and not set(free) - set(POSE):
         raise InputError(
             f"windows cannot find {', '.join(free)} alone: each has a start of its own; name a"

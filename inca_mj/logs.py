@@ -31,6 +31,8 @@ UNITS = {
 LIMITS = {"current": 20.0, "angle": 400.0, "x": 3.0, "y": 3.0, "z": 4.0, "tension": 1000.0}
 RATES = {"angle": 300.0}
 
+SLOWEST = 0.5  # sampling time above which a log's time is in milliseconds [s]
+
 ZERO = 0.05  # a log begins at φ = 0; 0.05 rad is 0.9 mm of cable, 30 counts of an encoder [rad]
 
 
@@ -42,6 +44,13 @@ def read_inca_log(path: str | Path) -> Log:
             begin at zero angles.
     """
     log = read_log(path, CURRENTS, ANGLES, OPTIONAL, units=UNITS, limits=LIMITS, rates=RATES)
+    if log.sampling_time > SLOWEST:
+        raise InputError(
+            f"{path} has a sample every {log.sampling_time:g} s, too few for a robot that moves;"
+            " time must be in seconds: is it in milliseconds?"
+        )
+    if not np.ptp(log.outputs, axis=0).any():
+        raise InputError(f"nothing moves in {path}: all eight angles are constant")
     worst = int(np.abs(log.outputs[0]).argmax())
     if abs(log.outputs[0, worst]) > ZERO:
         raise InputError(

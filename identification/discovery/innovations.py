@@ -53,6 +53,7 @@ def whiteness(E: np.ndarray, sampling_time: float) -> Whiteness:
     E = E - E.mean(axis=0)
     power = np.mean(E**2, axis=0)
     r = np.array([np.mean(E[lag:] * E[:-lag], axis=0) / power for lag in range(1, LAGS + 1)])
+    excess = max(0.0, float(np.sum(r**2) / ny - LAGS / n))
     lags = np.arange(1, LAGS + 1)[:, None]
     Q = float(n * (n + 2) * np.sum(r**2 / (n - lags)))
     I = np.abs(np.fft.rfft(E, axis=0)[1 : (n + 1) // 2]) ** 2
@@ -65,7 +66,7 @@ def whiteness(E: np.ndarray, sampling_time: float) -> Whiteness:
     louder = float(n / 2 * np.sum((ratio - 1) ** 2))
     return Whiteness(
         float(chi2.sf(Q, LAGS * ny)),
-        float(np.sum(r**2) / ny - LAGS / n),
+        excess / (1 + excess),  # a² of a first-order process with the coefficient a
         float(min(1.0, line)),
         channel,
         float((at + 1) / (n * sampling_time)),

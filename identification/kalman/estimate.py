@@ -20,7 +20,6 @@ from identification.coordinates import coordinates
 from identification.errors import InputError
 from identification.estimation import Estimate
 from identification.fit import Fit, assess, combinations_of
-from identification.identifiability import identifiability
 from identification.information import root_of
 from identification.kalman.linear import linearise
 from identification.kalman.noise_fit import Level
@@ -159,14 +158,13 @@ def _of_innovations(end: Refit, fit: Fit) -> Fit:
     with threadpool_limits(1, "blas"):
         filter_ = whitener(at.linear, end.level.noise, at.log.sampling_time)
         E, S = filter_(at.e), filter_(at.J).reshape(at.e.size, -1) / σ
-    found = identifiability(S, at.space.names)
+    found = fit.found  # of the free run, whose blind directions are exact
     covariance = np.linalg.pinv(S.T @ S + np.diag(end.prior**2), hermitian=True)
     std = np.sqrt(np.diag(covariance))
     return replace(
         fit,
         std=np.where(found.undetermined, np.inf, std) * at.space.slope(at.q),
         correlation=covariance / np.outer(std, std),
-        found=found,
         combinations=combinations_of(found, fit.estimate, covariance),
         information=replace(fit.information, root=root_of(S)),
         tests=residual_tests(E, at.log.inputs),

@@ -19,6 +19,9 @@ from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_model import Noise, Whitener, whitener
 
 TIME = 0.03  # correlation time of the inputs' error at which a search begins [s]
+LONGEST = (
+    0.3  # what errs for longer is an effect: a noise of any length would explain a constant [s]
+)
 FIRST, LAST = 1.6, 1.15  # factors of the pattern search
 LEVELS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # ρ/ρ₀ to try
 
@@ -140,8 +143,8 @@ def sharpen(best: Level, at: Callable[[Noise], Level], shortest: float) -> Level
 
 def _moved(noise: Noise, felt: float, time: float, shortest: float) -> Noise:
     """A noise whose ρ√τ and τ are multiplied."""
-    longer = max(noise.time * time, shortest)
-    return Noise(noise.ratio * felt * (noise.time / longer) ** 0.5, longer)
+    other = float(np.clip(noise.time * time, shortest, LONGEST))
+    return Noise(noise.ratio * felt * (noise.time / other) ** 0.5, other)
 
 
 def _best(levels: list[Level]) -> Level:

@@ -102,6 +102,23 @@ def folder(path: Path) -> Path:
     return path
 
 
+def refuse_folder(path: Path | None) -> None:
+    """Refuse a folder that could not be made, before there are results to lose; makes nothing.
+
+    Raises:
+        InputError: it, or what is above it, is a file or cannot be written.
+    """
+    from identification.errors import InputError
+
+    if path is None:
+        return
+    there = next(p for p in (path, *path.absolute().parents) if p.exists())
+    if not there.is_dir():
+        raise InputError(f"cannot make folder {path}: {there} is a file; choose another")
+    if not os.access(there, os.W_OK):
+        raise InputError(f"cannot make folder {path}: {there} cannot be written; choose another")
+
+
 def say(text: str) -> None:
     """One line of result on stdout."""
     sys.stdout.write(text + "\n")

@@ -16,6 +16,7 @@ from inca_mj.commands.common import (
     folder,
     note,
     output_field,
+    refuse_folder,
     robot_field,
     say,
     say_json,
@@ -64,6 +65,7 @@ class Identify:
         from identification.profiles import profile
         from inca_mj.identify_json import identification_json, profile_sentence
 
+        refuse_folder(self.output.out)
         result = self._identify()
         profiles = [profile(result.fit.estimate, name) for name in self.profile]
         best = identification_json(result, profiles, self.seed)

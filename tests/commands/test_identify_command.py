@@ -100,7 +100,17 @@ def test_windows_can_be_asked_for(log: Path, capsys: pytest.CaptureFixture[str])
         assert abs(result["parameters"][name]["value"] / value - 1) < 0.1
     assert "windows of 0.25 s leave" in " ".join(result["verdict"])
     assert "search of its own" in refused(capsys, log, "--windows", "0.25", "--loss", "huber")
-    assert "do not fit" in refused(capsys, log, "--windows", "nan")
+    assert "give a length above 0" in refused(capsys, log, "--windows", "nan")
+
+
+def test_a_folder_that_cannot_be_made_is_refused_before_the_fit(
+    log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert "is a file; choose another" in refused(capsys, log, "--out", log / "inside")
+    assert "none.csv" in refused(capsys, tmp_path / "none.csv", "--out", tmp_path / "new")
+    assert not (tmp_path / "new").exists()  # bad input leaves nothing behind
+    assert "'lm' knows no robust loss" in refused(capsys, log, "--method", "lm", "--loss", "huber")
+    assert "must grow to 1" in refused(capsys, log, "--horizons", "nan", "1")
 
 
 def test_innovations_tell_the_noise_of_sensors_and_currents(

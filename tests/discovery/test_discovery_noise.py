@@ -44,7 +44,11 @@ def test_the_correlation_time_is_told_from_others():
     J = np.zeros((250, 1, 0))
     for time in (0.03, 0.3):
         e = drawn(plant, Noise(400.0, time), rng, 1)[0]
-        assert time / 3.5 < fit_noise(plant, e, J, np.zeros(0), STEP).noise.time < 3.5 * time
+        true, prior = Noise(400.0, time), np.zeros(0)
+        found = fit_noise(plant, e, J, prior, STEP)
+        assert time / 5 < found.noise.time < 5 * time
+        at_truth = likelihood(whitener(plant, true, STEP), true, e, J, prior)
+        assert found.log_likelihood > at_truth.log_likelihood - 0.5  # as likely as the truth
 
 
 def test_where_there_is_none_it_finds_none_or_what_no_output_notices():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from estimation_plants import record, slider
 
-from identification import DivergenceError, InputError
+from identification import DivergenceError, InputError, multistart
 from identification.estimation import Options
 from identification.multistart import estimate_from
 
@@ -34,3 +34,19 @@ def test_starts_that_all_diverge_are_said_to():
         estimate_from(slider(), log, ("stiffness",), 2, 0, start={"stiffness": 1e9})
     with pytest.raises(InputError, match="give one or more"):
         estimate_from(slider(), log, ("stiffness",), 0, 0)
+
+
+def test_a_start_that_the_plant_cannot_have_is_passed_over(monkeypatch):
+    log = record(slider(), ("position",), noise=1e-3)
+    search, seen = multistart.estimate, []
+
+    def picky(plant, log, names, start, *rest):
+        seen.append(start)
+        if len(seen) == 2:
+            raise InputError("no such start")
+        return search(plant, log, names, start, *rest)
+
+    monkeypatch.setattr(multistart, "estimate", picky)
+    monkeypatch.setattr(multistart, "ENOUGH", 0.0)
+    found = estimate_from(slider(stiffness=18.0), log, ("stiffness",), 3, 0)
+    assert np.isfinite(found.rms).tolist() == [True, False, True]
