@@ -1,11 +1,13 @@
 """The profile of one parameter: how well the others can make up for it.
 
     V_p(c) = min over the others of V(q | q_j = c)
-    95 %:  V_p(c) - V_p(q̂_j) < 3.84 s²,    s² = V(q̂)/(n ny - p)      (Venzon and Moolgavkar 1988)
+    95 %:  V_p(c) - V_p(q̂_j) < 3.84 s_j²,    s_j² = cov(q̂)_jj / (A⁻¹)_jj       (Kent 1982)
 
-3.84 is the 95 % point of χ² with one degree of freedom. Where V is a parabola this is the interval
-q̂ ± 1.96 std; where it is not, the profile is right and the std is not. A profile that stays below
-the line shows a parameter that the log cannot tell: its interval is open.
+3.84 is the 95 % point of χ² with one degree of freedom (Venzon and Moolgavkar 1988). cov is that of
+`identification.fit`, A = Σ SᵀS: for white noise s_j² = V(q̂)/(n ny - p), for a coloured residual it
+is larger. Where V is a parabola this is the interval q̂ ± 1.96 std; where it is not, the profile is
+right and the std is not. A profile that stays below the line, or that no simulation can follow,
+shows a parameter that the log cannot tell: its interval is open.
 """
 
 from __future__ import annotations
@@ -19,8 +21,7 @@ from scipy.stats import chi2
 from identification.errors import DivergenceError, InputError
 from identification.estimation import Estimate
 from identification.estimation import estimate as search
-from identification.identifiability import identifiability
-from identification.sensitivity import sensitivity
+from identification.fit import Fit
 
 LEVEL = float(chi2.ppf(0.95, 1))  # 3.84
 REACH = 3.0  # std to each side, where no points are given
@@ -35,7 +36,7 @@ class Profile:
         name: the parameter.
         estimate: its estimated value.
         values: where it was held, ascending, shape (k,).
-        rise: V_p - V(q̂) in units of s², infinite where no simulation was possible, shape (k,).
+        rise: V_p - V(q̂) in units of s_j², infinite where no simulation was possible, shape (k,).
         others: the other parameters there, by name, each (k,).
         interval: 95 % interval of the value; an end that the profile does not reach is infinite.
     """
@@ -54,12 +55,12 @@ class Profile:
 
 
 def profile(
-    estimate: Estimate, name: str, points: int | Sequence[float] = 9, max_evaluations: int = 30
+    fit: Fit, name: str, points: int | Sequence[float] = 9, max_evaluations: int = 30
 ) -> Profile:
-    """Profile one parameter of an estimate, refitting the others from point to neighbour.
+    """Profile one parameter of a fit, refitting the others from point to neighbour.
 
     Args:
-        estimate: where a search ended.
+        fit: an estimate and its uncertainty.
         name: the parameter.
         points: values of it, or how many to spread over ±3 std of its coordinate.
         max_evaluations: of the outputs, per point.
@@ -67,16 +68,16 @@ def profile(
     Raises:
         InputError: the name is not among the estimated ones, or fewer than two values remain.
     """
+    estimate = fit.estimate
     names = estimate.space.names
     if name not in names:
         raise InputError(f"{name!r} was not estimated; profile one of {', '.join(names)}")
     j, best = names.index(name), estimate.values
-    values = _spread(estimate, j, points) if isinstance(points, int) else np.sort(points)
+    values = _spread(fit, j, points) if isinstance(points, int) else np.sort(points)
     if len(values) < 2:
         raise InputError(f"a profile of {name} needs two values or more inside its bounds")
     bottom = _cost(estimate, best)
-    freedom = max(1, estimate.predictor.log.outputs.size - len(names))
-    scale = bottom / freedom or np.finfo(float).tiny
+    scale = _scale(fit, j, bottom)
     rise, found = np.full(len(values), np.inf), [best] * len(values)
     middle = int(np.searchsorted(values, best[name]))
     for way in (range(middle, len(values)), range(middle - 1, -1, -1)):
@@ -92,13 +93,23 @@ def profile(
     return Profile(name, best[name], values, rise, others, ends)
 
 
-def _spread(estimate: Estimate, j: int, points: int) -> np.ndarray:
+def _std_q(fit: Fit, j: int) -> float:
+    """Std of q_j; infinite where the log cannot say."""
+    return float(fit.std[j] / fit.estimate.space.slope(fit.estimate.q)[j])
+
+
+def _scale(fit: Fit, j: int, bottom: float) -> float:
+    """s_j², or that of white noise where the log cannot say."""
+    known, alone = _std_q(fit, j), float(fit.found.std[j])
+    freedom = max(1, fit.residual.size - len(fit.std))
+    both = np.isfinite(known) and np.isfinite(alone) and known > 0
+    return max((known / alone) ** 2 if both else bottom / freedom, np.finfo(float).tiny)
+
+
+def _spread(fit: Fit, j: int, points: int) -> np.ndarray:
     """Values evenly spaced in q_j, inside the bounds."""
-    space, q = estimate.space, estimate.q
-    J = sensitivity(estimate.predictor, space, q)
-    S = np.einsum("ij,njp->nip", estimate.whitener, J).reshape(-1, len(q))
-    error = np.sqrt(_cost(estimate, estimate.values) / max(1, len(S) - len(q)))
-    reach = min(REACH * error * float(identifiability(S, space.names).std[j]), WIDEST)
+    space, q = fit.estimate.space, fit.estimate.q
+    reach = min(REACH * _std_q(fit, j), WIDEST)
     moves = np.tile(q, (points, 1))
     moves[:, j] += np.linspace(-reach, reach, points)
     inside = (moves[:, j] > space.lower[j]) & (moves[:, j] < space.upper[j])
@@ -136,8 +147,8 @@ def _crossing(values: np.ndarray, rise: np.ndarray, best: float, side: int) -> f
     for i in beyond:
         root = float(np.sqrt(max(0.0, rise[i])))
         if root > np.sqrt(LEVEL):
-            if np.isinf(root):
-                return float(values[i])
+            if np.isinf(root):  # no simulation there: how far it rises is not known
+                break
             share = (np.sqrt(LEVEL) - inner) / (root - inner)
             return float(inner_value + share * (values[i] - inner_value))
         inner_value, inner = float(values[i]), root

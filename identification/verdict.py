@@ -67,9 +67,18 @@ def coloured_outputs(fit: Fit) -> int:
     return int((fit.tests.white < LEVEL / len(fit.tests.white)).sum())
 
 
+def _floor(fit: Fit) -> float:
+    """Noise of all outputs, rms."""
+    return float(np.sqrt(np.mean(fit.floor**2)))
+
+
+def _above(fit: Fit) -> float:
+    """How many times the noise the residual is."""
+    return fit.rms / _floor(fit) if _floor(fit) > 0 else np.inf
+
+
 def _enough(fit: Fit) -> list[str]:
-    floor = float(np.sqrt(np.mean(fit.floor**2)))
-    ratio = fit.rms / floor if floor > 0 else np.inf
+    floor, ratio = _floor(fit), _above(fit)
     sentences = [f"The residual is {fit.rms:.3g} rms, {ratio:.2f} of the noise floor {floor:.3g}."]
     dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
     coloured = coloured_outputs(fit)
@@ -97,11 +106,11 @@ def _unseen(fit: Fit) -> list[str]:
     if fit.validation_rms is None:
         return ["There is no unseen data to confirm it on."]
     ratio = fit.validation_rms / fit.rms if fit.rms > 0 else np.inf
-    held = (
-        "what was fitted holds there too"
-        if ratio < HOLDS
-        else "it does not hold: too many parameters, or an effect missing"
-    )
+    held = "it does not hold: too many parameters, or an effect missing"
+    if ratio < HOLDS:
+        held = "what was fitted holds there too"
+        if _above(fit) > ABOVE:
+            held = "no worse than on what was fitted, but what is missing is missing there too"
     return [
         f"On unseen data the residual is {fit.validation_rms:.3g} rms,"
         f" {ratio:.2f} times the fitted one: {held}."

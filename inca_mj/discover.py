@@ -18,6 +18,7 @@ from inca_mj.geometry import INCA, Geometry
 from inca_mj.identify import POSE
 from inca_mj.tell_apart import told
 from inca_mj.twin import build_twin
+from inca_mj.wiring import refuse_miswired
 
 TIMESTEP = 2e-3  # [s]; RK4 errs by 0.03 mrad, a twentieth of an encoder's noise, at half the price
 
@@ -55,5 +56,6 @@ def discover(
     """
     step = timestep_for(log.sampling_time, timestep)
     plant = build_twin(parameters, geometry, timestep=step, effects=effects, settled=settled)
+    refuse_miswired(log, plant)
     base = Base(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
     return told(search(base, log, [e.effect for e in effects], progress))

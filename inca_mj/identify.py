@@ -23,6 +23,7 @@ from inca_mj.comparison import timestep_for
 from inca_mj.geometry import INCA, Geometry
 from inca_mj.mjcf import TIMESTEP
 from inca_mj.twin import build_twin
+from inca_mj.wiring import refuse_miswired
 
 MECHANICS = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t", "m")
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -54,6 +55,22 @@ class Identification:
     def fit(self) -> Fit:
         """The fit to believe."""
         return self.fits[self.best]
+
+    @property
+    def stopped(self) -> bool:
+        """Whether a search was cut short; its best values are kept."""
+        return any(fit.estimate.status == "stopped" for fit in self.fits)
+
+    @property
+    def seconds(self) -> float:
+        """Wall time of all searches."""
+        searches = sum(fit.estimate.seconds for fit in self.fits)
+        return searches + (self.windows.seconds if self.windows else 0.0)
+
+    def fit_of(self, name: str) -> Fit:
+        """The fit to believe, or where that holds a parameter fixed one that estimates it."""
+        has = (f for f in (self.fit, *self.fits) if name in f.estimate.space.names)
+        return next(has, self.fit)
 
     @property
     def values(self) -> dict[str, float]:
@@ -91,6 +108,7 @@ def identify(
         DivergenceError: the nominal values cannot be simulated.
     """
     plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
+    refuse_miswired(log, plant)
     fitted = log.part("estimation")
 
     tried: list[np.ndarray] = []
@@ -155,6 +173,7 @@ def identify_windows(
             f" parameter of the robot too, such as {', '.join(UNKNOWN)}"
         )
     plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
+    refuse_miswired(log, plant)
     fitted = log.part("estimation")
     names = tuple(dict.fromkeys((*(free or MECHANICS), *POSE)))
     time, end = fitted.time, float(fitted.time[0]) + FIRST * length
@@ -188,6 +207,7 @@ def identify_innovations(
         DivergenceError: the nominal values cannot be simulated.
     """
     plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
+    refuse_miswired(log, plant)
     names = tuple(free) or (*MECHANICS, *POSE)
     found = estimate_innovations(plant, log, names, progress=progress)
     return Identification(log, (found.fit,), 0, innovations=found)

@@ -19,7 +19,7 @@ from identification.verdict import (
     search_sentences,
     verdict,
 )
-from inca_mj.identify import Identification
+from inca_mj.identify import POSE, Identification
 
 # name, value, std, unit, start, on a bound
 Row = tuple[str, float, float, str, float, bool]
@@ -32,6 +32,7 @@ def identification_json(
     record = fit_to_json(result.fit)
     record["steps"] = [fit_to_json(fit) for fit in result.fits]
     record["verdict"] = identification_verdict(result)
+    record["seconds"] = result.seconds
     record["seed"] = seed
     if result.starts:
         record["starts"] = [[_finite(e) for e in errors] for errors in result.starts]
@@ -53,7 +54,6 @@ def identification_json(
             "seconds": w.length, "count": len(w.residual), "rms": w.rms, "converged": w.converged,
             "linearisations": w.tangents,
         }  # fmt: skip
-        record["seconds"] += w.seconds
     return record
 
 
@@ -64,6 +64,8 @@ def identification_verdict(result: Identification) -> list[str]:
     if result.windows is not None:
         return windows_verdict(result.windows, result.fit)
     said = verdict(result.fit)
+    if held := held_sentence(result.fit):
+        said.append(held)
     if result.starts:
         said.append(starts_sentence(result.starts[result.best]))
     return said
@@ -138,6 +140,17 @@ def innovations_verdict(found: InnovationsFit) -> list[str]:
         " something; `inca discover` looks for it."
     )
     return said
+
+
+def held_sentence(fit: Fit) -> str:
+    """That the start pose was not estimated, which spoils a fit where it is not known exactly."""
+    held = [name for name in POSE if name not in fit.estimate.values]
+    if len(held) < len(POSE):
+        return ""
+    return (
+        "The start pose is held where the parameter set puts it; where that is not exact, estimate"
+        f" it too: --free ... {' '.join(held)}."
+    )
 
 
 def starts_sentence(errors: np.ndarray) -> str:

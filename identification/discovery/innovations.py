@@ -16,7 +16,7 @@ from scipy.stats import chi2
 
 LAGS = 20
 SURE = 1e-4  # chance at which structure in innovations is believed
-MATTERS = 0.03  # share of their power below which structure is no missing effect, as in `steps`
+MATTERS = 0.03  # share of a mean square below which what explains it is no missing effect
 
 
 @dataclass(frozen=True)

@@ -89,7 +89,7 @@ def _acting(fit: Refit, missing: MissingForce) -> str:
         mine = [u == unit for u in missing.units]
         sizes.append(f"{np.sqrt(np.mean(missing.force[:, mine] ** 2)):.2g} {unit}")
     said = (
-        f"forces of {' and '.join(sizes)} rms on {missing.where} would explain"
+        f"generalised forces of {' and '.join(sizes)} rms on {missing.where} would explain"
         f" {100 * missing.share:.0f} % of it"
     )
     found = shares(fit, missing.force)

@@ -29,7 +29,7 @@ class MissingForce:
     """Forces on some degrees of freedom that would explain a residual.
 
     Attributes:
-        where: "the drives' joints" or the name of a free body.
+        where: "the actuated joints", or the name of a free body.
         names: of the degrees of freedom, k of them.
         units: N or N m, k of them.
         force: the smoothed estimate over the fitted samples, shape (N, k).
@@ -46,7 +46,14 @@ class MissingForce:
 
 
 def missing_forces(fit: Refit) -> tuple[MissingForce, ...]:
-    """The missing force of every group of degrees of freedom."""
+    """The missing force of every group of degrees of freedom, by where they act.
+
+    Args:
+        fit: the nominal model, fitted.
+
+    Raises:
+        DivergenceError: the model cannot be simulated.
+    """
     at = fit.at
     groups = _groups(at.predictor.plant.model)
     dofs = [d for _, of, _, _ in groups for d in of]

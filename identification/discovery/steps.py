@@ -14,7 +14,7 @@ import numpy as np
 
 from identification.discovery.columns import Column
 from identification.discovery.extend import Base, fit_with
-from identification.discovery.innovations import whiteness
+from identification.discovery.innovations import MATTERS, whiteness
 from identification.discovery.proof import Unseen, prove, unseen
 from identification.discovery.result import Proof
 from identification.discovery.score import Score, score
@@ -27,7 +27,7 @@ ALPHA = 0.01  # family-wise chance of a name where nothing is missing, before th
 CONTENDERS = 3  # explanations that are refitted at most
 CLOSE = 0.3  # share of the best gain that makes a contender
 T = 2.0  # t of the proof: 2.5 % one-sided
-FALL, SHARE = 0.03, 0.1  # of the free run's mean square, and of what is above the sensors' noise
+FALL, SHARE = MATTERS, 0.1  # of the free run's mean square, and of what is above the sensors' noise
 ELSEWHERE = 0.7  # share of an effect's best gain that makes another place a contender
 
 

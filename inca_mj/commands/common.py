@@ -87,21 +87,6 @@ class Output:
     """Folder for figures, report, model and result.json; made when missing."""
 
 
-def folder(path: Path) -> Path:
-    """Make a folder for results.
-
-    Raises:
-        InputError: it cannot be made.
-    """
-    from identification.errors import InputError
-
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot make folder {path}: {error.strerror}; choose another") from None
-    return path
-
-
 def refuse_folder(path: Path | None) -> None:
     """Refuse a folder that could not be made, before there are results to lose; makes nothing.
 

@@ -12,7 +12,6 @@ from inca_mj.commands.common import (
     Output,
     Robot,
     do_not_draw,
-    folder,
     note,
     output_field,
     robot_field,
@@ -38,6 +37,7 @@ class Compare:
     def run(self) -> int:
         """Compare, say and keep the result; 0 unless the input is bad."""
         do_not_draw()
+        from identification.files import whole_folder
         from inca_mj.comparison import compare
         from inca_mj.logs import read_inca_log
 
@@ -48,10 +48,10 @@ class Compare:
             timestep=self.robot.step,
         )
         if self.output.out is not None:
-            out = folder(self.output.out)
-            keep(result, out)
-            write_result(out / "result.json", self, result.to_json())
-            note(f"figure, report, model and result.json are in {out}")
+            with whole_folder(self.output.out) as out:
+                keep(result, out)
+                write_result(out / "result.json", self, result.to_json())
+            note(f"figure, report, model and result.json are in {self.output.out}")
         if self.output.json:
             say_json(result.to_json())
         else:

@@ -11,7 +11,6 @@ from inca_mj.commands.common import (
     Output,
     Values,
     do_not_draw,
-    folder,
     note,
     output_field,
     say,
@@ -49,20 +48,21 @@ class Crosscheck:
             progress=note,
         )
         if self.output.out is not None:
+            from identification.files import whole_folder
             from inca_mj.report import write_report
             from inca_mj.sections import crosscheck_section, save_figures
 
-            out = folder(self.output.out)
             sections = [crosscheck_section(result)]
-            save_figures(sections, out)
-            write_report(
-                out / "report.html",
-                "The twin against the reference",
-                result.sentences,
-                sections,
-                good=result.passed,
-            )
-            write_result(out / "result.json", self, result.to_json())
+            with whole_folder(self.output.out) as out:
+                save_figures(sections, out)
+                write_report(
+                    out / "report.html",
+                    "The twin against the reference",
+                    result.sentences,
+                    sections,
+                    good=result.passed,
+                )
+                write_result(out / "result.json", self, result.to_json())
         if self.output.json:
             say_json(result.to_json())
         else:

@@ -14,9 +14,9 @@ from inca_mj.commands.common import (
     bar,
     cannot_draw,
     do_not_draw,
-    folder,
     note,
     output_field,
+    refuse_folder,
     say,
     say_json,
     values_field,
@@ -51,6 +51,7 @@ class Discover:
             blind = cannot_draw()  # before MuJoCo is imported
         else:
             do_not_draw()
+        from identification.files import whole_folder
         from inca_mj.discover import discover
         from inca_mj.discovery_text import discovery_text
         from inca_mj.logs import read_inca_log
@@ -58,7 +59,8 @@ class Discover:
         log, parameters, place = (
             read_inca_log(self.log), self.robot.parameters(), self.robot.place()
         )  # fmt: skip
-        out = None if self.output.out is None else folder(self.output.out)
+        out = self.output.out
+        refuse_folder(out)
         found = discover(log, parameters, place, progress=note, settled=self.settled)
         if not self.output.json:
             say(discovery_text(found))
@@ -66,7 +68,9 @@ class Discover:
         if out is not None:
             if blind:
                 note(f"no film: {blind}")
-            files = keep(found, out, self, film=self.film and not blind)
+            with whole_folder(out) as draft:
+                files = keep(found, draft, self, film=self.film and not blind)
+            files = {what: out / path.name for what, path in files.items()}
         if self.output.json:
             say_json(as_json(found, files.get("model")))
         elif files:
@@ -114,7 +118,7 @@ def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, 
         sections,
         good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
     )
-    write_result(out / "result.json", command, as_json(found, model))
+    write_result(out / "result.json", command, as_json(found, Path(model.name)))
     files = {"report": report, "model": model, "effects": effects}
     return {**files, "film": drawn} if drawn else files
 

@@ -11,7 +11,6 @@ from inca_mj.commands.common import (
     Output,
     Robot,
     do_not_draw,
-    folder,
     note,
     output_field,
     robot_field,
@@ -59,6 +58,7 @@ class Excite:
         do_not_draw()
         from math import radians
 
+        from identification.files import whole_folder
         from inca_mj.bench import SAMPLING
         from inca_mj.comparison import timestep_for
         from inca_mj.excite import design
@@ -77,9 +77,9 @@ class Excite:
         )
         record = design_json(result)
         if self.output.out is not None:
-            out = folder(self.output.out)
-            keep(result, out)
-            write_result(out / "result.json", self, record)
+            with whole_folder(self.output.out) as out:
+                keep(result, out)
+                write_result(out / "result.json", self, record)
         if self.output.json:
             say_json(record)
         else:

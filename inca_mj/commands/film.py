@@ -13,7 +13,6 @@ from inca_mj.commands.common import (
     Robot,
     bar,
     cannot_draw,
-    folder,
     robot_field,
     say,
     say_json,
@@ -54,33 +53,35 @@ class Film:
 
             raise GraphicsError(blind)
         from identification.errors import InputError
+        from identification.files import whole_folder
         from inca_mj.film import film, stills
 
         run, measured, pose = self._scene()
         late = [t for t in self.still if not 0 <= t <= run.time[-1]]
         if late:
             raise InputError(f"no still at {late[0]:g} s: the run ends at {run.time[-1]:g} s")
-        out = folder(self.output.out or Path("out/film"))
-        path = film(
-            run,
-            out / "film.mp4",
-            measured=measured,
-            measured_pose=pose,
-            camera=self.camera,
-            plots=self.plots,
-            speed=self.speed,
-            progress=bar("film"),
-        )
-        pictures = stills(
-            run,
-            out,
-            self.still,
-            measured=measured,
-            measured_pose=pose,
-            camera=self.camera,
-            plots=self.plots,
-        )
-        files = [str(path), *map(str, pictures)]
+        out = self.output.out or Path("out/film")
+        with whole_folder(out) as draft:
+            path = film(
+                run,
+                draft / "film.mp4",
+                measured=measured,
+                measured_pose=pose,
+                camera=self.camera,
+                plots=self.plots,
+                speed=self.speed,
+                progress=bar("film"),
+            )
+            pictures = stills(
+                run,
+                draft,
+                self.still,
+                measured=measured,
+                measured_pose=pose,
+                camera=self.camera,
+                plots=self.plots,
+            )
+        files = [str(out / p.name) for p in (path, *pictures)]
         if self.output.json:
             say_json({"film": files[0], "stills": files[1:], "seconds": float(run.time[-1])})
         else:

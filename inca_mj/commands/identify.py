@@ -13,7 +13,6 @@ from inca_mj.commands.common import (
     Output,
     Robot,
     do_not_draw,
-    folder,
     note,
     output_field,
     refuse_folder,
@@ -30,13 +29,16 @@ if TYPE_CHECKING:
     from inca_mj.identify import Identification
 
 
+STOPPED = 130  # exit code after Ctrl-C, as a shell gives it
+
+
 @dataclass(frozen=True)
 class Identify:
     """Estimate parameters and start pose on the first half of a log, confirm on the second."""
 
     log: Annotated[Path, tyro.conf.Positional]
     """Log to learn from; its TOML may name the splits estimation and validation."""
-    free: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME")] = ()
+    free: Annotated[tuple[str, ...] | None, tyro.conf.arg(metavar="NAME")] = None
     """Parameters to estimate in one step; the thesis' two-step procedure when none is named."""
     criterion: Literal["trace", "det"] = "trace"
     """Least squares, or maximum likelihood with the noise covariance estimated."""
@@ -62,17 +64,18 @@ class Identify:
     def run(self) -> int:
         """Identify, say, keep."""
         do_not_draw()
+        from identification.files import whole_folder
         from identification.profiles import profile
         from inca_mj.identify_json import identification_json, profile_sentence
 
         refuse_folder(self.output.out)
         result = self._identify()
-        profiles = [profile(result.fit.estimate, name) for name in self.profile]
+        profiles = [profile(result.fit_of(name), name) for name in self.profile]
         best = identification_json(result, profiles, self.seed)
         if self.output.out is not None:
-            out = folder(self.output.out)
-            keep(result, profiles, out, self.robot)
-            write_result(out / "result.json", self, best)
+            with whole_folder(self.output.out) as out:
+                keep(result, profiles, out, self.robot)
+                write_result(out / "result.json", self, best)
         if self.output.json:
             say_json(best)
         else:
@@ -82,7 +85,7 @@ class Identify:
                 say(profile_sentence(known))
             if len(result.fits) > 1:
                 say(f"step {result.best + 1} predicts unseen data best.")
-        return 0
+        return STOPPED if result.stopped else 0
 
     def _identify(self) -> Identification:
         """What the options ask for.
@@ -93,14 +96,20 @@ class Identify:
         from identification.errors import InputError
         from identification.estimation import Options
         from inca_mj.identify import (
+            MECHANICS,
             POSE,
-            UNKNOWN,
             identify,
             identify_innovations,
             identify_windows,
         )
         from inca_mj.logs import read_inca_log
 
+        if self.free == ():
+            raise InputError(
+                f"--free names no parameter; name some of {', '.join((*MECHANICS, *POSE))}, or"
+                " leave it out for the two steps"
+            )
+        free = self.free or ()
         options = Options(self.method, self.criterion, self.loss, self.horizons)
         alone = "--windows" if self.windows is not None else "--innovations"
         if (self.windows is not None or self.innovations) and (
@@ -117,18 +126,18 @@ class Identify:
         )  # fmt: skip
         if self.windows is not None:
             return identify_windows(
-                log, parameters, self.windows, place, self.free, note, self.robot.step
+                log, parameters, self.windows, place, free, note, self.robot.step
             )
         if self.innovations:
-            return identify_innovations(log, parameters, place, self.free, note, self.robot.step)
-        estimated = self.free or (*UNKNOWN, *POSE)
+            return identify_innovations(log, parameters, place, free, note, self.robot.step)
+        estimated = free or (*MECHANICS, *POSE)
         for name in self.profile:
             if name not in estimated:
                 raise InputError(
                     f"{name!r} is not estimated; profile one of {', '.join(estimated)}"
                 )
         return identify(
-            log, parameters, place, self.free, options, note, self.robot.step, self.starts,
+            log, parameters, place, free, options, note, self.robot.step, self.starts,
             self.seed,
         )  # fmt: skip
 
@@ -170,7 +179,7 @@ def keep(result: Identification, profiles: Sequence[Profile], out: Path, robot: 
     )
     sections = [
         *(fit_section(result, fit, f"Step {k}") for k, fit in enumerate(result.fits, 1)),
-        *(profile_section(result.fit, known) for known in profiles),
+        *(profile_section(result.fit_of(known.name), known) for known in profiles),
         information_section(result.fit.information, about),
         compare_section(shown),
         model_section(shown.run.twin),

@@ -12,7 +12,6 @@ from inca_mj.commands.common import (
     Output,
     Robot,
     do_not_draw,
-    folder,
     output_field,
     robot_field,
     say,
@@ -48,6 +47,7 @@ class Sensitivity:
         """Analyse, say, keep."""
         do_not_draw()
         from identification.experiment import Experiment, information
+        from identification.files import whole_folder
         from inca_mj.comparison import timestep_for
         from inca_mj.identify import POSE
         from inca_mj.logs import ANGLES
@@ -64,9 +64,9 @@ class Sensitivity:
         found = information(trial, self.free, [n for n in POSE if n not in self.free])
         record = {"noise": sigma, **information_json(found)}
         if self.output.out is not None:
-            out = folder(self.output.out)
-            keep(found, about, out)
-            write_result(out / "result.json", self, record)
+            with whole_folder(self.output.out) as out:
+                keep(found, about, out)
+                write_result(out / "result.json", self, record)
         if self.output.json:
             say_json(record)
         else:

@@ -12,7 +12,6 @@ from inca_mj.commands.common import (
     Output,
     Robot,
     do_not_draw,
-    folder,
     robot_field,
     say,
     say_json,
@@ -44,6 +43,7 @@ class Simulate:
     def run(self) -> int:
         """Simulate, write, say."""
         do_not_draw()
+        from identification.files import whole_folder
         from inca_mj.comparison import timestep_for
         from inca_mj.run import simulate
         from inca_mj.twin import build_twin
@@ -61,8 +61,9 @@ class Simulate:
         }
         out = self.output.out
         if out is not None:
-            keep(result, folder(out), f"input {self.input}, seed {self.seed}")
-            write_result(out / "result.json", self, summary)
+            with whole_folder(out) as draft:
+                keep(result, draft, f"input {self.input}, seed {self.seed}")
+                write_result(draft / "result.json", self, summary)
         if self.output.json:
             say_json(summary)
         else:

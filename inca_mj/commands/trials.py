@@ -10,7 +10,6 @@ import tyro
 from inca_mj.commands.common import (
     Output,
     do_not_draw,
-    folder,
     note,
     output_field,
     say,
@@ -42,6 +41,7 @@ class Trials:
         do_not_draw()
         from identification.errors import unknown_name
         from identification.estimation import Options
+        from identification.files import whole_folder
         from inca_mj.trials import TRIALS, monte_carlo, run_trial
 
         for number in self.trial:
@@ -58,7 +58,8 @@ class Trials:
         if self.monte_carlo:
             record["monte_carlo"] = monte_carlo(self.monte_carlo, progress=note)
         if self.output.out is not None:
-            write_result(folder(self.output.out) / "result.json", self, record)
+            with whole_folder(self.output.out) as out:
+                write_result(out / "result.json", self, record)
         if self.output.json:
             say_json(record)
         else:

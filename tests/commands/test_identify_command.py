@@ -103,6 +103,28 @@ def test_windows_can_be_asked_for(log: Path, capsys: pytest.CaptureFixture[str])
     assert "give a length above 0" in refused(capsys, log, "--windows", "nan")
 
 
+def test_an_interrupt_keeps_the_best_values_and_is_told_by_the_exit_code(
+    log: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupt(line: str) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("inca_mj.commands.identify.note", interrupt)
+    assert main(["identify", str(log), "--json"]) == 130
+    result = json.loads(capsys.readouterr().out)
+    assert len(result["steps"]) == 1  # the second does not begin
+    assert "was stopped" in result["verdict"][0]
+
+
+def test_options_that_say_nothing_are_refused_and_what_they_leave_out_is_said(
+    log: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert "--free names no parameter" in refused(capsys, log, "--free")
+    assert "profile one of R, R_s" in refused(capsys, log, "--profile", "k_p")
+    verdict = say(capsys, log, *FREE)["verdict"]
+    assert any("start pose is held" in sentence for sentence in verdict)
+
+
 def test_a_folder_that_cannot_be_made_is_refused_before_the_fit(
     log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -53,6 +53,13 @@ def test_what_is_hidden_is_named_with_its_size(name, size):
     assert answer.after.rms < answer.before.rms
 
 
+@pytest.mark.parametrize("k", [9.0, 15.0])
+def test_what_is_too_strong_for_a_linear_score_is_at_least_not_misnamed(k):
+    answer = found(**{"spring.k": k})
+    assert answer.verdict in ("named", "unknown effect")
+    assert {n.candidate.effect.name for n in answer.named} <= {"spring"}
+
+
 def test_where_nothing_is_missing_it_says_so_and_what_it_would_have_seen():
     answer = found()
     assert answer.verdict == "nothing missing"

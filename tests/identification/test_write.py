@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from identification import Log, write_log
+from identification.files import whole_folder
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=30)
@@ -114,3 +115,30 @@ def test_a_folder_in_the_way_is_refused(tmp_path, refusal):
     (tmp_path / "log.csv").mkdir()
     assert "log.csv" in refusal(write_log, wave(), tmp_path / "log.csv")
     assert [f.name for f in tmp_path.iterdir()] == ["log.csv"]
+
+
+def test_a_folder_of_results_is_filled_whole_or_left_as_it_was(tmp_path):
+    out = tmp_path / "deep" / "results"
+    with whole_folder(out) as draft:
+        (draft / "a.txt").write_text("first")
+        assert [p for p in out.iterdir() if p != draft] == []
+    assert {p.name: p.read_text() for p in out.iterdir()} == {"a.txt": "first"}
+
+    def interrupted():
+        with whole_folder(out) as draft:
+            (draft / "a.txt").write_text("half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert {p.name: p.read_text() for p in out.iterdir()} == {"a.txt": "first"}
+
+
+def test_a_folder_that_cannot_be_made_is_refused(tmp_path, refusal):
+    (tmp_path / "file").write_text("")
+
+    def fill(path):
+        with whole_folder(path):
+            raise AssertionError("never begins")
+
+    assert "choose another" in refusal(fill, tmp_path / "file" / "out")
