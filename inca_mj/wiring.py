@@ -39,8 +39,10 @@ def refuse_miswired(log: Log, plant: Twin) -> None:
     part = log.between(float(log.time[0]), end)
     y = part.outputs - part.outputs[0]
     size = np.linalg.norm(y, axis=0)
-    for i in np.flatnonzero(size <= DEAD * np.median(size)):
-        raise InputError(f"{ANGLES[i]} stands still while the others move: is its encoder dead?")
+    dead = np.flatnonzero(size <= DEAD * np.median(size))
+    if len(dead):
+        names = ", ".join(ANGLES[i] for i in dead)
+        raise InputError(f"{names}: stands still while the others move; is its encoder dead?")
     try:
         predicted = Predictor(plant, part, (), {}).predict(np.zeros((1, 0)))[0]
     except DivergenceError:  # the search says what to do

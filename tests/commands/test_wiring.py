@@ -52,7 +52,7 @@ def test_a_dead_encoder(plant):
     def kill(y):
         y[:, 4] = 0.0
 
-    with pytest.raises(InputError, match="angle_5 stands still"):
+    with pytest.raises(InputError, match="angle_5: stands still"):
         refuse_miswired(changed(kill), plant)
 
 
