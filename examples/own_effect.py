@@ -58,6 +58,6 @@ def find(log, effects=(*CATALOGUE, WINDING_FRICTION)):
 
 
 if __name__ == "__main__":
-    from inca_mj.discovery_text import discovery_text
+    from identification.report.discovery_text import discovery_text
 
     print(discovery_text(find(log_with_it())))

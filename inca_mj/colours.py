@@ -1,4 +1,4 @@
-"""Colours that stay apart for the colour-blind (Okabe and Ito), and the scale of the tensions."""
+"""The scale of the tensions."""
 
 from __future__ import annotations
 
@@ -6,13 +6,6 @@ from dataclasses import dataclass
 from math import ceil, floor
 
 import numpy as np
-
-SIMULATED = "#D55E00"  # vermilion, as the handle
-MEASURED = "#0072B2"  # blue, as the ghost
-INK, GREY = "#22262B", "#8A9099"
-SERIES = (
-    "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A5195", "#22262B",
-)  # fmt: skip
 
 SLACK = (0.62, 0.64, 0.66, 1.0)
 # Plasma is perceptually uniform; its last tenth, a bright yellow, is lost on a light background.

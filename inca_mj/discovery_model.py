@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from identification.discovery.final import final_values
 from identification.discovery.result import Discovery
 from identification.errors import InputError
-from identification.kalman.refit import Refit
 from identification.log import Log
 from inca_mj.effects.values import with_effects
 from inca_mj.run import Run, simulate
@@ -37,27 +37,6 @@ def named_twin(found: Discovery) -> Twin:
         effects=effects,
         settled=plant.settled,
     )
-
-
-def final_values(found: Discovery) -> dict[str, float]:
-    """Values of all parameters of the final fit, those of the named effects included."""
-    at = found.final.at
-    out = {**at.predictor.plant.parameters.values(), **at.values}
-    for named in found.named:
-        effect, where = named.candidate.effect, named.candidate.where
-        shapes = {shape.name for shape in effect.shapes}
-        for name, (value, _, _) in named.parameters.items():
-            # one shape serves all places
-            key = f"{effect.name}.{name}" if name in shapes else effect.parameter(name, where)
-            out[key] = value
-    return out
-
-
-def std_of(fit: Refit) -> dict[str, float]:
-    """Std of the values of a fit's free parameters, in their units."""
-    space = fit.at.space
-    std = fit.std * space.slope(fit.at.q)
-    return dict(zip(space.names, std.tolist(), strict=True))
 
 
 def rerun(robot: Twin, log: Log) -> Run:

@@ -1,11 +1,8 @@
-"""Figures of runs, comparisons and cross-checks, with units on every axis."""
+"""Figures of runs and cross-checks, with units on every axis."""
 
 from __future__ import annotations
 
-import io
-import re
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import matplotlib
@@ -13,30 +10,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from identification.files import whole_file
-from inca_mj.colours import GREY, INK, SERIES, SIMULATED
+from identification.report.style import GREY, INK, SERIES, STYLE
 from inca_mj.run import Run
 
 _MARKERS = "osD^vPX*"
-_STYLE: Any = {
-    "font.size": 9,
-    "axes.edgecolor": GREY,
-    "axes.labelcolor": INK,
-    "axes.titlesize": 9.5,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "grid.color": "#E4E7EB",
-    "grid.linewidth": 0.6,
-    "lines.linewidth": 1.3,
-    "xtick.color": GREY,
-    "ytick.color": GREY,
-    "xtick.labelcolor": INK,
-    "ytick.labelcolor": INK,
-    "legend.frameon": False,
-    "svg.hashsalt": "inca_mj",  # the same figure gives the same bytes
-}
 
 
 def simulation_figures(run: Run) -> dict[str, Figure]:
@@ -55,58 +32,6 @@ def simulation_figures(run: Run) -> dict[str, Figure]:
     return {name: _over_time(run.time, *what) for name, what in series.items()}
 
 
-def compare_figure(
-    time: np.ndarray,
-    measured: np.ndarray,
-    simulated: np.ndarray,
-    fit_percent: np.ndarray,
-    names: Sequence[str],
-    unit: str = "rad",
-) -> Figure:
-    """Measured and simulated outputs, one panel each with its fit, and the residual below it.
-
-    Args:
-        time: shape (N,) [s].
-        measured: shape (N, ny) [unit].
-        simulated: shape (N, ny) [unit].
-        fit_percent: of each output, shape (ny,) [%]; NaN where the output never moves.
-        names: of the outputs, ny of them.
-        unit: of the outputs.
-    """
-    channels = len(names)
-    columns = min(2, channels)
-    rows = -(-channels // columns)
-    with matplotlib.rc_context(_STYLE):
-        figure = Figure((9.0, 0.6 + 1.75 * rows), layout="constrained")
-        axes = figure.subplots(
-            2 * rows, columns, sharex=True, squeeze=False, height_ratios=[3, 1] * rows
-        )
-        panels = [
-            (axes[2 * row, column], axes[2 * row + 1, column])
-            for column in range(columns)
-            for row in range(rows)
-        ]
-        for k, (upper, lower) in enumerate(panels):
-            if k >= channels:
-                upper.set_axis_off()
-                lower.set_axis_off()
-                continue
-            upper.plot(time, measured[:, k], color=INK, lw=2.2, alpha=0.45, label="measured")
-            upper.plot(time, simulated[:, k], color=SIMULATED, lw=1.1, label="simulated")
-            fit = f"{fit_percent[k]:.2f} %" if np.isfinite(fit_percent[k]) else "none: constant"
-            upper.set_title(f"{names[k]}   fit {fit}", loc="left", color=INK)
-            upper.set_ylabel(f"[{unit}]")
-            lower.plot(time, measured[:, k] - simulated[:, k], color=SERIES[0], lw=0.8)
-            lower.set_ylabel(f"residual\n[{unit}]", fontsize=7)
-            lower.tick_params(labelsize=7)
-            lower.locator_params(axis="y", nbins=3)
-            lower.set_xlim(time[0], time[-1])
-        for lower in axes[-1]:
-            lower.set_xlabel("time [s]")
-        figure.legend(*panels[0][0].get_legend_handles_labels(), loc="outside upper right", ncols=2)
-    return figure
-
-
 def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) -> Figure:
     """Largest difference of the two models over the step, with the slope of a 4th-order method.
 
@@ -116,7 +41,7 @@ def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) ->
         order: the order of convergence observed; None when it could not be.
     """
     cases = list(dict.fromkeys(str(row["case"]) for row in rows))
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = Figure((9.5, 3.6), layout="constrained")
         for ax, (kind, unit) in zip(
             figure.subplots(1, 3),
@@ -145,29 +70,8 @@ def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) ->
     return figure
 
 
-def save_png(figure: Figure, path: str | Path, dpi: float = 150) -> Path:
-    """Write a figure as PNG, whole or not at all.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
-    with whole_file(path) as draft, draft.open("wb") as stream:
-        figure.savefig(stream, format="png", dpi=dpi)
-    return Path(path)
-
-
-def svg(figure: Figure) -> str:
-    """A figure as an `<svg>` element that stands in HTML: no XML header, no foreign address."""
-    stream = io.StringIO()
-    nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-    with matplotlib.rc_context(_STYLE):
-        figure.savefig(stream, format="svg", metadata=nothing)
-    text = stream.getvalue()
-    return re.sub(r"<metadata>.*?</metadata>\s*", "", text[text.index("<svg") :], flags=re.DOTALL)
-
-
 def _over_time(time: np.ndarray, label: str, values: np.ndarray, names: list[str]) -> Figure:
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = Figure((6.4, 3.4), layout="constrained")
         ax = figure.subplots()
         for k, name in enumerate(names):

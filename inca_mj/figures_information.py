@@ -8,8 +8,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from inca_mj.colours import INK, SERIES
-from inca_mj.figures import _STYLE
+from identification.report.style import INK, SERIES, STYLE
 
 
 def std_figure(names: Sequence[str], stds: Mapping[str, np.ndarray]) -> Figure:
@@ -22,7 +21,7 @@ def std_figure(names: Sequence[str], stds: Mapping[str, np.ndarray]) -> Figure:
     """
     place = np.arange(len(names))
     width = 0.8 / max(1, len(stds))
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = Figure((1.6 + 0.75 * max(4, len(names)), 3.4), layout="constrained")
         ax = figure.subplots()
         for k, (label, std) in enumerate(stds.items()):

@@ -7,7 +7,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from inca_mj.colours import GREY, INK, MEASURED, SIMULATED
+from identification.report.style import GREY, INK, MEASURED, SIMULATED
 from inca_mj.geometry import DRIVES
 
 _INCHES = 4.8  # width, so that letters grow with the picture

@@ -9,7 +9,8 @@ import matplotlib
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from inca_mj.colours import INK, MEASURED, SIMULATED, TensionScale, shade
+from identification.report.style import INK, MEASURED, SIMULATED
+from inca_mj.colours import TensionScale, shade
 
 Box = tuple[int, int, int, int]  # left, top, width, height [px]
 BACKGROUND = (255, 255, 255)

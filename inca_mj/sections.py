@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from identification.metrics import mean_fit
+from identification.report.compare_figure import compare_figure
+from identification.report.page import Section, Table
 from inca_mj.comparison import Comparison
-from inca_mj.figures import compare_figure, crosscheck_figure, save_png, simulation_figures
-from inca_mj.report import Section, Table
+from inca_mj.figures import crosscheck_figure, simulation_figures
 from inca_mj.run import Run
 from inca_mj.twin import Twin
 
@@ -110,12 +109,3 @@ def film_section(path: Path) -> Section:
         " measured angles imply for cables that do not stretch.",
         video=path,
     )
-
-
-def save_figures(sections: Iterable[Section], folder: Path) -> list[Path]:
-    """Write the figures of some sections as PNG, named by their captions."""
-    return [
-        save_png(figure, folder / f"{re.sub('[^a-z0-9]+', '-', caption.lower()).strip('-')}.png")
-        for section in sections
-        for caption, figure in section.figures
-    ]

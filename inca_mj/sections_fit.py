@@ -6,15 +6,15 @@ import numpy as np
 
 from identification.fit import Fit
 from identification.profiles import Profile
+from identification.report.page import Section, Table
+from identification.report.profile_figure import profile_figure
 from identification.verdict import verdict
-from inca_mj.figures_fit import profile_figure
 from inca_mj.identify import Identification
 from inca_mj.identify_json import (
     identification_verdict,
     profile_sentence,
     rows,
 )
-from inca_mj.report import Section, Table
 
 
 def fit_section(result: Identification, fit: Fit, title: str) -> Section:

@@ -8,10 +8,10 @@ import numpy as np
 
 from identification.identifiability import in_words
 from identification.information import Information, determinable
+from identification.report.page import Section, Table
 from inca_mj.bench import Tried
 from inca_mj.excite import Design
 from inca_mj.figures_information import std_figure
-from inca_mj.report import Section, Table
 
 WEAK = 0.5  # relative std beyond which a value says little
 

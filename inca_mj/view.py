@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 from identification.errors import unknown_name
-from inca_mj.colours import MEASURED
+from identification.report.style import MEASURED
 from inca_mj.graphics import renderer
 
 CAMERAS = ("front", "side", "handle")

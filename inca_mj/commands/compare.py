@@ -78,9 +78,9 @@ def summary(result: Comparison) -> str:
 
 def keep(result: Comparison, out: Path) -> None:
     """Write the figure, the one-file report, the model and the run into a folder."""
-    from inca_mj.report import write_report
+    from identification.report.page import save_figures, write_report
     from inca_mj.run import save_run
-    from inca_mj.sections import compare_section, compare_verdict, model_section, save_figures
+    from inca_mj.sections import compare_section, compare_verdict, model_section
 
     sections = [compare_section(result), model_section(result.run.twin)]
     save_figures(sections, out)

@@ -49,8 +49,8 @@ class Crosscheck:
         )
         if self.output.out is not None:
             from identification.files import whole_folder
-            from inca_mj.report import write_report
-            from inca_mj.sections import crosscheck_section, save_figures
+            from identification.report.page import save_figures, write_report
+            from inca_mj.sections import crosscheck_section
 
             sections = [crosscheck_section(result)]
             with whole_folder(self.output.out) as out:

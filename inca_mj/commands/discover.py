@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from inca_mj.twin import Twin
 
 FILMED = 6.0  # [s]; drawing costs several times as long
+FILES = "The model with it is in model.xml and effects.json; inca_mj.load_twin reads them."
 
 
 @dataclass(frozen=True)
@@ -52,8 +53,8 @@ class Discover:
         else:
             do_not_draw()
         from identification.files import whole_folder
+        from identification.report.discovery_text import discovery_text
         from inca_mj.discover import discover
-        from inca_mj.discovery_text import discovery_text
         from inca_mj.logs import read_inca_log
 
         log, parameters, place = (
@@ -81,7 +82,7 @@ class Discover:
 def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
     """The outcome and the path of its model as plain values; what is not finite is null."""
     from identification.discovery.discovery_json import discovery_to_json
-    from inca_mj.discovery_text import finite
+    from identification.report.discovery_text import finite
 
     record: dict[str, Any] = finite(discovery_to_json(found))
     return {**record, "model": None if model is None else str(model)}
@@ -89,13 +90,13 @@ def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
 
 def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, Path]:
     """Write report, figures, model, effects, result and film into a folder; the paths by kind."""
+    from identification.report import discovery_sections as parts
+    from identification.report import discovery_tables as tables
+    from identification.report.page import save_figures, write_report
     from identification.verdict_discovery import discovery_verdict
-    from inca_mj import sections_discovery as parts
-    from inca_mj import sections_discovery_tables as tables
     from inca_mj.discovery_model import named_twin, rerun
     from inca_mj.effects.saved import save_twin
-    from inca_mj.report import write_report
-    from inca_mj.sections import film_section, model_section, save_figures
+    from inca_mj.sections import film_section, model_section
 
     robot = named_twin(found)
     model, effects = save_twin(robot, out)
@@ -104,7 +105,10 @@ def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, 
         parts.gap_section(found),
         parts.where_section(found),
         parts.rivals_section(found),
-        tables.diff_section(found),
+        tables.diff_section(
+            found,
+            "The model with it is in model.xml and effects.json; inca_mj.load_twin reads them.",
+        ),
         tables.parameters_section(found),
         tables.unseen_section(found),
         *([film_section(drawn)] if drawn else []),

@@ -106,9 +106,9 @@ def summary(result: Design) -> str:
 def keep(result: Design, out: Path) -> None:
     """Write the input as a log that the twin replays, and the report with its figures."""
     from identification import write_log
+    from identification.report.page import save_figures, write_report
     from inca_mj.logs import run_to_log
-    from inca_mj.report import write_report
-    from inca_mj.sections import run_section, save_figures
+    from inca_mj.sections import run_section
     from inca_mj.sections_information import design_section, design_verdict
 
     notes = f"designed by inca excite: {result.best.name}, simulated"

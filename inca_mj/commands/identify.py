@@ -163,10 +163,10 @@ def summary(result: Identification, fit: Fit) -> str:
 
 def keep(result: Identification, profiles: Sequence[Profile], out: Path, robot: Robot) -> None:
     """Write figures, the one-file report and the identified model into a folder."""
+    from identification.report.page import save_figures, write_report
     from inca_mj.comparison import compare
     from inca_mj.identify_json import identification_verdict
-    from inca_mj.report import write_report
-    from inca_mj.sections import compare_section, model_section, save_figures
+    from inca_mj.sections import compare_section, model_section
     from inca_mj.sections_fit import fit_section, profile_section
     from inca_mj.sections_information import information_section
 

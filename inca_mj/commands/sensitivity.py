@@ -103,8 +103,7 @@ def summary(found: Information) -> str:
 
 def keep(found: Information, about: str, out: Path) -> None:
     """Write the figure and the one-file report into a folder."""
-    from inca_mj.report import write_report
-    from inca_mj.sections import save_figures
+    from identification.report.page import save_figures, write_report
     from inca_mj.sections_information import information_section, information_verdict
 
     sections = [information_section(found, about)]

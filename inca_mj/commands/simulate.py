@@ -108,10 +108,10 @@ def _text(result: Run) -> str:
 def keep(result: Run, out: Path, notes: str) -> None:
     """Write log, run, model, the thesis' four figures and the report into a folder."""
     from identification import write_log
+    from identification.report.page import save_figures, write_report
     from inca_mj.logs import run_to_log
-    from inca_mj.report import write_report
     from inca_mj.run import save_run
-    from inca_mj.sections import model_section, run_section, save_figures
+    from inca_mj.sections import model_section, run_section
 
     write_log(run_to_log(result, notes=f"simulated by inca simulate: {notes}"), out / "log.csv")
     save_run(result, out / "run.npz")

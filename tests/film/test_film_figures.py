@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from inca_mj.figures import compare_figure, crosscheck_figure, save_png, simulation_figures, svg
+from identification.report.compare_figure import compare_figure
+from identification.report.style import save_png, svg
+from inca_mj.figures import crosscheck_figure, simulation_figures
 
 
 def test_the_four_figures_of_the_thesis(short_run):

@@ -6,7 +6,8 @@ import pytest
 from PIL import Image
 
 from identification.errors import InputError
-from inca_mj.colours import MEASURED, tension_scale
+from identification.report.style import MEASURED
+from inca_mj.colours import tension_scale
 from inca_mj.film import film, stills
 from inca_mj.view import view
 

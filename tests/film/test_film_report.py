@@ -5,9 +5,9 @@ from xml.etree import ElementTree
 import pytest
 
 from identification.errors import InputError
-from inca_mj import report as report_module
+from identification.report import page as report_module
+from identification.report.page import Section, Table, write_report
 from inca_mj.figures import simulation_figures
-from inca_mj.report import Section, Table, write_report
 
 
 @pytest.fixture(scope="module")

@@ -3,8 +3,8 @@
 import pytest
 from fake_discovery import found
 
+from identification.report.discovery_text import discovery_text
 from identification.verdict_discovery import diff_line, discovery_verdict
-from inca_mj.discovery_text import discovery_text
 
 
 def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:

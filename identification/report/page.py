@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from base64 import b64encode
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -83,7 +83,7 @@ def write_report(
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
-        loader=PackageLoader("inca_mj"),
+        loader=PackageLoader("identification.report"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -97,6 +97,17 @@ def write_report(
         footer=footer,
     )
     return write_text(path, page)
+
+
+def save_figures(sections: Iterable[Section], folder: Path) -> list[Path]:
+    """Write the figures of some sections as PNG, named by their captions."""
+    from identification.report.style import save_png
+
+    return [
+        save_png(figure, folder / f"{re.sub('[^a-z0-9]+', '-', caption.lower()).strip('-')}.png")
+        for section in sections
+        for caption, figure in section.figures
+    ]
 
 
 def _section(section: Section, number: int) -> dict[str, Any]:
@@ -120,7 +131,7 @@ def _picture(figure: Figure, prefix: str, caption: str) -> Any:
 
     from markupsafe import Markup
 
-    from inca_mj.figures import svg
+    from identification.report.style import svg
 
     drawing = svg(figure)
     if len(drawing) > _LARGEST_SVG:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from identification.discovery.final import final_values, std_of
 from identification.discovery.result import Detectable, Discovery
 from identification.quantities import quantity
+from identification.report.page import Section, Table
 from identification.verdict_discovery import phrase, split_detectable
-from inca_mj.discovery_model import final_values, std_of
-from inca_mj.report import Section, Table
 
 
-def diff_section(found: Discovery) -> Section:
-    """What was added to the model, as laws and numbers."""
+def diff_section(found: Discovery, files: str = "") -> Section:
+    """What was added to the model, as laws and numbers; `files` says where that model is."""
     if not found.named:
         return Section("What was added", "Nothing: the model is the nominal one, fitted.")
     rows = []
@@ -23,7 +23,7 @@ def diff_section(found: Discovery) -> Section:
             )  # fmt: skip
     return Section(
         "What was added",
-        "The model with it is in model.xml and effects.json; inca_mj.load_twin reads them.",
+        files,
         table=Table(("effect", "law", "parameter", "value", "confidence"), tuple(rows)),
     )
 

@@ -9,14 +9,19 @@ import numpy as np
 from identification.discovery.result import Discovery
 from identification.discovery.score import Score
 from identification.log import halves
+from identification.report.discovery_figures import (
+    force_figure,
+    gains_figure,
+    gap_figure,
+    rms_figure,
+)
+from identification.report.page import Section, Table
 from identification.verdict_discovery import (
     floor_rms,
     output_unit,
     phrase,
     sentence,
 )
-from inca_mj.figures_discovery import force_figure, gains_figure, gap_figure, rms_figure
-from inca_mj.report import Section, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

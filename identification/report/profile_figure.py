@@ -7,13 +7,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from identification.profiles import LEVEL, Profile
-from inca_mj.colours import SERIES
-from inca_mj.figures import _STYLE
+from identification.report.style import SERIES, STYLE
 
 
 def profile_figure(known: Profile, unit: str) -> Figure:
     """The rise of the cost against one parameter, with the line of 95 %."""
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = Figure((5.2, 3.2), layout="constrained")
         ax = figure.subplots()
         seen = np.isfinite(known.rise)

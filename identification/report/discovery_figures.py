@@ -9,8 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from inca_mj.colours import GREY, INK, MEASURED, SIMULATED
-from inca_mj.figures import _STYLE
+from identification.report.style import GREY, INK, MEASURED, SIMULATED, STYLE
 
 BEFORE, AFTER = SIMULATED, MEASURED
 BAND = "#C9CED6"
@@ -40,7 +39,7 @@ def gap_figure(
     step = float(np.median(np.diff(time)))
     cuts = np.flatnonzero(np.diff(time) > 1.5 * step) + 1
     shown = np.insert(time, cuts, np.nan)
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = Figure((9.0, 0.7 + 1.35 * rows), layout=ConstrainedLayoutEngine(wspace=0.05))
         axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         panels = [axes[row, column] for column in range(columns) for row in range(rows)]
@@ -78,7 +77,7 @@ def force_figure(
         units: N or N m, k of them.
     """
     rows = -(-len(names) // 2)
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = Figure((9.0, 0.4 + 1.2 * rows), layout="constrained")
         axes = figure.subplots(rows, 2, sharex=True, squeeze=False)
         panels = [axes[row, column] for column in range(2) for row in range(rows)]
@@ -116,7 +115,7 @@ def rms_figure(
     if after is not None:
         bars.append((after, AFTER, "with what was missing"))
     width = 0.8 / len(bars)
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = Figure((9.0, 3.2), layout="constrained")
         ax = figure.subplots()
         for k, (height, colour, label) in enumerate(bars):
@@ -145,7 +144,7 @@ def gains_figure(labels: Sequence[str], gains: np.ndarray, named: Sequence[bool]
         named: which were named.
     """
     place = np.arange(len(labels))[::-1]
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = Figure((9.0, 0.9 + 0.26 * max(3, len(labels))), layout="constrained")
         ax = figure.subplots()
         shown = np.maximum(np.asarray(gains, float), 0.0)

@@ -1,0 +1,1 @@
+"""Results as text, figures and one-file reports, for any robot."""

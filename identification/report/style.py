@@ -1,0 +1,61 @@
+"""How figures look: colours that stay apart for the colour-blind (Okabe and Ito), and files."""
+
+from __future__ import annotations
+
+import io
+import re
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.figure import Figure
+
+from identification.files import whole_file
+
+SIMULATED = "#D55E00"  # vermilion
+MEASURED = "#0072B2"  # blue
+INK, GREY = "#22262B", "#8A9099"
+SERIES = (
+    "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A5195", "#22262B",
+)  # fmt: skip
+
+STYLE: Any = {
+    "font.size": 9,
+    "axes.edgecolor": GREY,
+    "axes.labelcolor": INK,
+    "axes.titlesize": 9.5,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#E4E7EB",
+    "grid.linewidth": 0.6,
+    "lines.linewidth": 1.3,
+    "xtick.color": GREY,
+    "ytick.color": GREY,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "legend.frameon": False,
+    "svg.hashsalt": "identification",  # the same figure gives the same bytes
+}
+
+
+def save_png(figure: Figure, path: str | Path, dpi: float = 150) -> Path:
+    """Write a figure as PNG, whole or not at all.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    with whole_file(path) as draft, draft.open("wb") as stream:
+        figure.savefig(stream, format="png", dpi=dpi)
+    return Path(path)
+
+
+def svg(figure: Figure) -> str:
+    """A figure as an `<svg>` element that stands in HTML: no XML header, no foreign address."""
+    stream = io.StringIO()
+    nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+    with matplotlib.rc_context(STYLE):
+        figure.savefig(stream, format="svg", metadata=nothing)
+    text = stream.getvalue()
+    return re.sub(r"<metadata>.*?</metadata>\s*", "", text[text.index("<svg") :], flags=re.DOTALL)
