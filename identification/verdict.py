@@ -9,6 +9,7 @@ import numpy as np
 from identification.identifiability import in_words
 
 if TYPE_CHECKING:
+    from identification.estimate_windows import WindowEstimate
     from identification.fit import Fit
 
 # The floor bounds the noise from above and errs by a few percent itself.
@@ -60,6 +61,20 @@ def identifiable_sentences(fit: Fit) -> list[str]:
             f" log: {value:.6g} ± {std:.2g}; fix one of them."
         )
     return sentences
+
+
+def window_sentences(found: WindowEstimate, floor: float) -> list[str]:
+    """How a search over windows ended, what it cannot know, and what it leaves."""
+    said = ["The search converged." if found.converged else "The search ran out of iterations."]
+    if bound := [n for n, at in zip(found.values, found.at_bound, strict=True) if at]:
+        said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
+    if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
+        said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
+    ratio = f", {found.rms / floor:.2f} of the noise floor {floor:.3g}" if floor > 0 else ""
+    said.append(
+        f"{len(found.residual)} windows of {found.length:g} s leave {found.rms:.3g} rms{ratio}."
+    )
+    return said
 
 
 def coloured_outputs(fit: Fit) -> int:

@@ -1,7 +1,4 @@
-"""The program `inca`: one command a file in `inca_mj.commands`; heavy imports wait until needed.
-
-Exit code 0: done; 1: the check failed; 2: bad input, said in one sentence.
-"""
+"""The program `inca`: one command a file in `inca_mj.commands`; heavy imports wait until needed."""
 
 from __future__ import annotations
 
@@ -11,6 +8,7 @@ from typing import Annotated
 
 import tyro
 
+from identification.commands.program import run_program
 from inca_mj.commands.compare import Compare
 from inca_mj.commands.crosscheck import Crosscheck
 from inca_mj.commands.demo import Demo
@@ -38,31 +36,8 @@ Command = (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
-    try:
-        command = tyro.cli(
-            Command,
-            prog="inca",
-            description="The digital twin of the INCA 6D cable robot, and what it lacks.",
-            args=arguments,
-            config=(tyro.conf.AvoidSubcommands,),
-        )
-        return command.run()
-    except ValueError as error:
-        from identification.errors import InputError
-
-        if not isinstance(error, InputError):
-            raise
-        sys.stderr.write(f"inca: {error}\n")
-        return 2
-    except BrokenPipeError:  # the reader of stdout has gone, e.g. `| head`
-        sys.stderr.close()
-        return 0
-    except OSError as error:
-        sys.stderr.write(f"inca: {error.strerror or error}; make room or choose another place\n")
-        return 2
-    except KeyboardInterrupt:
-        sys.stderr.write("inca: stopped\n")
-        return 130
+    what = "The digital twin of the INCA 6D cable robot, and what it lacks."
+    return run_program(Command, "inca", what, arguments)
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ from identification.verdict import (
     identifiable_sentences,
     search_sentences,
     verdict,
+    window_sentences,
 )
 from inca_mj.identify import POSE, Identification
 
@@ -92,15 +93,7 @@ def rows(result: Identification, fit: Fit) -> list[Row]:
 def windows_verdict(found: WindowEstimate, fit: Fit) -> list[str]:
     """What the windows found, and how far their parameters carry in a free run."""
     floor = float(np.sqrt(np.mean(fit.floor**2)))
-    said = ["The search converged." if found.converged else "The search ran out of iterations."]
-    if bound := [n for n, at in zip(found.values, found.at_bound, strict=True) if at]:
-        said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
-    if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
-        said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
-    ratio = f", {found.rms / floor:.2f} of the noise floor {floor:.3g}" if floor > 0 else ""
-    said.append(
-        f"{len(found.residual)} windows of {found.length:g} s leave {found.rms:.3g} rms{ratio}."
-    )
+    said = window_sentences(found, floor)
     unseen = "" if fit.validation_rms is None else f" and {fit.validation_rms:.3g} on unseen data"
     said.append(
         f"A free run with them, its start pose fitted, leaves {fit.rms:.3g} rms{unseen};"

@@ -8,18 +8,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from inca_mj.commands.common import (
+from identification.commands.common import (
     Output,
-    Robot,
-    do_not_draw,
     note,
     output_field,
-    robot_field,
     say,
     say_json,
     table,
     write_result,
 )
+from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
     from inca_mj.comparison import Comparison

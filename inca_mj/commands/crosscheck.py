@@ -7,18 +7,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from inca_mj.commands.common import (
+from identification.commands.common import (
     Output,
-    Values,
-    do_not_draw,
     note,
     output_field,
     say,
     say_json,
     table,
-    values_field,
     write_result,
 )
+from inca_mj.commands.common import Values, do_not_draw, values_field
 
 if TYPE_CHECKING:
     from inca_mj.crosscheck import CrossCheck

@@ -8,7 +8,8 @@ from typing import Annotated
 
 import tyro
 
-from inca_mj.commands.common import Output, Values, values_field
+from identification.commands.common import Output
+from inca_mj.commands.common import Values, values_field
 from inca_mj.commands.discover import Discover
 
 

@@ -8,20 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from inca_mj.commands.common import (
+from identification.commands.common import (
     Output,
-    Values,
     bar,
-    cannot_draw,
-    do_not_draw,
     note,
     output_field,
     refuse_folder,
     say,
     say_json,
-    values_field,
     write_result,
 )
+from inca_mj.commands.common import Values, cannot_draw, do_not_draw, values_field
 
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery

@@ -8,15 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
-from inca_mj.commands.common import (
-    Output,
-    Robot,
-    bar,
-    cannot_draw,
-    robot_field,
-    say,
-    say_json,
-)
+from identification.commands.common import Output, bar, say, say_json
+from inca_mj.commands.common import Robot, cannot_draw, robot_field
 
 if TYPE_CHECKING:
     import numpy as np

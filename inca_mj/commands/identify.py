@@ -9,19 +9,17 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
-from inca_mj.commands.common import (
+from identification.commands.common import (
     Output,
-    Robot,
-    do_not_draw,
     note,
     output_field,
     refuse_folder,
-    robot_field,
     say,
     say_json,
     table,
     write_result,
 )
+from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
     from identification.fit import Fit

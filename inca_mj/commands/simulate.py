@@ -8,16 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from inca_mj.commands.common import (
-    Output,
-    Robot,
-    do_not_draw,
-    robot_field,
-    say,
-    say_json,
-    table,
-    write_result,
-)
+from identification.commands.common import Output, say, say_json, table, write_result
+from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
     import numpy as np

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from inca_mj.commands.common import (
+from identification.commands.common import (
     Output,
-    do_not_draw,
     note,
     output_field,
     say,
@@ -17,6 +16,7 @@ from inca_mj.commands.common import (
     table,
     write_result,
 )
+from inca_mj.commands.common import do_not_draw
 
 if TYPE_CHECKING:
     from inca_mj.trials import TrialResult

@@ -1,0 +1,112 @@
+"""What commands share: where results go, and how they are said."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, is_dataclass
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Output:
+    """How results are said and kept."""
+
+    json: bool = False
+    """Print one JSON object on stdout and nothing else."""
+    out: Path | None = None
+    """Folder for figures, report, model and result.json; made when missing."""
+
+
+def refuse_folder(path: Path | None) -> None:
+    """Refuse a folder that could not be made, before there are results to lose; makes nothing.
+
+    Raises:
+        InputError: it, or what is above it, is a file or cannot be written.
+    """
+    from identification.errors import InputError
+
+    if path is None:
+        return
+    there = next(p for p in (path, *path.absolute().parents) if p.exists())
+    if not there.is_dir():
+        raise InputError(f"cannot make folder {path}: {there} is a file; choose another")
+    if not os.access(there, os.W_OK):
+        raise InputError(f"cannot make folder {path}: {there} cannot be written; choose another")
+
+
+def say(text: str) -> None:
+    """One line of result on stdout."""
+    sys.stdout.write(text + "\n")
+    sys.stdout.flush()
+
+
+def note(text: str) -> None:
+    """One line about progress on stderr."""
+    sys.stderr.write(text + "\n")
+
+
+def say_json(result: Mapping[str, Any]) -> None:
+    """The result as one JSON object on stdout; what is not finite is null."""
+    say(json.dumps(result, allow_nan=False))
+
+
+def write_result(path: Path, command: Any, result: Mapping[str, Any]) -> None:
+    """Write result.json: the result, the resolved configuration and the versions that made it."""
+    from identification.files import write_text
+
+    packages = ("inca-mj", "mujoco", "numpy", "scipy", "numba")
+    record = {
+        **result,
+        "configuration": _plain(asdict(command)) if is_dataclass(command) else {},  # type: ignore[arg-type]
+        "versions": {"python": sys.version.split()[0], **{p: _version(p) for p in packages}},
+    }
+    write_text(path, json.dumps(record, indent=1, allow_nan=False) + "\n")
+
+
+def _version(package: str) -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version(package)
+    except PackageNotFoundError:  # run from a source tree
+        return "not installed"
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {k: _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    return str(value) if isinstance(value, Path) else value
+
+
+def table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
+    """A plain text table, numbers to the right."""
+    lines = [head, *rows]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    return "\n".join(
+        "  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True))
+        for line in lines
+    )
+
+
+def bar(what: str) -> Callable[[int, int], None]:
+    """A progress bar on stderr, silent where stderr is no terminal: call it with done, total."""
+    from tqdm import tqdm
+
+    meter = tqdm(desc=what, disable=None, leave=False)
+
+    def update(done: int, total: int) -> None:
+        meter.total = total
+        meter.update(done - meter.n)
+        if done >= total:
+            meter.close()
+
+    return update
+
+
+output_field: Any = field(default_factory=Output)

@@ -1,0 +1,87 @@
+"""python -m identification discover ROBOT LOG: what the model of any robot lacks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import tyro
+
+from identification.commands.common import (
+    Output,
+    note,
+    output_field,
+    refuse_folder,
+    say,
+    say_json,
+    write_result,
+)
+
+if TYPE_CHECKING:
+    from identification.discovery.result import Discovery
+
+
+@dataclass(frozen=True)
+class Discover:
+    """Find what the model lacks and prove it on unseen data, or say that it is unknown."""
+
+    robot: Annotated[Path, tyro.conf.Positional]
+    """TOML that names model, columns, free parameters and candidates."""
+    log: Annotated[Path, tyro.conf.Positional]
+    """CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts."""
+    confirm: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="LOG")] = ()
+    """Records to which nothing is fitted."""
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+
+    def run(self) -> int:
+        """Discover, confirm, say, keep."""
+        from identification.commands.robots import robot_and_records
+        from identification.confirm import confirmed
+        from identification.discovery.discover import discover
+        from identification.discovery.discovery_json import discovery_to_json
+        from identification.discovery.final import final_values
+        from identification.files import whole_folder
+        from identification.report.discovery_text import discovery_text, finite
+
+        refuse_folder(self.output.out)
+        robot, records = robot_and_records(self.robot, self.log, self.confirm)
+        found = discover(robot.base, robot.log, robot.candidates, note)
+        before, after = found.nominal.at.values, final_values(found)
+        pairs = [confirmed(robot, log, before, after) for log in records if found.named]
+        record: dict[str, Any] = finite(discovery_to_json(found))
+        record = {**record, "confirm": [vars(c) for c in pairs]}
+        if self.output.out is not None:
+            with whole_folder(self.output.out) as out:
+                _keep(found, [str(c) for c in pairs], out)
+                write_result(out / "result.json", self, record)
+        if self.output.json:
+            say_json(record)
+        else:
+            say("\n".join([discovery_text(found), *map(str, pairs)]))
+        return 0
+
+
+def _keep(found: Discovery, confirmed: list[str], out: Path) -> None:
+    """Write the report and its figures into a folder."""
+    from identification.report import discovery_sections as parts
+    from identification.report import discovery_tables as tables
+    from identification.report.page import save_figures, write_report
+    from identification.verdict_discovery import discovery_verdict
+
+    sections = [
+        parts.gap_section(found),
+        parts.where_section(found),
+        parts.rivals_section(found),
+        tables.diff_section(found),
+        tables.parameters_section(found),
+        tables.unseen_section(found),
+    ]
+    save_figures(sections, out)
+    write_report(
+        out / "report.html",
+        f"{found.log.name}: what the model lacks",
+        [*discovery_verdict(found), *confirmed],
+        sections,
+        good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
+    )

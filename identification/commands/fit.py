@@ -1,0 +1,110 @@
+"""python -m identification fit ROBOT LOG: estimate the parameters of any robot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import tyro
+
+from identification.commands.common import (
+    Output,
+    note,
+    output_field,
+    refuse_folder,
+    say,
+    say_json,
+    table,
+    write_result,
+)
+
+if TYPE_CHECKING:
+    from identification.estimate_windows import WindowEstimate
+    from identification.robot import Robot
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Estimate free parameters on the first half of a log, confirm them on the rest."""
+
+    robot: Annotated[Path, tyro.conf.Positional]
+    """TOML that names model, columns and free parameters."""
+    log: Annotated[Path, tyro.conf.Positional]
+    """CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts."""
+    confirm: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="LOG")] = ()
+    """Records to which nothing is fitted."""
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+
+    def run(self) -> int:
+        """Fit, confirm, say, keep."""
+        from identification.commands.robots import robot_and_records
+        from identification.confirm import confirmed
+        from identification.files import whole_folder
+
+        refuse_folder(self.output.out)
+        robot, records = robot_and_records(self.robot, self.log, self.confirm)
+        record, values = self._windows(robot) if robot.file.horizon else self._free_run(robot)
+        found = [confirmed(robot, log, {}, values) for log in records]
+        record["confirm"] = [vars(c) for c in found]
+        record["verdict"] += map(str, found)
+        if self.output.out is not None:
+            with whole_folder(self.output.out) as out:
+                write_result(out / "result.json", self, record)
+        if self.output.json:
+            say_json(record)
+        else:
+            say(_text(record))
+        return 0
+
+    def _free_run(self, robot: Robot) -> tuple[dict[str, Any], dict[str, float]]:
+        """By the error of a free run, the start among the free parameters or held."""
+        from identification.estimation import estimate
+        from identification.fit import assess
+        from identification.fit_json import fit_to_json
+
+        part = robot.log.part("estimation")
+        found = estimate(robot.plant, part, robot.file.free, progress=note)
+        return {**fit_to_json(assess(found, robot.log)), "horizon": None}, found.values
+
+    def _windows(self, robot: Robot) -> tuple[dict[str, Any], dict[str, float]]:
+        """By the errors over a horizon; every window has a start of its own."""
+        from identification.confirm import unseen
+        from identification.estimate_windows import estimate_windows
+
+        names = tuple(n for n in robot.file.free if n not in robot.starts)
+        part, horizon = robot.log.part("estimation"), float(robot.file.horizon or 0)
+        found = estimate_windows(robot.plant, part, names, horizon, progress=note)
+        return _as_record(robot, found, unseen(robot, {}, found.values)), found.values
+
+
+def _as_record(robot: Robot, found: WindowEstimate, held_out: Any) -> dict[str, Any]:
+    """Windows as plain values, with the keys of a fit."""
+    import numpy as np
+
+    from identification.noise import noise_floor
+    from identification.verdict import window_sentences
+
+    floor = float(np.sqrt(np.mean(noise_floor(robot.log.outputs) ** 2)))
+    rows = zip(found.values.items(), found.std, found.start, found.at_bound, strict=True)
+    return {
+        "parameters": {
+            name: {"value": value, "std": float(std) if np.isfinite(std) else None,
+                   "unit": robot.plant.parameters[name].unit, "initial": float(first),
+                   "at_bound": bool(bound)}
+            for (name, value), std, first, bound in rows
+        },
+        "rms": found.rms, "validation_rms": held_out.after, "noise_floor": floor,
+        "seconds": found.seconds, "horizon": found.length,
+        "verdict": [*window_sentences(found, floor), str(held_out)],
+    }  # fmt: skip
+
+
+def _text(record: dict[str, Any]) -> str:
+    cells = [
+        (name, f"{p['value']:.6g}", "unknown" if p["std"] is None else f"{p['std']:.2g}", p["unit"],
+         f"{p['initial']:.6g}", "at bound" if p["at_bound"] else "")
+        for name, p in record["parameters"].items()
+    ]  # fmt: skip
+    head = ("parameter", "value", "std", "unit", "start", "")
+    return table(head, cells) + "\n" + "\n".join(record["verdict"])

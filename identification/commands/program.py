@@ -1,0 +1,50 @@
+"""A program of several commands: its errors in one sentence, its exit codes.
+
+0: done; 1: the check failed; 2: bad input, said in one sentence; 130: stopped by Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import tyro
+
+
+def run_program(
+    commands: Any, name: str, description: str, arguments: Sequence[str] | None = None
+) -> int:
+    """Run the command that the arguments name; returns the exit code.
+
+    Args:
+        commands: a union of dataclasses with a method `run`, as tyro takes it.
+        name: of the program.
+        description: what it does.
+        arguments: those of the process when None.
+    """
+    try:
+        command = tyro.cli(
+            commands,
+            prog=name,
+            description=description,
+            args=arguments,
+            config=(tyro.conf.AvoidSubcommands,),
+        )
+        return int(command.run())
+    except ValueError as error:
+        from identification.errors import InputError
+
+        if not isinstance(error, InputError):
+            raise
+        sys.stderr.write(f"{name}: {error}\n")
+        return 2
+    except BrokenPipeError:  # the reader of stdout has gone, e.g. `| head`
+        sys.stderr.close()
+        return 0
+    except OSError as error:
+        sys.stderr.write(f"{name}: {error.strerror or error}; make room or choose another place\n")
+        return 2
+    except KeyboardInterrupt:
+        sys.stderr.write(f"{name}: stopped\n")
+        return 130

@@ -1,0 +1,84 @@
+"""How far two sets of values are off on a record, over the same horizon: what confirms a model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.log import Log
+from identification.predictor import Predictor
+from identification.robot import Robot
+from identification.window_error import window_error
+
+
+@dataclass(frozen=True)
+class Confirmed:
+    """Two models on one record.
+
+    Attributes:
+        log: name of the record.
+        before: rms error of the first, over all outputs.
+        after: of the second.
+    """
+
+    log: str
+    before: float
+    after: float
+
+    def __str__(self) -> str:
+        change = 100 * ((self.after / self.before) ** 2 - 1) if self.before else 0.0
+        return (
+            f"On {self.log}: {self.before:.3g} rms before, {self.after:.3g} after, mean square"
+            f" {change:+.0f} %."
+        )
+
+
+def confirmed(
+    robot: Robot, log: Log, before: Mapping[str, float], after: Mapping[str, float]
+) -> Confirmed:
+    """Two sets of values on a record: over the robot's horizon, or in a free run of all of it.
+
+    Args:
+        robot: whose plant and horizon.
+        log: the record; it starts where it measured.
+        before: values that are not the plant's own.
+        after: likewise.
+
+    Raises:
+        InputError: the windows do not fit the record.
+        DivergenceError: one of the models cannot be simulated.
+    """
+    a, b = (_rms(robot, log, values) for values in (before, after))
+    return Confirmed(log.name, a, b)
+
+
+def unseen(robot: Robot, before: Mapping[str, float], after: Mapping[str, float]) -> Confirmed:
+    """Two sets of values on the part of the robot's own log that confirms.
+
+    Raises:
+        InputError: the windows do not fit that part.
+        DivergenceError: one of the models cannot be simulated.
+    """
+    log = robot.log
+    part = log.part("validation")
+    if robot.file.horizon is not None:
+        return confirmed(robot, part, before, after)
+    rows = np.isin(log.time, part.time)
+    a, b = (float(np.sqrt(np.mean(_free_run(robot, log, v)[rows] ** 2))) for v in (before, after))
+    return Confirmed(part.name, a, b)
+
+
+def _rms(robot: Robot, log: Log, values: Mapping[str, float]) -> float:
+    horizon, here = robot.file.horizon, {**values, **robot.started(log)}
+    if horizon is None:
+        error = _free_run(robot, log, here)
+    else:
+        error = window_error(robot.plant, log, horizon, here)
+    return float(np.sqrt(np.mean(error**2)))
+
+
+def _free_run(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
+    predictor = Predictor(robot.plant, log, (), dict(values))
+    return np.asarray(log.outputs - predictor.predict(np.empty((1, 0)))[0])

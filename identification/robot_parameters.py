@@ -1,0 +1,89 @@
+"""The free parameters of a robot's TOML, each with what is known of it before the log speaks.
+
+What the file leaves out comes from the model, or from the log: a start that no one gave is what was
+measured first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from identification.effect_parameters import effect_parameters
+from identification.errors import InputError
+from identification.joints.effect import JointEffect
+from identification.log import Log
+from identification.parameter import Parameter
+from identification.paths import read, resolve
+from identification.plant import own_start, start_place
+from identification.predictor import output_columns
+from identification.robot_file import RobotFile
+
+KNOWN = 0.3  # std of what nobody said more of: 30 % where positive, else of the plausible size
+SURE = 0.01  # of a joint's motion in the log: std of a start that was measured
+POSITIVE = ("mass", "inertia", "damping", "armature", "stiffness", "frictionloss")
+
+
+def free_parameter(
+    file: RobotFile, name: str, model: mujoco.MjModel, effects: Sequence[JointEffect], log: Log
+) -> tuple[Parameter, float]:
+    """A free parameter, and the std of what is known of it in the search's coordinates.
+
+    Raises:
+        InputError: it is neither a path nor an effect's size, or it needs a value.
+    """
+    said = file.records.get(name, {})
+    given: dict[str, Any] = {k: said[k] for k in ("unit", "about") if k in said}
+    given |= {k: float(said[k]) for k in ("value", "lower", "upper", "scale") if k in said}
+    sizes = {p.name: (p, s.largest) for e in effects for s in e.effect.sizes
+             for p in effect_parameters(e.effect) if p.symbol == s.name}  # fmt: skip
+    if name in sizes:
+        own, largest = sizes[name]
+        if "value" not in given:
+            raise InputError(
+                f"{file.path} frees {name}, which is zero in the model: give it a value under"
+                f' [parameters."{name}"], or leave it to the candidates'
+            )
+        record, guess = replace(own, **given), KNOWN * largest
+    else:
+        record, guess = _in_model(said.get("path", name), name, model, log, given)
+    if record.lower >= 0 and record.value > 0:
+        return record, float(said.get("known", KNOWN))
+    return record, float(said.get("known", guess)) / record.scale
+
+
+def measured_start(model: mujoco.MjModel, path: str, log: Log, own: float) -> float:
+    """The first sample of an entry of the start; its own value where it is not measured."""
+    place = start_place(path, model)
+    columns = output_columns(model, log.output_names)
+    return float(log.outputs[0, columns.index(place)]) if place in columns else own
+
+
+def _in_model(
+    path: str, name: str, model: mujoco.MjModel, log: Log, given: dict[str, Any]
+) -> tuple[Parameter, float]:
+    """A parameter that is a place in the model or in its start."""
+    fields: dict[str, Any] = {"where": path, "unit": ""}
+    place = start_place(path, model)
+    if place is not None:
+        own = float(getattr(own_start(model), place[0])[place[1]])
+        moved = _moved(model, place, log)
+        fields |= {"value": measured_start(model, path, log, own), "scale": moved}
+        return Parameter(name, **{**fields, **given}), moved
+    value = read(model, resolve(model, path))
+    attribute = path.rpartition(".")[2].partition("[")[0]
+    scale = abs(value) or 1.0
+    fields |= {"value": value, "scale": scale, "lower": 0.0 if attribute in POSITIVE else -np.inf}
+    return Parameter(name, **{**fields, **given}), KNOWN * scale
+
+
+def _moved(model: mujoco.MjModel, place: tuple[str, int], log: Log) -> float:
+    """A magnitude that matters for an entry of the start: a little of its motion in the log."""
+    columns = output_columns(model, log.output_names)
+    if place in columns:
+        return SURE * float(np.ptp(log.outputs[:, columns.index(place)])) or 1.0
+    return 0.1

@@ -1,0 +1,133 @@
+"""A robot told in TOML: the same fit and discovery as by hand, and mistakes in one sentence."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from joint_cases import DAMPING, MASS, SLIDER, slider_log, steps
+
+from identification import Predictor, write_log
+from identification.__main__ import main
+from identification.joints.plant import joint_plant
+from identification.robot import read_robot_log, robot_of
+from identification.robot_file import read_robot
+
+TRUTH = {"damping": 3.6, "mass": 1.8, "stribeck_friction.f_s": 0.0}
+HIDDEN = {"asymmetric_viscous_friction.d_a@slide": 0.9}
+NAMES = ("mass", "joint/slide.damping", "qpos[0]", "qvel[0]")
+TOML = """
+model = "slider.xml"
+free = ["mass", "joint/slide.damping", "qpos[0]", "qvel[0]"]
+[columns]
+position = "x"
+[parameters.mass]
+path = "body/cart.mass"
+unit = "kg"
+"""
+
+
+def simulated(values, samples=1200, seed=1, start=0.0):
+    """A record of the slider with other values, half a millimetre of noise on it."""
+    u = steps(samples, seed=seed)
+    log = slider_log(u)
+    plant = joint_plant(SLIDER, (MASS, DAMPING), log)
+    y = Predictor(plant, log, (), values).predict(np.empty((1, 0)))[0]
+    noise = 5e-4 * np.random.default_rng(seed).standard_normal(y.shape)
+    return replace(slider_log(u, y + start + noise), output_names=("x",), units={})
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    path = tmp_path_factory.mktemp("robot")
+    (path / "slider.xml").write_text(SLIDER)
+    (path / "robot.toml").write_text(TOML)
+    plain = {"damping": 3.6, "mass": 1.8}
+    write_log(simulated(plain), path / "plain.csv")
+    write_log(simulated(plain, seed=5, start=0.2), path / "other.csv")
+    write_log(simulated({**plain, **HIDDEN}), path / "hidden.csv")
+    return path
+
+
+def run(capsys, *arguments):
+    assert main([*map(str, arguments), "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def refused(capsys, *arguments):
+    assert main([*map(str, arguments)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    return error
+
+
+def test_what_the_file_leaves_out_comes_from_the_model_and_the_log(folder):
+    file = read_robot(folder / "robot.toml")
+    log = read_robot_log(file, str(folder / "other.csv"))
+    robot = robot_of(file, log)
+    at = robot.plant.parameters
+    assert log.output_names == ("position",)
+    assert log.units["position"] == "m"
+    assert at["joint/slide.damping"].value == 3.0
+    assert at["joint/slide.damping"].lower == 0.0
+    assert at["mass"].value == 2.0
+    assert at["qpos[0]"].value == log.outputs[0, 0]
+    assert robot.starts == ("qpos[0]", "qvel[0]")
+    assert robot.base.names == NAMES
+    assert {"stribeck_friction", "delay"} <= {e.name for e in robot.candidates}
+
+
+@pytest.mark.parametrize("horizon", ["", "horizon = 0.5\n"])
+def test_a_fit_recovers_the_truth_and_confirms_it_elsewhere(folder, tmp_path, capsys, horizon):
+    path = folder / f"fit{len(horizon)}.toml"
+    path.write_text(horizon + TOML)
+    out = tmp_path / "out"
+    found = run(capsys, "fit", path, folder / "plain.csv", "--confirm", folder / "other.csv",
+                "--out", out)  # fmt: skip
+    for name, true in (("mass", 1.8), ("joint/slide.damping", 3.6)):
+        p = found["parameters"][name]
+        assert abs(p["value"] - true) < 4 * p["std"]
+        assert p["value"] == pytest.approx(true, rel=0.02)
+    assert found["confirm"][0]["after"] == pytest.approx(5e-4, rel=0.15)
+    assert found["confirm"][0]["before"] > 2 * found["confirm"][0]["after"]
+    assert json.loads((out / "result.json").read_text())["parameters"] == found["parameters"]
+
+
+def test_a_discovery_names_what_is_hidden_and_writes_a_report(folder, tmp_path, capsys):
+    out = tmp_path / "out"
+    only = folder / "only.toml"
+    only.write_text(
+        TOML + '[effects]\nonly = ["asymmetric_viscous_friction", "stribeck_friction", "cogging"]\n'
+    )
+    found = run(capsys, "discover", only, folder / "hidden.csv", "--out", out)
+    assert found["verdict"] == "named"
+    (effect,) = found["effects"]
+    assert effect["name"] == "asymmetric_viscous_friction"
+    assert effect["parameters"]["d_a"]["value"] == pytest.approx(0.9, rel=0.1)
+    assert "Missing from the model" in (out / "report.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("mass", "weight"), "tells of parameter 'mass'"),
+        (('model = "slider.xml"', ""), "does not say 'model'"),
+        (('"slider.xml"', '"none.xml"'), "none.xml"),
+        (("joint/slide.damping", "joint/slid.damping"), "did you mean 'slide'"),
+        (("joint/slide.damping", "stribeck_friction.f_s@slide"), "give it a value"),
+        (("position =", "positon ="), "did you mean 'position'"),
+        (("unit =", "units ="), "did you mean 'unit'"),
+        (("free", "every = 0\nfree"), "every in"),
+        (("free", "horizon = inf\nfree"), "horizon in"),
+        (("free", "outputs = ['nothing']\nfree"), "known: position"),
+        (("[columns]", "[effects]\nonly = ['stribek_friction']\n[columns]"), "did you mean 'stribeck"),
+        (("[columns]", "[effects]\njoints = ['arm']\n[columns]"), "known: slide"),
+        (("= [", "= {"), "is not TOML"),
+    ],
+)
+def test_mistakes_are_named(folder, capsys, change, said):
+    path = folder / "bad.toml"
+    text = TOML.replace(*change, 1)
+    assert text != TOML
+    path.write_text(text)
+    assert said in refused(capsys, "fit", path, folder / "plain.csv")
