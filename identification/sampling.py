@@ -23,6 +23,8 @@ _JITTER = 1e-3
 _ROUNDING = 0.02
 # ... or this, when the user has said what the sampling time is.
 _ROUNDING_DECLARED = 0.5
+# A step so many times the usual one is a gap, as long as there are but a few.
+_JUMP, _FEW = 1.5, 5
 
 
 def sampling_time(time: FloatArray) -> float:
@@ -90,6 +92,13 @@ def _check_even(time: FloatArray, place: Callable[[int], str], declared: float |
     rounding = min(_printed_resolution(time), forgiven * step)
     if np.all(off <= _JITTER * step + rounding + np.spacing(np.abs(time).max())):
         return
+    steps = np.diff(time)
+    usual, jump = float(np.median(steps)), int(np.argmax(steps)) + 1
+    if steps[jump - 1] > _JUMP * usual and np.sum(steps > _JUMP * usual) <= _FEW:
+        raise InputError(
+            f"{place(jump)}: samples are missing: time jumps from {time[jump - 1]:.9g} s to"
+            f" {time[jump]:.9g} s where the step is {usual:.6g} s; cut the log there"
+        )
     row = int(np.argmax(off))
     size = f"{off[row]:.3g} s, {100 * off[row] / step:.2g} % of the {step:.6g} s step,"
     if declared:

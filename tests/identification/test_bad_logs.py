@@ -14,7 +14,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.io import savemat
 
-from identification import InputError, write_log
+from identification import InputError, Log, write_log
 from identification.files import MAX_BYTES
 
 HEADER = "time,current_1,current_2,angle_1,angle_2\n"
@@ -69,7 +69,7 @@ def lines(*changes: tuple[int, str]) -> str:
         ("# note\n\n" + lines((7, "x,1,2,3,4\n")), ["line 9", "time", "x is not a number"]),
         (lines((7, "0.04,1,2,3,5\n")), ["line 7", "does not increase", "0.04"]),
         (lines((7, "0.03,1,2,3,5\n")), ["line 7", "does not increase", "0.03 s follows 0.04"]),
-        (lines((7, "\n")), ["line", "not even", "resample"]),
+        (lines((7, "\n")), ["line", "samples are missing", "cut the log there"]),
         (lines((7, "0.053,1,2,3,5\n")), ["line 7", "not even", "0.003 s, 30 %", "resample"]),
         (lines().encode().replace(b"3,7", b"3,\0"), ["binary", "zero"]),
         (lines().encode("utf-16"), ["UTF-8"]),
@@ -282,3 +282,12 @@ def test_no_bytes_raise_anything_but_input_error(content, suffix):
         else:
             sentence = ""
         assert len(sentence.splitlines()) <= 1
+
+
+def test_a_gap_in_an_even_log_is_found_where_it_is(refusal):
+    time = 0.01 * np.arange(200)
+    time[120:] += 0.53
+    u = np.zeros((200, 1))
+    text = refusal(Log, time, u, u, ("u",), ("y",))
+    assert "time jumps from 1.19 s to 1.73 s where the step is 0.01 s" in text
+    assert "cut the log there" in text
