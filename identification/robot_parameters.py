@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from fnmatch import fnmatchcase
 from typing import Any
 
 import mujoco
@@ -26,6 +27,11 @@ from identification.robot_file import RobotFile
 KNOWN = 0.3  # std of what nobody said more of: 30 % where positive, else of the plausible size
 SURE = 0.01  # of a joint's motion in the log: std of a start that was measured
 POSITIVE = ("mass", "inertia", "damping", "armature", "stiffness", "frictionloss")
+UNITS = {  # of a slide, of a hinge
+    "damping": ("N s/m", "N m s/rad"), "armature": ("kg", "kg m^2"),
+    "stiffness": ("N/m", "N m/rad"), "frictionloss": ("N", "N m"),
+    "qpos": ("m", "rad"), "qvel": ("m/s", "rad/s"),
+}  # fmt: skip
 
 
 def free_parameter(
@@ -67,7 +73,7 @@ def _in_model(
     path: str, name: str, model: mujoco.MjModel, log: Log, given: dict[str, Any]
 ) -> tuple[Parameter, float]:
     """A parameter that is a place in the model or in its start."""
-    fields: dict[str, Any] = {"where": path, "unit": ""}
+    fields: dict[str, Any] = {"where": path, "unit": _unit(model, path)}
     place = start_place(path, model)
     if place is not None:
         own = float(getattr(own_start(model), place[0])[place[1]])
@@ -79,6 +85,25 @@ def _in_model(
     scale = abs(value) or 1.0
     fields |= {"value": value, "scale": scale, "lower": 0.0 if attribute in POSITIVE else -np.inf}
     return Parameter(name, **{**fields, **given}), KNOWN * scale
+
+
+def _unit(model: mujoco.MjModel, path: str) -> str:
+    """Of a body's mass, a joint's number or an entry of the start; "" of what else there is."""
+    place = start_place(path, model)
+    thing, _, attribute = path.partition("[")[0].rpartition(".")
+    kind, _, name = thing.partition("/")
+    joints: list[int] = []
+    if place is not None:
+        attribute = place[0]
+        at = model.jnt_qposadr if attribute == "qpos" else model.jnt_dofadr
+        joints = np.flatnonzero(at <= place[1])[-1:].tolist()
+    elif kind == "joint":
+        joints = [j for j in range(model.njnt) if fnmatchcase(model.joint(j).name, name)]
+    if not joints or attribute not in UNITS:
+        return "kg" if (kind, attribute) == ("body", "mass") else ""
+    types = (int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE))
+    found = int(model.jnt_type[joints[0]])
+    return UNITS[attribute][types.index(found)] if found in types else ""
 
 
 def _moved(model: mujoco.MjModel, place: tuple[str, int], log: Log) -> float:

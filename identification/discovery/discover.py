@@ -92,7 +92,7 @@ def discover(
         log, verdict, named, bool(left), step.refit.level.sigma, step.unseen.disturbance,
         nominal.unseen.gap, step.unseen.gap, nominal.refit, step.refit,
         log.outputs - nominal.unseen.e, log.outputs - step.unseen.e, first, ranked,
-        detectable(ranked), where, left, missing, clock.seconds,
+        detectable(ranked), where, left, missing, clock.seconds, base.horizon,
     )  # fmt: skip
 
 

@@ -130,6 +130,7 @@ class Discovery:
         left: where the final model still fails, in sentences; empty when it does not.
         missing: the forces that the nominal model lacks, by where they act.
         seconds: wall time by stage [s].
+        horizon: over which gaps and proofs are judged [s]; None for a free run.
     """
 
     log: Log
@@ -151,3 +152,4 @@ class Discovery:
     left: tuple[str, ...]
     missing: tuple[MissingForce, ...]
     seconds: Mapping[str, float]
+    horizon: float | None = None

@@ -76,11 +76,12 @@ def force_figure(
         names: of the degrees of freedom, k of them.
         units: N or N m, k of them.
     """
-    rows = -(-len(names) // 2)
+    columns = min(2, len(names))
+    rows = -(-len(names) // columns)
     with matplotlib.rc_context(STYLE):
-        figure = Figure((9.0, 0.4 + 1.2 * rows), layout="constrained")
-        axes = figure.subplots(rows, 2, sharex=True, squeeze=False)
-        panels = [axes[row, column] for column in range(2) for row in range(rows)]
+        figure = Figure((9.0, 0.4 + max(1.2 * rows, 1.8)), layout="constrained")
+        axes = figure.subplots(rows, columns, sharex=True, squeeze=False)
+        panels = [axes[row, column] for column in range(columns) for row in range(rows)]
         for k, ax in enumerate(panels):
             if k >= len(names):
                 ax.set_axis_off()

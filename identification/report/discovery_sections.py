@@ -51,9 +51,9 @@ def gap_section(found: Discovery) -> Section:
     fits = [g.fit_percent[np.isfinite(g.fit_percent)] for _, g in gaps]
     return Section(
         "The gap on unseen data",
-        "Measured minus simulated, from the currents alone, over samples that no fit has seen. The"
+        "Measured minus simulated, from the inputs alone, over samples that no fit has seen. The"
         " grey band is what the sensors, and disturbances that were not logged, do to a model that"
-        " lacks nothing.",
+        " lacks nothing." + _judged(found),
         figures=(("Error on unseen data, before and after", figure),),
         table=Table(
             ("model", f"rms [{unit}]" if unit else "rms", "times the noise", "mean fit [%]"),
@@ -127,6 +127,17 @@ def label(score: Score) -> str:
     where = "" if c.where.startswith("all ") or c.where == "platform" else f" ({c.where})"
     shape = ", ".join(f"{n} = {v:.3g}" for n, v in c.shape.items())
     return c.effect.name.replace("_", " ") + where + (f", {shape}" if shape else "")
+
+
+def _judged(found: Discovery) -> str:
+    """That the table is not of the figure's free run, where that is so."""
+    if found.horizon is None:
+        return ""
+    return (
+        f"\n\nThe table, and the grey band, are of windows of {found.horizon:g} s, each from its"
+        " own best state. The curves are a free run: an axis that integrates what disturbs it drifts"
+        " far beyond them, whatever its model."
+    )
 
 
 def _errors(found: Discovery) -> tuple[np.ndarray, np.ndarray | None]:

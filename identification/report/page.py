@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _LARGEST_SVG = 1_500_000  # characters; a figure of more points is shown as pixels
 _LARGEST_VIDEO = 64 * 2**20  # bytes
+WIDE = 9.0  # a figure of so many inches has a row of its own
 
 
 @dataclass(frozen=True)
@@ -116,7 +117,11 @@ def _section(section: Section, number: int) -> dict[str, Any]:
         "title": section.title,
         "paragraphs": [part.strip() for part in section.text.split("\n\n") if part.strip()],
         "figures": [
-            (caption, _picture(figure, f"f{number}_{k}_", caption))
+            (
+                caption,
+                _picture(figure, f"f{number}_{k}_", caption),
+                figure.get_size_inches()[0] >= WIDE,
+            )
             for k, (caption, figure) in enumerate(section.figures, 1)
         ],
         "columns": _columns(table) if table else [],

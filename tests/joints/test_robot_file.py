@@ -72,6 +72,8 @@ def test_what_the_file_leaves_out_comes_from_the_model_and_the_log(folder):
     assert at["joint/slide.damping"].lower == 0.0
     assert at["mass"].value == 2.0
     assert at["qpos[0]"].value == log.outputs[0, 0]
+    units = [at[n].unit for n in NAMES]
+    assert units == ["kg", "N s/m", "m", "m/s"]
     assert robot.starts == ("qpos[0]", "qvel[0]")
     assert robot.base.names == NAMES
     assert {"stribeck_friction", "delay"} <= {e.name for e in robot.candidates}
