@@ -135,8 +135,8 @@ def _judged(found: Discovery) -> str:
         return ""
     return (
         f"\n\nThe table, and the grey band, are of windows of {found.horizon:g} s, each from its"
-        " own best state. The curves are a free run: an axis that integrates what disturbs it drifts"
-        " far beyond them, whatever its model."
+        " own best state. The curves are a free run: an axis that integrates what disturbs it"
+        " drifts far beyond them, whatever its model."
     )
 
 
