@@ -3,7 +3,8 @@
     J ω̇ = K_t (i - i_c(q)) - m g r - f_c tanh(ω/v₀) - d ω          i [A] -> q; K_t is believed
 
 First the balance of strokes at constant speed (`winch_strokes`), then what a fit over windows and
-a discovery make of the same records. The data are lifting/ of eliasoa/TTK4900_CDPR (NTNU).
+a discovery make of the same records. The data are lifting/ and dynamic_torque/ of
+eliasoa/TTK4900_CDPR (NTNU).
 Run it: python examples/winch.py FOLDER [--figure FILE]
 """
 
@@ -23,6 +24,7 @@ from winch_strokes import (
     ripple,
     stroke,
     waves,
+    without_load,
 )  # fmt: skip
 
 from identification import Log, Parameter
@@ -106,6 +108,7 @@ def main(folder, figure=None):
     lifting = folder / "lifting"
     strokes = [stroke(lifting, *s) for s in STROKES]
     amperes = balance(strokes)
+    without_load(folder)
     wave = {motor: ripple(strokes, motor) for motor in (2, 0)}
     if figure:
         draw(strokes, wave[2], amperes, figure)
@@ -120,7 +123,7 @@ def main(folder, figure=None):
 
 if __name__ == "__main__":
     where = Path(sys.argv[1] if len(sys.argv) > 1 else "data/ttk4900")
-    if (where / "lifting").exists():
+    if (where / "lifting").exists() and (where / "dynamic_torque").exists():
         main(where, sys.argv[3] if sys.argv[2:3] == ["--figure"] else None)
     else:
-        print(f"{where} has no folder lifting; get it from github.com/eliasoa/TTK4900_CDPR")
+        print(f"{where} lacks lifting or dynamic_torque: see github.com/eliasoa/TTK4900_CDPR")

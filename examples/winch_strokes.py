@@ -9,6 +9,7 @@ All in amperes of the motor. i_0 is whatever does not depend on the mass: a hook
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.io import loadmat
 
 K_T, RADIUS, G = 0.0551, 0.020, 9.81  # [N m/A], [m], [m/s^2]: what the authors compute with
 TURN = 2 * np.pi
@@ -111,6 +112,17 @@ def fitted(A, b):
     x = np.linalg.lstsq(A, b, rcond=None)[0]
     s2 = np.sum((b - A @ x) ** 2) / (len(A) - A.shape[1])
     return x, np.sqrt(s2 * np.diag(np.linalg.inv(A.T @ A)))
+
+
+def without_load(folder):
+    """What keeps the bare motors running, as the torque is lowered: c + d ω [N m], by motor."""
+    log = loadmat(folder / "dynamic_torque" / "DynamicalTorque.mat")
+    for motor, (torque, speed) in enumerate(zip(log["TorqueLog"], log["VelLog"], strict=True)):
+        runs = (speed > 1) & (speed < 9)  # neither stuck nor at the limit of 10 rev/s
+        A = np.column_stack([np.ones(runs.sum()), TURN * speed[runs]])
+        (c, d), std = fitted(A, 1e3 * torque[runs])  # [mN m], [mN m s/rad]
+        print(f"motor {motor} without load: c {c:.1f} ± {std[0]:.1f} mN m,"
+              f" d {d:.3f} ± {std[1]:.3f} mN m s/rad")  # fmt: skip
 
 
 def ripple(strokes, motor):
