@@ -19,7 +19,7 @@ SPEEDS = (0.03, 0.06, 0.12, 0.25, 0.5)  # Stribeck velocities to try, of the top
 WAVES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)  # of a slide's travel
 
 
-def joint_effects(axes: Sequence[Axis]) -> tuple[JointEffect, ...]:
+def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple[JointEffect, ...]:
     """All candidates of some joints.
 
     Hinges and slides have units of their own; where a robot has both, the names of the slides'
@@ -27,6 +27,8 @@ def joint_effects(axes: Sequence[Axis]) -> tuple[JointEffect, ...]:
 
     Args:
         axes: the joints.
+        turns: periods in a turn of a hinge that are tried; a motor's are multiples of its poles
+            and of its slots.
     """
     kinds: list[Kind] = ["hinge", "slide"]
     groups = [(kind, tuple(a for a in axes if a.kind == kind)) for kind in kinds]
@@ -35,11 +37,13 @@ def joint_effects(axes: Sequence[Axis]) -> tuple[JointEffect, ...]:
         effect
         for kind, group in groups
         if group
-        for effect in _catalogue(group, kind, "slide_" if both and kind == "slide" else "")
+        for effect in _catalogue(group, kind, turns, "slide_" if both and kind == "slide" else "")
     )
 
 
-def _catalogue(axes: tuple[Axis, ...], kind: Kind, prefix: str) -> list[JointEffect]:
+def _catalogue(
+    axes: tuple[Axis, ...], kind: Kind, turns: Sequence[float], prefix: str
+) -> list[JointEffect]:
     F, V, L = (max(getattr(a, word) for a in axes) for word in ("force", "speed", "travel"))
     f, x = ("N m", "rad") if kind == "hinge" else ("N", "m")
     at = places("joint", tuple(a.joint for a in axes))
@@ -59,7 +63,7 @@ def _catalogue(axes: tuple[Axis, ...], kind: Kind, prefix: str) -> list[JointEff
 
     v_s = Shape("v_s", f"{x}/s", tuple(V * s for s in SPEEDS), 0.01 * V, 2 * V,
                 about="half width of the peak")  # fmt: skip
-    n = _waves(kind, L)
+    n = _waves(kind, L, turns)
     waves = (
         size("a", 0.2 * F, f, "amplitude of the cosine"),
         size("b", 0.2 * F, f, "amplitude of the sine"),
@@ -99,9 +103,10 @@ def _catalogue(axes: tuple[Axis, ...], kind: Kind, prefix: str) -> list[JointEff
     return [e for e in out if e.effect.places]
 
 
-def _waves(kind: Kind, travel: float) -> Shape:
+def _waves(kind: Kind, travel: float, turns: Sequence[float]) -> Shape:
     """How often a periodic force repeats: in a turn, or in 2π m of a slide."""
     if kind == "hinge":
-        return Shape("n", "", TURNS, 1.0, 48.0, free=False, about="periods in a turn")
+        low, high = min(*turns, 1.0), max(48.0, *turns)
+        return Shape("n", "", tuple(turns), low, high, free=False, about="periods in a turn")
     grid = tuple(2 * pi * w / travel for w in WAVES)
     return Shape("n", "rad/m", grid, 0.5 * grid[0], 4 * grid[-1], about="wave number")

@@ -9,6 +9,7 @@ from identification import InputError, Log, ParameterSet
 from identification.estimate_windows import estimate_windows
 from identification.estimation import estimate
 from identification.plant import ModelPlant
+from identification.shooting import Tangent
 from identification.windows import windows
 
 NAMES = ("mass", "damping")
@@ -68,3 +69,17 @@ def test_what_only_the_start_feels_has_no_place_in_windows():
     assert log.sampling_time == pytest.approx(STEP)
     with pytest.raises(InputError, match="x0 has no effect"):
         estimate_windows(slider(), log, ("damping", "x0"), 0.5)
+
+
+def test_a_parameter_that_is_felt_no_more_stays_and_the_others_go_on():
+    """A search may make a friction so small that its slope is zero to the bit."""
+    rng = np.random.default_rng(3)
+    r, S, X = (rng.standard_normal(shape) for shape in ((4, 9), (4, 9, 3), (4, 9, 2)))
+    size = np.linalg.norm(X, axis=1)
+    parts = np.linalg.svd(X / size[:, None], full_matrices=False)
+    S[:, :, 1] = 0.0
+    moved, states = Tangent(r, S, *parts, size).step(0.1)
+    alone, same = Tangent(r, S[:, :, [0, 2]], *parts, size).step(0.1)
+    assert moved[1] == 0
+    np.testing.assert_allclose(moved[[0, 2]], alone, rtol=1e-12)
+    np.testing.assert_allclose(states, same, rtol=1e-12)

@@ -140,3 +140,14 @@ def test_windows_see_what_the_plant_makes_of_its_inputs():
     assert np.abs(late).max() < 1e-9 < 1e-4 < np.abs(window_error(slider(), log, 0.25)).max()
     fit = estimate_windows(slider(), log, ("mass", "damping"), 0.25, {"mass": 2.3, **delay})
     assert fit.values["mass"] == pytest.approx(2.0, rel=1e-5)
+
+
+def test_the_periods_of_a_motor_that_is_known_are_tried_on_hinges_only():
+    hinge, slide = Axis("h", "hinge", 1.0, 1.0, 1.0), Axis("s", "slide", 1.0, 1.0, 1.0)
+
+    def grids(*given):
+        return {e.name: e.effect.shapes[0].grid for e in joint_effects((hinge, slide), *given)
+                if e.name.endswith("cogging")}  # fmt: skip
+
+    assert grids((7.0, 84.0))["cogging"] == (7.0, 84.0)
+    assert grids((7.0, 84.0))["slide_cogging"] == grids()["slide_cogging"]
