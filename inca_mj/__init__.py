@@ -3,8 +3,7 @@
 The public names; each is imported when it is first asked for, so that `inca --help` is quick.
 """
 
-from importlib import import_module
-from typing import Any
+from identification.lazy import lazy
 
 _PUBLIC = {
     "Comparison": "comparison",
@@ -26,17 +25,4 @@ _PUBLIC = {
     "simulate": "run",
 }
 __all__ = list(_PUBLIC)
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _PUBLIC:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    try:
-        module = import_module(f"{__name__}.{_PUBLIC[name]}")
-    except AttributeError as error:  # "from ... import" would call it a missing name
-        raise ImportError(f"{name} cannot be imported: {error}") from error
-    return getattr(module, name)
-
-
-def __dir__() -> list[str]:
-    return sorted(_PUBLIC)
+__getattr__, __dir__ = lazy(__name__, _PUBLIC)

@@ -97,9 +97,8 @@ class Identify:
             MECHANICS,
             POSE,
             identify,
-            identify_innovations,
-            identify_windows,
         )
+        from inca_mj.identify_disturbed import identify_innovations, identify_windows
         from inca_mj.logs import read_inca_log
 
         if self.free == ():

@@ -8,7 +8,8 @@ import pytest
 from identification import InputError
 from identification.estimate_windows import estimate_windows
 from identification.windows import apart, moved
-from inca_mj.identify import POSE, identify_windows
+from inca_mj.identify import POSE
+from inca_mj.identify_disturbed import identify_windows
 from inca_mj.inputs import make_input
 from inca_mj.logs import run_to_log
 from inca_mj.parameters import parameter_set
