@@ -41,14 +41,9 @@ NAMES = tuple(p.name for p in RECORDS[:5])
 KNOWN = np.array([0.3, 0.3, 0.3, 0.5, 0.02, 0.02, 0.5])  # 30 %, 50 %, and what rest may hide
 MORE = (  # one effect each, and where its fit begins
     {"load_dependent_friction.mu@hinge": 0.1},
-    {"stribeck_friction.f_s@hinge": 0.02, "stribeck_friction.v_s@hinge": 1.0},
-    {"asymmetric_friction.f_a@hinge": 0.01},
-    {"asymmetric_viscous_friction.d_a@hinge": 0.005},
+    {"stribeck_friction.f_s@hinge": 0.02, "stribeck_friction.v_s": 1.0},
     {"quadratic_friction.c@hinge": 0.001},
     {"position_dependent_friction.f_q@hinge": 0.01},
-    {"position_dependent_damping.d_q@hinge": 0.005},
-    {"stiffness.k@hinge": 0.01},
-    {"delay.tau@motor": 0.005},
 )
 FITTED, HELD = (100, 400), (200, 800)  # k_p
 STEP, WIDEST = 0.01, 0.02  # of the grid, and a gap that is still bridged [s]
@@ -116,19 +111,21 @@ def main(folder: Path, figure: Path | None) -> None:
             first = [f"{s.candidate.effect.name} {s.gain:.0f}" for s in found.scores[:3]]
             print(f"{log.name}: {found.verdict} {named}, first {first}", flush=True)
 
-    more = []
+    more, without = [], errors(plant, held, fit.values)
     for start in MORE:
         names = (*NAMES, *start)
         e = estimate_windows(plant, every, names, HORIZON, {**fit.values, **start}, tolerance=1e-3)
-        more.append(e)
-        print({n: f"{e.values[n]:.4g}" for n in start}, f"rms {1e3 * fit.rms:.2f} ->"
-              f" {1e3 * e.rms:.2f} mrad;", change(plant, held, fit, e), flush=True)  # fmt: skip
-    best = min(more, key=lambda e: e.rms)  # of what was fitted: the held records choose nothing
+        more.append((e, errors(plant, held, e.values)))
+        print({n: f"{e.values[n]:.4g}" for n in start}, "fitted:",
+              change([fit.residual.ravel()], [e.residual.ravel()]),
+              "| held out:", change(without, more[-1][1]), flush=True)  # fmt: skip
+    best, with_it = min(more, key=lambda pair: pair[0].rms)  # the held records choose nothing
     show(best)
-    for log in held:
-        print(f"{log.name}:", change(plant, [log], fit, best))
+    for log, a, b in zip(held, without, with_it, strict=True):
+        print(f"{log.name}:", change([a], [b]))
     for length in (0.1, 0.5):
-        print(f"over {length} s:", change(plant, held, fit, best, length))
+        a, b = (errors(plant, held, e.values, length) for e in (fit, best))
+        print(f"held out over {length} s:", change(a, b), flush=True)
     if figure:
         draw(figure, plant, held[-1], [fit.values, best.values])
 
@@ -138,17 +135,20 @@ def show(fit):
     print({n: f"{v:.4g} ± {s:.2g}" for (n, v), s in zip(fit.values.items(), fit.std, strict=True)})
 
 
-def change(plant, logs, without, with_it, length=HORIZON):
-    """How two fits predict records that neither has seen."""
-    a, b = (rms(plant, logs, e.values, length) for e in (without, with_it))
-    share = 100 * (b**2 / a**2 - 1)
-    return f"held out {1e3 * a:.2f} -> {1e3 * b:.2f} mrad, mean square {share:+.0f} %"
+def errors(plant, logs, values, length=HORIZON):
+    """In windows whose starts are free, of each record [rad]."""
+    return [window_error(plant, log, length, values).ravel() for log in logs]
 
 
-def rms(plant, logs, values, length=HORIZON):
-    """Of the errors in windows whose starts are free, over all windows of some records [rad]."""
-    errors = [window_error(plant, log, length, values).ravel() for log in logs]
-    return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
+def rms(each):
+    """Over all records."""
+    return float(np.sqrt(np.mean(np.concatenate(each) ** 2)))
+
+
+def change(without, with_it):
+    """Errors of two fits, in words."""
+    a, b = rms(without), rms(with_it)
+    return f"{1e3 * a:.2f} -> {1e3 * b:.2f} mrad, mean square {100 * (b**2 / a**2 - 1):+.0f} %"
 
 
 def draw(path, plant, log, sets):

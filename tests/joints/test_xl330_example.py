@@ -98,7 +98,7 @@ def test_what_one_gain_shows_predicts_another_and_friction_under_load_predicts_i
     names, start = (*xl330.NAMES, mu), {**fit.values, mu: 0.1}
     more = estimate_windows(plant, log, names, xl330.HORIZON, start, tolerance=1e-2)
     begun, found, better = (
-        xl330.rms(plant, [other], e) for e in ({}, fit.values, more.values)
+        xl330.rms(xl330.errors(plant, [other], e)) for e in ({}, fit.values, more.values)
     )  # fmt: skip
     assert found < 0.5 * begun
     assert better < 0.9 * found
