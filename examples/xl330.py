@@ -39,11 +39,9 @@ RECORDS = (
 )
 NAMES = tuple(p.name for p in RECORDS[:5])
 KNOWN = np.array([0.3, 0.3, 0.3, 0.5, 0.02, 0.02, 0.5])  # 30 %, 50 %, and what rest may hide
-MORE = (  # one effect each, and where its fit begins
+MORE = (  # one effect each, and where its fit begins: the authors' M3 and M2
     {"load_dependent_friction.mu@hinge": 0.1},
     {"stribeck_friction.f_s@hinge": 0.02, "stribeck_friction.v_s": 1.0},
-    {"quadratic_friction.c@hinge": 0.001},
-    {"position_dependent_friction.f_q@hinge": 0.01},
 )
 FITTED, HELD = (100, 400), (200, 800)  # k_p
 STEP, WIDEST = 0.01, 0.02  # of the grid, and a gap that is still bridged [s]
