@@ -111,7 +111,7 @@ def estimate_windows(
         shooting = Shooting(predictor, space, cut, believed, C)
         d = apart(plant.model, believed.states, begun)
         enough = tolerance if k == BELIEFS else max(ROUGH, tolerance)
-        end = _search(shooting, q, d, enough, max_evaluations, progress)
+        end = _search(shooting, q, d, enough, max_evaluations, progress, k == 1)
         q, begun, tangents = end.q, shooting.states(end.d), tangents + end.tangents
     S = end.tangent.projected
     found = identifiability(S, space.names)
@@ -152,11 +152,17 @@ def _search(
     tolerance: float,
     most: int,
     progress: Progress | None,
+    fresh: bool,
 ) -> _End:
-    """Levenberg-Marquardt over q and the states of all windows; steps end at the bounds."""
+    """Levenberg-Marquardt over q and the states of all windows; steps end at the bounds.
+
+    What has no effect is refused where the search is fresh: later, a friction that the data do not
+    want may well have gone to nothing.
+    """
     low, high = shooting.space.lower, shooting.space.upper
     at = tangent(shooting, q, d)
-    refuse_without_effect(*_felt(shooting, at))
+    if fresh:
+        refuse_without_effect(*_felt(shooting, at))
     damping = FIRST_DAMPING
     for tangents in range(1, most + 1):
         cost = float(np.sum(at.r**2))

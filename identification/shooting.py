@@ -145,7 +145,7 @@ class Tangent:
         H_q = H - np.einsum("wkp,wk,wkq->pq", against, share, against)
         g_q = g - np.einsum("wkp,wk,wk->p", against, share, left)
         size = np.sqrt(np.diag(H))
-        size = np.where(size > 0, size, 1.0)  # what the search has made tiny is felt no more
+        size = np.where(size > 0, size, 1.0)  # one that a search drove to nothing stays there
         scaled = H_q / np.outer(size, size) + damping * np.eye(len(g))
         dq = np.linalg.lstsq(scaled, g_q / size, rcond=None)[0] / size
         along = self.s / (self.s**2 + damping) * (left - against @ dq)

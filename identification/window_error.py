@@ -21,8 +21,9 @@ from identification.predictor import Plant, Predictor
 from identification.shooting import Shooting, tangent
 from identification.windows import first_states, windows
 
-STEPS = 8  # of Gauss and Newton, at most
-ENDED = 1e-3  # relative fall of the squared error that ends them
+STEPS = 20  # of Levenberg and Marquardt, at most
+ENDED = 1e-3  # of the mean squared error: a window that changes by less is at its best
+FIRST_DAMPING, MOST_DAMPING = 1e-9, 1e2  # of the squared norms of X's columns
 
 
 def window_error(
@@ -51,16 +52,21 @@ def window_error(
     shooting = Shooting(predictor, space, cut, believed, np.eye(log.outputs.shape[1]) / sigma)
     d = np.zeros((len(cut.starts), 2 * plant.model.nv + plant.model.na))
     at = tangent(shooting, none, d)
+    damping = np.full(len(d), FIRST_DAMPING)
     for _ in range(STEPS):
-        along = np.einsum("wmk,wm->wk", at.U, at.r) * (at.s > 0) / np.where(at.s > 0, at.s, 1.0)
-        move = np.einsum("wkx,wk->wx", at.Vt, along) / at.size
+        # A window has its own damping: where a joint sticks, its first rate is hardly felt.
+        before = np.sum(at.r**2, axis=1)
+        along = np.einsum("wmk,wm->wk", at.U, at.r) * at.s / (at.s**2 + damping[:, None])
+        trial = d + np.einsum("wkx,wk->wx", at.Vt, along) / at.size
         try:
-            new = tangent(shooting, none, d + move)
+            after = np.sum(shooting.residual(none, trial) ** 2, axis=1)
         except DivergenceError:
-            break
-        fell = np.sum(at.r**2) - np.sum(new.r**2)
-        if fell > 0:
-            d, at = d + move, new
-        if fell < ENDED * np.sum(at.r**2):
+            after = np.full(len(d), np.inf)
+        better = after < before
+        damping = np.where(better, np.maximum(damping / 10, FIRST_DAMPING), 10 * damping)
+        d = np.where(better[:, None], trial, d)
+        at = tangent(shooting, none, d)
+        small = np.abs(after - before) <= ENDED * before.mean()
+        if np.all(small | (damping > MOST_DAMPING)):
             break
     return shooting.error(at.r)

@@ -151,3 +151,27 @@ def test_the_periods_of_a_motor_that_is_known_are_tried_on_hinges_only():
 
     assert grids((7.0, 84.0))["cogging"] == (7.0, 84.0)
     assert grids((7.0, 84.0))["slide_cogging"] == grids()["slide_cogging"]
+
+
+def test_a_window_is_explained_as_well_among_others_where_the_joint_sticks_as_by_itself():
+    """Stiff friction forgets the first rate at once; an undamped step from there goes anywhere."""
+    u = np.where(np.arange(400)[:, None] % 100 < 50, steps(400, hold=10), 0.3)
+    clean = run(slider(), slider_log(u), **{"coulomb_friction.f_c@slide": 4.0})
+    log = slider_log(u, clean + 1e-4 * np.random.default_rng(5).standard_normal(clean.shape))
+    more = {"coulomb_friction.f_c@slide": 4.6}
+    among = window_error(slider(), log, 0.2, more)
+    for k, error in enumerate(among):
+        rows = slice(20 * k, 20 * k + 20)
+        alone = window_error(slider(), slider_log(u[rows], log.outputs[rows]), 0.2, more)
+        assert np.sum(error**2) < 1.01 * np.sum(alone**2), k
+
+
+def test_a_friction_that_the_data_do_not_want_goes_to_nothing_and_no_search_fails():
+    u = steps(200, hold=10)
+    log = slider_log(u, run(slider(), slider_log(u)))
+    unwanted = Parameter("coulomb_friction.f_c@slide", 0.1, "N", "effect", lower=0.0)
+    plant = joint_plant(SLIDER, (MASS, DAMPING, unwanted), log)
+    too_much = {"damping": 4.0}  # so that the rest should push
+    fit = estimate_windows(plant, log, ("mass", unwanted.name), 0.2, too_much)
+    assert fit.values[unwanted.name] < 1e-9
+    assert fit.std[1] == np.inf
