@@ -33,7 +33,7 @@ from identification.discovery.extend import Base
 from identification.estimate_windows import estimate_windows
 from identification.irregular import on_a_grid
 from identification.joints.axes import axes
-from identification.joints.catalogue import TURNS, joint_effects
+from identification.joints.catalogue import joint_effects
 from identification.joints.input_effects import drives, input_effects
 from identification.joints.model import read_model
 from identification.joints.plant import candidates, joint_plant
@@ -75,10 +75,10 @@ def records(mass, angle=0.0, rate=0.0):
 
 
 def winch_plant(log, mass):
-    """The model with its candidates, the periods of such a motor among them."""
+    """The model with its candidates."""
     y = log.outputs[:, 0]
     known = axes(read_model(MODEL).compile(), log)
-    effects = (*joint_effects(known, (*TURNS, 14.0, 28.0)), *input_effects(drives(log)))
+    effects = (*joint_effects(known), *input_effects(drives(log)))
     own = records(mass, y[0], (y[5] - y[0]) / (5 * log.sampling_time))
     return joint_plant(MODEL, own, log, effects=effects)
 

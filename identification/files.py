@@ -84,6 +84,8 @@ def whole_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
     path = Path(path)
     try:
         path.mkdir(parents=True, exist_ok=True)
+        for old in path.glob(".draft-*"):  # of a program that was killed
+            rmtree(old, ignore_errors=True)
         draft = Path(mkdtemp(prefix=".draft-", dir=path))
     except OSError as error:
         raise InputError(f"cannot make folder {path}: {error.strerror}; choose another") from None

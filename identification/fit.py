@@ -49,6 +49,8 @@ class Fit:
         fit_percent: on the log, shape (ny,) [%].
         validation_fit_percent: on data that the fit has not seen, shape (ny,) [%], or None.
         validation_rms: there, over all outputs, or None.
+        validation_expected: there, if the model is right: the fitted residual and what the
+            uncertainty of the parameters makes of it there, or None.
         floor: noise seen in the measurement alone, shape (ny,).
         tests: of the residual.
         information: what the log says of the parameters at the estimate, for white noise.
@@ -64,6 +66,7 @@ class Fit:
     fit_percent: np.ndarray
     validation_fit_percent: np.ndarray | None
     validation_rms: float | None
+    validation_expected: float | None
     floor: np.ndarray
     tests: ResidualTests
     information: Information
@@ -100,7 +103,8 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
     covariance = _sandwich(S, *influence(error, estimate.options.loss), error, known, prior)
     std_q = np.where(known.undetermined, np.inf, np.sqrt(np.diag(covariance)))
     scale = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
-    fit, unseen = _beyond(estimate, validation)
+    fit, unseen, spread = _beyond(estimate, validation, covariance)
+    expected = None if unseen is None else float(np.hypot(np.sqrt(np.mean(residual**2)), spread))
     return Fit(
         estimate,
         std_q * space.slope(q),
@@ -112,6 +116,7 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
         fit_percent(log.outputs, predicted),
         fit,
         unseen,
+        expected,
         noise_floor(log.outputs),
         residual_tests(residual, log.inputs),
         Information(space.names, len(q), space.logarithmic, root_of(S.reshape(-1, len(q)))),
@@ -149,17 +154,22 @@ def combinations_of(
     return tuple(out)
 
 
-def _beyond(estimate: Estimate, whole: Log | None) -> tuple[np.ndarray | None, float | None]:
-    """Fit % and rms on the samples after the fitted ones, by a free run from the start."""
+def _beyond(
+    estimate: Estimate, whole: Log | None, covariance: np.ndarray
+) -> tuple[np.ndarray | None, float | None, float]:
+    """On the samples after the fitted ones, by a free run from the start: fit %, rms, and the rms
+    spread of the prediction that the covariance of q makes."""
     n = len(estimate.predictor.log)
     if whole is None or len(whole) <= n + 2:
-        return None, None
+        return None, None, 0.0
     p = estimate.predictor
+    longer = Predictor(p.plant, whole, p.names, p.fixed)
     try:
-        predicted = Predictor(p.plant, whole, p.names, p.fixed).predict(
-            estimate.space.decode(estimate.q)
-        )[0][n:]
+        predicted = longer.predict(estimate.space.decode(estimate.q))[0][n:]
+        J = sensitivity(longer, estimate.space, estimate.q)[n:]
     except DivergenceError:
-        return np.full(whole.outputs.shape[1], -np.inf), np.inf
+        return np.full(whole.outputs.shape[1], -np.inf), np.inf, 0.0
     measured = whole.outputs[n:]
-    return fit_percent(measured, predicted), float(np.sqrt(np.mean(rms(measured - predicted) ** 2)))
+    spread = np.sqrt(np.mean(np.einsum("nip,pq,niq->ni", J, covariance, J)))
+    error = float(np.sqrt(np.mean(rms(measured - predicted) ** 2)))
+    return fit_percent(measured, predicted), error, float(spread)

@@ -37,10 +37,12 @@ def fit_to_json(fit: Fit) -> dict[str, Any]:
         "loss": fit.loss,
         "rms": fit.rms,
         "validation_rms": _finite(fit.validation_rms),
+        "validation_expected": _finite(fit.validation_expected),
         "noise_floor": float(np.sqrt(np.mean(fit.floor**2))),
         "iterations": e.jacobians,
         "evaluations": e.evaluations,
         "seconds": e.seconds,
+        "status": e.status,
         "verdict": verdict(fit),
     }
 

@@ -12,7 +12,7 @@ from identification.discovery.extend import Base
 from identification.effect import Effect
 from identification.errors import InputError, unknown_name
 from identification.joints.axes import axes
-from identification.joints.catalogue import joint_effects
+from identification.joints.catalogue import TURNS, joint_effects
 from identification.joints.input_effects import drives, input_effects
 from identification.joints.model import read_model
 from identification.joints.plant import JointPlant, candidates, joint_plant
@@ -110,13 +110,13 @@ def robot_of(file: RobotFile, log: Log) -> Robot:
         if joint not in {a.joint for a in known}:
             raise unknown_name("measured joint", joint, (a.joint for a in known))
     known = tuple(a for a in known if not file.joints or a.joint in file.joints)
-    effects = (*joint_effects(known), *input_effects(drives(log)))
+    effects = (*joint_effects(known, file.turns or TURNS), *input_effects(drives(log)))
     for name in file.only:
         if name not in {e.name for e in effects}:
             raise unknown_name("effect", name, (e.name for e in effects))
     records = [free_parameter(file, name, model, effects, log) for name in file.free]
     plant = joint_plant(file.model, [r for r, _ in records], log, joints=known, effects=effects)
-    return Robot(file, log, plant, np.array([std for _, std in records]))
+    return Robot(file, log, plant.with_values(file.fixed), np.array([std for _, std in records]))
 
 
 def _unit(model: mujoco.MjModel, sensor: str) -> str:

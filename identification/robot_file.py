@@ -5,6 +5,8 @@ outputs = ["position"]               # sensors that the log has; all joint posit
 free = ["M", "joint/slide.damping", "coulomb_friction.f_c@slide"]
 horizon = 0.2                        # [s] to judge predictions over; a free run if not given
 every = 10                           # keep every n-th sample
+[fixed]                              # values of effects' parameters that are not free
+"stribeck_friction.v_s" = 0.05
 [columns]                            # actuator or sensor = column of the log, where they differ
 drive = "vir"
 [parameters.M]                       # of a free parameter; every key may be left out
@@ -17,6 +19,7 @@ upper = 500.0
 scale = 1.0                          # a magnitude that matters, where it may be zero
 [effects]
 joints = ["slide"]                   # where they may act; the measured joints if not given
+turns = [1, 7, 14]                   # periods of a turn to try, where a motor's are known
 only = ["stribeck_friction"]         # candidates; all if not given
 
 A free name is a key under `parameters`, a path into the model or its start, or a size of an effect.
@@ -27,7 +30,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import isfinite
+from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +46,7 @@ _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
     "horizon": ((int, float), "a number of seconds"),
     "every": (int, "a whole number of samples"),
     "columns": (dict, "a table"),
+    "fixed": (dict, "a table of numbers"),
     "parameters": (dict, "a table of tables"),
     "effects": (dict, "a table"),
 }
@@ -50,9 +54,10 @@ _RECORD: dict[str, tuple[type | tuple[type, ...], str]] = {
     **dict.fromkeys(("path", "unit", "about"), (str, "text in quotes")),
     **dict.fromkeys(("value", "known", "lower", "upper", "scale"), ((int, float), "a number")),
 }
-_EFFECTS: dict[str, tuple[type | tuple[type, ...], str]] = dict.fromkeys(
-    ("joints", "only"), (list, "a list of names")
-)
+_EFFECTS: dict[str, tuple[type | tuple[type, ...], str]] = {
+    **dict.fromkeys(("joints", "only"), (list, "a list of names")),
+    "turns": (list, "a list of numbers above zero"),
+}
 _POSITIVE = ("horizon", "every", "known", "scale")
 
 
@@ -68,9 +73,11 @@ class RobotFile:
         horizon: [s], None for a free run.
         every: n of every n-th sample.
         columns: column of the log by actuator or sensor.
+        fixed: values of parameters of effects.
         records: what is known of free parameters, by name.
         joints: where effects may act; empty for the measured ones.
         only: candidates by name; empty for all.
+        turns: periods of a turn to try; empty for the catalogue's.
     """
 
     path: Path
@@ -80,9 +87,11 @@ class RobotFile:
     horizon: float | None = None
     every: int = 1
     columns: Mapping[str, str] = field(default_factory=dict)
+    fixed: Mapping[str, float] = field(default_factory=dict)
     records: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     joints: tuple[str, ...] = ()
     only: tuple[str, ...] = ()
+    turns: tuple[float, ...] = ()
 
 
 def read_robot(path: str | Path) -> RobotFile:
@@ -109,19 +118,26 @@ def read_robot(path: str | Path) -> RobotFile:
         _check(record, _RECORD, f"parameters.{name} in {path}")
         if name not in content["free"]:
             raise InputError(f"{path} tells of parameter {name!r}, which is not among its `free`")
+    columns, fixed = content.get("columns", {}), content.get("fixed", {})
+    _check(fixed, dict.fromkeys(fixed, ((int, float), "a number")), f"fixed in {path}")
     effects = content.get("effects", {})
     _check(effects, _EFFECTS, f"effects in {path}")
+    model = path.parent / content["model"]
+    if not model.is_file():
+        raise InputError(f"{path} names the model {model}, which is no file; correct it there")
     return RobotFile(
         path,
-        path.parent / content["model"],
+        model,
         _texts(content["free"], "free", path),
         _texts(content.get("outputs", []), "outputs", path),
         content.get("horizon"),
         content.get("every", 1),
-        {name: str(column) for name, column in content.get("columns", {}).items()},
+        dict(zip(columns, _texts([*columns.values()], "columns", path), strict=True)),
+        {name: float(value) for name, value in fixed.items()},
         records,
         _texts(effects.get("joints", []), "effects.joints", path),
         _texts(effects.get("only", []), "effects.only", path),
+        _numbers(effects.get("turns", []), "effects.turns", path),
     )
 
 
@@ -144,3 +160,10 @@ def _texts(values: list[Any], key: str, path: Path) -> tuple[str, ...]:
     if not all(isinstance(v, str) for v in values) or len(set(values)) < len(values):
         raise InputError(f"{key} in {path} must be names in quotes, each once")
     return tuple(values)
+
+
+def _numbers(values: list[Any], key: str, path: Path) -> tuple[float, ...]:
+    for v in values:
+        if isinstance(v, bool) or not isinstance(v, int | float) or not 0 < v < inf:
+            raise InputError(f"{key} in {path} must be numbers above zero")
+    return tuple(map(float, values))

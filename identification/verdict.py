@@ -14,12 +14,14 @@ if TYPE_CHECKING:
 
 # The floor bounds the noise from above and errs by a few percent itself.
 ABOVE = 1.2
-HOLDS = 1.2  # times the fitted residual, on unseen data
+HOLDS = 1.2  # times what is to be expected on unseen data
 LEVEL = 0.01  # of the residual's tests: one false alarm in a hundred
 
 
 def verdict(fit: Fit) -> list[str]:
     """Sentences: did it converge, what can be known, is the model enough, does it hold unseen."""
+    if fit.estimate.status == "stopped":  # what was not found says nothing of the model
+        return search_sentences(fit)
     return [*search_sentences(fit), *identifiable_sentences(fit), *_enough(fit), *_unseen(fit)]
 
 
@@ -120,7 +122,8 @@ def _enough(fit: Fit) -> list[str]:
 def _unseen(fit: Fit) -> list[str]:
     if fit.validation_rms is None:
         return ["There is no unseen data to confirm it on."]
-    ratio = fit.validation_rms / fit.rms if fit.rms > 0 else np.inf
+    likely = max(fit.rms, fit.validation_expected or 0.0)
+    ratio = fit.validation_rms / likely if likely > 0 else np.inf
     held = "it does not hold: too many parameters, or an effect missing"
     if ratio < HOLDS:
         held = "what was fitted holds there too"
@@ -128,5 +131,5 @@ def _unseen(fit: Fit) -> list[str]:
             held = "no worse than on what was fitted, but what is missing is missing there too"
     return [
         f"On unseen data the residual is {fit.validation_rms:.3g} rms,"
-        f" {ratio:.2f} times the fitted one: {held}."
+        f" {ratio:.2f} times what the fit leads one to expect: {held}."
     ]

@@ -48,11 +48,11 @@ def unknown(found: Discovery) -> str:
     ratio = found.before.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
     return " ".join(
         [
-            f"Something is missing that none of the {tried} known effects explains: the fitted"
-            f" model is {_size(found, found.before.rms)} rms off on unseen data"
+            f"Something is missing that none of the {tried} known effects surely explains: the"
+            f" fitted model is {_size(found, found.before.rms)} rms off on unseen data"
             + (f", {ratio:.3g} times the noise." if isfinite(ratio) else "."),
             "It is not named here rather than named wrongly.",
-            *map(sentence, found.located),
+            *map(sentence, (*found.left, *found.located)),
         ]
     )
 

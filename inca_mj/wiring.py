@@ -1,10 +1,11 @@
 """Is a log wired as the robot is: angles of the right drive, sign and unit?
 
-    c_ij = ⟨y_i, ŷ_j⟩ / (‖y_i‖ ‖ŷ_j‖),    s_i = ⟨y_i, ŷ_i⟩ / ‖ŷ_i‖²       over the first two seconds
+    c_ij = ⟨y_i, ŷ_j⟩ / (‖y_i‖ ‖ŷ_j‖),    s_i = ⟨y_i, ŷ_i⟩ / ‖ŷ_i‖²   over two seconds of motion
 
-ŷ is what the nominal twin does under the logged currents. A model that lacks something is off by a
-few percent there: c_ii >= 0.89 and 0.77 <= s <= 1.2 over 89 simulated logs of 25 effects. A
-swapped pair, a reversed encoder or another unit is off by far more.
+ŷ is what the nominal twin does under the logged currents, from where it begins to move. A model
+that lacks something is off by a few percent there: c_ii >= 0.89 and 0.77 <= s <= 1.2 over 89
+simulated logs of 25 effects. A swapped pair, a reversed encoder or another unit is off by far more.
+Where the model does not move, nothing is said.
 """
 
 from __future__ import annotations
@@ -17,8 +18,10 @@ from identification.errors import DivergenceError, InputError
 from inca_mj.logs import ANGLES
 from inca_mj.twin import Twin
 
-BEGINNING = 2.0  # [s]; later even a good model has drifted
-DEAD = 1e-3  # share of the others' motion below which an encoder does not count
+LONGEST = 10.0  # [s] in which motion must begin
+MOTION = 0.05  # [rad] of the model; a hundred times an encoder's noise
+BEGINNING = 2.0  # [s] from there; later even a good model has drifted
+DEAD = 1e-3  # of the model's motion
 REVERSED = -0.5  # correlation
 NEARER = 0.2  # of 1 - c, that another drive's motion must leave to be the likelier one
 UNIT = (0.3, 10.0)  # of the motion; revolutions are at 0.16, degrees at 57
@@ -35,29 +38,27 @@ def refuse_miswired(log: Log, plant: Twin) -> None:
     Raises:
         InputError: an encoder is dead, reversed, swapped with another or in another unit.
     """
-    end = float(log.time[0]) + min(BEGINNING, log.duration)
-    part = log.between(float(log.time[0]), end)
-    y = part.outputs - part.outputs[0]
-    size = np.linalg.norm(y, axis=0)
-    dead = np.flatnonzero(size <= DEAD * np.median(size))
-    if len(dead):
-        names = ", ".join(ANGLES[i] for i in dead)
-        raise InputError(f"{names}: stands still while the others move; is its encoder dead?")
-    try:
-        predicted = Predictor(plant, part, (), {}).predict(np.zeros((1, 0)))[0]
-    except DivergenceError:  # the search says what to do
+    y, predicted = _motion(log, plant)
+    moving = np.sqrt(np.mean(predicted**2, axis=0)) > MOTION if len(y) else np.zeros(0, bool)
+    if not moving.all() or not len(y):
         return
+    size = np.linalg.norm(y, axis=0)
+    dead = np.flatnonzero(size <= DEAD * np.linalg.norm(predicted, axis=0))
+    if len(dead) == len(size):
+        raise InputError("nothing moves in the log though the currents would move the robot")
+    if len(dead):
+        raise InputError(f"{_names(dead)}: stands still though its motor turns; dead encoder?")
     c = (y / size).T @ (predicted / np.linalg.norm(predicted, axis=0))
     back = np.flatnonzero(np.diag(c) < REVERSED)
-    if len(back):
-        names = ", ".join(ANGLES[i] for i in back)
-        raise InputError(f"{names}: moves against the model; reverse its sign" + ADVICE)
+    if len(back) == len(size):
+        raise InputError("all angles, or all currents, have the wrong sign" + ADVICE)
     _, best = linear_sum_assignment(1 - c)
-    for i, j in enumerate(best):
-        if i != j and 1 - c[i, j] < NEARER * (1 - c[i, i]):
-            raise InputError(
-                f"{ANGLES[i]} moves as the model's {ANGLES[j]} does; swap the columns" + ADVICE
-            )
+    moved = np.flatnonzero(best != np.arange(len(best)))
+    if len(moved) and (1 - c[moved, best[moved]] < NEARER * (1 - c[moved, moved])).all():
+        pairs = ", ".join(f"{ANGLES[i]} moves as the model's {ANGLES[best[i]]} does" for i in moved)
+        raise InputError(f"{pairs}; exchange the columns" + ADVICE)
+    if len(back):
+        raise InputError(f"{_names(back)}: moves against the model; reverse its sign" + ADVICE)
     scale = float(np.exp(np.mean(np.log(np.abs((y * predicted).sum(0) / (predicted**2).sum(0))))))
     if not UNIT[0] < scale < UNIT[1]:
         raise InputError(
@@ -65,3 +66,21 @@ def refuse_miswired(log: Log, plant: Twin) -> None:
             " must be in radians (a revolution is 6.28, a degree 0.0175) and currents in ampere"
             + ADVICE
         )
+
+
+def _motion(log: Log, plant: Twin) -> tuple[np.ndarray, np.ndarray]:
+    """Measured and predicted angles from where the model begins to move, shapes (n, 8)."""
+    start = float(log.time[0])
+    part = log.between(start, start + LONGEST) if log.duration > LONGEST else log
+    try:
+        predicted = Predictor(plant, part, (), {}).predict(np.zeros((1, 0)))[0]
+    except DivergenceError:  # the search says what to do
+        return np.zeros((0, 8)), np.zeros((0, 8))
+    late = np.flatnonzero(np.abs(predicted).max(axis=1) > MOTION)
+    first = int(late[0]) if len(late) else len(predicted)
+    rows = slice(first, first + round(BEGINNING / log.sampling_time))
+    return part.outputs[rows] - part.outputs[0], predicted[rows]
+
+
+def _names(drives: np.ndarray) -> str:
+    return ", ".join(ANGLES[i] for i in drives)

@@ -43,6 +43,7 @@ class Discover:
         from identification.discovery.final import final_values
         from identification.files import whole_folder
         from identification.report.discovery_text import discovery_text, finite
+        from identification.robot_write import write_robot
 
         refuse_folder(self.output.out)
         robot, records = robot_and_records(self.robot, self.log, self.confirm)
@@ -54,6 +55,13 @@ class Discover:
         if self.output.out is not None:
             with whole_folder(self.output.out) as out:
                 _keep(found, [str(c) for c in pairs], out)
+                has = {
+                    n
+                    for named in found.named
+                    for n in (*named.candidate.sizes, *named.candidate.fixed)
+                }
+                values = {n: v for n, v in after.items() if n in (*robot.file.free, *has)}
+                write_robot(robot, values, out / "robot.toml", self.output.out)
                 write_result(out / "result.json", self, record)
         if self.output.json:
             say_json(record)

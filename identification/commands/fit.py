@@ -41,6 +41,7 @@ class Fit:
         from identification.commands.robots import robot_and_records
         from identification.confirm import confirmed
         from identification.files import whole_folder
+        from identification.robot_write import write_robot
 
         refuse_folder(self.output.out)
         robot, records = robot_and_records(self.robot, self.log, self.confirm)
@@ -50,6 +51,7 @@ class Fit:
         record["verdict"] += map(str, found)
         if self.output.out is not None:
             with whole_folder(self.output.out) as out:
+                write_robot(robot, values, out / "robot.toml", self.output.out)
                 write_result(out / "result.json", self, record)
         if self.output.json:
             say_json(record)

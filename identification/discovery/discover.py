@@ -15,7 +15,7 @@ from identification.discovery.columns import Column, columns, common, single
 from identification.discovery.confidence import named_of
 from identification.discovery.detectable import detectable
 from identification.discovery.extend import Base
-from identification.discovery.locate import left_over, located
+from identification.discovery.locate import in_doubt, left_over, located
 from identification.discovery.missing import missing_forces
 from identification.discovery.passes import backward, swap
 from identification.discovery.proof import prove
@@ -62,11 +62,12 @@ def discover(
     clock("scores")
     say(f"{len(ranked)} candidates scored, {ranked[0].candidate.effect.name} first")
     accepted: list[Accepted] = []
-    step = nominal
+    step, doubt = nominal, None
     while len(accepted) < MOST:
         new = add(base, log, step, ranked, say)
         clock("refits")
-        if new is None:
+        if not isinstance(new, Accepted):
+            doubt = None if accepted else new
             break
         accepted.append(new)
         step = new.step
@@ -77,7 +78,7 @@ def discover(
     if len(accepted) > 1:
         ranked = scores_of(step, sensed)
     clock("refits")
-    left = left_over(step)
+    left = left_over(step) + (() if doubt is None else (in_doubt(doubt),))
     explained = prove(nominal.unseen, step.unseen).share
     named = named_of(base, kept, step, sensed, explained if left else 1.0)
     verdict: Verdict = "nothing missing"

@@ -11,10 +11,12 @@ import numpy as np
 
 from identification.discovery.innovations import SURE, whiteness
 from identification.discovery.missing import MissingForce
-from identification.discovery.steps import Step
+from identification.discovery.steps import Doubtful, Step
 from identification.kalman.refit import Refit
+from identification.quantities import quantity
 
 TELLING = 0.1  # share of a missing force that is worth a sentence
+ALLOWED = 0.1  # error of the inputs, of their motion, that is still noise and no missing effect
 
 
 def regressors(fit: Refit) -> dict[str, np.ndarray]:
@@ -120,4 +122,28 @@ def left_over(step: Step) -> tuple[str, ...]:
             f"innovations that are not white: {100 * white.predictable:.0f} % of their power"
             f" follows from the samples before (chance {white.p_correlation:.0e})"
         )
+    if (err := _input_error(step)) > ALLOWED:
+        level = step.refit.level
+        unit = log.units.get(log.input_names[0], "")
+        out.append(
+            f"inputs that would have to err by {quantity(level.input_std, unit=unit)} rms beside"
+            f" what the log says, {100 * err:.0f} % of their own motion, for"
+            f" {level.noise.time:.2g} s at a time"
+        )
     return tuple(out)
+
+
+def in_doubt(doubt: Doubtful) -> str:
+    """An effect that could not be proven, in words."""
+    what = doubt.candidate.effect.phrase or doubt.candidate.effect.name.replace("_", " ")
+    return (
+        f"{what}, {doubt.candidate.where}, which explains the fitted samples beyond chance and"
+        f" {100 * doubt.proof.fall:.0f} % of the error on unseen data, but not surely there"
+        f" (t = {doubt.proof.t:.1f})"
+    )
+
+
+def _input_error(step: Step) -> float:
+    """Error of the inputs that the noise model takes for granted, as a share of their motion."""
+    moved = float(np.sqrt(np.mean(np.var(step.refit.at.log.inputs, axis=0))))
+    return step.refit.level.input_std / moved if moved > 0 else 0.0

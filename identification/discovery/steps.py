@@ -53,6 +53,19 @@ class Step:
 
 
 @dataclass(frozen=True)
+class Doubtful:
+    """An effect that the fitted samples want, and that would matter, but unseen data do not prove.
+
+    Attributes:
+        candidate: the effect.
+        proof: on unseen data.
+    """
+
+    candidate: Candidate
+    proof: Proof
+
+
+@dataclass(frozen=True)
 class Accepted:
     """An effect that was added.
 
@@ -151,15 +164,20 @@ def _from_nominal(base: Base, whole: Log, step: Step, best: Step) -> Step:
         return best
 
 
+def matters(proof: Proof) -> bool:
+    """Whether an effect explains enough of the unseen data."""
+    return proof.fall > FALL and proof.above > SHARE
+
+
 def holds(proof: Proof) -> bool:
     """Whether unseen data confirm an effect: beyond chance, and by enough to matter."""
-    return proof.t > T and proof.fall > FALL and proof.above > SHARE
+    return proof.t > T and matters(proof)
 
 
 def add(
     base: Base, whole: Log, step: Step, ranked: Sequence[Score], say: Callable[[str], None]
-) -> Accepted | None:
-    """The best effect to add to a model, if any is worth it."""
+) -> Accepted | Doubtful | None:
+    """The best effect to add to a model, if any is worth it; the best that could not be proven."""
     found = significant(ranked)
     if not found:
         return None
@@ -185,9 +203,12 @@ def add(
     tried.sort(key=_criterion, reverse=True)
     if tried and _structured(tried[0]):
         tried[0] = _from_nominal(base, whole, step, tried[0])
+    doubtful = None
     for k, new in enumerate(tried):
         proof = prove(step.unseen, new.unseen)
         gain = new.criterion - step.criterion
         if gain > 0 and holds(proof):
             return Accepted(new, proof, gain, tuple(tried[:k] + tried[k + 1 :]))
-    return None
+        if gain > 0 and matters(proof):
+            doubtful = doubtful or Doubtful(new.candidates[-1], proof)
+    return doubtful

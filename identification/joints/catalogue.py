@@ -14,7 +14,7 @@ from identification.joints.axes import Axis, Kind
 from identification.joints.effect import JointEffect, places
 
 PROBE = 0.01  # of the largest plausible size
-TURNS = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 12.0, 24.0)  # harmonics of a turn
+TURNS = (*map(float, range(1, 13)), 14.0, 16.0, 18.0, 20.0, 24.0, 28.0)  # harmonics of a turn
 SPEEDS = (0.03, 0.06, 0.12, 0.25, 0.5)  # Stribeck velocities to try, of the top speed
 WAVES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)  # of a slide's travel
 

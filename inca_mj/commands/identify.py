@@ -70,10 +70,6 @@ class Identify:
         result = self._identify()
         profiles = [profile(result.fit_of(name), name) for name in self.profile]
         best = identification_json(result, profiles, self.seed)
-        if self.output.out is not None:
-            with whole_folder(self.output.out) as out:
-                keep(result, profiles, out, self.robot)
-                write_result(out / "result.json", self, best)
         if self.output.json:
             say_json(best)
         else:
@@ -83,6 +79,10 @@ class Identify:
                 say(profile_sentence(known))
             if len(result.fits) > 1:
                 say(f"step {result.best + 1} predicts unseen data best.")
+        if self.output.out is not None:  # last: drawing can fail, or be stopped
+            with whole_folder(self.output.out) as out:
+                keep(result, profiles, out, self.robot)
+                write_result(out / "result.json", self, best)
         return STOPPED if result.stopped else 0
 
     def _identify(self) -> Identification:

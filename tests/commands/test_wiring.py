@@ -1,13 +1,16 @@
 """Angles that cannot be those of the drives they are named after are refused in a sentence."""
 
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from identification import InputError, Log
-from inca_mj.logs import read_inca_log
+from inca_mj.inputs import make_input
+from inca_mj.logs import read_inca_log, run_to_log
+from inca_mj.run import simulate
 from inca_mj.twin import build_twin
 from inca_mj.wiring import refuse_miswired
 
@@ -30,13 +33,14 @@ def test_a_model_that_lacks_something_is_still_the_robot(plant):
     refuse_miswired(read_inca_log(LOG), plant)
 
 
-@pytest.mark.parametrize(("i", "j"), [(0, 1), (2, 4), (3, 7), (0, 6), (5, 6)])
+@pytest.mark.parametrize(("i", "j"), list(combinations(range(8), 2)))
 def test_swapped_encoders(plant, i, j):
     def swap(y):
         y[:, [i, j]] = y[:, [j, i]]
 
-    with pytest.raises(InputError, match=r"swap the columns|reverse its sign"):
+    with pytest.raises(InputError, match="exchange the columns") as refused:
         refuse_miswired(changed(swap), plant)
+    assert f"angle_{i + 1} moves as the model's angle_{j + 1}" in str(refused.value)
 
 
 @pytest.mark.parametrize("drive", range(8))
@@ -63,3 +67,21 @@ def test_another_unit(plant, unit):
 
     with pytest.raises(InputError, match="must be in radians"):
         refuse_miswired(changed(convert), plant)
+
+
+@pytest.mark.parametrize("rest", [1.0, 1.99, 2.0, 2.5, 12.0])
+def test_a_log_that_rests_first_is_not_judged_by_its_noise(plant, rest):
+    still = np.repeat(make_input("prbs", 0.1)[:1] * 0, round(rest / 0.01), axis=0)
+    log = run_to_log(simulate(plant, np.vstack([still, make_input("prbs", 3.0)])))
+    noise = 5e-4 * np.random.default_rng(1).standard_normal(log.outputs.shape)
+    step = 2 * np.pi / 4000
+    refuse_miswired(replace(log, outputs=log.outputs + noise), plant)
+    refuse_miswired(replace(log, outputs=step * np.round(log.outputs / step)), plant)
+
+
+def test_currents_of_the_wrong_sign(plant):
+    def reverse(y):
+        y *= -1
+
+    with pytest.raises(InputError, match="all currents, have the wrong sign"):
+        refuse_miswired(changed(reverse), plant)

@@ -70,6 +70,22 @@ def test_where_nothing_is_missing_it_says_so_and_what_it_would_have_seen():
     np.testing.assert_array_equal(answer.predicted_before, answer.predicted_after)
 
 
+def test_what_fitted_samples_want_and_unseen_ones_do_not_prove_is_neither_named_nor_nothing(
+    monkeypatch,
+):
+    monkeypatch.setattr("identification.discovery.steps.T", 1e9)
+    answer = found(**{"offset.f": -0.8})
+    assert answer.verdict == "unknown effect"
+    assert not answer.named
+    assert any("offset" in clause and "not surely there" in clause for clause in answer.left)
+
+
+def test_inputs_that_err_by_a_third_of_their_motion_are_no_noise():
+    answer = found(error=wander(500, 0.3, 0.1, seed=3))
+    assert answer.verdict != "nothing missing"
+    assert any("% of their own motion" in clause for clause in answer.left)
+
+
 def test_what_no_candidate_explains_is_unknown():
     t = STEP * np.arange(500)[:, None]
     answer = found(error=0.5 * np.sin(2 * np.pi * 2.3 * t))

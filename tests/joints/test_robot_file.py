@@ -12,6 +12,7 @@ from identification.__main__ import main
 from identification.joints.plant import joint_plant
 from identification.robot import read_robot_log, robot_of
 from identification.robot_file import read_robot
+from identification.robot_write import write_robot
 
 TRUTH = {"damping": 3.6, "mass": 1.8, "stribeck_friction.f_s": 0.0}
 HIDDEN = {"asymmetric_viscous_friction.d_a@slide": 0.9}
@@ -107,6 +108,24 @@ def test_a_discovery_names_what_is_hidden_and_writes_a_report(folder, tmp_path, 
     assert effect["name"] == "asymmetric_viscous_friction"
     assert effect["parameters"]["d_a"]["value"] == pytest.approx(0.9, rel=0.1)
     assert "Missing from the model" in (out / "report.html").read_text()
+    again = read_robot(out / "robot.toml")
+    robot = robot_of(again, read_robot_log(again, str(folder / "hidden.csv")))
+    name = "asymmetric_viscous_friction.d_a@slide"
+    assert again.free == (*NAMES, name)
+    assert robot.plant.parameters[name].value == effect["parameters"]["d_a"]["value"]
+    assert robot.plant.parameters["mass"].value == pytest.approx(1.8, rel=0.02)
+
+
+def test_a_robot_with_an_effect_reads_back_to_the_bit(folder, tmp_path):
+    file = read_robot(folder / "robot.toml")
+    robot = robot_of(file, read_robot_log(file, str(folder / "hidden.csv")))
+    values = {"mass": 1.8123456789012345, "stribeck_friction.f_s@slide": 0.1 / 3,
+              "stribeck_friction.v_s": 0.07 / 3}  # fmt: skip
+    again = read_robot(write_robot(robot, values, tmp_path / "r.toml", tmp_path))
+    back = robot_of(again, robot.log).plant.parameters
+    assert {n: back[n].value for n in values} == values
+    assert again.fixed == {"stribeck_friction.v_s": 0.07 / 3}
+    assert again.records["mass"]["path"] == "body/cart.mass"
 
 
 @pytest.mark.parametrize(
@@ -118,6 +137,9 @@ def test_a_discovery_names_what_is_hidden_and_writes_a_report(folder, tmp_path, 
         (("joint/slide.damping", "joint/slid.damping"), "did you mean 'slide'"),
         (("joint/slide.damping", "stribeck_friction.f_s@slide"), "give it a value"),
         (("position =", "positon ="), "did you mean 'position'"),
+        (('position = "x"', "position = 3"), "columns in"),
+        (("[columns]", "[fixed]\n'stribeck_friction.v' = 1.0\n[columns]"), "stribeck_friction.v_s"),
+        (("[columns]", "[effects]\nturns = [0]\n[columns]"), "numbers above zero"),
         (("unit =", "units ="), "did you mean 'unit'"),
         (("free", "every = 0\nfree"), "every in"),
         (("free", "horizon = inf\nfree"), "horizon in"),

@@ -47,7 +47,7 @@ def test_nothing_missing_says_what_would_have_been_seen() -> None:
 
 def test_an_unknown_effect_is_not_named() -> None:
     (said,) = discovery_verdict(found("unknown effect"))
-    assert said.startswith("Something is missing that none of the 3 known effects explains")
+    assert said.startswith("Something is missing that none of the 3 known effects surely explains")
     assert "The error grows at low speed." in said
     assert "Stribeck" not in said
 
