@@ -63,7 +63,8 @@ def load_twin(path: str | Path, effects: Sequence[DriveEffect] = CATALOGUE) -> T
         InputError: a file is missing or damaged, an effect is not among `effects` or has another
             law there, or the two files do not belong together.
     """
-    folder = Path(path) if Path(path).is_dir() else Path(path).parent
+    own_file = Path(path).suffix in (".xml", ".json")
+    folder = Path(path).parent if own_file else Path(path)
     record = _read(folder / "effects.json")
     try:
         geometry = _geometry(record["geometry"])
