@@ -47,13 +47,15 @@ def named_of(
     values = at.values
     std = dict(zip(at.space.names, final.refit.std * at.space.slope(at.q), strict=True))
     out = []
+    named = {_key(a.step) for a in accepted}
     for new in accepted:
         mine = new.step.candidates[-1]
-        near = [new.step, *new.others]
+        others = [s for s in new.others if _key(s) not in named]  # one that is there is no rival
+        near = [new.step, *others]
         worth = np.array([s.criterion for s in near])
         weights = np.exp((worth - worth.max()) / (2 * TEMPERATURE))
         probability = weights / weights.sum()
-        rivals = [s.candidates[-1] for s in new.others]
+        rivals = [s.candidates[-1] for s in others]
         alike = _alike(base, final, mine, rivals, columns)
         parameters = {}
         for name in (*mine.sizes, *mine.fixed):
@@ -77,6 +79,11 @@ def named_of(
             )
         )
     return tuple(out)
+
+
+def _key(step: Step) -> tuple[str, str]:
+    """The effect that a model added last, and where."""
+    return step.candidates[-1].effect.name, step.candidates[-1].where
 
 
 def _nearest(candidate: Candidate, columns: Sequence[Column]) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from discovery_cases import EFFECTS, STEP, base, record, slider, wander
 
 from identification import InputError
+from identification.discovery.confidence import named_of
 from identification.discovery.discover import SHORTEST, discover
 
 ROOT = Path(__file__).parents[2]
@@ -68,6 +70,23 @@ def test_where_nothing_is_missing_it_says_so_and_what_it_would_have_seen():
     assert {d.candidate.effect.name for d in answer.detectable} == {e.name for e in EFFECTS}
     assert all(0 < d.smallest < np.inf for d in answer.detectable)
     np.testing.assert_array_equal(answer.predicted_before, answer.predicted_after)
+
+
+def test_of_two_effects_neither_is_the_others_rival(monkeypatch):
+    seen = []
+
+    def spy(*arguments):
+        seen.append(arguments)
+        return named_of(*arguments)
+
+    monkeypatch.setattr("identification.discovery.discover.named_of", spy)
+    answer = found(**{"offset.f": -0.8, "rubbing.c": 1.0})
+    assert {n.candidate.effect.name for n in answer.named} == {"offset", "rubbing"}
+    ((base_, (first, second), *rest),) = seen
+    there = replace(first.step, candidates=second.step.candidates[-1:])
+    again = named_of(base_, (replace(first, others=(there,)), second), *rest)
+    assert not again[0].rivals
+    assert again[0].confidence > 0.5
 
 
 def test_what_fitted_samples_want_and_unseen_ones_do_not_prove_is_neither_named_nor_nothing(
