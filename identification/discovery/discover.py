@@ -74,7 +74,7 @@ def discover(
         ranked = scores_of(step, sensed)
         clock("scores")
     kept, step = backward(base, log, accepted, step)
-    kept, step = swap(base, log, nominal, kept, step)
+    kept, step = swap(base, log, nominal, kept, step, sensed)
     if len(accepted) > 1:
         ranked = scores_of(step, sensed)
     clock("refits")

@@ -1,8 +1,8 @@
 """Second thoughts: once several effects are named, is each still needed, and still the right one?
 
 backward: an effect is dropped when the model without it has the better BIC
-swap:     an effect gives way to one that was refitted in its place, when that one has the better
-          BIC now that the others are known
+swap:     an effect gives way to one that was refitted in its place, or that scores as well beside
+          the others, when that one has the better BIC now that the others are known
 """
 
 from __future__ import annotations
@@ -10,14 +10,24 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from identification.discovery.columns import Column
 from identification.discovery.extend import Base
 from identification.discovery.proof import prove
-from identification.discovery.steps import Accepted, Step, fitted, holds
+from identification.discovery.steps import (
+    CONTENDERS,
+    Accepted,
+    Step,
+    fitted,
+    holds,
+    scores_of,
+    significant,
+)
 from identification.effect import Candidate
 from identification.errors import DivergenceError, InputError
 from identification.log import Log
 
 HOPELESS = 0.5  # share of an effect's gain that a rival must have had to be tried again
+LIKE = 0.8  # share of an effect's score that another must have to be tried in its place
 
 
 def backward(
@@ -35,22 +45,22 @@ def backward(
 
 
 def swap(
-    base: Base, log: Log, nominal: Step, accepted: Sequence[Accepted], step: Step
+    base: Base,
+    log: Log,
+    nominal: Step,
+    accepted: Sequence[Accepted],
+    step: Step,
+    columns: Sequence[Column],
 ) -> tuple[list[Accepted], Step]:
     """Let the near rivals of each effect try its place among the others."""
     kept = list(accepted) if len(accepted) > 1 else []
     for i, old in enumerate(kept):
         mine = old.step.candidates[-1]
         rest = tuple(c for c in step.candidates if c is not mine)
-        for rival in old.others:
-            lost = old.step.criterion - rival.criterion
-            if lost > HOPELESS * old.gain:
-                continue
-            theirs = rival.candidates[-1]
+        for theirs, start in _rivals(base, log, old, rest, step, columns):
             if any(theirs.effect.name == c.effect.name for c in rest):
                 continue
-            start = {**step.refit.at.values, **rival.refit.at.values}
-            new = _tried(base, log, (*rest, theirs), start, step)
+            new = _tried(base, log, (*rest, theirs), {**step.refit.at.values, **start}, step)
             if new is None:
                 continue
             proof = prove(nominal.unseen, new.unseen)
@@ -61,6 +71,35 @@ def swap(
                 step = new
                 break
     return kept or list(accepted), step
+
+
+def _rivals(
+    base: Base,
+    log: Log,
+    old: Accepted,
+    rest: tuple[Candidate, ...],
+    step: Step,
+    columns: Sequence[Column],
+) -> list[tuple[Candidate, Mapping[str, float]]]:
+    """What may stand in an effect's place, each with values to begin at."""
+    mine = old.step.candidates[-1]
+    out: dict[tuple[str, str], tuple[Candidate, Mapping[str, float]]] = {
+        _key(r.candidates[-1]): (r.candidates[-1], r.refit.at.values)
+        for r in old.others
+        if old.step.criterion - r.criterion <= HOPELESS * old.gain
+    }
+    without = _tried(base, log, rest, step.refit.at.values, step)
+    scores = [] if without is None else significant(scores_of(without, columns))
+    own = next((s.gain for s in scores if _key(s.candidate) == _key(mine)), 0.0)
+    for s in scores:
+        if s.gain > LIKE * own and _key(s.candidate) != _key(mine):
+            sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
+            out.setdefault(_key(s.candidate), (s.candidate, sizes))
+    return list(out.values())[:CONTENDERS]
+
+
+def _key(candidate: Candidate) -> tuple[str, str]:
+    return candidate.effect.name, candidate.where
 
 
 def _tried(

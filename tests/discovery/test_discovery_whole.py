@@ -12,6 +12,8 @@ from discovery_cases import EFFECTS, STEP, base, record, slider, wander
 from identification import InputError
 from identification.discovery.confidence import named_of
 from identification.discovery.discover import SHORTEST, discover
+from identification.discovery.passes import swap
+from identification.discovery.steps import fitted
 
 ROOT = Path(__file__).parents[2]
 ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02}
@@ -87,6 +89,27 @@ def test_of_two_effects_neither_is_the_others_rival(monkeypatch):
     again = named_of(base_, (replace(first, others=(there,)), second), *rest)
     assert not again[0].rivals
     assert again[0].confidence > 0.5
+
+
+def test_an_effect_gives_way_to_one_that_was_never_refitted_but_explains_more(monkeypatch):
+    seen = []
+
+    def spy(*arguments):
+        seen.append(arguments)
+        return swap(*arguments)
+
+    monkeypatch.setattr("identification.discovery.discover.swap", spy)
+    found(**{"offset.f": -0.8, "rubbing.c": 1.0})
+    ((base_, log, nominal, kept, step, columns),) = seen
+    right = {c.effect.name: c for c in step.candidates}
+    spring = next(c.candidate for c in columns if c.candidate.effect.name == "spring")
+    wrong = fitted(base_, log, (right["rubbing"], spring), {})
+    alone = replace(kept[0].step, candidates=(spring,))
+    first = replace(kept[0], step=alone, others=(), gain=10.0)
+    second = next(a for a in kept if a.step.candidates[-1].effect.name == "rubbing")
+    _, better = swap(base_, log, nominal, [first, second], wrong, columns)
+    assert {c.effect.name for c in better.candidates} == {"offset", "rubbing"}
+    assert better.criterion > wrong.criterion
 
 
 def test_what_fitted_samples_want_and_unseen_ones_do_not_prove_is_neither_named_nor_nothing(
