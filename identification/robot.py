@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -21,7 +22,7 @@ from identification.plant import start_place
 from identification.predictor import output_columns
 from identification.read import read_log
 from identification.robot_file import RobotFile
-from identification.robot_parameters import free_parameter, measured_start
+from identification.robot_parameters import free_parameter, measured_start, unit_of
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,7 @@ class Robot:
         }
 
 
-def read_robot_log(file: RobotFile, path: str) -> Log:
+def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     """A log with the columns of a robot.
 
     Raises:
@@ -82,7 +83,10 @@ def read_robot_log(file: RobotFile, path: str) -> Log:
             f"{file.model} has {len(inputs)} actuators and {len(sensors)} sensors; it needs an"
             " actuator for every input and a jointpos or jointvel sensor for every output"
         )
-    units = {name: _unit(model, name) for name in outputs}
+    places = output_columns(model, outputs)
+    units = {
+        n: unit_of(model, f"{field}[{i}]") for n, (field, i) in zip(outputs, places, strict=True)
+    }
     for name in file.columns:
         if name not in (*inputs, *outputs):
             raise unknown_name(f"actuator or sensor under columns in {file.path}:", name,
@@ -117,11 +121,3 @@ def robot_of(file: RobotFile, log: Log) -> Robot:
     records = [free_parameter(file, name, model, effects, log) for name in file.free]
     plant = joint_plant(file.model, [r for r, _ in records], log, joints=known, effects=effects)
     return Robot(file, log, plant.with_values(file.fixed), np.array([std for _, std in records]))
-
-
-def _unit(model: mujoco.MjModel, sensor: str) -> str:
-    """Unit of a joint's position or rate."""
-    (field, i), = output_columns(model, [sensor])  # fmt: skip
-    at = model.jnt_qposadr if field == "qpos" else model.jnt_dofadr
-    slide = int(model.jnt_type[np.flatnonzero(at == i)[0]]) == int(mujoco.mjtJoint.mjJNT_SLIDE)
-    return ("m" if slide else "rad") + ("" if field == "qpos" else "/s")

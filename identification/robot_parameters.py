@@ -73,7 +73,7 @@ def _in_model(
     path: str, name: str, model: mujoco.MjModel, log: Log, given: dict[str, Any]
 ) -> tuple[Parameter, float]:
     """A parameter that is a place in the model or in its start."""
-    fields: dict[str, Any] = {"where": path, "unit": _unit(model, path)}
+    fields: dict[str, Any] = {"where": path, "unit": unit_of(model, path)}
     place = start_place(path, model)
     if place is not None:
         own = float(getattr(own_start(model), place[0])[place[1]])
@@ -87,7 +87,7 @@ def _in_model(
     return Parameter(name, **{**fields, **given}), KNOWN * scale
 
 
-def _unit(model: mujoco.MjModel, path: str) -> str:
+def unit_of(model: mujoco.MjModel, path: str) -> str:
     """Of a body's mass, a joint's number or an entry of the start; "" of what else there is."""
     place = start_place(path, model)
     thing, _, attribute = path.partition("[")[0].rpartition(".")

@@ -4,39 +4,27 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import tyro
+from typing import TYPE_CHECKING, Any
 
 from identification.commands.common import (
-    Output,
     note,
-    output_field,
     refuse_folder,
     say,
     say_json,
     write_result,
 )
+from identification.commands.robots import OnRobot
 
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery
 
 
 @dataclass(frozen=True)
-class Discover:
+class Discover(OnRobot):
     """Find what the model lacks and prove it on unseen data, or say that it is unknown."""
-
-    robot: Annotated[Path, tyro.conf.Positional]
-    """TOML that names model, columns, free parameters and candidates."""
-    log: Annotated[Path, tyro.conf.Positional]
-    """CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts."""
-    confirm: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="LOG")] = ()
-    """Records to which nothing is fitted."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
     def run(self) -> int:
         """Discover, confirm, say, keep."""
-        from identification.commands.robots import robot_and_records
         from identification.confirm import confirmed
         from identification.discovery.discover import discover
         from identification.discovery.discovery_json import discovery_to_json
@@ -46,12 +34,16 @@ class Discover:
         from identification.robot_write import write_robot
 
         refuse_folder(self.output.out)
-        robot, records = robot_and_records(self.robot, self.log, self.confirm)
+        robot, records = self.read()
         found = discover(robot.base, robot.log, robot.candidates, note)
         before, after = found.nominal.at.values, final_values(found)
         pairs = [confirmed(robot, log, before, after) for log in records if found.named]
         record: dict[str, Any] = finite(discovery_to_json(found))
         record = {**record, "confirm": [vars(c) for c in pairs]}
+        if self.output.json:
+            say_json(record)
+        else:
+            say("\n".join([discovery_text(found), *map(str, pairs)]))
         if self.output.out is not None:
             with whole_folder(self.output.out) as out:
                 _keep(found, [str(c) for c in pairs], out)
@@ -63,10 +55,6 @@ class Discover:
                 values = {n: v for n, v in after.items() if n in (*robot.file.free, *has)}
                 write_robot(robot, values, out / "robot.toml", self.output.out)
                 write_result(out / "result.json", self, record)
-        if self.output.json:
-            say_json(record)
-        else:
-            say("\n".join([discovery_text(found), *map(str, pairs)]))
         return 0
 
 

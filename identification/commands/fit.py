@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import tyro
+from typing import TYPE_CHECKING, Any
 
 from identification.commands.common import (
-    Output,
     note,
-    output_field,
     refuse_folder,
     say,
     say_json,
     table,
     write_result,
 )
+from identification.commands.robots import OnRobot
 
 if TYPE_CHECKING:
     from identification.estimate_windows import WindowEstimate
@@ -25,38 +21,29 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Fit:
+class Fit(OnRobot):
     """Estimate free parameters on the first half of a log, confirm them on the rest."""
-
-    robot: Annotated[Path, tyro.conf.Positional]
-    """TOML that names model, columns and free parameters."""
-    log: Annotated[Path, tyro.conf.Positional]
-    """CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts."""
-    confirm: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="LOG")] = ()
-    """Records to which nothing is fitted."""
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
     def run(self) -> int:
         """Fit, confirm, say, keep."""
-        from identification.commands.robots import robot_and_records
         from identification.confirm import confirmed
         from identification.files import whole_folder
         from identification.robot_write import write_robot
 
         refuse_folder(self.output.out)
-        robot, records = robot_and_records(self.robot, self.log, self.confirm)
+        robot, records = self.read()
         record, values = self._windows(robot) if robot.file.horizon else self._free_run(robot)
         found = [confirmed(robot, log, {}, values) for log in records]
         record["confirm"] = [vars(c) for c in found]
         record["verdict"] += map(str, found)
-        if self.output.out is not None:
-            with whole_folder(self.output.out) as out:
-                write_robot(robot, values, out / "robot.toml", self.output.out)
-                write_result(out / "result.json", self, record)
         if self.output.json:
             say_json(record)
         else:
             say(_text(record))
+        if self.output.out is not None:
+            with whole_folder(self.output.out) as out:
+                write_robot(robot, values, out / "robot.toml", self.output.out)
+                write_result(out / "result.json", self, record)
         return 0
 
     def _free_run(self, robot: Robot) -> tuple[dict[str, Any], dict[str, float]]:

@@ -1,27 +1,41 @@
-"""A robot and its records, as the commands read them."""
+"""What the commands on any robot share: its file, its log, and records that confirm."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from identification.commands.common import Output, output_field
 
 if TYPE_CHECKING:
     from identification.log import Log
     from identification.robot import Robot
 
 
-def robot_and_records(
-    robot: Path, log: Path, others: Sequence[Path]
-) -> tuple[Robot, tuple[Log, ...]]:
-    """The robot compiled for a log, and other records of it.
+@dataclass(frozen=True)
+class OnRobot:
+    """A command on a robot and a log of it."""
 
-    Raises:
-        InputError: a file cannot be what it should be.
-    """
-    from identification.robot import read_robot_log, robot_of
-    from identification.robot_file import read_robot
+    robot: Annotated[Path, tyro.conf.Positional]
+    """TOML that names model, columns, free parameters and candidates."""
+    log: Annotated[Path, tyro.conf.Positional]
+    """CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts."""
+    confirm: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="LOG")] = ()
+    """Records to which nothing is fitted."""
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
-    file = read_robot(robot)
-    records = tuple(read_robot_log(file, str(path)) for path in others)
-    return robot_of(file, read_robot_log(file, str(log))), records
+    def read(self) -> tuple[Robot, tuple[Log, ...]]:
+        """The robot compiled for its log, and the records that confirm.
+
+        Raises:
+            InputError: a file cannot be what it should be.
+        """
+        from identification.robot import read_robot_log, robot_of
+        from identification.robot_file import read_robot
+
+        file = read_robot(self.robot)
+        records = tuple(read_robot_log(file, path) for path in self.confirm)
+        return robot_of(file, read_robot_log(file, self.log)), records
