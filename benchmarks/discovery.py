@@ -69,7 +69,8 @@ def study(task: dict[str, Any]) -> dict[str, Any]:
         log, truth = log_of(task)
         from inca_mj.discover import discover
 
-        answer = answer_of(discover(log))
+        # a world stands at rest with what it lacks, as a robot that was let go; practice was held
+        answer = answer_of(discover(log, settled="seed" in task))
     except Exception as error:
         return {"key": task["key"], "error": f"{type(error).__name__}: {error}",
                 "trace": traceback.format_exc(limit=-3)}  # fmt: skip

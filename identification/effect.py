@@ -57,6 +57,7 @@ class Shape:
         upper: largest admissible value [unit].
         free: whether it is estimated once the effect is named; False for an integer.
         about: what it is, in words.
+        usual: the value where nothing is said; the grid's middle when None.
     """
 
     name: str
@@ -66,6 +67,19 @@ class Shape:
     upper: float
     free: bool = True
     about: str = ""
+    usual: float | None = None
+
+
+BEFORE = Shape(  # of an input that comes late: none of it, or its first value, before the log
+    "before",
+    "",
+    (0.0, 1.0),
+    0.0,
+    1.0,
+    free=False,
+    about="1: it was there before the log",
+    usual=0.0,
+)
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ def _size(name: str, size: Size) -> Parameter:
 
 
 def _shape(name: str, shape: Shape) -> Parameter:
-    middle = shape.grid[len(shape.grid) // 2]
+    usual = shape.grid[len(shape.grid) // 2] if shape.usual is None else shape.usual
     return Parameter(
-        name, middle, shape.unit, "effect", shape.lower, shape.upper, shape.name, shape.about
+        name, usual, shape.unit, "effect", shape.lower, shape.upper, shape.name, shape.about
     )

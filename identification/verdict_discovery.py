@@ -9,6 +9,7 @@ from identification.discovery.result import Detectable, Discovery, Named
 from identification.effect import Candidate
 from identification.quantities import alike, quantity
 
+RETUNED = 0.05  # chance of it that is worth a sentence
 SHOWN = 4  # effects named where more could be
 
 
@@ -18,7 +19,7 @@ def discovery_verdict(found: Discovery) -> list[str]:
         return [nothing(found)]
     if found.verdict == "unknown effect":
         return [unknown(found)]
-    said = [_named(found, named) for named in found.named]
+    said = [f"{_named(found, named)}{_retuned(named)}" for named in found.named]
     said.append(_proof(found))
     if found.unexplained:
         said.append(unexplained(found))
@@ -91,6 +92,18 @@ def _named(found: Discovery, named: Named) -> str:
     return (
         f"{first}: {phrase(named.candidate)}, {sizes(named)}"
         f"; confidence {100 * named.confidence:.0f} %."
+    )
+
+
+def _retuned(named: Named) -> str:
+    """That base parameters farther from what was known would explain the same."""
+    other = named.retuned
+    if other.confidence < RETUNED:
+        return ""
+    return (
+        f" Or it is no effect ({100 * other.confidence:.0f} %): with {other.parameter}"
+        f" {abs(other.distance):.2g} std {'above' if other.distance > 0 else 'below'} what was said"
+        " to be known of it, the model explains the same. Measure it, or record another motion."
     )
 
 

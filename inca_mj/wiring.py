@@ -4,8 +4,9 @@
 
 ŷ is what the nominal twin does under the logged currents, from where it begins to move. A model
 that lacks something is off by a few percent there: c_ii >= 0.89 and 0.77 <= s <= 1.2 over 89
-simulated logs of 25 effects. A swapped pair, a reversed encoder or another unit is off by far more.
-Where the model does not move, nothing is said.
+simulated logs of 25 effects; an anchor that is 0.1 m off makes even c_ii = -0.5. So a log is
+refused only where another sign, or another drive's motion, explains it far better than its own:
+1 - c falls to a fifth. Where the model does not move, nothing is said.
 """
 
 from __future__ import annotations
@@ -22,8 +23,7 @@ LONGEST = 10.0  # [s] in which motion must begin
 MOTION = 0.05  # [rad] of the model; a hundred times an encoder's noise
 BEGINNING = 2.0  # [s] from there; later even a good model has drifted
 DEAD = 1e-3  # of the model's motion
-REVERSED = -0.5  # correlation
-NEARER = 0.2  # of 1 - c, that another drive's motion must leave to be the likelier one
+NEARER = 0.2  # of 1 - c, that another sign or drive must leave to be the likelier one
 UNIT = (0.3, 10.0)  # of the motion; revolutions are at 0.16, degrees at 57
 ADVICE = "; `inca compare` shows the log beside the model"
 
@@ -49,12 +49,13 @@ def refuse_miswired(log: Log, plant: Twin) -> None:
     if len(dead):
         raise InputError(f"{_names(dead)}: stands still though its motor turns; dead encoder?")
     c = (y / size).T @ (predicted / np.linalg.norm(predicted, axis=0))
-    back = np.flatnonzero(np.diag(c) < REVERSED)
+    own = np.diag(c)
+    back = np.flatnonzero(1 + own < NEARER * (1 - own))
     if len(back) == len(size):
         raise InputError("all angles, or all currents, have the wrong sign" + ADVICE)
     _, best = linear_sum_assignment(1 - c)
     moved = np.flatnonzero(best != np.arange(len(best)))
-    if len(moved) and (1 - c[moved, best[moved]] < NEARER * (1 - c[moved, moved])).all():
+    if len(moved) and (1 - c[moved, best[moved]] < NEARER * (1 - own[moved])).all():
         pairs = ", ".join(f"{ANGLES[i]} moves as the model's {ANGLES[best[i]]} does" for i in moved)
         raise InputError(f"{pairs}; exchange the columns" + ADVICE)
     if len(back):

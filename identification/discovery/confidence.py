@@ -1,6 +1,7 @@
 """How sure a name is: against its rivals, and against what it leaves unexplained.
 
-    P_j ∝ exp(-ΔBIC_j/(2 T))        over the explanations that were refitted in its place
+    P_j ∝ exp(-ΔBIC_j/(2 T))        over the explanations that were refitted in its place, and
+                                    over none: the base parameters farther off (`retuned`)
 
 T > 1 because the likelihood believes its noise model, and the cap because no effect is certain that
 was confirmed under one kind of input only. Both are judgement: `benchmarks/discovery.py` prints how
@@ -18,6 +19,7 @@ from threadpoolctl import threadpool_limits
 from identification.discovery.columns import Column
 from identification.discovery.extend import Base
 from identification.discovery.result import Named, Rival
+from identification.discovery.retuned import retuned
 from identification.discovery.steps import Accepted, Step
 from identification.effect import Candidate
 from identification.kalman.noise_model import whitener
@@ -51,8 +53,10 @@ def named_of(
     for new in accepted:
         mine = new.step.candidates[-1]
         others = [s for s in new.others if _key(s) not in named]  # one that is there is no rival
+        loss, other = retuned(final.refit, base.names, mine)
+        spared = len(mine.free) * np.log(len(at.log))
         near = [new.step, *others]
-        worth = np.array([s.criterion for s in near])
+        worth = np.array([s.criterion for s in near] + [new.step.criterion - loss + spared])
         weights = np.exp((worth - worth.max()) / (2 * TEMPERATURE))
         probability = weights / weights.sum()
         rivals = [s.candidates[-1] for s in others]
@@ -71,11 +75,12 @@ def named_of(
                 float(min(CAP, probability[0]) * min(1.0, max(0.0, explained))),
                 tuple(
                     Rival(r, float(p), a)
-                    for r, p, a in zip(rivals, probability[1:], alike, strict=True)
+                    for r, p, a in zip(rivals, probability[1:-1], alike, strict=True)
                 ),
-                bool(len(near) > 1 and probability[1:].max() > LIKELY),
+                bool(others and probability[1:-1].max() > LIKELY),
                 new.gain,
                 new.proof,
+                replace(other, confidence=float(probability[-1])),
             )
         )
     return tuple(out)

@@ -15,7 +15,7 @@ from identification.discovery.columns import Column, columns, common, single
 from identification.discovery.confidence import named_of
 from identification.discovery.detectable import detectable
 from identification.discovery.extend import Base
-from identification.discovery.locate import in_doubt, left_over, located
+from identification.discovery.locate import BELIEVED, in_doubt, input_error, left_over, located
 from identification.discovery.missing import missing_forces
 from identification.discovery.passes import backward, swap
 from identification.discovery.proof import prove
@@ -82,7 +82,7 @@ def discover(
     explained = prove(nominal.unseen, step.unseen).share
     named = named_of(base, kept, step, sensed, explained if left else 1.0)
     verdict: Verdict = "nothing missing"
-    if named and (explained > EXPLAINED or not left):
+    if named and (not left or (explained > EXPLAINED and input_error(step) < BELIEVED)):
         verdict = "named"
     elif named or left:
         verdict = "unknown effect"

@@ -58,6 +58,10 @@ def _effect_json(named: Named) -> dict[str, Any]:
             for r in named.rivals
         ],
         "one_of": named.one_of,
+        "retuned": {
+            "parameter": named.retuned.parameter, "distance": named.retuned.distance,
+            "confidence": named.retuned.confidence,
+        },
         "advice": named.advice or None,
         "proof": {"gain": named.proof.gain, "t": named.proof.t, "share": named.proof.share},
     }  # fmt: skip

@@ -17,6 +17,7 @@ from identification.quantities import quantity
 
 TELLING = 0.1  # share of a missing force that is worth a sentence
 ALLOWED = 0.1  # error of the inputs, of their motion, that is still noise and no missing effect
+BELIEVED = 1.0  # the same, above which the log's inputs are not what moved the robot
 
 
 def regressors(fit: Refit) -> dict[str, np.ndarray]:
@@ -122,7 +123,7 @@ def left_over(step: Step) -> tuple[str, ...]:
             f"innovations that are not white: {100 * white.predictable:.0f} % of their power"
             f" follows from the samples before (chance {white.p_correlation:.0e})"
         )
-    if (err := _input_error(step)) > ALLOWED:
+    if (err := input_error(step)) > ALLOWED:
         level = step.refit.level
         unit = log.units.get(log.input_names[0], "")
         out.append(
@@ -143,7 +144,7 @@ def in_doubt(doubt: Doubtful) -> str:
     )
 
 
-def _input_error(step: Step) -> float:
+def input_error(step: Step) -> float:
     """Error of the inputs that the noise model takes for granted, as a share of their motion."""
     moved = float(np.sqrt(np.mean(np.var(step.refit.at.log.inputs, axis=0))))
     return step.refit.level.input_std / moved if moved > 0 else 0.0

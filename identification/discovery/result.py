@@ -33,6 +33,21 @@ class Rival:
 
 
 @dataclass(frozen=True)
+class Retuned:
+    """What the base parameters would have to be, to explain the same without an effect.
+
+    Attributes:
+        parameter: the one that would leave what was known of it the farthest.
+        distance: of it from there, in std of what was known.
+        confidence: probability that it is this and no effect, of those considered.
+    """
+
+    parameter: str
+    distance: float
+    confidence: float
+
+
+@dataclass(frozen=True)
 class Proof:
     """What an effect does for data that the fit has not seen.
 
@@ -63,6 +78,7 @@ class Named:
         one_of: whether the data cannot tell it from its first rival.
         gain: twice the log likelihood that it adds on the fitted samples.
         proof: what it does for unseen data.
+        retuned: the explanation without any effect.
         advice: the experiment that would tell it from its rival, in a sentence.
     """
 
@@ -73,6 +89,7 @@ class Named:
     one_of: bool
     gain: float
     proof: Proof
+    retuned: Retuned
     advice: str = ""
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.effect import Effect, Shape, Size
+from identification.effect import BEFORE, Effect, Shape, Size
 from identification.errors import InputError
 from identification.joints.effect import JointEffect, places
 from identification.joints.inputs import clipped, delayed, drifting, lagged
@@ -67,12 +67,12 @@ def input_effects(drives: Sequence[Drive]) -> tuple[JointEffect, ...]:
     tau = "time constant"
     return (
         JointEffect(
-            Effect("delay", "u(t - τ)", (Size("tau", "s", 0.02, 5e-4, 1, "delay"),), places=at,
+            Effect("delay", "u(t - τ)", (Size("tau", "s", 0.02, 5e-4, 1, "delay"),), (BEFORE,), at,
                    phrase="input: comes late", probes=(1.0, 40**0.5, 40.0)),
             inputs=delayed,
         ),
         JointEffect(
-            Effect("lag", "τ u̇' = u - u'", (Size("tau", "s", 0.01, 5e-4, 1, tau),), places=at,
+            Effect("lag", "τ u̇' = u - u'", (Size("tau", "s", 0.01, 5e-4, 1, tau),), (BEFORE,), at,
                    phrase="input: lags", probes=(1.0, 20**0.5, 20.0)),
             inputs=lagged,
         ),

@@ -4,8 +4,9 @@
 
     [A_k B_k; 0 I] = exp([F G; 0 0] T_s)                               (Van Loan 1978)
 
-x is MuJoCo's state in tangent space: position (nv), velocity (nv), activation (na). F and G come
-from MuJoCo's own finite differences of one short Euler step.
+x is MuJoCo's state in tangent space: position (nv), velocity (nv), activation (na). F's columns of
+position and velocity come from MuJoCo's own finite differences of one short Euler step, the others
+from those of accelerations.
 """
 
 from __future__ import annotations
@@ -69,6 +70,7 @@ def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = 
     C = np.zeros((log.outputs.shape[1], F.shape[1]))
     for row, (field, i) in enumerate(output_columns(model, log.output_names)):
         C[row, _tangent(model, field, i)] = 1
+    F, G = (F[:-1] + F[1:]) / 2, (G[:-1] + G[1:]) / 2
     felt = _felt(F, C)
     F, G, C = F[:, felt][:, :, felt], G[:, felt], C[:, felt]
     nx, nu = F.shape[1], G.shape[2]
@@ -95,29 +97,49 @@ def _derivatives(
     sampling_time: float,
     forces: Sequence[int],
 ) -> tuple[np.ndarray, np.ndarray]:
-    """F (N-1, nx, nx) and G (N-1, nx, nu) at all samples but the last."""
+    """F (N, nx, nx) and G (N, nx, nu) at all samples."""
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
     model.opt.timestep = SHORT
     data = mujoco.MjData(model)
-    nx, n = 2 * model.nv + model.na, len(inputs) - 1
-    F, G = np.empty((n, nx, nx)), np.empty((n, nx, model.nu))
-    unit, pushed = np.eye(model.nv)[list(forces)], np.empty((n, len(forces), model.nv))
+    moved, nx, n = 2 * model.nv, 2 * model.nv + model.na, len(inputs)
+    F, G = np.empty((n, nx, nx)), np.zeros((n, nx, len(forces) or model.nu))
+    unit, pushed = np.eye(model.nv)[list(forces)], np.empty((len(forces), model.nv))
     for k in range(n):
         data.time = k * sampling_time
         data.qpos, data.qvel, data.ctrl = states["qpos"][k], states["qvel"][k], inputs[k]
         if model.na:
             data.act = states["act"][k]
-        mujoco.mjd_transitionFD(model, data, EPS, 1, F[k], G[k], None, None)
+        mujoco.mjd_transitionFD(model, data, EPS, 1, F[k], None, None, None)
+        F[k] = (F[k] - np.eye(nx)) / SHORT
+        F[k, :, moved:] = _differences(model, data, "act", model.na)
         if forces:
             mujoco.mj_forward(model, data)
-            mujoco.mj_solveM(model, data, pushed[k], unit)
-    F = (F - np.eye(nx)) / SHORT
-    if forces:
-        G = np.zeros((n, nx, len(forces)))
-        G[:, model.nv : 2 * model.nv] = np.moveaxis(pushed, 1, 2)
-        return F, G
-    return F, G / SHORT
+            mujoco.mj_solveM(model, data, pushed, unit)
+            G[k, model.nv : moved] = pushed.T
+        else:
+            G[k] = _differences(model, data, "ctrl", model.nu)
+    return F, G
+
+
+def _differences(model: mujoco.MjModel, data: mujoco.MjData, field: str, n: int) -> np.ndarray:
+    """Columns of F or G for activations or inputs, shape (nx, n).
+
+    MuJoCo's own differences hold the passive forces while they move these; a callback's may depend
+    on them, as a cable's tension does on the length that its drum has paid out.
+    """
+    out = np.zeros((1 + n, 2 * model.nv + model.na))
+    at = getattr(data, field)
+    for i in range(-1, n):  # first as it is
+        if i >= 0:
+            was = at[i]
+            at[i] = was + EPS
+        mujoco.mj_forward(model, data)
+        out[1 + i, model.nv : 2 * model.nv] = data.qacc
+        out[1 + i, 2 * model.nv :] = data.act_dot
+        if i >= 0:
+            at[i] = was
+    return ((out[1:] - out[0]) / EPS).T
 
 
 def _tangent(model: mujoco.MjModel, field: str, i: int) -> int:

@@ -5,6 +5,12 @@
 A free run of a wrong model drifts, and a fit of it bends the parameters to follow. The predictor's
 noise takes part of what is missing for unlogged input errors, at a level that the data choose: the
 criterion is tame from afar, and at the truth it is maximum likelihood.
+
+Its valleys are narrow and curved (a Stribeck peak and the slope of the smooth sign make up for one
+another), so that a straight step that falls short is bent by what the residual does along it
+("geodesic acceleration", Transtrum and Sethna 2012):
+
+    q + δ + a,    a = argmin ‖r''(δ)/2 - F a‖² + μ ‖a‖²,    r''(δ) = (r(q + hδ) - r(q) + h F δ) 2/h²
 """
 
 from __future__ import annotations
@@ -27,6 +33,8 @@ NEAR = 0.02  # relative change of the parameters after which the linearisation s
 ENDED = 0.1  # expected fall of the criterion, in units of the noise, that ends the search
 DAMPED = 1e-4  # μ after the first step that failed; the rows' columns have length 1
 TRIES = 6  # of a step, each damped ten times as much
+SHORT = 0.5  # of the fall that was expected, below which a step is bent
+ALONG = 0.1  # h, of the step
 
 
 @dataclass(frozen=True)
@@ -93,7 +101,7 @@ def descent(
     yield at, level
     μ, fine = 0.0, False
     while True:
-        problem = _linearised(at, level, mean, prior)
+        problem = linearised(at, level, mean, prior)
         move, fall = problem.step(0.0)
         if fall < ENDED and fine:
             return
@@ -104,7 +112,12 @@ def descent(
         for _ in range(TRIES):
             if μ:
                 move, fall = problem.step(μ)
-            if problem.cost(at.q + move) < problem.cost_here:
+            cost = problem.cost(at.q + move)
+            if problem.cost_here - cost < SHORT * fall:
+                bent = problem.bent(move, μ)
+                if (other := problem.cost(at.q + bent)) < cost:
+                    move, cost = bent, other
+            if cost < problem.cost_here:
                 break
             μ = max(10 * μ, DAMPED)
         else:
@@ -118,7 +131,7 @@ def descent(
 
 def finished(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray, taken: int) -> Refit:
     """The end of a search."""
-    return Refit(at, level, _linearised(at, level, mean, prior).std(), mean, prior, taken)
+    return Refit(at, level, linearised(at, level, mean, prior).std(), mean, prior, taken)
 
 
 def noise_at(at: Point, prior: np.ndarray, near: Level | None, fine: bool) -> Level:
@@ -127,7 +140,7 @@ def noise_at(at: Point, prior: np.ndarray, near: Level | None, fine: bool) -> Le
 
 
 @dataclass(frozen=True)
-class _Problem:
+class Problem:
     """The criterion about a point: rows of the innovations and of the priors, in units of σ."""
 
     at: Point
@@ -145,26 +158,43 @@ class _Problem:
 
     def step(self, μ: float) -> tuple[np.ndarray, float]:
         """The step of Levenberg and Marquardt, and how far the criterion would fall."""
+        move = self._least(self.target, μ, np.zeros_like(self.at.q))
+        return move, self.cost_here - float(np.sum((self.target - self.rows @ move) ** 2))
+
+    def bent(self, move: np.ndarray, μ: float) -> np.ndarray:
+        """A step that follows the residual's curve; the step itself where that leads nowhere."""
+        ahead = self.residual(self.at.q + ALONG * move)
+        if ahead is None:
+            return move
+        curve = 2 / ALONG**2 * (ahead - self.target + ALONG * self.rows @ move)
+        return move + self._least(curve / 2, μ, move)
+
+    def _least(self, target: np.ndarray, μ: float, begun: np.ndarray) -> np.ndarray:
+        """The damped move that leaves the least of a target, where one has begun to move."""
         at, size = self.at, np.where(self.at.space.logarithmic, LARGEST, np.inf)
-        lower = np.maximum(at.space.lower - at.q, -size)
-        upper = np.minimum(at.space.upper - at.q, size)
+        lower = np.minimum(np.maximum(at.space.lower - at.q, -size) - begun, 0.0)
+        upper = np.maximum(np.minimum(at.space.upper - at.q, size) - begun, 0.0)
         scale = np.linalg.norm(self.rows, axis=0) + 1e-300
         Q, R = np.linalg.qr(self.rows / scale)
         square = np.vstack([R, np.sqrt(μ) * np.eye(len(scale))])
-        target = np.concatenate([Q.T @ self.target, np.zeros(len(scale))])
+        both = np.concatenate([Q.T @ target, np.zeros(len(scale))])
         bounds = (lower * scale - 1e-12, upper * scale + 1e-12)
-        move = lsq_linear(square, target, bounds).x / scale
-        return move, self.cost_here - float(np.sum((self.target - self.rows @ move) ** 2))
+        return np.asarray(lsq_linear(square, both, bounds).x / scale)
 
-    def cost(self, q: np.ndarray) -> float:
-        """The criterion elsewhere, by the same filter; infinite where nothing can be simulated."""
+    def residual(self, q: np.ndarray) -> np.ndarray | None:
+        """Rows of the residual elsewhere, by the same filter; None where it cannot be simulated."""
         at = self.at
         try:
             predicted = at.predictor.predict(at.space.decode(at.space.inside(q)))[0]
         except DivergenceError:
-            return np.inf
+            return None
         E = self.filter(at.log.outputs - predicted) / self.level.sigma
-        return float(np.sum(E**2) + np.sum((self.prior * (self.mean - q)) ** 2))
+        return np.concatenate([E.ravel(), self.prior * (self.mean - q)])
+
+    def cost(self, q: np.ndarray) -> float:
+        """The criterion elsewhere; infinite where nothing can be simulated."""
+        there = self.residual(q)
+        return np.inf if there is None else float(there @ there)
 
     def std(self) -> np.ndarray:
         """Std of q by the curvature, shape (p,)."""
@@ -172,9 +202,9 @@ class _Problem:
         return np.sqrt(np.diag(covariance))
 
 
-def _linearised(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray) -> _Problem:
+def linearised(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray) -> Problem:
     """The criterion about a point."""
     filter_ = whitener(at.linear, level.noise, at.log.sampling_time)
     E, F = filter_(at.e).ravel() / level.sigma, filter_(at.J).reshape(at.e.size, -1) / level.sigma
     rows, target = np.vstack([F, np.diag(prior)]), np.concatenate([E, prior * (mean - at.q)])
-    return _Problem(at, level, mean, prior, filter_, rows, target)
+    return Problem(at, level, mean, prior, filter_, rows, target)

@@ -43,6 +43,11 @@ def _diff(found: Discovery) -> list[str]:
         lines.append(f"{gains} (t = {named.proof.t:.1f})")
         lines += [f"    rival: {phrase(r.candidate)}, confidence {100 * r.confidence:.0f} %"
                   for r in named.rivals]  # fmt: skip
+        other = named.retuned
+        lines.append(
+            f"    no effect, but {other.parameter} {other.distance:+.2g} std from what was known:"
+            f" confidence {100 * other.confidence:.0f} %"
+        )
     return lines
 
 

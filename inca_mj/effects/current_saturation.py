@@ -4,6 +4,8 @@ A limit has no size that is zero when it is absent, so the size here is a share 
 0 is none, 1 is a real limit.
 """
 
+from math import tanh
+
 from numba import njit
 
 from identification.effect import Effect, Shape, Size
@@ -16,15 +18,16 @@ GRID = (0.55, 0.65, 0.75, 0.85, 0.95, 1.2, 1.7, 2.4, 3.4, 4.8)
 
 @njit
 def current(s, p):  # type: ignore[no-untyped-def]
-    """Δi = c (clip(i, ±i_max) - i) [A]."""
-    c, i_max = p
-    return c * (max(-i_max, min(i_max, s.i)) - s.i)
+    """Δi = c (clip(i, ±i_max) - i), or with i_max tanh(i/i_max) where soft [A]."""
+    c, i_max, soft = p
+    limited = i_max * tanh(s.i / i_max) if soft else max(-i_max, min(i_max, s.i))
+    return c * (limited - s.i)
 
 
 CURRENT_SATURATION = DriveEffect(
     Effect(
         "current_saturation",
-        "i clipped at ±i_max",
+        "i clipped at ±i_max, or i_max tanh(i/i_max)",
         (
             Size(
                 "c",
@@ -36,7 +39,19 @@ CURRENT_SATURATION = DriveEffect(
                 about="share of the clipping, 1 when there is a limit",
             ),
         ),
-        (Shape("i_max", "A", GRID, 0.05, 20.0, about="the limit"),),
+        (
+            Shape("i_max", "A", GRID, 0.05, 20.0, about="the limit"),
+            Shape(
+                "soft",
+                "",
+                (0.0, 1.0),
+                0.0,
+                1.0,
+                free=False,
+                about="1: it bends, does not clip",
+                usual=0.0,
+            ),
+        ),
         DRIVES_EACH,
         "motor: current clipped",
         "data sheet of the amplifier",

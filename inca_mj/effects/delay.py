@@ -1,6 +1,6 @@
-"""Delay of the input: the current arrives late, and is zero before the first sample has arrived.
+"""Delay of the input: the current arrives late.
 
-    i(t) = u(t - τ)
+    i(t) = u(t - τ),  p u(0) before the first sample has arrived: none (p = 0), or it flowed
 
 u is constant over a step, so mean and moment of i over it (see `impulse`) are exact for every
 τ >= 0: with τ = (n + f) h,
@@ -10,7 +10,7 @@ u is constant over a step, so mean and moment of i over it (see `impulse`) are e
 
 import numpy as np
 
-from identification.effect import Effect, Size
+from identification.effect import BEFORE, Effect, Size
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.impulse import stepwise
 from inca_mj.effects.places import DRIVES_EACH
@@ -22,20 +22,21 @@ def inputs(currents: np.ndarray, step: float, p: np.ndarray) -> np.ndarray:
     for k, tau in enumerate(p[0]):
         if tau > 0:
             n, f = divmod(tau / step, 1.0)
-            new, old = (_late(currents[:, k], int(n) + more) for more in (0, 1))
+            new, old = (_late(currents[:, k], int(n) + more, p[1][k]) for more in (0, 1))
             out[:, k] = stepwise((1 - f) * new + f * old, f * (1 - f) / 2 * (new - old))
     return out
 
 
-def _late(u: np.ndarray, n: int) -> np.ndarray:
-    return np.concatenate([np.zeros(min(n, len(u))), u[: max(0, len(u) - n)]])
+def _late(u: np.ndarray, n: int, before: float) -> np.ndarray:
+    return np.concatenate([np.full(min(n, len(u)), before * u[0]), u[: max(0, len(u) - n)]])
 
 
 DELAY = DriveEffect(
     Effect(
         "delay",
-        "pure delay of the input, zero before the first sample",
+        "pure delay of the input",
         (Size("tau", "s", 0.02, 5e-4, sign=1, about="delay"),),
+        (BEFORE,),
         places=DRIVES_EACH,
         phrase="motor: current comes late",
         reference="Åström, Hägglund 2006",

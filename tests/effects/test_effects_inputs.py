@@ -29,11 +29,12 @@ def test_impulse_and_moment_of_the_whole_are_kept():
     assert np.arange(9) @ out == pytest.approx(np.arange(9) @ mean + moment.sum())
 
 
-def test_lag():
+@pytest.mark.parametrize("before", [0.0, 1.0])
+def test_lag(before):
     u = currents()
-    out = BY_NAME["current_lag"].inputs(u, STEP, np.array([TAUS]))
+    out = BY_NAME["current_lag"].inputs(u, STEP, np.array([TAUS, [before] * 8]))
     for k, tau in enumerate(TAUS):
-        i, fine = 0.0, []
+        i, fine = before * u[0, k], []
         h = STEP / FINE
         keep = np.exp(-h / tau) if tau else 0.0
         for value in u[:, k]:
@@ -47,18 +48,19 @@ def test_lag():
     assert np.array_equal(out[:, 0], u[:, 0])
 
 
-def test_delay():
+@pytest.mark.parametrize("before", [0.0, 1.0])
+def test_delay(before):
     u = currents()
-    out = BY_NAME["delay"].inputs(u, STEP, np.array([TAUS]))
+    out = BY_NAME["delay"].inputs(u, STEP, np.array([TAUS, [before] * 8]))
     fine = np.repeat(u, FINE, axis=0)
     t = (np.arange(len(fine)) + 0.5) * STEP / FINE
     for k, tau in enumerate(TAUS):
         at = np.floor((t - tau) / STEP + 1e-12).astype(int)
-        late = np.where(at >= 0, u[np.maximum(at, 0), k], 0.0)
+        late = np.where(at >= 0, u[np.maximum(at, 0), k], before * u[0, k])
         expected = by_brute_force(late.reshape(-1, FINE))
         assert out[:, k] == pytest.approx(expected, abs=3 / FINE), tau
     assert np.array_equal(out[:, 0], u[:, 0])
-    assert not out[:, -1].any()  # 10 s: nothing has arrived
+    assert np.array_equal(out[:, -1], np.full(len(u), before * u[0, -1]))  # 10 s: nothing arrived
 
 
 @pytest.mark.parametrize("name", ["current_lag", "delay"])

@@ -14,16 +14,19 @@ CREEP = 0.5 * S.lambda_ * (S.strain - 1e-4)
 WAY = S.R_s * S.phi
 
 LAWS = [
-    ("stribeck_friction", "torque", (0.02, 2.0), {}, -0.02 * np.exp(-2.25) * BREAK),
+    ("stribeck_friction", "torque", (0.02, 2.0, 2.0), {}, -0.02 * np.exp(-2.25) * BREAK),
+    ("stribeck_friction", "torque", (0.02, 2.0, 1.0), {}, -0.02 * np.exp(-1.5) * BREAK),
     ("asymmetric_friction", "torque", (0.002,), {}, -0.002 * BREAK),
     ("asymmetric_friction", "torque", (0.002,), {"omega": -3.0}, -0.002 * BREAK),
     ("load_dependent_friction", "torque", (0.1,), {}, -0.1 * S.R * 4 * BREAK),
-    ("quadratic_friction", "torque", (1e-5,), {"omega": -3.0}, 9e-5),
+    ("quadratic_friction", "torque", (1e-5, 2.0), {"omega": -3.0}, 9e-5),
+    ("quadratic_friction", "torque", (1e-5, 3.0), {"omega": -3.0}, 27e-5),
     ("friction_mismatch", "torque", (0.1,), {}, -0.1 * S.b_c * BREAK),
     ("cogging", "torque", (3e-3, 4e-3, 6.0), {}, 3e-3 * cos(4.2) + 4e-3 * sin(4.2)),
-    ("current_saturation", "current", (1.0, 0.6), {}, -0.2),
-    ("current_saturation", "current", (1.0, 0.6), {"i": -0.8}, 0.2),
-    ("current_saturation", "current", (0.5, 0.9), {}, 0.0),
+    ("current_saturation", "current", (1.0, 0.6, 0.0), {}, -0.2),
+    ("current_saturation", "current", (1.0, 0.6, 0.0), {"i": -0.8}, 0.2),
+    ("current_saturation", "current", (0.5, 0.9, 0.0), {}, 0.0),
+    ("current_saturation", "current", (1.0, 0.8, 1.0), {}, 0.8 * tanh(1) - 0.8),
     ("torque_constant_drift", "current", (0.01, 0.0), {"x": 9.0}, -0.016),
     ("torque_constant_drift", "current", (0.01, 1.0), {"x": 9.0}, -0.072),
     ("torque_constant_drift", "rate", (0.01, 1.0), {}, 0.64),
@@ -32,11 +35,13 @@ LAWS = [
     ("drum_layering", "radius", (1e-5,), {}, 7e-6),
     ("drum_radius_mismatch", "radius", (0.01,), {}, 0.01 * S.R),
     ("backlash", "tension", (0.01,), {}, -S.lambda_ * S.R * 0.01 / S.d),
-    ("spring_hardening", "torque", (10.0,), {}, -10 * S.R_s * S.k_s * WAY**3),
-    ("spring_hardening", "torque", (1e9,), {}, -S.R_s * S.F_s),
+    ("spring_hardening", "torque", (10.0, 2.0), {}, -10 * S.R_s * S.k_s * WAY**3),
+    ("spring_hardening", "torque", (10.0, 1.0), {}, -0.5 * S.R_s * S.k_s * WAY**2),
+    ("spring_hardening", "torque", (1e9, 2.0), {}, -S.R_s * S.F_s),
     ("spring_hysteresis", "torque", (0.1,), {}, 0.1 * S.R_s * S.F_s * BREAK),
-    ("cable_hardening", "tension", (500.0,), {}, S.lambda_ * 500 * S.strain**2),
-    ("cable_hardening", "tension", (500.0,), {"strain": -1e-4}, 0.0),
+    ("cable_hardening", "tension", (500.0, 1.0), {}, S.lambda_ * 500 * S.strain**2),
+    ("cable_hardening", "tension", (500.0, 2.0), {}, S.lambda_ * 5e5 * S.strain**3),
+    ("cable_hardening", "tension", (500.0, 2.0), {"strain": -1e-4}, 0.0),
     ("cable_creep", "tension", (0.5, 2.0), {"x": 1e-4}, CREEP),
     ("cable_creep", "rate", (0.5, 2.0), {"x": 1e-4}, (S.strain - 1e-4) / 2),
 ]
@@ -57,7 +62,7 @@ def test_half_of_a_cable_hangs_on_its_connector():
 
 def test_wrenches():
     at = Platform(0, 0, 0, 1, 0.3, -0.4, 1.2, 9, 9, 9)
-    drag = BY_NAME["air_drag"].wrench.py_func(at, (0.5,))
+    drag = BY_NAME["air_drag"].wrench.py_func(at, (0.5, 2.0))
     assert drag == pytest.approx((-0.5 * 1.3 * 0.3, 0.5 * 1.3 * 0.4, -0.5 * 1.3 * 1.2, 0, 0, 0))
     force = BY_NAME["external_force"].wrench.py_func(at, (1.0, 2.0, 3.0))
     assert force == (1, 2, 3, 0, 0, 0)
@@ -112,18 +117,18 @@ def test_a_larger_roller_winds_faster_and_loads_its_motor_more():
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("cable_hardening.kappa", 500.0), ("backlash.h", 2e-3)]
+    ("name", "p"), [("cable_hardening.kappa", (500.0, 1.0)), ("backlash.h", (2e-3,))]
 )
-def test_tension_of_the_compiled_model(name, value):
+def test_tension_of_the_compiled_model(name, p):
     twin = full()
     effect = BY_NAME[name.partition(".")[0]]
     at = moving(twin)
-    none, some = forward(twin, at), forward(twin.with_values({name: value}), at)
+    none, some = forward(twin, at), forward(twin.with_values({name: p[0]}), at)
     d, d_0 = none.ten_length, at.act[twin.model.actuator_actadr]
     for k in range(8):
         s = drive(strain=(d[k] - d_0[k]) / d_0[k], d=d[k])
         more = (some.sensor(f"tension_{k + 1}").data - none.sensor(f"tension_{k + 1}").data)[0]
-        assert more == pytest.approx(effect.tension.py_func(s, (value,)), rel=1e-6)
+        assert more == pytest.approx(effect.tension.py_func(s, p), rel=1e-6)
 
 
 def test_weight_of_the_cables_and_a_force_accelerate_the_platform():

@@ -19,7 +19,9 @@ def at(r) -> object:
 
 
 @pytest.mark.parametrize("r", SPANS)
-@pytest.mark.parametrize(("path", "p"), [(PULLEY, (0.03,)), (ANCHOR, (0.01, -0.02, 0.03))])
+@pytest.mark.parametrize(
+    ("path", "p"), [(PULLEY, (0.03, 0.0)), (PULLEY, (0.03, 1.0)), (ANCHOR, (0.01, -0.02, 0.03))]
+)
 def test_gradient_and_unit_length(path, p, r):
     r, h = np.array(r), 1e-6
     _, *gradient = path(at(r), p)
@@ -32,22 +34,24 @@ def test_gradient_and_unit_length(path, p, r):
 
 
 @pytest.mark.parametrize("r", SPANS)
-def test_pulley_is_the_shortest_way_around_a_disc(r):
+@pytest.mark.parametrize("over", [0.0, 1.0])
+def test_pulley_is_the_shortest_way_around_a_disc(r, over):
     """Wrapped arc and tangent, drawn point by point from where the cable enters."""
-    r_p, (across, z) = 0.03, (sqrt(r[0] ** 2 + r[1] ** 2), abs(r[2]))
+    r_p, (across, z) = 0.03, (sqrt(r[0] ** 2 + r[1] ** 2), abs(r[2]) * (-1 if over else 1))
     angle = np.linspace(0, pi, 20001)
     leave = np.stack([r_p * (1 - np.cos(angle)), r_p * np.sin(angle)], axis=1)
     to = np.array([across, z]) - leave
     heading = np.stack([np.sin(angle), np.cos(angle)], axis=1)
     turn = heading[:, 0] * to[:, 1] - heading[:, 1] * to[:, 0]
-    k = np.argmin(np.abs(turn))
+    ahead = np.sum(heading * to, axis=1) > 0
+    k = np.argmin(np.where(ahead, np.abs(turn), np.inf))
     length = r_p * angle[k] + np.linalg.norm(to[k])
-    assert PULLEY(at(r), (r_p,))[0] + np.linalg.norm(r) == pytest.approx(length, abs=1e-6)
+    assert PULLEY(at(r), (r_p, over))[0] + np.linalg.norm(r) == pytest.approx(length, abs=1e-6)
 
 
 def test_a_pulley_is_the_same_for_high_and_low_drives():
     x, y, z = SPANS[0]
-    high, low = PULLEY(at((x, y, -z)), (0.02,)), PULLEY(at((x, y, z)), (0.02,))
+    high, low = PULLEY(at((x, y, -z)), (0.02, 0.0)), PULLEY(at((x, y, z)), (0.02, 0.0))
     assert high[:3] == pytest.approx(low[:3])
     assert high[3] == pytest.approx(-low[3])
 

@@ -8,7 +8,7 @@ import numpy as np
 from identification import Predictor, fit_percent
 from identification.coordinates import coordinates
 from identification.discovery.missing import MissingForce
-from identification.discovery.result import Detectable, Discovery, Gap, Named, Proof, Rival
+from identification.discovery.result import Detectable, Discovery, Gap, Named, Proof, Retuned, Rival
 from identification.discovery.score import Score
 from identification.effect import Candidate
 from identification.kalman.noise_fit import Level
@@ -97,7 +97,16 @@ def _stribeck(one_of: bool) -> Named:
         "v_s": (SIZES["stribeck_friction.v_s"], 0.1, "rad/s"),
     }
     rival = Rival(MISMATCH, 0.36 if one_of else 0.02, 0.97)
-    return Named(STRIBECK, parameters, 0.61 if one_of else 0.97, (rival,), one_of, 900.0, _proof())
+    return Named(
+        STRIBECK,
+        parameters,
+        0.61 if one_of else 0.97,
+        (rival,),
+        one_of,
+        900.0,
+        _proof(),
+        Retuned("m", 40.0, 0.0),
+    )
 
 
 def _proof() -> Proof:
