@@ -7,6 +7,9 @@ from discovery_cases import EFFECTS, FREE, base, record, slider, wander
 from identification import Parameter
 from identification.discovery.extend import _inside, fit_with
 from identification.effect import Candidate
+from identification.kalman.noise_fit import Level
+from identification.kalman.noise_model import Noise
+from identification.kalman.refit import linearised
 
 TRUE = {"mass": 2.4, "damping": 2.6, "x0": 0.02, "v0": -0.03}
 
@@ -64,3 +67,17 @@ def test_a_start_is_kept_where_a_parameter_has_no_upper_bound():
 def test_base_parameters_stay_within_a_factor_of_their_nominal_values():
     log = record(slider(mass=0.3), 200)
     assert fitted(log, {}).at.values["mass"] >= 2.0 / 3 - 1e-9
+
+
+def test_a_bent_step_follows_the_curve_of_the_residual_to_one_order_more():
+    log, white = record(slider(**TRUE), 200, noise=1e-9), Level(Noise(0.0, 0.1), 1.0, 0.0)
+    left = {}
+    for away in (0.2, 0.1):  # of the logarithm of the mass
+        far = fit_with(base(), log, (), {**TRUE, "mass": TRUE["mass"] * np.exp(away)}, steps=0).at
+        problem = linearised(far, white, far.q, np.zeros(4))
+        move, _ = problem.step(0.0)
+        left[away] = [problem.cost(far.q + m) ** 0.5 for m in (move, problem.bent(move, 0.0))]
+    (straight, bent), (straight_half, bent_half) = left[0.2], left[0.1]
+    assert bent < 0.5 * straight
+    assert straight / straight_half == pytest.approx(4, rel=0.2)  # second order
+    assert bent / bent_half > 6  # third

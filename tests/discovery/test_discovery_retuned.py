@@ -5,19 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from discovery_cases import (
-    EFFECTS,
+    FREE,
     RECORDS,
     effect,
     linear_plant,
     point_of,
     record,
     slider,
-    wander,
 )
 
 from identification import Parameter, ParameterSet
-from identification.discovery.discover import discover
-from identification.discovery.extend import Base
+from identification.discovery.extend import Base, fit_with
 from identification.discovery.retuned import WIDER, retuned
 from identification.effect import Candidate, Effect, Size
 from identification.kalman.noise_fit import Level
@@ -58,22 +56,21 @@ def test_what_a_base_parameter_imitates_loses_what_the_wider_prior_holds_against
     assert other.distance == pytest.approx(data / (data + held) * total / PRIOR, rel=1e-6)
 
 
-def test_a_brake_that_may_be_damping_is_said_to_be_one_or_the_other():
+def test_a_brake_is_no_more_than_damping_that_nobody_expected():
     records = (
         *RECORDS,
         Parameter("brake.b", 0.0, "N s/m", "actuator/force.biasprm[2]", symbol="b"),
     )
     brake = Effect("brake", "b v", (Size("b", "N s/m", 30.0, 1e-2),), places={"joint": ""})
-
-    def plant(**values):
-        model = slider().model
-        return ModelPlant(model, ParameterSet("slider", records).with_values(values))
-
-    log = record(plant(damping=6.0), 500, seed=11, error=wander(500, 0.03, 0.1, seed=8))
-    known = np.array([0.3, 0.06, 0.05, 0.05])  # "to 6 %", and it is twice as large
-    names = ("mass", "damping", "x0", "v0")
-    (named,) = discover(Base(plant(), names, known), log, (*EFFECTS, brake)).named
-    assert named.candidate.effect.name == "brake"
-    assert named.retuned.parameter == "damping"
-    assert named.retuned.distance > 5
-    assert named.retuned.confidence > 0.05
+    plant, braked = (
+        ModelPlant(slider().model, ParameterSet("slider", records).with_values({"brake.b": b}))
+        for b in (0.0, -3.0)
+    )
+    log = record(braked, 500, seed=11)
+    known = Base(plant, FREE, np.array([0.3, 0.06, 0.05, 0.05]))  # damping to 6 %: it looks doubled
+    candidate = Candidate(brake, "joint", {})
+    fit = fit_with(known, log, (candidate,), {"brake.b": -2.0})
+    loss, other = retuned(fit, FREE, candidate)
+    assert other.parameter == "damping"
+    assert other.distance == pytest.approx(1 / 0.06, rel=0.05)  # linearised: Δd = d
+    assert loss == pytest.approx((other.distance / WIDER) ** 2, rel=0.05)
