@@ -164,6 +164,24 @@ def _from_nominal(base: Base, whole: Log, step: Step, best: Step) -> Step:
         return best
 
 
+def _other_shape(base: Base, whole: Log, step: Step, best: Step, ranked: Sequence[Score]) -> Step:
+    """The better of a fit and of one whose fixed shapes (a power, a kind) are the next likely."""
+    mine = best.candidates[-1]
+    fixed = [shape.name for shape in mine.effect.shapes if not shape.free]
+    for s in ranked:
+        c = s.candidate
+        same = c.effect.name == mine.effect.name and c.where == mine.where
+        if same and any(c.shape[name] != mine.shape[name] for name in fixed):
+            sizes = dict(zip(c.sizes, s.size, strict=True))
+            start = {**step.refit.at.values, **sizes}
+            try:
+                other = fitted(base, whole, (*step.candidates, c), start, step)
+            except (DivergenceError, InputError):
+                return best
+            return max(best, other, key=_criterion)
+    return best
+
+
 def matters(proof: Proof) -> bool:
     """Whether an effect explains enough of the unseen data."""
     return proof.fall > FALL and proof.above > SHARE
@@ -201,6 +219,8 @@ def add(
         say(f"{s.candidate.effect.name}, {s.candidate.where}: gain {gain:.0f}")
         tried.append(new)
     tried.sort(key=_criterion, reverse=True)
+    if tried and _structured(tried[0]):
+        tried[0] = _other_shape(base, whole, step, tried[0], ranked)
     if tried and _structured(tried[0]):
         tried[0] = _from_nominal(base, whole, step, tried[0])
     doubtful = None

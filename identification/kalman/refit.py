@@ -33,6 +33,7 @@ NEAR = 0.02  # relative change of the parameters after which the linearisation s
 ENDED = 0.1  # expected fall of the criterion, in units of the noise, that ends the search
 DAMPED = 1e-4  # μ after the first step that failed; the rows' columns have length 1
 TRIES = 6  # of a step, each damped ten times as much
+PATIENCE = 2  # steps that make the estimate no likelier, after which a search ends
 SHORT = 0.5  # of the fall that was expected, below which a step is bent
 ALONG = 0.1  # h, of the step
 
@@ -60,9 +61,85 @@ class Refit:
     @property
     def log_posterior(self) -> float:
         """Log likelihood less what the priors hold against the estimate."""
-        return self.level.log_likelihood - 0.5 * float(
-            np.sum(((self.at.q - self.mean) * self.prior) ** 2)
-        )
+        return log_posterior(self.at, self.level, self.mean, self.prior)
+
+
+def refit(
+    at: Point,
+    mean: np.ndarray,
+    prior: np.ndarray,
+    steps: int = 20,
+    near: Level | None = None,
+) -> Refit:
+    """Estimate the free parameters of a point, from where it is.
+
+    Args:
+        at: where to begin.
+        mean: q̄ of the priors, shape (p,).
+        prior: 1/std of each prior, zero where there is none, shape (p,).
+        steps: at most as many.
+        near: a noise to begin at, where one is known.
+    """
+    seen = deque(enumerate(islice(descent(at, mean, prior, near), steps + 1)), maxlen=1)
+    taken, (end, level) = seen[0]
+    return finished(end, level, mean, prior, taken)
+
+
+def descent(
+    at: Point, mean: np.ndarray, prior: np.ndarray, near: Level | None = None
+) -> Iterator[tuple[Point, Level]]:
+    """The points of a search, each with its noise, from the first to where nothing is gained.
+
+    Args:
+        at: where to begin.
+        mean: q̄ of the priors, shape (p,).
+        prior: 1/std of each prior, zero where there is none, shape (p,).
+        near: a noise to begin at, where one is known; it is sharpened before the search ends.
+    """
+    level = noise_at(at, prior, near, fine=False)
+    yield at, level
+    μ, fine, idle = 0.0, False, 0
+    best, most = (at, level), -np.inf
+    while idle < PATIENCE:
+        problem = linearised(at, level, mean, prior)
+        move, fall = problem.step(0.0)
+        if fall < ENDED and fine:
+            break
+        if fall < ENDED:
+            level, fine = noise_at(at, prior, level, fine=True), True
+            best, most = (at, level), log_posterior(at, level, mean, prior)
+            yield at, level
+            continue
+        for _ in range(TRIES):
+            if μ:
+                move, fall = problem.step(μ)
+            cost = problem.cost(at.q + move)
+            if problem.cost_here - cost < SHORT * fall:
+                bent = problem.bent(move, μ)
+                if (other := problem.cost(at.q + bent)) < cost:
+                    move, cost = bent, other
+            if cost < problem.cost_here:
+                break
+            μ = max(10 * μ, DAMPED)
+        else:
+            break
+        μ = μ / 10 if μ > DAMPED else 0.0
+        moved = np.abs(move[at.space.logarithmic]).max(initial=0.0)
+        at = point(at.predictor, at.space, at.q + move, at.linear if moved < NEAR else None)
+        level = noise_at(at, prior, level, fine=False)
+        yield at, level
+        # Each point has a linearisation and a noise of its own, so that the criterion may rise.
+        likely = log_posterior(at, level, mean, prior) if fine else np.inf
+        idle = 0 if likely > most + ENDED else idle + 1
+        if not fine or likely > most:
+            best, most = (at, level), likely if fine else -np.inf
+    if best[0] is not at:
+        yield best
+
+
+def log_posterior(self) -> float:
+    """Log likelihood less what the priors hold against the estimate."""
+    return log_posterior(self.at, self.level, self.mean, self.prior)
 
 
 def refit(
@@ -100,7 +177,8 @@ def descent(
     level = noise_at(at, prior, near, fine=False)
     yield at, level
     μ, fine = 0.0, False
-    while True:
+    best, most, idle = (at, level), -np.inf, 0
+    while idle < PATIENCE:
         problem = linearised(at, level, mean, prior)
         move, fall = problem.step(0.0)
         if fall < ENDED and fine:
@@ -127,6 +205,17 @@ def descent(
         at = point(at.predictor, at.space, at.q + move, at.linear if moved < NEAR else None)
         level = noise_at(at, prior, level, fine=False)
         yield at, level
+        if fine:  # each point has a linearisation and a noise of its own: the criterion may rise
+            likely = log_posterior(at, level, mean, prior)
+            best, most, idle = (
+                ((at, level), likely, 0) if likely > most + ENDED else (best, most, idle + 1)
+            )
+    yield best
+
+
+def log_posterior(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray) -> float:
+    """Log likelihood of a point less what the priors hold against it."""
+    return level.log_likelihood - 0.5 * float(np.sum(((at.q - mean) * prior) ** 2))
 
 
 def finished(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray, taken: int) -> Refit:
