@@ -4,7 +4,7 @@
 
 The data are DATA_EMPS.mat and DATA_EMPS_PULSES.mat of Janot, Gautier, Brunot (2019); see
 nonlinearbenchmark.org.
-Run it: python examples/emps.py FOLDER
+Run it: python examples/emps.py FOLDER [FIGURE.png]
 """
 
 import sys
@@ -20,6 +20,8 @@ from identification.discovery.extend import Base
 from identification.estimate_windows import estimate_windows
 from identification.estimation import estimate
 from identification.joints.plant import candidates, joint_plant
+from identification.report.style import save_png
+from identification.report.windows_figure import windows_figure
 from identification.window_error import window_error
 
 MODEL = Path(__file__).parents[1] / "models" / "emps.xml"
@@ -36,6 +38,7 @@ RECORDS = (
 )
 KNOWN = np.array([0.3, 0.3, 0.3, 5.0, 1.0, 1.0])  # 30 %, 5 N, and for the start 1 mm, 10 mm/s
 EVERY = 10  # samples of 1 ms
+SHOWN = 5.0  # of the figure [s]
 HORIZON = 0.2  # of predictions [s]: an axis integrates what disturbs it, and a free run drifts
 
 
@@ -45,10 +48,11 @@ def read_emps(path, every=EVERY):
     names = {"input_names": ("drive",), "output_names": ("position",)}
     time = np.arange(len(data["qm"])) * 1e-3
     units = {"drive": "V", "position": "m"}
-    return decimate(Log(time, data["vir"], data["qm"], **names, units=units), every)
+    log = Log(time, data["vir"], data["qm"], **names, units=units, name=Path(path).stem)
+    return decimate(log, every)
 
 
-def main(folder):
+def main(folder, figure=None):
     """Fit, discover, confirm on the other record."""
     log, pulses = (read_emps(folder / f"DATA_EMPS{s}.mat") for s in ("", "_PULSES"))
     plant = joint_plant(MODEL, RECORDS, log)
@@ -74,6 +78,10 @@ def main(folder):
         a, b = (free_run(plant, record, e.values, e.states) for e in (fit, best))
         print(f"{name}, free run of {record.duration:.0f} s: rms {a:.4f} -> {b:.4f} m")
 
+    if figure:
+        models = {"published laws": fit.values, f"and {', '.join(more) or 'nothing'}": best.values}
+        part = pulses.between(0.0, SHOWN)
+        save_png(windows_figure(plant, part, HORIZON, models), figure, dpi=100)
     for sizes in ({}, more):  # as the published table: fitted by the free run of one record
         whole = estimate(plant, log, (*free, *sizes), sizes)
         values = {n: v for n, v in whole.values.items() if n not in ("x_0", "v_0")}
@@ -96,6 +104,6 @@ def free_run(plant, log, values, states=None):
 if __name__ == "__main__":
     where = Path(sys.argv[1] if len(sys.argv) > 1 else "data/emps")
     if (where / "DATA_EMPS.mat").exists():
-        main(where)
+        main(where, *sys.argv[2:3])
     else:
         print(f"{where} has no DATA_EMPS.mat; get it from nonlinearbenchmark.org and say where")

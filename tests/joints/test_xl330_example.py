@@ -1,7 +1,7 @@
 """The real motor example: its loader and model against what is known, then its records."""
 
-import importlib.util
 import json
+import sys
 from pathlib import Path
 
 import mujoco
@@ -10,20 +10,21 @@ import pytest
 
 from identification import Log, Predictor
 from identification.estimate_windows import estimate_windows
-from identification.windows import windows
 
 PATH = Path(__file__).parents[2] / "examples" / "xl330.py"
 RAW = Path(__file__).parents[3] / "shared" / "data" / "xl330" / "raw"
-SPEC = importlib.util.spec_from_file_location("xl330", PATH)
-xl330 = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(xl330)
+sys.path.insert(0, str(PATH.parent))  # the example imports its own reader
+import xl330  # noqa: E402
+import xl330_log  # noqa: E402
+
+sys.path.pop(0)
 
 
 def made_up(n=300, seed=2):
     """A log of a voltage that reverses often, and positions that mean nothing yet."""
     levels = np.random.default_rng(seed).uniform(-5, 5, n // 10 + 1)
     u = np.repeat(levels, 10)[:n, None]
-    time = xl330.STEP * np.arange(n)
+    time = xl330_log.STEP * np.arange(n)
     return Log(time, u, np.sin(3 * time)[:, None], ("motor",), ("angle",), hold="foh")
 
 
@@ -39,13 +40,13 @@ def test_a_record_is_read_on_an_even_grid_with_signs_and_without_what_the_motor_
     fall = [{**entries[-1], "timestamp": time[-1] + 0.2, "load": 0, "torque_enable": False}]
     record = {"kp": 100, "trajectory": "ramp", "entries": entries + fall}
     (tmp_path / "a.json").write_text(json.dumps(record))
-    log = xl330.read_xl330(tmp_path / "a.json")
+    log = xl330_log.read_xl330(tmp_path / "a.json")
     np.testing.assert_allclose(log.inputs, -3.5, rtol=1e-12)
     np.testing.assert_allclose(log.outputs[:, 0], 0.5 * log.time, atol=1e-9)
-    assert log.sampling_time == xl330.STEP
-    assert time[-1] - time[0] - xl330.STEP < log.duration <= time[-1] - time[0]
-    assert [one.name for one in xl330.read_all(tmp_path, (100,))] == ["ramp, k_p 100"]
-    assert xl330.read_all(tmp_path, (200,)) == []
+    assert log.sampling_time == xl330_log.STEP
+    assert time[-1] - time[0] - xl330_log.STEP < log.duration <= time[-1] - time[0]
+    assert [one.name for one in xl330_log.read_all(tmp_path, (100,))] == ["ramp, k_p 100"]
+    assert xl330_log.read_all(tmp_path, (200,)) == []
 
 
 def test_left_alone_it_swings_with_the_period_of_its_mass_and_armature():
@@ -63,14 +64,6 @@ def test_left_alone_it_swings_with_the_period_of_its_mass_and_armature():
     inertia = 0.49 * 0.1**2 + 1e-7 + model.dof_armature[0]
     period = 2 * np.pi * np.sqrt(inertia / (0.49 * 9.80665 * 0.1))
     assert 2 * np.mean(np.diff(crossings)) == pytest.approx(period, rel=1e-4)
-
-
-def test_windows_of_joined_records_are_those_of_each():
-    logs = [made_up(n, seed=n) for n in (300, 251)]
-    both = windows(xl330.joined(logs), xl330.HORIZON)
-    each = [windows(log, xl330.HORIZON) for log in logs]
-    np.testing.assert_array_equal(both.outputs, np.concatenate([cut.outputs for cut in each]))
-    np.testing.assert_array_equal(both.inputs, np.concatenate([cut.inputs for cut in each]))
 
 
 def test_known_values_are_recovered_from_the_noisy_angle_of_the_model():
@@ -91,8 +84,8 @@ def test_known_values_are_recovered_from_the_noisy_angle_of_the_model():
     not RAW.exists(), reason="no records of the XL330 in ../shared/data; see github.com/Rhoban/bam"
 )
 def test_what_one_gain_shows_predicts_another_and_friction_under_load_predicts_it_better():
-    (log,) = (x for x in xl330.read_all(RAW, (400,)) if x.name.startswith("sin_time_square"))
-    (other,) = (x for x in xl330.read_all(RAW, (200,)) if x.name.startswith("sin_time_square"))
+    (log,) = (x for x in xl330_log.read_all(RAW, (400,)) if x.name.startswith("sin_time_square"))
+    (other,) = (x for x in xl330_log.read_all(RAW, (200,)) if x.name.startswith("sin_time_square"))
     plant, mu = xl330.xl330_plant(log), "load_dependent_friction.mu@hinge"
     fit = estimate_windows(plant, log, xl330.NAMES, xl330.HORIZON, tolerance=1e-2)
     names, start = (*xl330.NAMES, mu), {**fit.values, mu: 0.1}

@@ -1,0 +1,55 @@
+"""A record, and what models predict of it over windows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from identification.log import Log
+from identification.predictor import Plant
+from identification.report.style import INK, SERIES, STYLE
+from identification.window_error import window_error
+
+
+def windows_figure(
+    plant: Plant, log: Log, length: float, models: Mapping[str, Mapping[str, float]]
+) -> Figure:
+    """The first output, predicted over windows that begin in their own best state, and the errors.
+
+    Args:
+        plant: the model.
+        log: what was measured.
+        length: of a window [s].
+        models: values of parameters by what they are called in the legend.
+
+    Raises:
+        InputError: the windows do not fit the log, or a name is unknown.
+        DivergenceError: a model cannot be simulated.
+    """
+    name = log.output_names[0]
+    unit = log.units.get(name, "")
+    errors = {label: window_error(plant, log, length, values)[..., 0]
+              for label, values in models.items()}  # fmt: skip
+    shape = next(iter(errors.values())).shape
+    rows = shape[0] * shape[1]
+    t, y = log.time[:rows].reshape(shape), log.outputs[:rows, 0].reshape(shape)
+    gap = np.full((shape[0], 1), np.nan)  # between windows
+    with matplotlib.rc_context(STYLE):
+        figure = Figure((7.5, 4.5), layout="constrained")
+        upper, lower = figure.subplots(2, sharex=True)
+        upper.plot(log.time, log.outputs[:, 0], color=INK, lw=2.2, alpha=0.45, label="measured")
+        for k, (label, error) in enumerate(errors.items()):
+            for axis, line in ((upper, y - error), (lower, error)):
+                axis.plot(
+                    np.hstack([t, gap]).ravel(), np.hstack([line, gap]).ravel(),
+                    color=SERIES[k % len(SERIES)], lw=1, label=label,
+                )  # fmt: skip
+        of = f"{log.name}: predicted" if log.name else "Predicted"
+        upper.set(ylabel=f"{name} [{unit}]")
+        upper.set_title(f"{of} over {length:g} s", loc="left", color=INK)
+        lower.set(ylabel=f"error [{unit}]", xlabel="time [s]")
+        upper.legend(loc="upper left", fontsize=8)
+    return figure
