@@ -99,11 +99,11 @@ def test_an_effect_gives_way_to_one_that_was_never_refitted_but_explains_more(mo
         return swap(*arguments)
 
     monkeypatch.setattr("identification.discovery.discover.swap", spy)
-    found(**{"offset.f": -0.8, "rubbing.c": 1.0})
+    found(**{"offset.f": -0.6, "rubbing.c": 1.5})
     ((base_, log, nominal, kept, step, columns),) = seen
     right = {c.effect.name: c for c in step.candidates}
     spring = next(c.candidate for c in columns if c.candidate.effect.name == "spring")
-    wrong = fitted(base_, log, (right["rubbing"], spring), {})
+    wrong = fitted(base_, log, (right["rubbing"], spring), step.refit.at.values)
     alone = replace(kept[0].step, candidates=(spring,))
     first = replace(kept[0], step=alone, others=(), gain=10.0)
     second = next(a for a in kept if a.step.candidates[-1].effect.name == "rubbing")

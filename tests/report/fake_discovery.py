@@ -27,6 +27,7 @@ EFFECTS = (STRIBECK_FRICTION, FRICTION_MISMATCH, DELAY)
 SIZES = {"stribeck_friction.f_s": 0.00412345678901234, "stribeck_friction.v_s": 1.9 / 1.01}
 BASE = ("b_v", "x")
 NOISE = 5e-4
+RETUNED = Retuned("m", 40.0, 0.0)
 
 STRIBECK = Candidate(STRIBECK_FRICTION.effect, "all drives", {"v_s": 2.4})
 MISMATCH = Candidate(FRICTION_MISMATCH.effect, "drive 3", {})
@@ -69,7 +70,9 @@ def found(verdict="named", *, one_of=False, unexplained=False, several=False) ->
     final = fit({"b_v": 2.3e-4, "x": 0.01 / 3, **SIZES}) if is_named else nominal
     named = (_stribeck(one_of),) if is_named else ()
     if several:
-        named += (Named(MISMATCH, {"delta": (0.2, 0.03, "")}, 0.8, (), False, 31.0, _proof()),)
+        named += (
+            Named(MISMATCH, {"delta": (0.2, 0.03, "")}, 0.8, (), False, 31.0, _proof(), RETUNED),
+        )
     before, after = (f.at.predictor.predict(f.at.space.decode(f.at.q))[0] for f in (nominal, final))
     scores = tuple(
         Score(c, np.array([s]), np.array([s / 9]), g, 1e-9, 1e-6, 0.5, _level())
@@ -105,7 +108,7 @@ def _stribeck(one_of: bool) -> Named:
         one_of,
         900.0,
         _proof(),
-        Retuned("m", 40.0, 0.0),
+        RETUNED,
     )
 
 
