@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -102,7 +103,8 @@ def log_of(task: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
     effects = [
         draw_effect(name, task["seed"], other_shape=other)
         for name, other in zip(task["names"], task["other_shape"], strict=True)
-    ]
+    ]  # of a robot that stands with them, as all effects on its geometry do
+    effects = [replace(e, balanced=True) if hasattr(e, "balanced") else e for e in effects]
     setting = Setting(
         input="multisine" if task["seed"] % 2 else "prbs", duration=task["duration"],
         error_rms=5e-4 if task["coloured"] else 0.0,
