@@ -30,11 +30,14 @@ def retuned(fit: Refit, base: Sequence[str], candidate: Candidate) -> tuple[floa
 
     Returns:
         The loss, of twice the log likelihood, and how far the base parameters would have to go;
-        its confidence is left at zero.
+        its confidence is left at zero. A limit has no size that could go to zero: its loss is
+        infinite.
     """
     space, q = fit.at.space, fit.at.q
     names = np.array(space.names)
     own, mine = np.isin(names, base), np.isin(names, candidate.free)
+    if not mine.any():
+        return np.inf, Retuned(base[0], 0.0, 0.0)
     prior = np.where(own, fit.prior / WIDER, fit.prior)
     problem = linearised(fit.at, fit.level, fit.mean, prior)
     lower, upper = space.lower - q, space.upper - q

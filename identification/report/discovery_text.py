@@ -17,6 +17,9 @@ from identification.verdict_discovery import (
 )
 
 
+SHOWN = 0.005  # chance of an explanation that is worth a line
+
+
 def discovery_text(found: Discovery) -> str:
     """All of it, in paragraphs."""
     parts = [
@@ -43,11 +46,11 @@ def _diff(found: Discovery) -> list[str]:
         lines.append(f"{gains} (t = {named.proof.t:.1f})")
         lines += [f"    rival: {phrase(r.candidate)}, confidence {100 * r.confidence:.0f} %"
                   for r in named.rivals]  # fmt: skip
-        other = named.retuned
-        lines.append(
-            f"    no effect, but {other.parameter} {other.distance:+.2g} std from what was known:"
-            f" confidence {100 * other.confidence:.0f} %"
-        )
+        if (other := named.retuned).confidence >= SHOWN:
+            lines.append(
+                f"    no effect, but {other.parameter} {other.distance:+.2g} std from what was"
+                f" known: confidence {100 * other.confidence:.0f} %"
+            )
     return lines
 
 

@@ -46,6 +46,14 @@ def test_what_nothing_imitates_loses_all_that_it_explains():
     assert loss == pytest.approx((7 * 0.3 / SIGMA) ** 2, rel=1e-9)
 
 
+def test_a_limit_has_no_size_that_could_go_to_zero():
+    size = Size("c", "", 1.0, 0.02, 1, present=1.0)
+    limit = Candidate(Effect("limit", "c", (size,), places={"joint": ""}), "joint", {})
+    loss, other = retuned(_fit(7 * _rows(1).reshape(40, 2, 2), [0.0, 0.3]), ("p0",), limit)
+    assert loss == np.inf
+    assert other.distance == 0
+
+
 def test_what_a_base_parameter_imitates_loses_what_the_wider_prior_holds_against_it():
     column = 7 * _rows(2)[:, :1]
     J = np.hstack([column, column]).reshape(40, 2, 2)
