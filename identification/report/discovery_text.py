@@ -16,7 +16,6 @@ from identification.verdict_discovery import (
     split_detectable,
 )
 
-
 SHOWN = 0.005  # chance of an explanation that is worth a line
 
 
