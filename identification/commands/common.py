@@ -18,7 +18,7 @@ class Output:
     json: bool = False
     """Print one JSON object on stdout and nothing else."""
     out: Path | None = None
-    """Folder for figures, report, model and result.json; made when missing."""
+    """Folder for the results, result.json among them; made when missing."""
 
 
 def refuse_folder(path: Path | None) -> None:

@@ -37,7 +37,9 @@ class Discover(OnRobot):
         robot, records = self.read()
         found = discover(robot.base, robot.log, robot.candidates, note)
         before, after = found.nominal.at.values, final_values(found)
-        pairs = [confirmed(robot, log, before, after) for log in records if found.named]
+        # with nothing named, the fitted model beside the one that the file describes
+        first = before if found.named else {}
+        pairs = [confirmed(robot, log, first, after) for log in records]
         record: dict[str, Any] = finite(discovery_to_json(found))
         record = {**record, "confirm": [vars(c) for c in pairs]}
         if self.output.json:

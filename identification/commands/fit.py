@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from identification.estimate_windows import WindowEstimate
     from identification.robot import Robot
 
+FEWEST = 10  # values for each parameter
+FARTHEST = 1e3  # factor from where a fit began that is no estimate
+
 
 @dataclass(frozen=True)
 class Fit(OnRobot):
@@ -32,10 +35,11 @@ class Fit(OnRobot):
 
         refuse_folder(self.output.out)
         robot, records = self.read()
+        _refuse_short(robot)
         record, values = self._windows(robot) if robot.file.horizon else self._free_run(robot)
         found = [confirmed(robot, log, {}, values) for log in records]
         record["confirm"] = [vars(c) for c in found]
-        record["verdict"] += map(str, found)
+        record["verdict"] += [*_far(record["parameters"]), *map(str, found)]
         if self.output.json:
             say_json(record)
         else:
@@ -65,6 +69,33 @@ class Fit(OnRobot):
         part, horizon = robot.log.part("estimation"), float(robot.file.horizon or 0)
         found = estimate_windows(robot.plant, part, names, horizon, progress=note)
         return _as_record(robot, found, unseen(robot, {}, found.values)), found.values
+
+
+def _refuse_short(robot: Robot) -> None:
+    """Refuse a log that has hardly more samples than there are parameters."""
+    from identification.errors import InputError
+
+    part, free = robot.log.part("estimation"), len(robot.file.free)
+    if part.outputs.size < FEWEST * free:
+        raise InputError(
+            f"the log has {part.outputs.size} values to fit {free} parameters to; it needs"
+            f" {FEWEST} for each: record longer, or free fewer parameters"
+        )
+
+
+def _far(parameters: dict[str, Any]) -> list[str]:
+    """A sentence on values that no robot has."""
+    far = [
+        n for n, p in parameters.items()
+        if p["initial"] and not 1 / FARTHEST < abs(p["value"] / p["initial"]) < FARTHEST
+        and p["initial"] * p["value"] > 0
+    ]  # fmt: skip
+    if not far:
+        return []
+    return [
+        f"{', '.join(far)}: more than {FARTHEST:g} times from where the fit began; the log's units"
+        " must be those of the model (rad or m, s, and what its actuators take)."
+    ]
 
 
 def _as_record(robot: Robot, found: WindowEstimate, held_out: Any) -> dict[str, Any]:

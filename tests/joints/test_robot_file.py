@@ -9,6 +9,7 @@ from joint_cases import DAMPING, MASS, SLIDER, slider_log, steps
 
 from identification import Predictor, write_log
 from identification.__main__ import main
+from identification.commands.fit import _far
 from identification.joints.plant import joint_plant
 from identification.robot import read_robot_log, robot_of
 from identification.robot_file import read_robot
@@ -158,3 +159,28 @@ def test_mistakes_are_named(folder, capsys, change, said):
     assert text != TOML
     path.write_text(text)
     assert said in refused(capsys, "fit", path, folder / "plain.csv")
+
+
+def test_a_log_with_hardly_more_samples_than_parameters_is_refused(folder, capsys):
+    path = folder / "few.toml"
+    path.write_text(TOML)
+    lines = (folder / "plain.csv").read_text().splitlines()[:8]
+    (folder / "short.csv").write_text("\n".join(lines) + "\n")
+    assert "record longer" in refused(capsys, "fit", path, folder / "short.csv")
+
+
+def test_values_that_no_robot_has_are_said_to_be_a_matter_of_units():
+    near = {"initial": 0.5, "value": 0.7}
+    assert _far({"mass": near, "x": {"initial": 0.0, "value": 9.0}}) == []
+    (said,) = _far({"mass": near, "damping": {"initial": 0.02, "value": 3.4e45}})
+    assert said.startswith("damping: more than 1000 times")
+
+
+def test_where_nothing_is_missing_the_fitted_model_is_confirmed(folder, capsys):
+    path = folder / "nothing.toml"
+    path.write_text(TOML + '[effects]\nonly = ["stiffness"]\n')
+    found = run(capsys, "discover", path, folder / "plain.csv", "--confirm", folder / "other.csv")
+    assert found["verdict"] == "nothing missing"
+    (there,) = found["confirm"]
+    assert there["after"] == pytest.approx(5e-4, rel=0.15)
+    assert there["before"] > there["after"]
