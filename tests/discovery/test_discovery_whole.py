@@ -44,6 +44,18 @@ sys.exit(wrong)
     )  # fmt: skip
 
 
+def spied(monkeypatch, function):
+    """The arguments of every call that a discovery makes of a function."""
+    seen = []
+
+    def spy(*arguments):
+        seen.append(arguments)
+        return function(*arguments)
+
+    monkeypatch.setattr(f"identification.discovery.discover.{function.__name__}", spy)
+    return seen
+
+
 @pytest.mark.parametrize(("name", "size"), [("offset.f", -0.8), ("rubbing.c", 1.0)])
 def test_what_is_hidden_is_named_with_its_size(name, size):
     answer = found(**{name: size})
@@ -75,13 +87,7 @@ def test_where_nothing_is_missing_it_says_so_and_what_it_would_have_seen():
 
 
 def test_of_two_effects_neither_is_the_others_rival(monkeypatch):
-    seen = []
-
-    def spy(*arguments):
-        seen.append(arguments)
-        return named_of(*arguments)
-
-    monkeypatch.setattr("identification.discovery.discover.named_of", spy)
+    seen = spied(monkeypatch, named_of)
     answer = found(**{"offset.f": -0.8, "rubbing.c": 1.0})
     assert {n.candidate.effect.name for n in answer.named} == {"offset", "rubbing"}
     ((base_, (first, second), *rest),) = seen
@@ -92,13 +98,7 @@ def test_of_two_effects_neither_is_the_others_rival(monkeypatch):
 
 
 def test_an_effect_gives_way_to_one_that_was_never_refitted_but_explains_more(monkeypatch):
-    seen = []
-
-    def spy(*arguments):
-        seen.append(arguments)
-        return swap(*arguments)
-
-    monkeypatch.setattr("identification.discovery.discover.swap", spy)
+    seen = spied(monkeypatch, swap)
     found(**{"offset.f": -0.6, "rubbing.c": 1.5})
     ((base_, log, nominal, kept, step, columns),) = seen
     right = {c.effect.name: c for c in step.candidates}
