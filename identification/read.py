@@ -31,6 +31,7 @@ def read_log(
     units: Mapping[str, str] | None = None,
     limits: Mapping[str, float] | None = None,
     rates: Mapping[str, float] | None = None,
+    named_in: Path | None = None,
 ) -> Log:
     """Read a log; columns may come in any order, and what a file cannot mean is refused.
 
@@ -46,6 +47,7 @@ def read_log(
         units: SI unit of each column; the sidecar may then give another unit of that quantity.
         limits: largest plausible size [SI].
         rates: largest plausible speed of change [SI/s]; catches degrees taken for radians.
+        named_in: the file that says `inputs` and `outputs`, for messages; the sidecar when None.
 
     Returns:
         The log in SI units, named after the file.
@@ -68,7 +70,7 @@ def read_log(
     table = renamed(table, sidecar)
     if "time" not in table.names and sidecar.sampling_time:
         table = _with_time(table, sidecar.sampling_time)
-    check_columns(table, ("time", *inputs, *outputs), optional, sidecar)
+    check_columns(table, ("time", *inputs, *outputs), optional, sidecar, named_in)
 
     si, factors = _conversions(table, sidecar, {**units, "time": "s"})
     with np.errstate(over="ignore"):  # what overflows is refused as not finite

@@ -94,7 +94,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     own = {name: file.columns.get(name, name) for name in (*inputs, *outputs)}
     log = read_log(
         path, [own[n] for n in inputs], [own[n] for n in outputs],
-        units={own[n]: u for n, u in units.items()},
+        units={own[n]: u for n, u in units.items()}, named_in=file.path,
     )  # fmt: skip
     given = {n: u for n in inputs if (u := log.units.get(own[n]))}
     log = replace(log, input_names=inputs, output_names=outputs, units={**units, **given})

@@ -51,9 +51,20 @@ def renamed(table: Table, sidecar: Sidecar) -> Table:
 
 
 def check_columns(
-    table: Table, needed: Sequence[str], optional: Sequence[str], sidecar: Sidecar
+    table: Table,
+    needed: Sequence[str],
+    optional: Sequence[str],
+    sidecar: Sidecar,
+    named_in: Path | None = None,
 ) -> None:
     """Refuse a table that lacks a needed column, or has one that nobody asked for.
+
+    Args:
+        table: of the file.
+        needed: columns that it must have.
+        optional: columns that it may have.
+        sidecar: the TOML beside the file.
+        named_in: another file whose [columns] say what is needed; the sidecar when None.
 
     Raises:
         InputError: a column is missing or unknown; the likely slip is named.
@@ -65,9 +76,10 @@ def check_columns(
         close = get_close_matches(missing[0], unknown, n=1)
         slip = f" (is {missing[0]} its column {quoted(close[0])}?)" if close else ""
         time = ", or give sampling_time" if "time" in missing else ""
+        where = sidecar.path if time or named_in is None else named_in
         raise InputError(
             f"{table.path} lacks {_columns(missing)}{slip}; it has {listed(table.names)}; correct "
-            f"its names or map them under [columns]{time} in {sidecar.path}"
+            f"its names or map them under [columns]{time} in {where}"
         )
     if unknown:
         close = get_close_matches(unknown[0], good, n=1)

@@ -52,6 +52,21 @@ def test_a_reversed_encoder(plant, drive):
         refuse_miswired(changed(reverse), plant)
 
 
+@pytest.mark.parametrize("drive", range(8))
+def test_an_encoder_that_another_sign_hardly_mends_is_not_refused(plant, drive):
+    """Of a log whose anchor was 0.1 m off, one angle had a correlation of -0.5 with the model's."""
+    n, rng = 200, np.random.default_rng(drive)
+
+    def astray(y):
+        own = y[:n, drive] - y[0, drive]
+        other = np.cumsum(np.cumsum(rng.standard_normal(n)))
+        other -= own * (own @ other) / (own @ own)
+        other *= np.linalg.norm(own) / np.linalg.norm(other)
+        y[:n, drive] = y[0, drive] - 0.5 * own + 0.75**0.5 * (other - other[0])
+
+    refuse_miswired(changed(astray), plant)
+
+
 def test_a_dead_encoder(plant):
     def kill(y):
         y[:, 4] = 0.0

@@ -161,6 +161,15 @@ def test_mistakes_are_named(folder, capsys, change, said):
     assert said in refused(capsys, "fit", path, folder / "plain.csv")
 
 
+def test_a_column_that_the_log_lacks_is_a_matter_of_the_file_that_names_it(folder, capsys):
+    path = folder / "column.toml"
+    path.write_text(TOML.replace('position = "x"', 'position = "y"'))
+    said = refused(capsys, "fit", path, folder / "plain.csv")
+    assert "lacks column y" in said
+    assert "column.toml" in said
+    assert "plain.toml" not in said
+
+
 def test_a_log_with_hardly_more_samples_than_parameters_is_refused(folder, capsys):
     path = folder / "few.toml"
     path.write_text(TOML)
