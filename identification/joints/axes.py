@@ -17,6 +17,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.log import Log
+from identification.names import listed
 from identification.noise import noise_floor
 from identification.predictor import output_columns
 
@@ -58,8 +59,7 @@ class Axis:
             value = getattr(self, word)
             if not (np.isfinite(value) and value > 0):
                 raise InputError(
-                    f"joint {self.joint!r} has {word} {value:g}; give a positive one, or take a"
-                    " log in which it moves"
+                    f"joint {self.joint!r} has {word} {value:g}; give a positive finite one"
                 )
 
     @property
@@ -76,9 +76,15 @@ def axes(model: mujoco.MjModel, log: Log) -> tuple[Axis, ...]:
         log: its inputs are those of the model's actuators.
 
     Raises:
-        InputError: an output is no sensor of a joint, or a joint does not move.
+        InputError: an output is no sensor of a joint, or never changes.
     """
     seen: dict[int, list[tuple[str, np.ndarray]]] = {}
+    still = [n for n, y in zip(log.output_names, log.outputs.T, strict=True) if not np.ptp(y)]
+    if still:
+        raise InputError(
+            f"{listed(still)} of log {log.name!r} never change{'s' * (len(still) == 1)}: a dead"
+            " sensor, or a joint that does not move; take a log in which it moves, or leave it out"
+        )
     for k, (field, i) in enumerate(output_columns(model, log.output_names)):
         at = model.jnt_qposadr if field == "qpos" else model.jnt_dofadr
         seen.setdefault(int(np.flatnonzero(at == i)[0]), []).append((field, log.outputs[:, k]))

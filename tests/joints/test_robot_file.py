@@ -170,6 +170,14 @@ def test_a_column_that_the_log_lacks_is_a_matter_of_the_file_that_names_it(folde
     assert "plain.toml" not in said
 
 
+@pytest.mark.parametrize("command", ["fit", "discover"])
+def test_a_dead_sensor_is_named(folder, capsys, command):
+    log = simulated({})
+    write_log(replace(log, outputs=0 * log.outputs + 0.3), folder / "dead.csv")
+    said = refused(capsys, command, folder / "robot.toml", folder / "dead.csv")
+    assert "position of log 'dead' never changes" in said
+
+
 def test_a_log_with_hardly_more_samples_than_parameters_is_refused(folder, capsys):
     path = folder / "few.toml"
     path.write_text(TOML)
