@@ -15,13 +15,14 @@ from identification.discovery.columns import Column, columns, common, single
 from identification.discovery.confidence import named_of
 from identification.discovery.detectable import detectable
 from identification.discovery.extend import Base
+from identification.discovery.forward import add
 from identification.discovery.locate import BELIEVED, in_doubt, input_error, left_over, located
 from identification.discovery.missing import missing_forces
 from identification.discovery.passes import backward, swap
 from identification.discovery.proof import prove
 from identification.discovery.result import Discovery, Verdict
 from identification.discovery.score import Score
-from identification.discovery.steps import Accepted, Step, add, fitted, scores_of
+from identification.discovery.steps import Accepted, Step, fitted, scores_of
 from identification.effect import Effect
 from identification.errors import InputError
 from identification.log import Log

@@ -12,9 +12,9 @@ from dataclasses import replace
 
 from identification.discovery.columns import Column
 from identification.discovery.extend import Base
+from identification.discovery.forward import CONTENDERS
 from identification.discovery.proof import prove
 from identification.discovery.steps import (
-    CONTENDERS,
     Accepted,
     Step,
     fitted,

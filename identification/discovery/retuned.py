@@ -15,7 +15,8 @@ from scipy.optimize import lsq_linear
 
 from identification.discovery.result import Retuned
 from identification.effect import Candidate
-from identification.kalman.refit import Refit, linearised
+from identification.kalman.problem import linearised
+from identification.kalman.refit import Refit
 
 WIDER = 3.0  # times what was known of the base parameters
 

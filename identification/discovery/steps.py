@@ -1,34 +1,30 @@
-"""The steps of a discovery: score, refit, prove.
+"""What the steps of a discovery are made of: a model with some effects, and when one is worth it.
 
 A candidate is worth a refit when it explains more than chance at a family-wise error of `ALPHA`,
-by the noise model and by blocks, with a size that is plausible. Of those that were refitted the
-most likely one is chosen, by BIC, and accepted when unseen data say so too.
+by the noise model and by blocks, with a size that is plausible; an effect is worth a name when
+unseen data confirm it beyond chance, and by enough to matter.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from identification.discovery.columns import Column
 from identification.discovery.extend import Base, fit_with
-from identification.discovery.innovations import MATTERS, whiteness
-from identification.discovery.proof import Unseen, prove, unseen
+from identification.discovery.innovations import MATTERS
+from identification.discovery.proof import Unseen, unseen
 from identification.discovery.result import Proof
 from identification.discovery.score import Score, score
 from identification.effect import Candidate
-from identification.errors import DivergenceError, InputError
 from identification.kalman.refit import Refit
 from identification.log import Log
 
 ALPHA = 0.01  # family-wise chance of a name where nothing is missing, before the proof
-CONTENDERS = 3  # explanations that are refitted at most
-CLOSE = 0.3  # share of the best gain that makes a contender
 T = 2.0  # t of the proof: 2.5 % one-sided
 FALL, SHARE = MATTERS, 0.1  # of the free run's mean square, and of what is above the sensors' noise
-ELSEWHERE = 0.7  # share of an effect's best gain that makes another place a contender
 
 
 @dataclass(frozen=True)
@@ -141,47 +137,6 @@ def plausible(candidate: Candidate, size: np.ndarray) -> bool:
     return True
 
 
-def _criterion(step: Step) -> float:
-    return step.criterion
-
-
-def _structured(step: Step) -> bool:
-    """Whether the fitted samples' innovations are not white."""
-    E = step.unseen.innovations[: len(step.refit.at.log)]
-    return whiteness(E, step.refit.at.log.sampling_time).correlated
-
-
-def _from_nominal(base: Base, whole: Log, step: Step, best: Step) -> Step:
-    """The better of a fit and of one that begins at the nominal values.
-
-    A wrong model may have led the base parameters astray, too far to come back.
-    """
-    old = {n: step.refit.at.values[n] for c in step.candidates for n in c.free}
-    new = {n: best.refit.at.values[n] for n in best.candidates[-1].free}
-    try:
-        return max(best, fitted(base, whole, best.candidates, {**old, **new}), key=_criterion)
-    except (DivergenceError, InputError):
-        return best
-
-
-def _other_shape(base: Base, whole: Log, step: Step, best: Step, ranked: Sequence[Score]) -> Step:
-    """The better of a fit and of one whose fixed shapes (a power, a kind) are the next likely."""
-    mine = best.candidates[-1]
-    fixed = [shape.name for shape in mine.effect.shapes if not shape.free]
-    for s in ranked:
-        c = s.candidate
-        same = c.effect.name == mine.effect.name and c.where == mine.where
-        if same and any(c.shape[name] != mine.shape[name] for name in fixed):
-            sizes = dict(zip(c.sizes, s.size, strict=True))
-            start = {**step.refit.at.values, **sizes}
-            try:
-                other = fitted(base, whole, (*step.candidates, c), start, step)
-            except (DivergenceError, InputError):
-                return best
-            return max(best, other, key=_criterion)
-    return best
-
-
 def matters(proof: Proof) -> bool:
     """Whether an effect explains enough of the unseen data."""
     return proof.fall > FALL and proof.above > SHARE
@@ -190,45 +145,3 @@ def matters(proof: Proof) -> bool:
 def holds(proof: Proof) -> bool:
     """Whether unseen data confirm an effect: beyond chance, and by enough to matter."""
     return proof.t > T and matters(proof)
-
-
-def add(
-    base: Base, whole: Log, step: Step, ranked: Sequence[Score], say: Callable[[str], None]
-) -> Accepted | Doubtful | None:
-    """The best effect to add to a model, if any is worth it; the best that could not be proven."""
-    found = significant(ranked)
-    if not found:
-        return None
-    best: dict[str, float] = {}
-    contenders = []
-    for s in found:
-        if s.gain > max(CLOSE * found[0].gain, ELSEWHERE * best.get(s.candidate.effect.name, 0.0)):
-            contenders.append(s)
-            best.setdefault(s.candidate.effect.name, s.gain)
-    contenders = contenders[:CONTENDERS]
-    tried: list[Step] = []
-    for s in contenders:
-        sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
-        more = (*step.candidates, s.candidate)
-        try:
-            new = fitted(base, whole, more, {**step.refit.at.values, **sizes}, step)
-        except (DivergenceError, InputError) as error:
-            say(f"{s.candidate.effect.name}, {s.candidate.where}: left out, {error}")
-            continue
-        gain = new.criterion - step.criterion
-        say(f"{s.candidate.effect.name}, {s.candidate.where}: gain {gain:.0f}")
-        tried.append(new)
-    tried.sort(key=_criterion, reverse=True)
-    if tried and _structured(tried[0]):
-        tried[0] = _other_shape(base, whole, step, tried[0], ranked)
-    if tried and _structured(tried[0]):
-        tried[0] = _from_nominal(base, whole, step, tried[0])
-    doubtful = None
-    for k, new in enumerate(tried):
-        proof = prove(step.unseen, new.unseen)
-        gain = new.criterion - step.criterion
-        if gain > 0 and holds(proof):
-            return Accepted(new, proof, gain, tuple(tried[:k] + tried[k + 1 :]))
-        if gain > 0 and matters(proof):
-            doubtful = doubtful or Doubtful(new.candidates[-1], proof)
-    return doubtful

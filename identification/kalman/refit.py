@@ -5,12 +5,6 @@
 A free run of a wrong model drifts, and a fit of it bends the parameters to follow. The predictor's
 noise takes part of what is missing for unlogged input errors, at a level that the data choose: the
 criterion is tame from afar, and at the truth it is maximum likelihood.
-
-Its valleys are narrow and curved (a Stribeck peak and the slope of the smooth sign make up for one
-another), so that a straight step that falls short is bent by what the residual does along it
-("geodesic acceleration", Transtrum and Sethna 2012):
-
-    q + δ + a,    a = argmin ‖r''(δ)/2 - F a‖² + μ ‖a‖²,    r''(δ) = (r(q + hδ) - r(q) + h F δ) 2/h²
 """
 
 from __future__ import annotations
@@ -21,21 +15,17 @@ from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
-from identification.errors import DivergenceError
 from identification.kalman.noise_fit import Level, fit_noise
-from identification.kalman.noise_model import Whitener, whitener
 from identification.kalman.point import Point, point
+from identification.kalman.problem import linearised
 
-LARGEST = 0.5  # step of a logarithm: parameters change by at most 65 % at a time
 NEAR = 0.02  # relative change of the parameters after which the linearisation still holds
 ENDED = 0.1  # expected fall of the criterion, in units of the noise, that ends the search
 DAMPED = 1e-4  # μ after the first step that failed; the rows' columns have length 1
 TRIES = 6  # of a step, each damped ten times as much
 PATIENCE = 2  # steps that make the estimate no likelier, after which a search ends
 SHORT = 0.5  # of the fall that was expected, below which a step is bent
-ALONG = 0.1  # h, of the step
 
 
 @dataclass(frozen=True)
@@ -150,74 +140,3 @@ def finished(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray, taken
 def noise_at(at: Point, prior: np.ndarray, near: Level | None, fine: bool) -> Level:
     """The most likely noise of a point's residual."""
     return fit_noise(at.linear, at.e, at.J, prior, at.log.sampling_time, near, fine)
-
-
-@dataclass(frozen=True)
-class Problem:
-    """The criterion about a point: rows of the innovations and of the priors, in units of σ."""
-
-    at: Point
-    level: Level
-    mean: np.ndarray
-    prior: np.ndarray
-    filter: Whitener
-    rows: np.ndarray
-    target: np.ndarray
-
-    @property
-    def cost_here(self) -> float:
-        """The criterion at the point itself."""
-        return float(self.target @ self.target)
-
-    def step(self, μ: float) -> tuple[np.ndarray, float]:
-        """The step of Levenberg and Marquardt, and how far the criterion would fall."""
-        move = self._least(self.target, μ, np.zeros_like(self.at.q))
-        return move, self.cost_here - float(np.sum((self.target - self.rows @ move) ** 2))
-
-    def bent(self, move: np.ndarray, μ: float) -> np.ndarray:
-        """A step that follows the residual's curve; the step itself where that leads nowhere."""
-        ahead = self.residual(self.at.q + ALONG * move)
-        if ahead is None:
-            return move
-        curve = 2 / ALONG**2 * (ahead - self.target + ALONG * self.rows @ move)
-        return move + self._least(curve / 2, μ, move)
-
-    def _least(self, target: np.ndarray, μ: float, begun: np.ndarray) -> np.ndarray:
-        """The damped move that leaves the least of a target, where one has begun to move."""
-        at, size = self.at, np.where(self.at.space.logarithmic, LARGEST, np.inf)
-        lower = np.minimum(np.maximum(at.space.lower - at.q, -size) - begun, 0.0)
-        upper = np.maximum(np.minimum(at.space.upper - at.q, size) - begun, 0.0)
-        scale = np.linalg.norm(self.rows, axis=0) + 1e-300
-        Q, R = np.linalg.qr(self.rows / scale)
-        square = np.vstack([R, np.sqrt(μ) * np.eye(len(scale))])
-        both = np.concatenate([Q.T @ target, np.zeros(len(scale))])
-        bounds = (lower * scale - 1e-12, upper * scale + 1e-12)
-        return np.asarray(lsq_linear(square, both, bounds).x / scale)
-
-    def residual(self, q: np.ndarray) -> np.ndarray | None:
-        """Rows of the residual elsewhere, by the same filter; None where it cannot be simulated."""
-        at = self.at
-        try:
-            predicted = at.predictor.predict(at.space.decode(at.space.inside(q)))[0]
-        except DivergenceError:
-            return None
-        E = self.filter(at.log.outputs - predicted) / self.level.sigma
-        return np.concatenate([E.ravel(), self.prior * (self.mean - q)])
-
-    def cost(self, q: np.ndarray) -> float:
-        """The criterion elsewhere; infinite where nothing can be simulated."""
-        there = self.residual(q)
-        return np.inf if there is None else float(there @ there)
-
-    def std(self) -> np.ndarray:
-        """Std of q by the curvature, shape (p,)."""
-        covariance = np.linalg.pinv(self.rows.T @ self.rows, rcond=1e-14, hermitian=True)
-        return np.sqrt(np.diag(covariance))
-
-
-def linearised(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray) -> Problem:
-    """The criterion about a point."""
-    filter_ = whitener(at.linear, level.noise, at.log.sampling_time)
-    E, F = filter_(at.e).ravel() / level.sigma, filter_(at.J).reshape(at.e.size, -1) / level.sigma
-    rows, target = np.vstack([F, np.diag(prior)]), np.concatenate([E, prior * (mean - at.q)])
-    return Problem(at, level, mean, prior, filter_, rows, target)

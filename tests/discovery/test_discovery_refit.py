@@ -9,7 +9,7 @@ from identification.discovery.extend import _inside, fit_with
 from identification.effect import Candidate
 from identification.kalman.noise_fit import Level
 from identification.kalman.noise_model import Noise
-from identification.kalman.refit import linearised
+from identification.kalman.problem import linearised
 
 TRUE = {"mass": 2.4, "damping": 2.6, "x0": 0.02, "v0": -0.03}
 

@@ -1,0 +1,114 @@
+"""The next effect of a model: the best candidates are refitted, the most likely one is proved.
+
+Of those that were refitted the most likely one is chosen, by BIC, and accepted when unseen data say
+so too. Where it leaves structure in the fitted samples, its next likely shape is tried, and a start
+at the nominal values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from identification.discovery.extend import Base
+from identification.discovery.innovations import whiteness
+from identification.discovery.proof import prove
+from identification.discovery.score import Score
+from identification.discovery.steps import (
+    Accepted,
+    Doubtful,
+    Step,
+    fitted,
+    holds,
+    matters,
+    significant,
+)
+from identification.errors import DivergenceError, InputError
+from identification.log import Log
+
+CONTENDERS = 3  # explanations that are refitted at most
+CLOSE = 0.3  # share of the best gain that makes a contender
+ELSEWHERE = 0.7  # share of an effect's best gain that makes another place a contender
+
+
+def add(
+    base: Base, whole: Log, step: Step, ranked: Sequence[Score], say: Callable[[str], None]
+) -> Accepted | Doubtful | None:
+    """The best effect to add to a model, if any is worth it; the best that could not be proven."""
+    tried: list[Step] = []
+    for s in _contenders(significant(ranked)):
+        sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
+        more = (*step.candidates, s.candidate)
+        try:
+            new = fitted(base, whole, more, {**step.refit.at.values, **sizes}, step)
+        except (DivergenceError, InputError) as error:
+            say(f"{s.candidate.effect.name}, {s.candidate.where}: left out, {error}")
+            continue
+        gain = new.criterion - step.criterion
+        say(f"{s.candidate.effect.name}, {s.candidate.where}: gain {gain:.0f}")
+        tried.append(new)
+    tried.sort(key=_criterion, reverse=True)
+    if tried and _structured(tried[0]):
+        tried[0] = _other_shape(base, whole, step, tried[0], ranked)
+    if tried and _structured(tried[0]):
+        tried[0] = _from_nominal(base, whole, step, tried[0])
+    doubtful = None
+    for k, new in enumerate(tried):
+        proof = prove(step.unseen, new.unseen)
+        gain = new.criterion - step.criterion
+        if gain > 0 and holds(proof):
+            return Accepted(new, proof, gain, tuple(tried[:k] + tried[k + 1 :]))
+        if gain > 0 and matters(proof):
+            doubtful = doubtful or Doubtful(new.candidates[-1], proof)
+    return doubtful
+
+
+def _contenders(found: Sequence[Score]) -> list[Score]:
+    """The few best of what is significant; one effect in two places only where both are near."""
+    best: dict[str, float] = {}
+    out = []
+    for s in found:
+        if s.gain > max(CLOSE * found[0].gain, ELSEWHERE * best.get(s.candidate.effect.name, 0.0)):
+            out.append(s)
+            best.setdefault(s.candidate.effect.name, s.gain)
+    return out[:CONTENDERS]
+
+
+def _criterion(step: Step) -> float:
+    return step.criterion
+
+
+def _structured(step: Step) -> bool:
+    """Whether the fitted samples' innovations are not white."""
+    E = step.unseen.innovations[: len(step.refit.at.log)]
+    return whiteness(E, step.refit.at.log.sampling_time).correlated
+
+
+def _from_nominal(base: Base, whole: Log, step: Step, best: Step) -> Step:
+    """The better of a fit and of one that begins at the nominal values.
+
+    A wrong model may have led the base parameters astray, too far to come back.
+    """
+    old = {n: step.refit.at.values[n] for c in step.candidates for n in c.free}
+    new = {n: best.refit.at.values[n] for n in best.candidates[-1].free}
+    try:
+        return max(best, fitted(base, whole, best.candidates, {**old, **new}), key=_criterion)
+    except (DivergenceError, InputError):
+        return best
+
+
+def _other_shape(base: Base, whole: Log, step: Step, best: Step, ranked: Sequence[Score]) -> Step:
+    """The better of a fit and of one whose fixed shapes (a power, a kind) are the next likely."""
+    mine = best.candidates[-1]
+    fixed = [shape.name for shape in mine.effect.shapes if not shape.free]
+    for s in ranked:
+        c = s.candidate
+        same = c.effect.name == mine.effect.name and c.where == mine.where
+        if same and any(c.shape[name] != mine.shape[name] for name in fixed):
+            sizes = dict(zip(c.sizes, s.size, strict=True))
+            start = {**step.refit.at.values, **sizes}
+            try:
+                other = fitted(base, whole, (*step.candidates, c), start, step)
+            except (DivergenceError, InputError):
+                return best
+            return max(best, other, key=_criterion)
+    return best

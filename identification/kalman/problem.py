@@ -1,0 +1,96 @@
+"""The criterion about a point, linearised, and its damped steps.
+
+    min_δ ‖r + F δ‖² + μ ‖δ‖²,    r: innovations over σ, and the priors
+
+Its valleys are narrow and curved (a Stribeck peak and the slope of the smooth sign make up for one
+another), so that a straight step that falls short is bent by what the residual does along it
+("geodesic acceleration", Transtrum and Sethna 2012):
+
+    q + δ + a,    a = argmin ‖r''(δ)/2 - F a‖² + μ ‖a‖²,    r''(δ) = (r(q + hδ) - r(q) + h F δ) 2/h²
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from identification.errors import DivergenceError
+from identification.kalman.noise_fit import Level
+from identification.kalman.noise_model import Whitener, whitener
+from identification.kalman.point import Point
+
+LARGEST = 0.5  # step of a logarithm: parameters change by at most 65 % at a time
+ALONG = 0.1  # h, of the step
+
+
+@dataclass(frozen=True)
+class Problem:
+    """The criterion about a point: rows of the innovations and of the priors, in units of σ."""
+
+    at: Point
+    level: Level
+    mean: np.ndarray
+    prior: np.ndarray
+    filter: Whitener
+    rows: np.ndarray
+    target: np.ndarray
+
+    @property
+    def cost_here(self) -> float:
+        """The criterion at the point itself."""
+        return float(self.target @ self.target)
+
+    def step(self, μ: float) -> tuple[np.ndarray, float]:
+        """The step of Levenberg and Marquardt, and how far the criterion would fall."""
+        move = self._least(self.target, μ, np.zeros_like(self.at.q))
+        return move, self.cost_here - float(np.sum((self.target - self.rows @ move) ** 2))
+
+    def bent(self, move: np.ndarray, μ: float) -> np.ndarray:
+        """A step that follows the residual's curve; the step itself where that leads nowhere."""
+        ahead = self.residual(self.at.q + ALONG * move)
+        if ahead is None:
+            return move
+        curve = 2 / ALONG**2 * (ahead - self.target + ALONG * self.rows @ move)
+        return move + self._least(curve / 2, μ, move)
+
+    def _least(self, target: np.ndarray, μ: float, begun: np.ndarray) -> np.ndarray:
+        """The damped move that leaves the least of a target, where one has begun to move."""
+        at, size = self.at, np.where(self.at.space.logarithmic, LARGEST, np.inf)
+        lower = np.minimum(np.maximum(at.space.lower - at.q, -size) - begun, 0.0)
+        upper = np.maximum(np.minimum(at.space.upper - at.q, size) - begun, 0.0)
+        scale = np.linalg.norm(self.rows, axis=0) + 1e-300
+        Q, R = np.linalg.qr(self.rows / scale)
+        square = np.vstack([R, np.sqrt(μ) * np.eye(len(scale))])
+        both = np.concatenate([Q.T @ target, np.zeros(len(scale))])
+        bounds = (lower * scale - 1e-12, upper * scale + 1e-12)
+        return np.asarray(lsq_linear(square, both, bounds).x / scale)
+
+    def residual(self, q: np.ndarray) -> np.ndarray | None:
+        """Rows of the residual elsewhere, by the same filter; None where it cannot be simulated."""
+        at = self.at
+        try:
+            predicted = at.predictor.predict(at.space.decode(at.space.inside(q)))[0]
+        except DivergenceError:
+            return None
+        E = self.filter(at.log.outputs - predicted) / self.level.sigma
+        return np.concatenate([E.ravel(), self.prior * (self.mean - q)])
+
+    def cost(self, q: np.ndarray) -> float:
+        """The criterion elsewhere; infinite where nothing can be simulated."""
+        there = self.residual(q)
+        return np.inf if there is None else float(there @ there)
+
+    def std(self) -> np.ndarray:
+        """Std of q by the curvature, shape (p,)."""
+        covariance = np.linalg.pinv(self.rows.T @ self.rows, rcond=1e-14, hermitian=True)
+        return np.sqrt(np.diag(covariance))
+
+
+def linearised(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray) -> Problem:
+    """The criterion about a point."""
+    filter_ = whitener(at.linear, level.noise, at.log.sampling_time)
+    E, F = filter_(at.e).ravel() / level.sigma, filter_(at.J).reshape(at.e.size, -1) / level.sigma
+    rows, target = np.vstack([F, np.diag(prior)]), np.concatenate([E, prior * (mean - at.q)])
+    return Problem(at, level, mean, prior, filter_, rows, target)
