@@ -16,7 +16,14 @@ from identification.discovery.confidence import named_of
 from identification.discovery.detectable import detectable
 from identification.discovery.extend import Base
 from identification.discovery.forward import add
-from identification.discovery.locate import BELIEVED, in_doubt, input_error, left_over, located
+from identification.discovery.locate import (
+    ALLOWED,
+    BELIEVED,
+    in_doubt,
+    input_error,
+    left_over,
+    located,
+)
 from identification.discovery.missing import missing_forces
 from identification.discovery.passes import backward, swap
 from identification.discovery.proof import prove
@@ -80,7 +87,9 @@ def discover(
         ranked = scores_of(step, sensed)
     clock("refits")
     left = left_over(step) + (() if doubt is None else (in_doubt(doubt),))
-    explained = prove(nominal.unseen, step.unseen).share
+    proof = prove(nominal.unseen, step.unseen)
+    # input errors that are themselves among what is left are no floor
+    explained = proof.share if input_error(step) <= ALLOWED else proof.above
     named = named_of(base, kept, step, sensed, explained if left else 1.0)
     verdict: Verdict = "nothing missing"
     if named and (not left or (explained > EXPLAINED and input_error(step) < BELIEVED)):

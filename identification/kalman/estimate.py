@@ -110,7 +110,7 @@ def estimate_innovations(
     if without_effect(begun.J, part.outputs).any():
         refuse_without_effect(begun.J, space.names, part)
     seen = [(begun, Level(Noise(0.0, 1.0), 1.0, 0.0))]
-    status = _search(descent(begun, mean, prior), seen, steps, progress)
+    status = _search(descent(begun, mean, prior, steps=steps), seen, steps, progress)
     taken = max(0, len(seen) - 2)
     end = finished(*seen[-1], mean, prior, taken)
     ends = Estimate(
@@ -135,11 +135,9 @@ def _search(
             seen.append((at, level))
             if progress is not None:
                 progress(f"step {k}: sensors {level.sigma:.4g}, inputs {level.input_std:.3g} rms")
-            if k == steps:
-                return "iterations"
     except KeyboardInterrupt:
         return "stopped"
-    return "converged"
+    return "iterations" if k > steps else "converged"
 
 
 def innovations(end: Refit, whole: Log) -> np.ndarray:

@@ -12,19 +12,19 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import islice
 
 import numpy as np
 
 from identification.kalman.noise_fit import Level, fit_noise
 from identification.kalman.point import Point, point
-from identification.kalman.problem import linearised
+from identification.kalman.problem import Problem, linearised
 
 NEAR = 0.02  # relative change of the parameters after which the linearisation still holds
 ENDED = 0.1  # expected fall of the criterion, in units of the noise, that ends the search
 DAMPED = 1e-4  # μ after the first step that failed; the rows' columns have length 1
 TRIES = 6  # of a step, each damped ten times as much
-PATIENCE = 2  # steps that make the estimate no likelier, after which a search ends
+PATIENCE = 2  # steps that gain nothing, after which a search ends
+CLOSER = 0.97  # of the free run's rms, that is a gain while the noise is only roughly known
 SHORT = 0.5  # of the fall that was expected, below which a step is bent
 
 
@@ -38,7 +38,7 @@ class Refit:
         std: of q, by the likelihood's curvature, shape (p,).
         mean: q̄ of the priors, shape (p,).
         prior: 1/std of each prior, zero where there is none, shape (p,).
-        steps: taken.
+        steps: taken to it.
     """
 
     at: Point
@@ -70,61 +70,76 @@ def refit(
         steps: at most as many.
         near: a noise to begin at, where one is known.
     """
-    seen = deque(enumerate(islice(descent(at, mean, prior, near), steps + 1)), maxlen=1)
+    seen = deque(enumerate(descent(at, mean, prior, near, steps)), maxlen=1)
     taken, (end, level) = seen[0]
     return finished(end, level, mean, prior, taken)
 
 
 def descent(
-    at: Point, mean: np.ndarray, prior: np.ndarray, near: Level | None = None
+    at: Point, mean: np.ndarray, prior: np.ndarray, near: Level | None = None, steps: int = 20
 ) -> Iterator[tuple[Point, Level]]:
-    """The points of a search, each with its noise, from the first to where nothing is gained.
+    """The points of a search, each with its noise, from the first to the likeliest.
+
+    First the model approaches the data, under a noise that is only roughly known: in likelihood or
+    in its free run. Then the noise is sharpened, and likelihood alone counts.
 
     Args:
         at: where to begin.
         mean: q̄ of the priors, shape (p,).
         prior: 1/std of each prior, zero where there is none, shape (p,).
-        near: a noise to begin at, where one is known; it is sharpened before the search ends.
+        near: a noise to begin at, where one is known.
+        steps: at most as many.
     """
     level = noise_at(at, prior, near, fine=False)
     yield at, level
+    best, most, least = (at, level), log_posterior(at, level, mean, prior), _rms(at)
     μ, fine, idle = 0.0, False, 0
-    best, most = (at, level), -np.inf
-    while idle < PATIENCE:
+    while True:
         problem = linearised(at, level, mean, prior)
-        move, fall = problem.step(0.0)
-        if fall < ENDED and fine:
+        move, μ = _move(problem, μ) if idle < PATIENCE and steps else (None, μ)
+        if move is None and fine:
             break
-        if fall < ENDED:
-            level, fine = noise_at(at, prior, level, fine=True), True
+        if move is None:
+            at, level = best
+            level, fine, idle = noise_at(at, prior, level, fine=True), True, 0
             best, most = (at, level), log_posterior(at, level, mean, prior)
             yield at, level
             continue
-        for _ in range(TRIES):
-            if μ:
-                move, fall = problem.step(μ)
-            cost = problem.cost(at.q + move)
-            if problem.cost_here - cost < SHORT * fall:
-                bent = problem.bent(move, μ)
-                if (other := problem.cost(at.q + bent)) < cost:
-                    move, cost = bent, other
-            if cost < problem.cost_here:
-                break
-            μ = max(10 * μ, DAMPED)
-        else:
-            break
-        μ = μ / 10 if μ > DAMPED else 0.0
+        steps -= 1
         moved = np.abs(move[at.space.logarithmic]).max(initial=0.0)
         at = point(at.predictor, at.space, at.q + move, at.linear if moved < NEAR else None)
         level = noise_at(at, prior, level, fine=False)
         yield at, level
         # Each point has a linearisation and a noise of its own, so that the criterion may rise.
-        likely = log_posterior(at, level, mean, prior) if fine else np.inf
-        idle = 0 if likely > most + ENDED else idle + 1
-        if not fine or likely > most:
-            best, most = (at, level), likely if fine else -np.inf
+        likely, off = log_posterior(at, level, mean, prior), _rms(at)
+        better = likely > most + ENDED or (not fine and off < CLOSER * least)
+        if better or likely > most:
+            best = at, level
+        most, least, idle = max(likely, most), min(off, least), 0 if better else idle + 1
     if best[0] is not at:
         yield best
+
+
+def _rms(at: Point) -> float:
+    """Of the residual of the free run."""
+    return float(np.sqrt(np.mean(at.e**2)))
+
+
+def _move(problem: Problem, μ: float) -> tuple[np.ndarray | None, float]:
+    """A step that makes the criterion fall, None where none is left; and the next damping."""
+    if problem.step(0.0)[1] < ENDED:
+        return None, μ
+    for _ in range(TRIES):
+        move, fall = problem.step(μ)
+        cost = problem.cost(problem.at.q + move)
+        if problem.cost_here - cost < SHORT * fall:
+            bent = problem.bent(move, μ)
+            if (other := problem.cost(problem.at.q + bent)) < cost:
+                move, cost = bent, other
+        if cost < problem.cost_here:
+            return move, μ / 10 if μ > DAMPED else 0.0
+        μ = max(10 * μ, DAMPED)
+    return None, μ
 
 
 def log_posterior(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray) -> float:

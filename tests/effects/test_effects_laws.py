@@ -14,7 +14,8 @@ CREEP = 0.5 * S.lambda_ * (S.strain - 1e-4)
 WAY = S.R_s * S.phi
 
 LAWS = [
-    ("stribeck_friction", "torque", (0.02, 2.0), {}, -0.02 * np.exp(-2.25) * BREAK),
+    ("stribeck_friction", "torque", (0.02, 2.0, 2.0), {}, -0.02 * np.exp(-2.25) * BREAK),
+    ("stribeck_friction", "torque", (0.02, 2.0, 1.0), {}, -0.02 * np.exp(-1.5) * BREAK),
     ("asymmetric_friction", "torque", (0.002,), {}, -0.002 * BREAK),
     ("asymmetric_friction", "torque", (0.002,), {"omega": -3.0}, -0.002 * BREAK),
     ("load_dependent_friction", "torque", (0.1,), {}, -0.1 * S.R * 4 * BREAK),

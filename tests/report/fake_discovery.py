@@ -29,7 +29,7 @@ BASE = ("b_v", "x")
 NOISE = 5e-4
 RETUNED = Retuned("m", 40.0, 0.0)
 
-STRIBECK = Candidate(STRIBECK_FRICTION.effect, "all drives", {"v_s": 2.4})
+STRIBECK = Candidate(STRIBECK_FRICTION.effect, "all drives", {"v_s": 2.4, "n": 2.0})
 MISMATCH = Candidate(FRICTION_MISMATCH.effect, "drive 3", {})
 LATE = Candidate(DELAY.effect, "all drives", {})
 
