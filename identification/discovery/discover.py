@@ -87,9 +87,7 @@ def discover(
         ranked = scores_of(step, sensed)
     clock("refits")
     left = left_over(step) + (() if doubt is None else (in_doubt(doubt),))
-    proof = prove(nominal.unseen, step.unseen)
-    # input errors that are themselves among what is left are no floor
-    explained = proof.share if input_error(step) <= ALLOWED else proof.above
+    explained = _explained(nominal, step)
     named = named_of(base, kept, step, sensed, explained if left else 1.0)
     verdict: Verdict = "nothing missing"
     if named and (not left or (explained > EXPLAINED and input_error(step) < BELIEVED)):
@@ -105,6 +103,15 @@ def discover(
         log.outputs - nominal.unseen.e, log.outputs - step.unseen.e, first, ranked,
         detectable(ranked), where, left, missing, clock.seconds, base.horizon,
     )  # fmt: skip
+
+
+def _explained(nominal: Step, step: Step) -> float:
+    """Share of the gap on unseen data that effects close.
+
+    The gap ends at what sensors and input errors make, if these can be believed.
+    """
+    proof = prove(nominal.unseen, step.unseen)
+    return proof.share if input_error(step) <= ALLOWED else proof.above
 
 
 def _sensitivities(base: Base, nominal: Step, effects: Sequence[Effect]) -> tuple[Column, ...]:

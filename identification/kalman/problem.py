@@ -42,6 +42,11 @@ class Problem:
         """The criterion at the point itself."""
         return float(self.target @ self.target)
 
+    @property
+    def log_posterior(self) -> float:
+        """Of the point as it is, where that of its noise lets the parameters move a little."""
+        return self.level.log_likelihood - self.cost_here / 2
+
     def step(self, μ: float) -> tuple[np.ndarray, float]:
         """The step of Levenberg and Marquardt, and how far the criterion would fall."""
         move = self._least(self.target, μ, np.zeros_like(self.at.q))

@@ -51,7 +51,8 @@ class Refit:
     @property
     def log_posterior(self) -> float:
         """Log likelihood less what the priors hold against the estimate."""
-        return log_posterior(self.at, self.level, self.mean, self.prior)
+        against = float(np.sum(((self.at.q - self.mean) * self.prior) ** 2))
+        return self.level.log_likelihood - against / 2
 
 
 def refit(
@@ -92,32 +93,34 @@ def descent(
     """
     level = noise_at(at, prior, near, fine=False)
     yield at, level
-    best, most, least = (at, level), log_posterior(at, level, mean, prior), _rms(at)
-    μ, fine, idle = 0.0, False, 0
-    while True:
-        problem = linearised(at, level, mean, prior)
-        move, μ = _move(problem, μ) if idle < PATIENCE and steps else (None, μ)
-        if move is None and fine:
-            break
-        if move is None:
-            at, level = best
-            level, fine, idle = noise_at(at, prior, level, fine=True), True, 0
-            best, most = (at, level), log_posterior(at, level, mean, prior)
+    for fine in (False, True):
+        if fine:
+            level = noise_at(at, prior, level, fine)
             yield at, level
-            continue
-        steps -= 1
-        moved = np.abs(move[at.space.logarithmic]).max(initial=0.0)
-        at = point(at.predictor, at.space, at.q + move, at.linear if moved < NEAR else None)
-        level = noise_at(at, prior, level, fine=False)
+        last = at
+        problem = linearised(at, level, mean, prior)
+        best, most, least = (at, level), problem.log_posterior, _rms(at)
+        μ, idle = 0.0, 0
+        while steps and idle < PATIENCE:
+            move, μ = _move(problem, μ)
+            if move is None:
+                break
+            steps -= 1
+            moved = np.abs(move[at.space.logarithmic]).max(initial=0.0)
+            at = point(at.predictor, at.space, at.q + move, at.linear if moved < NEAR else None)
+            level = noise_at(at, prior, level, fine=False)
+            yield at, level
+            last = at
+            # Each point has a linearisation and a noise of its own, so that likelihood may fall.
+            problem = linearised(at, level, mean, prior)
+            likely, off = problem.log_posterior, _rms(at)
+            better = likely > most + ENDED or (not fine and off < CLOSER * least)
+            if better or likely > most:
+                best = at, level
+            most, least, idle = max(likely, most), min(off, least), 0 if better else idle + 1
+        at, level = best
+    if at is not last:
         yield at, level
-        # Each point has a linearisation and a noise of its own, so that the criterion may rise.
-        likely, off = log_posterior(at, level, mean, prior), _rms(at)
-        better = likely > most + ENDED or (not fine and off < CLOSER * least)
-        if better or likely > most:
-            best = at, level
-        most, least, idle = max(likely, most), min(off, least), 0 if better else idle + 1
-    if best[0] is not at:
-        yield best
 
 
 def _rms(at: Point) -> float:
@@ -140,11 +143,6 @@ def _move(problem: Problem, μ: float) -> tuple[np.ndarray | None, float]:
             return move, μ / 10 if μ > DAMPED else 0.0
         μ = max(10 * μ, DAMPED)
     return None, μ
-
-
-def log_posterior(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray) -> float:
-    """Log likelihood of a point less what the priors hold against it."""
-    return level.log_likelihood - 0.5 * float(np.sum(((at.q - mean) * prior) ** 2))
 
 
 def finished(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray, taken: int) -> Refit:

@@ -10,6 +10,7 @@ from identification.effect import Candidate
 from identification.kalman.noise_fit import Level
 from identification.kalman.noise_model import Noise
 from identification.kalman.problem import linearised
+from identification.kalman.refit import descent, noise_at
 
 TRUE = {"mass": 2.4, "damping": 2.6, "x0": 0.02, "v0": -0.03}
 
@@ -67,6 +68,25 @@ def test_a_start_is_kept_where_a_parameter_has_no_upper_bound():
 def test_base_parameters_stay_within_a_factor_of_their_nominal_values():
     log = record(slider(mass=0.3), 200)
     assert fitted(log, {}).at.values["mass"] >= 2.0 / 3 - 1e-9
+
+
+@pytest.mark.parametrize("steps", [0, 1, 3, 20])
+def test_a_search_ends_at_the_likeliest_point_since_its_noise_was_sharpened(monkeypatch, steps):
+    t = 0.02 * np.arange(300)[:, None]  # a vibration, which no noise of the inputs is like
+    log = record(slider(**TRUE), 300, seed=1, error=3.0 * np.sin(2 * np.pi * 4.1 * t))
+    begun = fit_with(base(), log, (), {}, steps=0)
+    sharpened = []
+
+    def spy(at, prior, near, fine):
+        sharpened.append(fine)
+        return noise_at(at, prior, near, fine)
+
+    monkeypatch.setattr("identification.kalman.refit.noise_at", spy)
+    points = [*descent(begun.at, begun.mean, begun.prior, steps=steps)]
+    likely = [linearised(*p, begun.mean, begun.prior).log_posterior for p in points]
+    assert sharpened.count(True) == 1
+    assert sharpened.count(False) <= 1 + steps
+    assert likely[-1] == max(likely[sharpened.index(True) :])
 
 
 def test_a_bent_step_follows_the_curve_of_the_residual_to_one_order_more():
