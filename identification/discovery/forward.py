@@ -1,8 +1,9 @@
 """The next effect of a model: the best candidates are refitted, the most likely one is proved.
 
 Of those that were refitted the most likely one is chosen, by BIC, and accepted when unseen data say
-so too. Where it leaves structure in the fitted samples, its next likely shape is tried, and a start
-at the nominal values.
+so too: beyond chance and, but for a first effect that leaves nothing else to explain, by enough to
+matter; a second name is often but the wrong shape of the first. Where the best leaves structure in
+the fitted samples, its next likely shape is tried, and a start at the nominal values.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from collections.abc import Callable, Sequence
 
 from identification.discovery.extend import Base
 from identification.discovery.innovations import whiteness
+from identification.discovery.locate import left_over
 from identification.discovery.proof import prove
 from identification.discovery.score import Score
 from identification.discovery.steps import (
@@ -20,6 +22,7 @@ from identification.discovery.steps import (
     fitted,
     holds,
     matters,
+    proven,
     significant,
 )
 from identification.errors import DivergenceError, InputError
@@ -52,10 +55,11 @@ def add(
     if tried and _structured(tried[0]):
         tried[0] = _from_nominal(base, whole, step, tried[0])
     doubtful = None
+    clean = not step.candidates and not left_over(step)
     for k, new in enumerate(tried):
         proof = prove(step.unseen, new.unseen)
         gain = new.criterion - step.criterion
-        if gain > 0 and holds(proof):
+        if gain > 0 and (holds(proof) or (clean and proven(proof))):
             return Accepted(new, proof, gain, tuple(tried[:k] + tried[k + 1 :]))
         if gain > 0 and matters(proof):
             doubtful = doubtful or Doubtful(new.candidates[-1], proof)

@@ -142,6 +142,11 @@ def matters(proof: Proof) -> bool:
     return proof.fall > FALL and proof.above > SHARE
 
 
+def proven(proof: Proof) -> bool:
+    """Whether unseen data confirm an effect beyond chance."""
+    return proof.t > T
+
+
 def holds(proof: Proof) -> bool:
     """Whether unseen data confirm an effect: beyond chance, and by enough to matter."""
-    return proof.t > T and matters(proof)
+    return proven(proof) and matters(proof)

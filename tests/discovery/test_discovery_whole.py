@@ -122,6 +122,16 @@ def test_what_fitted_samples_want_and_unseen_ones_do_not_prove_is_neither_named_
     assert any("offset" in clause and "not surely there" in clause for clause in answer.left)
 
 
+@pytest.mark.parametrize("vibration", [0.0, 0.3])
+def test_what_is_proven_and_too_small_to_matter_is_named_where_nothing_else_is_left(
+    monkeypatch, vibration
+):
+    monkeypatch.setattr("identification.discovery.steps.FALL", 1.0)  # nothing matters
+    t = STEP * np.arange(500)[:, None]
+    answer = found(error=vibration * np.sin(2 * np.pi * 2.3 * t), **{"offset.f": -0.3})
+    assert {n.candidate.effect.name for n in answer.named} == (set() if vibration else {"offset"})
+
+
 def test_inputs_that_err_by_a_third_of_their_motion_are_no_noise():
     answer = found(error=wander(500, 0.3, 0.1, seed=3))
     assert answer.verdict != "nothing missing"
