@@ -46,12 +46,13 @@ def nothing(found: Discovery) -> str:
 def unknown(found: Discovery) -> str:
     """Something is missing that no known effect explains."""
     tried = len({s.candidate.effect.name for s in found.scores})
-    ratio = found.before.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
+    # What disturbs it is said to be noise only where a model is believed; here none is.
+    ratio = found.before.rms / found.noise_rms if found.noise_rms > 0 else float("inf")
     return " ".join(
         [
             f"Something is missing that none of the {tried} known effects surely explains: the"
             f" fitted model is {_size(found, found.before.rms)} rms off on unseen data"
-            + (f", {ratio:.3g} times the noise." if isfinite(ratio) else "."),
+            + (f", {ratio:.3g} times the sensors' noise." if isfinite(ratio) else "."),
             "It is not named here rather than named wrongly.",
             *map(sentence, (*found.left, *found.located)),
         ]
@@ -108,17 +109,20 @@ def _retuned(named: Named) -> str:
 
 
 def _proof(found: Discovery) -> str:
-    before, after = found.before.rms, found.after.rms
-    was, now, noise = alike([before, after, floor_rms(found)], output_unit(found))
+    before, after, floor = found.before.rms, found.after.rms, floor_rms(found)
+    was, now, noise = alike([before, after, floor], output_unit(found))
     whom = "it" if len(found.named) == 1 else "them"
+    made = ", of sensors and unlogged errors of the inputs" if found.disturbance_rms else ""
     said = (
         f"On data that the fit has not seen, the error falls from {was} to {now} rms"
-        f" with {whom} in the model; the noise is {noise}."
+        f" with {whom} in the model; the noise is {noise}{made}."
     )
-    above = before**2 - floor_rms(found) ** 2
+    above = before**2 - floor**2
     if above > 0:
         share = min(1.0, max(0.0, (before**2 - after**2) / above))
-        said += f" That is {100 * share:.0f} % of the power that was above the noise."
+        nearly = share > 0.995 and after > floor
+        percent = "more than 99" if nearly else f"{100 * share:.0f}"
+        said += f" That is {percent} % of the power that was above the noise."
     return said
 
 

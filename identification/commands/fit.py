@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from identification.robot import Robot
 
 FEWEST = 10  # values for each parameter
-FARTHEST = 1e3  # factor from where a fit began that is no estimate
+FARTHEST = 100.0  # factor from where a fit began that is hardly an estimate
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ def _far(parameters: dict[str, Any]) -> list[str]:
         return []
     return [
         f"{', '.join(far)}: more than {FARTHEST:g} times from where the fit began; the log's units"
-        " must be those of the model (rad or m, s, and what its actuators take)."
+        " and signs must be those of the model (rad or m, s, and what its actuators take)."
     ]
 
 

@@ -18,7 +18,7 @@ from identification.discovery.extend import Base
 from identification.discovery.forward import add
 from identification.discovery.locate import (
     ALLOWED,
-    BELIEVED,
+    believed,
     in_doubt,
     input_error,
     left_over,
@@ -90,7 +90,7 @@ def discover(
     explained = _explained(nominal, step)
     named = named_of(base, kept, step, sensed, explained if left else 1.0)
     verdict: Verdict = "nothing missing"
-    if named and (not left or (explained > EXPLAINED and input_error(step) < BELIEVED)):
+    if named and (not left or (explained > EXPLAINED and believed(step))):
         verdict = "named"
     elif named or left:
         verdict = "unknown effect"

@@ -124,6 +124,11 @@ def left_over(step: Step) -> tuple[str, ...]:
             f"innovations that are not white: {100 * white.predictable:.0f} % of their power"
             f" follows from the samples before (chance {white.p_correlation:.0e})"
         )
+    if step.stretched:
+        out.append(
+            f"{' and '.join(step.stretched)} at the end of what is plausible, by the nominal"
+            " values that were given"
+        )
     if (err := input_error(step)) > ALLOWED:
         level = step.refit.level
         unit = log.units.get(log.input_names[0], "")
@@ -143,6 +148,11 @@ def in_doubt(doubt: Doubtful) -> str:
         f" {100 * doubt.proof.fall:.0f} % of the error on unseen data, but not surely there"
         f" (t = {doubt.proof.t:.1f})"
     )
+
+
+def believed(step: Step) -> bool:
+    """Whether a model may be named that leaves something: inputs and base parameters as given."""
+    return input_error(step) < BELIEVED and not step.stretched
 
 
 def input_error(step: Step) -> float:

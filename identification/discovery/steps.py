@@ -24,6 +24,7 @@ from identification.log import Log
 
 ALPHA = 0.01  # family-wise chance of a name where nothing is missing, before the proof
 T = 2.0  # t of the proof: 2.5 % one-sided
+END = 0.02  # of a logarithm: this near to its limit a parameter is at it
 FALL, SHARE = MATTERS, 0.1  # of the free run's mean square, and of what is above the sensors' noise
 
 
@@ -46,6 +47,20 @@ class Step:
         """BIC, negated and in units of twice the log likelihood."""
         free = len(self.refit.at.q)
         return 2 * self.refit.log_posterior - free * float(np.log(len(self.refit.at.log)))
+
+    @property
+    def stretched(self) -> tuple[str, ...]:
+        """Base parameters that end where they stop to be plausible."""
+        at = self.refit.at
+        room = np.minimum(at.q - at.space.lower, at.space.upper - at.q)
+        own = {n for c in self.candidates for n in c.sizes}
+        own |= {
+            c.effect.parameter(shape.name, c.where)
+            for c in self.candidates
+            for shape in c.effect.shapes
+        }
+        ends = at.space.logarithmic & (room < END)
+        return tuple(n for n, e in zip(at.space.names, ends, strict=True) if e and n not in own)
 
 
 @dataclass(frozen=True)

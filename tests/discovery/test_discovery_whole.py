@@ -21,7 +21,9 @@ ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02}
 
 def found(error=0.0, **sizes):
     error = error + wander(500, 0.03, 0.1, seed=8)
-    return discover(base(), record(slider(**ROBOT, **sizes), 500, seed=11, error=error), EFFECTS)
+    return discover(
+        base(), record(slider(**{**ROBOT, **sizes}), 500, seed=11, error=error), EFFECTS
+    )
 
 
 def test_a_hidden_spring_is_named_where_inca_cannot_be_imported():
@@ -130,6 +132,12 @@ def test_what_is_proven_and_too_small_to_matter_is_named_where_nothing_else_is_l
     t = STEP * np.arange(500)[:, None]
     answer = found(error=vibration * np.sin(2 * np.pi * 2.3 * t), **{"offset.f": -0.3})
     assert {n.candidate.effect.name for n in answer.named} == (set() if vibration else {"offset"})
+
+
+def test_base_parameters_at_the_end_of_what_is_plausible_are_something_left():
+    answer = found(damping=12.0)  # of which 9 is plausible
+    assert answer.verdict == "unknown effect"
+    assert any(clause.startswith("damping at the end") for clause in answer.left)
 
 
 def test_inputs_that_err_by_a_third_of_their_motion_are_no_noise():

@@ -188,9 +188,11 @@ def test_a_log_with_hardly_more_samples_than_parameters_is_refused(folder, capsy
 
 def test_values_that_no_robot_has_are_said_to_be_a_matter_of_units():
     near = {"initial": 0.5, "value": 0.7}
+    (millimetres,) = _far({"mass": {"initial": 2.9, "value": 0.0032}})
+    assert "units and signs" in millimetres
     assert _far({"mass": near, "x": {"initial": 0.0, "value": 9.0}}) == []
     (said,) = _far({"mass": near, "damping": {"initial": 0.02, "value": 3.4e45}})
-    assert said.startswith("damping: more than 1000 times")
+    assert said.startswith("damping: more than 100 times")
 
 
 def test_where_nothing_is_missing_the_fitted_model_is_confirmed(folder, capsys):
