@@ -3,7 +3,8 @@
 Of those that were refitted the most likely one is chosen, by BIC, and accepted when unseen data say
 so too: beyond chance and, but for a first effect that leaves nothing else to explain, by enough to
 matter; a second name is often but the wrong shape of the first. Where the best leaves structure in
-the fitted samples, its next likely shape is tried, and a start at the nominal values.
+the fitted samples, its next likely shape is tried, and for a first effect a start at the nominal
+values.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ def add(
     tried.sort(key=_criterion, reverse=True)
     if tried and _structured(tried[0]):
         tried[0] = _other_shape(base, whole, step, tried[0], ranked)
-    if tried and _structured(tried[0]):
+    if tried and not step.candidates and _structured(tried[0]):
         tried[0] = _from_nominal(base, whole, step, tried[0])
     doubtful = None
     clean = not step.candidates and not left_over(step)
