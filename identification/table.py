@@ -14,7 +14,7 @@ from identification.names import listed, quoted
 from identification.sampling import FloatArray
 from identification.sidecar import Sidecar
 
-_HUGE = 1e100  # its square is still a number
+_HUGE = 1e120  # its square is still a number
 
 
 @dataclass(frozen=True)

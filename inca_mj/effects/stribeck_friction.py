@@ -23,7 +23,7 @@ STRIBECK_FRICTION = DriveEffect(
         (Size("f_s", "N m", 0.02, 1e-3, sign=1, about="height of the peak"),),
         (
             Shape("v_s", "rad/s", (0.3, 0.6, 1.2, 2.4, 5.0), 0.05, 20.0, about="its half width"),
-            Shape("n", "", (2.0, 1.0), 0.5, 3.0, free=False, about="the power"),
+            Shape("n", "", (1.0, 2.0), 0.5, 3.0, free=False, about="the power"),
         ),
         DRIVES_EACH,
         "friction: Stribeck peak",
