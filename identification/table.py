@@ -14,8 +14,6 @@ from identification.names import listed, quoted
 from identification.sampling import FloatArray
 from identification.sidecar import Sidecar
 
-_HUGE = 1e120  # its square is still a number
-
 
 @dataclass(frozen=True)
 class Table:
@@ -97,17 +95,15 @@ def _columns(names: Sequence[str]) -> str:
 
 
 def check_finite(table: Table) -> None:
-    """Refuse a cell that is not a finite number, or beyond any quantity.
+    """Refuse a cell that is not a finite number.
 
     Raises:
-        InputError: a cell is NaN, infinite or huge; its row and column are named.
+        InputError: a cell is NaN or infinite; its row and column are named.
     """
-    bad = np.argwhere(~(np.abs(table.data) < _HUGE))
+    bad = np.argwhere(~np.isfinite(table.data))
     if bad.size:
         row, column = bad[0]
-        value = table.data[row, column]
-        fault = "beyond any quantity" if np.isfinite(value) else "not a finite number"
         raise InputError(
             f"{table.place(int(row))}, column {quoted(table.names[column])}: "
-            f"{value} is {fault}; fill the gap or cut the log there"
+            f"{table.data[row, column]} is not a finite number; fill the gap or cut the log there"
         )

@@ -22,6 +22,7 @@ from identification.noise import noise_floor
 from identification.predictor import output_columns
 
 Kind = Literal["hinge", "slide"]
+HUGE = 1e50  # of any unit
 SMOOTH = 0.01  # v₀ of the smooth sign, of the top speed
 NOISE, SHARE = 5.0, 0.1  # a difference of noise, in its std, may be so much of the largest
 
@@ -76,9 +77,16 @@ def axes(model: mujoco.MjModel, log: Log) -> tuple[Axis, ...]:
         log: its inputs are those of the model's actuators.
 
     Raises:
-        InputError: an output is no sensor of a joint, or never changes.
+        InputError: an output is no sensor of a joint, never changes, or is huge.
     """
     seen: dict[int, list[tuple[str, np.ndarray]]] = {}
+    columns = (*log.input_names, *log.output_names), (*log.inputs.T, *log.outputs.T)
+    huge = [n for n, c in zip(*columns, strict=True) if np.abs(c).max() > HUGE]
+    if huge:
+        raise InputError(
+            f"{listed(huge)} of log {log.name!r} goes beyond {HUGE:g}, which no robot does; repair"
+            " or cut the log there"
+        )
     still = [n for n, y in zip(log.output_names, log.outputs.T, strict=True) if not np.ptp(y)]
     if still:
         raise InputError(

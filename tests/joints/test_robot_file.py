@@ -178,6 +178,16 @@ def test_a_dead_sensor_is_named(folder, capsys, command):
     assert "position of log 'dead' never changes" in said
 
 
+@pytest.mark.parametrize("command", ["fit", "discover"])
+def test_a_huge_number_is_named(folder, capsys, command):
+    log = simulated({})
+    outputs = log.outputs.copy()
+    outputs[7] = 1e200
+    write_log(replace(log, outputs=outputs), folder / "huge.csv")
+    said = refused(capsys, command, folder / "robot.toml", folder / "huge.csv")
+    assert "position of log 'huge' goes beyond" in said
+
+
 def test_a_log_with_hardly_more_samples_than_parameters_is_refused(folder, capsys):
     path = folder / "few.toml"
     path.write_text(TOML)
