@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from identification.errors import DivergenceError
+from identification.errors import DivergenceError, InputError
 from identification.kalman.noise_fit import Level
 from identification.kalman.noise_model import Whitener, whitener
 from identification.kalman.point import Point
@@ -77,7 +77,7 @@ class Problem:
         at = self.at
         try:
             predicted = at.predictor.predict(at.space.decode(at.space.inside(q)))[0]
-        except DivergenceError:
+        except (DivergenceError, InputError):  # or a start that cannot stand
             return None
         E = self.filter(at.log.outputs - predicted) / self.level.sigma
         return np.concatenate([E.ravel(), self.prior * (self.mean - q)])
