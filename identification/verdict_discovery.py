@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from math import hypot, isfinite
 
+from identification.discovery.locate import ALLOWED, input_error
 from identification.discovery.result import Detectable, Discovery, Named
 from identification.effect import Candidate
 from identification.quantities import alike, quantity
@@ -46,8 +47,7 @@ def nothing(found: Discovery) -> str:
 def unknown(found: Discovery) -> str:
     """Something is missing that no known effect explains."""
     tried = len({s.candidate.effect.name for s in found.scores})
-    # What disturbs it is said to be noise only where a model is believed; here none is.
-    ratio = found.before.rms / found.noise_rms if found.noise_rms > 0 else float("inf")
+    ratio = found.before.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
     return " ".join(
         [
             f"Something is missing that none of the {tried} known effects surely explains: the"
@@ -112,7 +112,7 @@ def _proof(found: Discovery) -> str:
     before, after, floor = found.before.rms, found.after.rms, floor_rms(found)
     was, now, noise = alike([before, after, floor], output_unit(found))
     whom = "it" if len(found.named) == 1 else "them"
-    made = ", of sensors and unlogged errors of the inputs" if found.disturbance_rms else ""
+    made = ", of sensors and unlogged errors of the inputs" if floor > found.noise_rms else ""
     said = (
         f"On data that the fit has not seen, the error falls from {was} to {now} rms"
         f" with {whom} in the model; the noise is {noise}{made}."
@@ -166,8 +166,12 @@ def split_detectable(
 
 
 def floor_rms(found: Discovery) -> float:
-    """What sensors and unlogged disturbances make of a free run of the true model, rms."""
-    return hypot(found.noise_rms, found.disturbance_rms)
+    """What sensors and unlogged input errors make of a free run of the true model, rms.
+
+    Input errors count where they can be believed: with a model that is, and as small as noise is.
+    """
+    believed = found.verdict != "unknown effect" and input_error(found.final) <= ALLOWED
+    return hypot(found.noise_rms, found.disturbance_rms if believed else 0.0)
 
 
 def output_unit(found: Discovery) -> str:

@@ -111,7 +111,7 @@ def _explained(nominal: Step, step: Step) -> float:
     The gap ends at what sensors and input errors make, if these can be believed.
     """
     proof = prove(nominal.unseen, step.unseen)
-    return proof.share if input_error(step) <= ALLOWED else proof.above
+    return proof.share if input_error(step.refit) <= ALLOWED else proof.above
 
 
 def _sensitivities(base: Base, nominal: Step, effects: Sequence[Effect]) -> tuple[Column, ...]:

@@ -84,8 +84,7 @@ def _criterion(step: Step) -> float:
 
 def _structured(step: Step) -> bool:
     """Whether the fitted samples' innovations are not white."""
-    E = step.unseen.innovations[: len(step.refit.at.log)]
-    return whiteness(E, step.refit.at.log.sampling_time).correlated
+    return whiteness(step.innovations, step.refit.at.log.sampling_time).correlated
 
 
 def _from_nominal(base: Base, whole: Log, step: Step, best: Step) -> Step:

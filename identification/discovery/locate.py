@@ -105,9 +105,7 @@ def _acting(fit: Refit, missing: MissingForce) -> str:
 def left_over(step: Step) -> tuple[str, ...]:
     """What the final model does not explain, in sentences; empty when it explains all."""
     log = step.refit.at.log
-    # On samples that were not fitted an error of the parameters, however small, looks like a line.
-    E = step.unseen.innovations[: len(log)]
-    white = whiteness(E, log.sampling_time)
+    white = whiteness(step.innovations, log.sampling_time)
     out = []
     if white.p_line < SURE:
         out.append(
@@ -129,7 +127,7 @@ def left_over(step: Step) -> tuple[str, ...]:
             f"{' and '.join(step.stretched)} at the end of what is plausible, by the nominal"
             " values that were given"
         )
-    if (err := input_error(step)) > ALLOWED:
+    if (err := input_error(step.refit)) > ALLOWED:
         level = step.refit.level
         unit = log.units.get(log.input_names[0], "")
         out.append(
@@ -152,10 +150,10 @@ def in_doubt(doubt: Doubtful) -> str:
 
 def believed(step: Step) -> bool:
     """Whether a model may be named that leaves something: inputs and base parameters as given."""
-    return input_error(step) < BELIEVED and not step.stretched
+    return input_error(step.refit) < BELIEVED and not step.stretched
 
 
-def input_error(step: Step) -> float:
+def input_error(fit: Refit) -> float:
     """Error of the inputs that the noise model takes for granted, as a share of their motion."""
-    moved = float(np.sqrt(np.mean(np.var(step.refit.at.log.inputs, axis=0))))
-    return step.refit.level.input_std / moved if moved > 0 else 0.0
+    moved = float(np.sqrt(np.mean(np.var(fit.at.log.inputs, axis=0))))
+    return fit.level.input_std / moved if moved > 0 else 0.0

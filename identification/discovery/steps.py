@@ -49,6 +49,14 @@ class Step:
         return 2 * self.refit.log_posterior - free * float(np.log(len(self.refit.at.log)))
 
     @property
+    def innovations(self) -> np.ndarray:
+        """Of the fitted samples, in units of σ, shape (n, ny).
+
+        On others an error of the parameters, however small, would look like a line.
+        """
+        return self.unseen.innovations[: len(self.refit.at.log)]
+
+    @property
     def stretched(self) -> tuple[str, ...]:
         """Base parameters that end where they stop to be plausible."""
         at = self.refit.at

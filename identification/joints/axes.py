@@ -79,24 +79,30 @@ def axes(model: mujoco.MjModel, log: Log) -> tuple[Axis, ...]:
     Raises:
         InputError: an output is no sensor of a joint, never changes, or is huge.
     """
+    _refuse_useless(log)
     seen: dict[int, list[tuple[str, np.ndarray]]] = {}
-    columns = (*log.input_names, *log.output_names), (*log.inputs.T, *log.outputs.T)
-    huge = [n for n, c in zip(*columns, strict=True) if np.abs(c).max() > HUGE]
-    if huge:
-        raise InputError(
-            f"{listed(huge)} of log {log.name!r} goes beyond {HUGE:g}, which no robot does; repair"
-            " or cut the log there"
-        )
-    still = [n for n, y in zip(log.output_names, log.outputs.T, strict=True) if not np.ptp(y)]
+    for k, (field, i) in enumerate(output_columns(model, log.output_names)):
+        at = model.jnt_qposadr if field == "qpos" else model.jnt_dofadr
+        seen.setdefault(int(np.flatnonzero(at == i)[0]), []).append((field, log.outputs[:, k]))
+    return tuple(_axis(model, log, j, seen[j]) for j in sorted(seen))
+
+
+def _refuse_useless(log: Log) -> None:
+    """Refuse columns of which no magnitude can be made."""
+    columns = dict(zip(log.output_names, log.outputs.T, strict=True))
+    still = [name for name, column in columns.items() if not np.ptp(column)]
     if still:
         raise InputError(
             f"{listed(still)} of log {log.name!r} never change{'s' * (len(still) == 1)}: a dead"
             " sensor, or a joint that does not move; take a log in which it moves, or leave it out"
         )
-    for k, (field, i) in enumerate(output_columns(model, log.output_names)):
-        at = model.jnt_qposadr if field == "qpos" else model.jnt_dofadr
-        seen.setdefault(int(np.flatnonzero(at == i)[0]), []).append((field, log.outputs[:, k]))
-    return tuple(_axis(model, log, j, seen[j]) for j in sorted(seen))
+    columns |= zip(log.input_names, log.inputs.T, strict=True)
+    huge = [name for name, column in columns.items() if np.abs(column).max() > HUGE]
+    if huge:
+        raise InputError(
+            f"{listed(huge)} of log {log.name!r} goes beyond {HUGE:g}, which no robot does; repair"
+            " or cut the log there"
+        )
 
 
 def _axis(model: mujoco.MjModel, log: Log, j: int, seen: list[tuple[str, np.ndarray]]) -> Axis:

@@ -10,7 +10,7 @@ and for how long, is estimated with the parameters by maximum likelihood (Ljung 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -110,7 +110,7 @@ def estimate_innovations(
     if without_effect(begun.J, part.outputs).any():
         refuse_without_effect(begun.J, space.names, part)
     seen = [(begun, Level(Noise(0.0, 1.0), 1.0, 0.0))]
-    status = _search(descent(begun, mean, prior, steps=steps), seen, steps, progress)
+    status = _search(descent(begun, mean, prior, steps=steps), seen, progress)
     taken = max(0, len(seen) - 2)
     end = finished(*seen[-1], mean, prior, taken)
     ends = Estimate(
@@ -124,20 +124,22 @@ def estimate_innovations(
 
 
 def _search(
-    points: Iterator[tuple[Point, Level]],
+    points: Generator[tuple[Point, Level], None, bool],
     seen: list[tuple[Point, Level]],
-    steps: int,
     progress: Progress | None,
 ) -> Status:
     """Follow a search until it ends, adding its points to `seen`."""
     try:
-        for k, (at, level) in enumerate(points):
+        while True:
+            at, level = next(points)
             seen.append((at, level))
             if progress is not None:
-                progress(f"step {k}: sensors {level.sigma:.4g}, inputs {level.input_std:.3g} rms")
+                sizes = f"sensors {level.sigma:.4g}, inputs {level.input_std:.3g} rms"
+                progress(f"step {len(seen) - 2}: {sizes}")
+    except StopIteration as end:
+        return "converged" if end.value else "iterations"
     except KeyboardInterrupt:
         return "stopped"
-    return "iterations" if k > steps else "converged"
 
 
 def innovations(end: Refit, whole: Log) -> np.ndarray:

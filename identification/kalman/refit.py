@@ -10,7 +10,7 @@ criterion is tame from afar, and at the truth it is maximum likelihood.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
@@ -78,7 +78,7 @@ def refit(
 
 def descent(
     at: Point, mean: np.ndarray, prior: np.ndarray, near: Level | None = None, steps: int = 20
-) -> Iterator[tuple[Point, Level]]:
+) -> Generator[tuple[Point, Level], None, bool]:
     """The points of a search, each with its noise, from the first to the likeliest.
 
     First the model approaches the data, under a noise that is only roughly known: in likelihood or
@@ -90,6 +90,9 @@ def descent(
         prior: 1/std of each prior, zero where there is none, shape (p,).
         near: a noise to begin at, where one is known.
         steps: at most as many.
+
+    Returns:
+        Whether it ended before the steps did.
     """
     level = noise_at(at, prior, near, fine=False)
     yield at, level
@@ -121,6 +124,7 @@ def descent(
         at, level = best
     if at is not last:
         yield at, level
+    return steps > 0
 
 
 def _rms(at: Point) -> float:

@@ -11,7 +11,7 @@ from discovery_cases import EFFECTS, STEP, base, record, slider, wander
 
 from identification import InputError
 from identification.discovery.confidence import named_of
-from identification.discovery.discover import SHORTEST, discover
+from identification.discovery.discover import SHORTEST, _explained, discover
 from identification.discovery.passes import swap
 from identification.discovery.steps import fitted
 
@@ -132,6 +132,21 @@ def test_what_is_proven_and_too_small_to_matter_is_named_where_nothing_else_is_l
     t = STEP * np.arange(500)[:, None]
     answer = found(error=vibration * np.sin(2 * np.pi * 2.3 * t), **{"offset.f": -0.3})
     assert {n.candidate.effect.name for n in answer.named} == (set() if vibration else {"offset"})
+
+
+def test_a_gap_ends_at_the_sensors_where_input_errors_cannot_be_believed(monkeypatch):
+    seen = spied(monkeypatch, swap)
+    found(**{"offset.f": -0.8})
+    ((_, _, nominal, _, step, _),) = seen
+    level = step.refit.level
+    loud = replace(level, noise=level.noise.scaled(100.0))
+    more = replace(step.unseen, disturbance=10 * nominal.unseen.rms)
+    calm = replace(step, unseen=more)
+    wild = replace(calm, refit=replace(step.refit, level=loud))
+    assert _explained(nominal, calm) == pytest.approx(1.0)
+    fall = 1 - (step.unseen.rms / nominal.unseen.rms) ** 2
+    assert _explained(nominal, wild) == pytest.approx(fall, abs=1e-3)
+    assert _explained(nominal, wild) < _explained(nominal, calm)
 
 
 def test_base_parameters_at_the_end_of_what_is_plausible_are_something_left():

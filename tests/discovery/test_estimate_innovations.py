@@ -60,6 +60,13 @@ def test_an_interrupt_keeps_the_best_so_far():
     assert abs(found.fit.estimate.values["mass"] - 2.4) < 1.6
 
 
+@pytest.mark.parametrize(("steps", "status"), [(1, "iterations"), (30, "converged")])
+def test_it_says_whether_the_steps_sufficed(steps, status):
+    log = record(slider(**TRUE), 300)
+    found = estimate_innovations(slider(), log, FREE, {"mass": 4.0}, steps=steps)
+    assert found.fit.estimate.status == status
+
+
 def test_a_short_log_is_refused():
     with pytest.raises(InputError, match="at least 50"):
         estimate_innovations(slider(), record(slider(), 60), FREE)

@@ -1,10 +1,15 @@
 """Each outcome has its paragraph, and no two can be taken for each other."""
 
-import pytest
-from fake_discovery import found
+from dataclasses import replace
+from math import hypot
 
+import pytest
+from fake_discovery import NOISE, found
+
+from identification.kalman.noise_fit import Level
+from identification.kalman.noise_model import Noise
 from identification.report.discovery_text import discovery_text
-from identification.verdict_discovery import diff_line, discovery_verdict
+from identification.verdict_discovery import diff_line, discovery_verdict, floor_rms
 
 
 def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
@@ -16,6 +21,18 @@ def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
     assert "On data that the fit has not seen, the error falls from" in said[1]
     assert said[1].count("mrad") == 3
     assert len(said) == 2
+
+
+@pytest.mark.parametrize(
+    ("verdict", "input_error", "counts"),
+    [("named", 1e-3, True), ("nothing missing", 1e-3, True), ("named", 1.0, False),
+     ("unknown effect", 1e-3, False)],
+)  # fmt: skip
+def test_input_errors_that_cannot_be_believed_are_no_noise(verdict, input_error, counts) -> None:
+    disturbed = replace(found(verdict), disturbance_rms=0.05)
+    level = Level(Noise(input_error / NOISE, 0.1), NOISE, 0.0)  # an std of `input_error` [A]
+    disturbed = replace(disturbed, final=replace(disturbed.final, level=level))
+    assert floor_rms(disturbed) == pytest.approx(hypot(NOISE, 0.05) if counts else NOISE)
 
 
 def test_look_alikes_are_a_set() -> None:
