@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from math import hypot, isfinite
 
-from identification.discovery.locate import ALLOWED, input_error
+from identification.discovery.locate import input_error
 from identification.discovery.result import Detectable, Discovery, Named
 from identification.effect import Candidate
+from identification.kalman.noise_fit import ALLOWED
 from identification.quantities import alike, quantity
 
 RETUNED = 0.05  # chance of it that is worth a sentence

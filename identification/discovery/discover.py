@@ -16,14 +16,7 @@ from identification.discovery.confidence import named_of
 from identification.discovery.detectable import detectable
 from identification.discovery.extend import Base
 from identification.discovery.forward import add
-from identification.discovery.locate import (
-    ALLOWED,
-    believed,
-    in_doubt,
-    input_error,
-    left_over,
-    located,
-)
+from identification.discovery.locate import believed, in_doubt, input_error, left_over, located
 from identification.discovery.missing import missing_forces
 from identification.discovery.passes import backward, swap
 from identification.discovery.proof import prove
@@ -32,6 +25,7 @@ from identification.discovery.score import Score
 from identification.discovery.steps import Accepted, Step, fitted, scores_of
 from identification.effect import Effect
 from identification.errors import InputError
+from identification.kalman.noise_fit import ALLOWED
 from identification.log import Log
 
 MOST = 3  # effects

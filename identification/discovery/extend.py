@@ -9,6 +9,7 @@ import numpy as np
 
 from identification.coordinates import Coordinates, coordinates
 from identification.effect import Candidate
+from identification.kalman.noise_fit import TIME
 from identification.kalman.point import point
 from identification.kalman.refit import Refit, refit
 from identification.log import Log
@@ -80,9 +81,11 @@ def fit_with(
     weight = np.concatenate(
         [1 / base.std, np.zeros(len(sizes)), np.full(len(shapes), 1 / SHAPE_STD)]
     )
-    linear = None if near is None else near.at.linear
+    linear, level = (None, None) if near is None else (near.at.linear, near.level)
     at = point(Predictor(base.plant, log, names, fixed), space, space.encode(first), linear)
-    return refit(at, mean, weight, steps, None if near is None else near.level)
+    if level is not None:  # what its inputs' error lasted may have been the effect
+        level = replace(level, noise=level.noise.lasting(TIME))
+    return refit(at, mean, weight, steps, level)
 
 
 def _plausible(space: Coordinates, parameters: ParameterSet, names: Sequence[str]) -> Coordinates:

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from identification.discovery.extend import Base
-from identification.discovery.innovations import whiteness
 from identification.discovery.locate import left_over
 from identification.discovery.proof import prove
 from identification.discovery.score import Score
@@ -27,6 +26,7 @@ from identification.discovery.steps import (
     significant,
 )
 from identification.errors import DivergenceError, InputError
+from identification.kalman.innovations import whiteness
 from identification.log import Log
 
 CONTENDERS = 3  # explanations that are refitted at most

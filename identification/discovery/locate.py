@@ -9,14 +9,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from identification.discovery.innovations import SURE, whiteness
 from identification.discovery.missing import MissingForce
 from identification.discovery.steps import Doubtful, Step
+from identification.kalman.innovations import SURE, whiteness
+from identification.kalman.noise_fit import ALLOWED
 from identification.kalman.refit import Refit
 from identification.quantities import quantity
 
 TELLING = 0.1  # share of a missing force that is worth a sentence
-ALLOWED = 0.1  # error of the inputs, of their motion, that is still noise and no missing effect
 BELIEVED = 1.0  # the same, above which the log's inputs are not what moved the robot
 
 
@@ -155,5 +155,5 @@ def believed(step: Step) -> bool:
 
 def input_error(fit: Refit) -> float:
     """Error of the inputs that the noise model takes for granted, as a share of their motion."""
-    moved = float(np.sqrt(np.mean(np.var(fit.at.log.inputs, axis=0))))
+    moved = fit.at.motion
     return fit.level.input_std / moved if moved > 0 else 0.0

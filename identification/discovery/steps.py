@@ -14,11 +14,11 @@ import numpy as np
 
 from identification.discovery.columns import Column
 from identification.discovery.extend import Base, fit_with
-from identification.discovery.innovations import MATTERS
 from identification.discovery.proof import Unseen, unseen
 from identification.discovery.result import Proof
 from identification.discovery.score import Score, score
 from identification.effect import Candidate
+from identification.kalman.innovations import MATTERS
 from identification.kalman.refit import Refit
 from identification.log import Log
 

@@ -22,7 +22,10 @@ TIME = 0.03  # correlation time of the inputs' error at which a search begins [s
 LONGEST = (
     0.3  # what errs for longer is an effect: a noise of any length would explain a constant [s]
 )
+ALLOWED = 0.1  # error of the inputs, of their motion, that is still noise and no missing effect
 FIRST, LAST = 1.6, 1.15  # factors of the pattern search
+AROUND = (1.0, 0.3, 0.05, 0.0)  # times a noise that is near
+ROUGH = (0.0, 0.1, 1.0)  # ρ/ρ₀ to try where none was seen
 LEVELS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # ρ/ρ₀ to try
 
 
@@ -93,6 +96,7 @@ def fit_noise(
     near: Level | None = None,
     fine: bool = True,
     levels: Sequence[float] = LEVELS,
+    largest: float = np.inf,
 ) -> Level:
     """The most likely noise of a residual.
 
@@ -105,25 +109,32 @@ def fit_noise(
         near: where one is known from a point nearby, to begin at.
         fine: whether ρ and τ are sharpened.
         levels: ρ/ρ₀ to try where no noise is known.
+        largest: error of the inputs that is believed before it is sharpened, in their unit.
     """
     with threadpool_limits(1, "blas"):  # the matrices are small; threads only wait for each other
 
         def at(noise: Noise) -> Level:
             return likelihood(whitener(plant, noise, sampling_time), noise, e, J, prior)
 
+        def believed(noise: Noise, factors: Sequence[float]) -> list[Level]:
+            tried = [at(noise.scaled(f)) for f in factors]
+            return [level for level in tried if level.input_std <= largest]
+
+        found: list[Level] = []
         if near is not None and near.noise.ratio:
-            best = _best([at(near.noise.scaled(f)) for f in (1.0, 0.3, 0.05, 0.0)])
-        else:
-            unit = unit_ratio(plant, sampling_time, TIME)
-            tried = levels if near is None else (0.0, 0.1, 1.0)
-            best = _best([at(Noise(level * unit, TIME)) for level in tried])
+            found = believed(near.noise, AROUND)
+        if len(found) < 2:  # nothing is near, or none of it but silence is believed
+            unit = Noise(unit_ratio(plant, sampling_time, TIME), TIME)
+            silent = near is not None and not near.noise.ratio
+            found = believed(unit, ROUGH if silent and not fine else levels)
+        best = _best(found)
         return sharpen(best, at, sampling_time / 3) if fine and best.noise.ratio else best
 
 
 def sharpen(best: Level, at: Callable[[Noise], Level], shortest: float) -> Level:
     """The most likely noise near a level: a pattern search over ln ρ√τ and ln τ.
 
-    What a slow plant feels is ρ²τ, so that the two directions are nearly independent.
+    What a slow plant feels is ρ²τ: the two directions are nearly independent.
 
     Args:
         best: where to begin.
@@ -144,7 +155,7 @@ def sharpen(best: Level, at: Callable[[Noise], Level], shortest: float) -> Level
 def _moved(noise: Noise, felt: float, time: float, shortest: float) -> Noise:
     """A noise whose ρ√τ and τ are multiplied."""
     other = float(np.clip(noise.time * time, shortest, LONGEST))
-    return Noise(noise.ratio * felt * (noise.time / other) ** 0.5, other)
+    return noise.lasting(other).scaled(felt)
 
 
 def _best(levels: list[Level]) -> Level:

@@ -34,6 +34,10 @@ class Noise:
         """The same with another ρ."""
         return Noise(self.ratio * factor, self.time)
 
+    def lasting(self, time: float) -> Noise:
+        """One of another τ and the same ρ²τ, which is what a slow plant feels."""
+        return Noise(self.ratio * (self.time / time) ** 0.5, time)
+
 
 @dataclass(frozen=True)
 class Whitener:

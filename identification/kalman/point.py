@@ -43,6 +43,11 @@ class Point:
         return self.predictor.log
 
     @property
+    def motion(self) -> float:
+        """Std of the logged inputs over time, rms of all."""
+        return float(np.sqrt(np.mean(np.var(self.log.inputs, axis=0))))
+
+    @property
     def values(self) -> dict[str, float]:
         """Values of all parameters that are not the plant's own, in their units."""
         free = dict(zip(self.space.names, self.space.decode(self.q).tolist(), strict=True))

@@ -47,6 +47,12 @@ class Problem:
         """Of the point as it is, where that of its noise lets the parameters move a little."""
         return self.level.log_likelihood - self.cost_here / 2
 
+    @property
+    def left(self) -> np.ndarray:
+        """Innovations that the best small change of the parameters would leave, shape (N, ny)."""
+        left = self.target - self.rows @ self.step(0.0)[0]
+        return left[: self.at.e.size].reshape(self.at.e.shape)
+
     def step(self, μ: float) -> tuple[np.ndarray, float]:
         """The step of Levenberg and Marquardt, and how far the criterion would fall."""
         move = self._least(self.target, μ, np.zeros_like(self.at.q))

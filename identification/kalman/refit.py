@@ -15,7 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.kalman.noise_fit import Level, fit_noise
+from identification.kalman.innovations import whiteness
+from identification.kalman.noise_fit import ALLOWED, Level, fit_noise
 from identification.kalman.point import Point, point
 from identification.kalman.problem import Problem, linearised
 
@@ -24,7 +25,7 @@ ENDED = 0.1  # expected fall of the criterion, in units of the noise, that ends 
 DAMPED = 1e-4  # μ after the first step that failed; the rows' columns have length 1
 TRIES = 6  # of a step, each damped ten times as much
 PATIENCE = 2  # steps that gain nothing, after which a search ends
-CLOSER = 0.97  # of the free run's rms, that is a gain while the noise is only roughly known
+CLOSER = 0.97  # of innovations or a free run, that is a gain while noise is only roughly known
 SHORT = 0.5  # of the fall that was expected, below which a step is bent
 
 
@@ -81,8 +82,9 @@ def descent(
 ) -> Generator[tuple[Point, Level], None, bool]:
     """The points of a search, each with its noise, from the first to the likeliest.
 
-    First the model approaches the data, under a noise that is only roughly known: in likelihood or
-    in its free run. Then the noise is sharpened, and likelihood alone counts.
+    First the model approaches the data, in likelihood or in its free run, under a noise that is
+    only roughly known and no larger than noise is. Then the noise is sharpened, and likelihood
+    alone counts, unless it is blind.
 
     Args:
         at: where to begin.
@@ -94,7 +96,8 @@ def descent(
     Returns:
         Whether it ended before the steps did.
     """
-    level = noise_at(at, prior, near, fine=False)
+    believed = ALLOWED * at.motion
+    level = noise_at(at, prior, near, largest=believed)
     yield at, level
     for fine in (False, True):
         if fine:
@@ -104,20 +107,21 @@ def descent(
         problem = linearised(at, level, mean, prior)
         best, most, least = (at, level), problem.log_posterior, _rms(at)
         μ, idle = 0.0, 0
-        while steps and idle < PATIENCE:
+        while steps and idle < PATIENCE and not (fine and _blind(problem)):
             move, μ = _move(problem, μ)
             if move is None:
                 break
             steps -= 1
             moved = np.abs(move[at.space.logarithmic]).max(initial=0.0)
             at = point(at.predictor, at.space, at.q + move, at.linear if moved < NEAR else None)
-            level = noise_at(at, prior, level, fine=False)
+            level = noise_at(at, prior, level, largest=np.inf if fine else believed)
             yield at, level
             last = at
             # Each point has a linearisation and a noise of its own, so that likelihood may fall.
             problem = linearised(at, level, mean, prior)
             likely, off = problem.log_posterior, _rms(at)
-            better = likely > most + ENDED or (not fine and off < CLOSER * least)
+            gain = ENDED if fine else -at.e.size * float(np.log(CLOSER))
+            better = likely > most + gain or (not fine and off < CLOSER * least)
             if better or likely > most:
                 best = at, level
             most, least, idle = max(likely, most), min(off, least), 0 if better else idle + 1
@@ -125,6 +129,13 @@ def descent(
     if at is not last:
         yield at, level
     return steps > 0
+
+
+def _blind(problem: Problem) -> bool:
+    """Whether the noise explains what it is not: inputs that err too much, and not by chance."""
+    at = problem.at
+    large = problem.level.input_std > ALLOWED * at.motion
+    return large and whiteness(problem.left, at.log.sampling_time).correlated
 
 
 def _rms(at: Point) -> float:
@@ -154,6 +165,13 @@ def finished(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray, taken
     return Refit(at, level, linearised(at, level, mean, prior).std(), mean, prior, taken)
 
 
-def noise_at(at: Point, prior: np.ndarray, near: Level | None, fine: bool) -> Level:
+def noise_at(
+    at: Point,
+    prior: np.ndarray,
+    near: Level | None,
+    fine: bool = False,
+    largest: float = np.inf,
+) -> Level:
     """The most likely noise of a point's residual."""
-    return fit_noise(at.linear, at.e, at.J, prior, at.log.sampling_time, near, fine)
+    Ts = at.log.sampling_time
+    return fit_noise(at.linear, at.e, at.J, prior, Ts, near, fine, largest=largest)

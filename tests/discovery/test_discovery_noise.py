@@ -5,7 +5,7 @@ import pytest
 from discovery_cases import STEP, covariance, linear_plant
 
 from identification.kalman.linear import LinearPlant
-from identification.kalman.noise_fit import fit_noise, likelihood, unit_ratio
+from identification.kalman.noise_fit import LEVELS, TIME, fit_noise, likelihood, unit_ratio
 from identification.kalman.noise_model import Noise, whitener
 
 SIGMA = 2e-3
@@ -61,6 +61,31 @@ def test_where_there_is_none_it_finds_none_or_what_no_output_notices():
     ]
     assert np.mean([f.noise.ratio == 0 for f in found]) >= 0.4
     assert max(f.noise.ratio for f in found) < 0.5 * unit
+
+
+@pytest.mark.parametrize("share", [0.0, 0.03, 0.5, 10.0])
+def test_no_more_error_of_the_inputs_is_taken_for_granted_than_is_believed(share):
+    rng, plant, truth = np.random.default_rng(5), cart(), Noise(300.0, 0.03)
+    J, prior, e = np.zeros((150, 1, 0)), np.zeros(0), drawn(plant, truth, rng, 1)[0]
+    free = fit_noise(plant, e, J, prior, STEP, fine=False)
+    held = fit_noise(plant, e, J, prior, STEP, fine=False, largest=share * free.input_std)
+    unit = Noise(unit_ratio(plant, STEP, TIME), TIME)
+    tried = [likelihood(whitener(plant, n, STEP), n, e, J, prior)
+             for n in map(unit.scaled, LEVELS)]  # fmt: skip
+    believed = [t.log_likelihood for t in tried if t.input_std <= share * free.input_std]
+    assert held.input_std <= share * free.input_std
+    assert held.log_likelihood == max(believed)
+    again = fit_noise(plant, e, J, prior, STEP, free, fine=False, largest=share * free.input_std)
+    assert again.input_std <= share * free.input_std
+
+
+def test_a_slow_plant_feels_as_much_of_a_noise_that_lasts_longer():
+    short = Noise(300.0, 0.01)
+    long = short.lasting(0.04)
+    assert long.ratio**2 * long.time == pytest.approx(short.ratio**2 * short.time)
+    assert long.lasting(0.01) == short
+    felt = [1 / unit_ratio(cart(600), STEP / 20, n.time) * n.ratio for n in (short, long)]
+    assert felt[0] == pytest.approx(felt[1], rel=0.15)
 
 
 def test_its_level_is_no_less_likely_than_the_truth():

@@ -7,7 +7,7 @@ from discovery_cases import EFFECTS, FREE, base, record, slider, wander
 from identification import Parameter
 from identification.discovery.extend import _inside, fit_with
 from identification.effect import Candidate
-from identification.kalman.noise_fit import Level
+from identification.kalman.noise_fit import ALLOWED, Level
 from identification.kalman.noise_model import Noise
 from identification.kalman.problem import linearised
 from identification.kalman.refit import descent, noise_at
@@ -77,9 +77,9 @@ def test_a_search_ends_at_the_likeliest_point_since_its_noise_was_sharpened(monk
     begun = fit_with(base(), log, (), {}, steps=0)
     sharpened = []
 
-    def spy(at, prior, near, fine):
+    def spy(at, prior, near, fine=False, largest=np.inf):
         sharpened.append(fine)
-        return noise_at(at, prior, near, fine)
+        return noise_at(at, prior, near, fine, largest)
 
     monkeypatch.setattr("identification.kalman.refit.noise_at", spy)
     points = [*descent(begun.at, begun.mean, begun.prior, steps=steps)]
@@ -87,6 +87,29 @@ def test_a_search_ends_at_the_likeliest_point_since_its_noise_was_sharpened(monk
     assert sharpened.count(True) == 1
     assert sharpened.count(False) <= 1 + steps
     assert likely[-1] == max(likely[sharpened.index(True) :])
+
+
+def test_likelihood_does_not_lead_where_inputs_err_beyond_belief_and_not_by_chance():
+    t = 0.02 * np.arange(300)[:, None]
+    log = record(slider(**TRUE), 300, seed=1, error=3.0 * np.sin(2 * np.pi * 4.1 * t))
+    begun = fit_with(base(), log, (), {}, steps=0)
+    points = [*descent(begun.at, begun.mean, begun.prior)]
+    (end, level), levels = points[-1], [lv for _, lv in points]
+    assert level.input_std > ALLOWED * end.motion  # which the vibration needs
+    sharpened = levels.index(level)
+    assert all(lv.input_std <= ALLOWED * end.motion for lv in levels[:sharpened])
+    assert len(points) == sharpened + 1
+
+
+def test_likelihood_does_lead_where_inputs_err_much_but_by_chance():
+    log = record(slider(**TRUE), 300, seed=1, error=wander(300, 0.3, 0.1, seed=1))
+    begun = fit_with(base(), log, (), {"mass": 4.0}, steps=0)
+    points = [*descent(begun.at, begun.mean, begun.prior)]
+    likely = [linearised(*p, begun.mean, begun.prior).log_posterior for p in points]
+    sharpened = next(
+        k for k, (_, lv) in enumerate(points) if lv.input_std > ALLOWED * begun.at.motion
+    )
+    assert likely[-1] > likely[sharpened]
 
 
 def test_a_bent_step_follows_the_curve_of_the_residual_to_one_order_more():

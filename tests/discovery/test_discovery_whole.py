@@ -101,7 +101,7 @@ def test_of_two_effects_neither_is_the_others_rival(monkeypatch):
 
 def test_an_effect_gives_way_to_one_that_was_never_refitted_but_explains_more(monkeypatch):
     seen = spied(monkeypatch, swap)
-    found(**{"offset.f": -0.6, "rubbing.c": 1.5})
+    found(**{"offset.f": -0.8, "rubbing.c": 1.5})
     ((base_, log, nominal, kept, step, columns),) = seen
     right = {c.effect.name: c for c in step.candidates}
     spring = next(c.candidate for c in columns if c.candidate.effect.name == "spring")

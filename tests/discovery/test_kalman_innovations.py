@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from identification.discovery.innovations import whiteness
+from identification.kalman.innovations import whiteness
 
 H, N, NY = 0.01, 600, 8
 
