@@ -7,7 +7,7 @@ from math import hypot, isfinite
 
 from identification.discovery.locate import input_error
 from identification.discovery.result import Detectable, Discovery, Named
-from identification.effect import Candidate
+from identification.discovery.words import phrase, sizes
 from identification.kalman.noise_fit import ALLOWED
 from identification.quantities import alike, quantity
 
@@ -136,22 +136,6 @@ def sentence(clause: str) -> str:
 def diff_line(named: Named) -> str:
     """A named effect as a line of a diff of the model."""
     return f"+ {phrase(named.candidate)}: {sizes(named)}"
-
-
-def phrase(candidate: Candidate) -> str:
-    """An effect and its place in words."""
-    said = candidate.effect.phrase or candidate.effect.name.replace("_", " ")
-    return f"{said}, {candidate.where}"
-
-
-def sizes(named: Named) -> str:
-    """Sizes and shapes of a named effect, each with its std."""
-    effect = named.candidate.effect
-    about = {s.name: s.about for s in effect.sizes} | {s.name: s.about for s in effect.shapes}
-    return ", ".join(
-        f"{name} = {quantity(value, std, unit)}" + (f" ({about[name]})" if about.get(name) else "")
-        for name, (value, std, unit) in named.parameters.items()
-    )
 
 
 def split_detectable(

@@ -20,7 +20,7 @@ from identification.discovery.columns import Column
 from identification.discovery.extend import Base
 from identification.discovery.result import Named, Rival
 from identification.discovery.retuned import retuned
-from identification.discovery.steps import Accepted, Step
+from identification.discovery.steps import Accepted, Step, parameters_of
 from identification.effect import Candidate
 from identification.kalman.noise_model import whitener
 
@@ -47,7 +47,6 @@ def named_of(
     """
     at = final.refit.at
     values = at.values
-    std = dict(zip(at.space.names, final.refit.std * at.space.slope(at.q), strict=True))
     out = []
     named = {_key(a.step) for a in accepted}
     for new in accepted:
@@ -61,17 +60,12 @@ def named_of(
         probability = weights / weights.sum()
         rivals = [s.candidates[-1] for s in others]
         alike = _alike(base, final, mine, rivals, columns)
-        parameters = {}
-        for name in (*mine.sizes, *mine.fixed):
-            record = base.plant.parameters[name]
-            symbol = record.symbol or record.name
-            parameters[symbol] = values[name], float(std.get(name, 0.0)), record.unit
         shape = {s.name: values[mine.effect.parameter(s.name, mine.where)]
                  for s in mine.effect.shapes}  # fmt: skip
         out.append(
             Named(
                 replace(mine, shape=shape),
-                parameters,
+                parameters_of(base, final, mine),
                 float(min(CAP, probability[0]) * min(1.0, max(0.0, explained))),
                 tuple(
                     Rival(r, float(p), a)

@@ -20,7 +20,7 @@ from identification.discovery.locate import believed, in_doubt, input_error, lef
 from identification.discovery.missing import missing_forces
 from identification.discovery.passes import backward, swap
 from identification.discovery.proof import prove
-from identification.discovery.result import Discovery, Verdict
+from identification.discovery.result import Discovery, Tried, Verdict
 from identification.discovery.score import Score
 from identification.discovery.steps import Accepted, Step, fitted, scores_of
 from identification.effect import Effect
@@ -64,12 +64,12 @@ def discover(
     clock("scores")
     say(f"{len(ranked)} candidates scored, {ranked[0].candidate.effect.name} first")
     accepted: list[Accepted] = []
-    step, doubt = nominal, None
+    rejected: tuple[Tried, ...] = ()
+    step = nominal
     while len(accepted) < MOST:
-        new = add(base, log, step, ranked, say)
+        new, rejected = add(base, log, step, ranked, say)
         clock("refits")
-        if not isinstance(new, Accepted):
-            doubt = None if accepted else new
+        if new is None:
             break
         accepted.append(new)
         step = new.step
@@ -80,7 +80,7 @@ def discover(
     if len(accepted) > 1:
         ranked = scores_of(step, sensed)
     clock("refits")
-    left = left_over(step) + (() if doubt is None else (in_doubt(doubt),))
+    left = left_over(step) + (() if accepted else in_doubt(rejected))
     explained = _explained(nominal, step)
     named = named_of(base, kept, step, sensed, explained if left else 1.0)
     verdict: Verdict = "nothing missing"
@@ -88,6 +88,7 @@ def discover(
         verdict = "named"
     elif named or left:
         verdict = "unknown effect"
+        rejected = (*(Tried(n.candidate, n.parameters, n.gain, n.proof) for n in named), *rejected)
         named, step, ranked = (), nominal, first
     missing = missing_forces(nominal.refit) if verdict != "nothing missing" else ()
     where = located(nominal, missing) if verdict != "nothing missing" else ()
@@ -95,7 +96,7 @@ def discover(
         log, verdict, named, bool(left), step.refit.level.sigma, step.unseen.disturbance,
         nominal.unseen.gap, step.unseen.gap, nominal.refit, step.refit,
         log.outputs - nominal.unseen.e, log.outputs - step.unseen.e, first, ranked,
-        detectable(ranked), where, left, missing, clock.seconds, base.horizon,
+        detectable(ranked), where, left, missing, clock.seconds, base.horizon, rejected,
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from identification.discovery.result import Discovery, Named
+from identification.discovery.result import Discovery, Named, Tried
 
 
 def discovery_to_json(found: Discovery) -> dict[str, Any]:
@@ -21,6 +21,7 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
     return {
         "verdict": found.verdict,
         "effects": [_effect_json(named) for named in found.named],
+        "rejected": [_rejected_json(tried) for tried in found.rejected],
         "unexplained": found.unexplained,
         "gap": {
             "noise_rms": found.noise_rms,
@@ -43,15 +44,27 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _rejected_json(tried: Tried) -> dict[str, Any]:
+    return {
+        "name": tried.candidate.effect.name, "where": tried.candidate.where,
+        "parameters": _parameters_json(tried), "gain": tried.gain,
+        "proof": {"gain": tried.proof.gain, "t": tried.proof.t, "fall": tried.proof.fall},
+    }  # fmt: skip
+
+
+def _parameters_json(found: Named | Tried) -> dict[str, Any]:
+    return {
+        name: {"value": value, "std": std if np.isfinite(std) else None, "unit": unit}
+        for name, (value, std, unit) in found.parameters.items()
+    }
+
+
 def _effect_json(named: Named) -> dict[str, Any]:
     return {
         "name": named.candidate.effect.name,
         "where": named.candidate.where,
         "confidence": named.confidence,
-        "parameters": {
-            name: {"value": value, "std": std if np.isfinite(std) else None, "unit": unit}
-            for name, (value, std, unit) in named.parameters.items()
-        },
+        "parameters": _parameters_json(named),
         "rivals": [
             {"name": r.candidate.effect.name, "where": r.candidate.where,
              "confidence": r.confidence}

@@ -14,14 +14,14 @@ from collections.abc import Callable, Sequence
 from identification.discovery.extend import Base
 from identification.discovery.locate import left_over
 from identification.discovery.proof import prove
+from identification.discovery.result import Tried
 from identification.discovery.score import Score
 from identification.discovery.steps import (
     Accepted,
-    Doubtful,
     Step,
     fitted,
     holds,
-    matters,
+    parameters_of,
     proven,
     significant,
 )
@@ -36,8 +36,8 @@ ELSEWHERE = 0.7  # share of an effect's best gain that makes another place a con
 
 def add(
     base: Base, whole: Log, step: Step, ranked: Sequence[Score], say: Callable[[str], None]
-) -> Accepted | Doubtful | None:
-    """The best effect to add to a model, if any is worth it; the best that could not be proven."""
+) -> tuple[Accepted | None, tuple[Tried, ...]]:
+    """The best effect to add to a model, if any is worth it, and those that were not."""
     tried: list[Step] = []
     for s in _contenders(significant(ranked)):
         sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
@@ -55,16 +55,16 @@ def add(
         tried[0] = _other_shape(base, whole, step, tried[0], ranked)
     if tried and not step.candidates and _structured(tried[0]):
         tried[0] = _from_nominal(base, whole, step, tried[0])
-    doubtful = None
+    rejected: list[Tried] = []
     clean = not step.candidates and not left_over(step)
     for k, new in enumerate(tried):
         proof = prove(step.unseen, new.unseen)
         gain = new.criterion - step.criterion
         if gain > 0 and (holds(proof) or (clean and proven(proof))):
-            return Accepted(new, proof, gain, tuple(tried[:k] + tried[k + 1 :]))
-        if gain > 0 and matters(proof):
-            doubtful = doubtful or Doubtful(new.candidates[-1], proof)
-    return doubtful
+            return Accepted(new, proof, gain, tuple(tried[:k] + tried[k + 1 :])), ()
+        mine = new.candidates[-1]
+        rejected.append(Tried(mine, parameters_of(base, new, mine), gain, proof))
+    return None, tuple(rejected)
 
 
 def _contenders(found: Sequence[Score]) -> list[Score]:

@@ -10,7 +10,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from identification.discovery.missing import MissingForce
-from identification.discovery.steps import Doubtful, Step
+from identification.discovery.result import Tried
+from identification.discovery.steps import Step, matters
+from identification.discovery.words import phrase, sizes
 from identification.kalman.innovations import SURE, whiteness
 from identification.kalman.noise_fit import ALLOWED
 from identification.kalman.refit import Refit
@@ -138,13 +140,14 @@ def left_over(step: Step) -> tuple[str, ...]:
     return tuple(out)
 
 
-def in_doubt(doubt: Doubtful) -> str:
-    """An effect that could not be proven, in words."""
-    what = doubt.candidate.effect.phrase or doubt.candidate.effect.name.replace("_", " ")
-    return (
-        f"{what}, {doubt.candidate.where}, which explains the fitted samples beyond chance and"
-        f" {100 * doubt.proof.fall:.0f} % of the error on unseen data, but not surely there"
-        f" (t = {doubt.proof.t:.1f})"
+def in_doubt(rejected: Sequence[Tried]) -> tuple[str, ...]:
+    """The likeliest effect that fitted samples want and that would matter, but is not proven."""
+    wanted = [t for t in rejected if t.gain > 0 and matters(t.proof)]
+    return tuple(
+        f"{phrase(t.candidate)}, {sizes(t)}, which explains the fitted samples beyond chance and"
+        f" {100 * t.proof.fall:.0f} % of the error on unseen data, but not surely there"
+        f" (t = {t.proof.t:.1f})"
+        for t in wanted[:1]
     )
 
 

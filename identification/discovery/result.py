@@ -67,6 +67,23 @@ class Proof:
 
 
 @dataclass(frozen=True)
+class Tried:
+    """An effect that was refitted and not believed.
+
+    Attributes:
+        candidate: which.
+        parameters: its sizes and shapes by name: value, std, unit.
+        gain: twice the log likelihood that it would add, less what BIC asks for its parameters.
+        proof: what it would do for unseen data.
+    """
+
+    candidate: Candidate
+    parameters: Mapping[str, tuple[float, float, str]]
+    gain: float
+    proof: Proof
+
+
+@dataclass(frozen=True)
 class Named:
     """An effect that is missing from the model.
 
@@ -148,6 +165,7 @@ class Discovery:
         missing: the forces that the nominal model lacks, by where they act.
         seconds: wall time by stage [s].
         horizon: over which gaps and proofs are judged [s]; None for a free run.
+        rejected: what was refitted beside the named effects, and not believed, the best first.
     """
 
     log: Log
@@ -170,3 +188,4 @@ class Discovery:
     missing: tuple[MissingForce, ...]
     seconds: Mapping[str, float]
     horizon: float | None = None
+    rejected: tuple[Tried, ...] = ()

@@ -72,19 +72,6 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Doubtful:
-    """An effect that the fitted samples want, and that would matter, but unseen data do not prove.
-
-    Attributes:
-        candidate: the effect.
-        proof: on unseen data.
-    """
-
-    candidate: Candidate
-    proof: Proof
-
-
-@dataclass(frozen=True)
 class Accepted:
     """An effect that was added.
 
@@ -99,6 +86,21 @@ class Accepted:
     proof: Proof
     gain: float
     others: tuple[Step, ...]
+
+
+def parameters_of(
+    base: Base, step: Step, candidate: Candidate
+) -> dict[str, tuple[float, float, str]]:
+    """Sizes of an effect in a fitted model by their symbols: value, std, unit."""
+    at = step.refit.at
+    std = dict(zip(at.space.names, step.refit.std * at.space.slope(at.q), strict=True))
+    out = {}
+    for name in (*candidate.sizes, *candidate.fixed):
+        record = base.plant.parameters[name]
+        out[record.symbol or record.name] = (
+            at.values[name], float(std.get(name, 0.0)), record.unit,
+        )  # fmt: skip
+    return out
 
 
 def fitted(

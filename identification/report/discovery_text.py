@@ -6,13 +6,13 @@ from math import isfinite
 from typing import Any
 
 from identification.discovery.result import Discovery, Gap
+from identification.discovery.words import against, phrase, sizes
 from identification.quantities import alike, quantity
 from identification.verdict_discovery import (
     diff_line,
     discovery_verdict,
     floor_rms,
     output_unit,
-    phrase,
     split_detectable,
 )
 
@@ -31,6 +31,7 @@ def discovery_text(found: Discovery) -> str:
         "\n".join(["where the final model still fails:", *(f"  {s}" for s in found.left)])
         if found.left
         else "",
+        "\n".join(_rejected(found)),
         "\n".join(_detectable(found)),
         f"{sum(found.seconds.values()):.1f} s",
     ]
@@ -64,6 +65,16 @@ def _gap(found: Discovery) -> list[str]:
 
     out = ["error on unseen data:", line("before", before, found.before)]
     return [*out, line("after", after, found.after)] if found.named else out
+
+
+def _rejected(found: Discovery) -> list[str]:
+    if not found.rejected:
+        return []
+    beside = " beside what is named" if found.named else ""
+    lines = [f"tried{beside}, and not believed:"]
+    for tried in found.rejected:
+        lines += [f"  {phrase(tried.candidate)}: {sizes(tried)}", f"    {against(tried)}"]
+    return lines
 
 
 def _detectable(found: Discovery) -> list[str]:

@@ -12,6 +12,7 @@ from discovery_cases import EFFECTS, STEP, base, record, slider, wander
 from identification import InputError
 from identification.discovery.confidence import named_of
 from identification.discovery.discover import SHORTEST, _explained, discover
+from identification.discovery.forward import add
 from identification.discovery.passes import swap
 from identification.discovery.steps import fitted
 
@@ -121,7 +122,27 @@ def test_what_fitted_samples_want_and_unseen_ones_do_not_prove_is_neither_named_
     answer = found(**{"offset.f": -0.8})
     assert answer.verdict == "unknown effect"
     assert not answer.named
-    assert any("offset" in clause and "not surely there" in clause for clause in answer.left)
+    (clause,) = [clause for clause in answer.left if "not surely there" in clause]
+    (tried,) = [t for t in answer.rejected if t.candidate.effect.name == "offset"]
+    value, std, unit = tried.parameters["f"]
+    assert abs(value + 0.8) < 4 * std
+    assert unit == "N"
+    assert "offset, joint, f = " in clause
+
+
+def test_what_was_refitted_beside_a_name_and_not_believed_is_kept(monkeypatch):
+    def spy(*arguments):
+        if arguments[2].candidates:  # beside a first name nothing is proven
+            monkeypatch.setattr("identification.discovery.steps.T", 1e9)
+        return add(*arguments)
+
+    monkeypatch.setattr("identification.discovery.discover.add", spy)
+    answer = found(**{"offset.f": -0.8, "rubbing.c": 1.0})
+    rejected = {t.candidate.effect.name: t for t in answer.rejected}
+    assert "rubbing" in rejected
+    assert rejected["rubbing"].gain > 0
+    named = {n.candidate.effect.name for n in answer.named}
+    assert "offset" in (named if answer.verdict == "named" else rejected)
 
 
 @pytest.mark.parametrize("vibration", [0.0, 0.1])

@@ -8,7 +8,16 @@ import numpy as np
 from identification import Predictor, fit_percent
 from identification.coordinates import coordinates
 from identification.discovery.missing import MissingForce
-from identification.discovery.result import Detectable, Discovery, Gap, Named, Proof, Retuned, Rival
+from identification.discovery.result import (
+    Detectable,
+    Discovery,
+    Gap,
+    Named,
+    Proof,
+    Retuned,
+    Rival,
+    Tried,
+)
 from identification.discovery.score import Score
 from identification.effect import Candidate
 from identification.kalman.noise_fit import Level
@@ -32,6 +41,7 @@ RETUNED = Retuned("m", 40.0, 0.0)
 STRIBECK = Candidate(STRIBECK_FRICTION.effect, "all drives", {"v_s": 2.4, "n": 2.0})
 MISMATCH = Candidate(FRICTION_MISMATCH.effect, "drive 3", {})
 LATE = Candidate(DELAY.effect, "all drives", {})
+REJECTED = Tried(LATE, {"tau": (2.5e-4, 1e-4, "s")}, 4.0, Proof(-1.2, -0.7, 0.0, -0.002, 0.0))
 
 
 @cache
@@ -85,6 +95,7 @@ def found(verdict="named", *, one_of=False, unexplained=False, several=False) ->
         ("The error grows at low speed.",), ("The error is largest at drive 3.",) * unexplained,
         () if verdict == "nothing missing" else (_pushed(),),
         {"fit": 1.5, "score": 2.0},
+        rejected=(REJECTED,) if is_named else (),
     )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ from math import hypot
 import pytest
 from fake_discovery import NOISE, found
 
+from identification.discovery.discovery_json import discovery_to_json
 from identification.kalman.noise_fit import Level
 from identification.kalman.noise_model import Noise
 from identification.report.discovery_text import discovery_text
@@ -76,6 +77,17 @@ def test_text_begins_with_the_verdict_and_holds_no_nan(verdict: str) -> None:
     assert text.startswith(discovery_verdict(outcome)[0])
     assert "nan" not in text
     assert ("+ friction: Stribeck peak" in text) == (verdict == "named")
+
+
+def test_what_was_tried_and_not_believed_is_told_with_its_size_and_why() -> None:
+    text = discovery_text(found())
+    told = text[text.index("tried beside what is named, and not believed:") :]
+    assert "all drives: tau = 250 ± 100 µs (delay)" in told
+    assert "t = -0.7, and the mean square rises by 0.2 %" in told
+    (kept,) = discovery_to_json(found())["rejected"]
+    assert kept["parameters"]["tau"] == {"value": 2.5e-4, "std": 1e-4, "unit": "s"}
+    assert kept["proof"]["fall"] == -0.002
+    assert "not believed" not in discovery_text(found("nothing missing"))
 
 
 def test_a_diff_line_reads_as_one() -> None:
