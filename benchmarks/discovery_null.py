@@ -13,8 +13,8 @@ from discovery_statistics import rate
 def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[dict[str, Any]]:
     """Scores of one robot in which nothing is missing, under many draws of its noise.
 
-    The nominal model is fitted once to a log without noise's luck, the columns are taken once;
-    each draw puts an encoder's noise, and the inputs' error through the linearised plant, on it.
+    The nominal model is fitted once, to a log of it, and the columns are taken once; each draw is a
+    simulation of that model, its inputs in error where so asked, seen through an encoder's noise.
     """
     import numpy as np
     from threadpoolctl import threadpool_limits
@@ -29,7 +29,6 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     from inca_mj.effects.catalogue import CATALOGUE
     from inca_mj.twin import build_twin
     from inca_mj.worlds import Setting, world
-    from inca_mj.worlds.measure import coloured as wander
 
     begin = time.perf_counter()
     whole = world(seed, setting=Setting(duration=duration)).log
@@ -43,19 +42,9 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     for s in score(fit, sensed):
         best.setdefault(s.candidate.effect.name, s.candidate)
     sensed += columns(at, single([*best.values()]))
-    y = at.log.outputs - at.e
     rng = np.random.default_rng([seed, 9])
     rows = []
-    for k in range(draws):
-        clean = y.copy()
-        if coloured:
-            w = wander((len(y), at.linear.B.shape[2]), at.log.sampling_time, 5e-4, 0.05, rng)
-            x = np.zeros(at.linear.A.shape[1])
-            for i in range(len(y) - 1):
-                x = at.linear.A[i] @ x + at.linear.B[i] @ w[i]
-                clean[i + 1] += at.linear.C @ x
-        step = 2 * np.pi / 4000
-        e = step * np.round((clean + 5e-4 * rng.normal(size=y.shape)) / step) - y
+    for k, e in enumerate(residuals(at, draws, coloured, rng)):
         point = type(at)(at.predictor, at.space, at.q, e, at.J, at.linear)
         with threadpool_limits(1, "blas"):
             level = fit_noise(at.linear, e, at.J, prior, at.log.sampling_time)
@@ -68,9 +57,32 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
             "below_5_percent": float(np.mean([s.p_value < 0.05 for s in scores])),
             "below_5_percent_blocks": float(np.mean([s.block_p_value < 0.05 for s in scores])),
             "ratio": float(level.noise.ratio), "sigma": level.sigma,
+            "disturbance": float(np.sqrt(max(0.0, np.mean(e**2) - level.sigma**2))),
             "seconds": (time.perf_counter() - begin) / (k + 1),
         })  # fmt: skip
     return rows
+
+
+def residuals(at: Any, draws: int, coloured: bool, rng: Any) -> Any:
+    """Measured less predicted of a model that lacks nothing, shape (draws, N, ny)."""
+    import numpy as np
+
+    from identification.predictor import output_columns
+    from identification.rollout import rollout
+    from inca_mj.worlds.measure import coloured as wander
+
+    y, inputs, log = at.log.outputs - at.e, at.log.inputs, at.log
+    clean = np.broadcast_to(y, (draws, *y.shape))
+    if coloured:
+        model = at.predictor.plant.model
+        values = np.tile(at.space.decode(at.q), (draws, 1))
+        start, numbers = at.predictor.settings(values)
+        errors = [wander(inputs.shape, log.sampling_time, 5e-4, 0.05, rng) for _ in range(draws)]
+        run = rollout(model, start, inputs + np.array(errors), log.sampling_time, numbers=numbers,
+                      record=("qpos",), hold_kind=log.hold)["qpos"]  # fmt: skip
+        clean = run[..., [i for _, i in output_columns(model, log.output_names)]]
+    step = 2 * np.pi / 4000
+    return step * np.round((clean + 5e-4 * rng.normal(size=clean.shape)) / step) - y
 
 
 def null_tasks(options: argparse.Namespace, draws: int) -> list[dict[str, Any]]:

@@ -16,13 +16,12 @@ from identification.discovery.columns import Column
 from identification.discovery.extend import Base, fit_with
 from identification.discovery.proof import Unseen, unseen
 from identification.discovery.result import Proof
-from identification.discovery.score import Score, score
+from identification.discovery.score import ALPHA, Score, score
 from identification.effect import Candidate
 from identification.kalman.innovations import MATTERS
 from identification.kalman.refit import Refit
 from identification.log import Log
 
-ALPHA = 0.01  # family-wise chance of a name where nothing is missing, before the proof
 T = 2.0  # t of the proof: 2.5 % one-sided
 END = 0.02  # of a logarithm: this near to its limit a parameter is at it
 FALL, SHARE = MATTERS, 0.1  # of the free run's mean square, and of what is above the sensors' noise

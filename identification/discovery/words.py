@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from identification.discovery.result import Named, Tried
+from collections.abc import Sequence
+
+from identification.discovery.result import Discovery, Named, Tried
+from identification.discovery.score import ALPHA, Score
 from identification.effect import Candidate
 from identification.quantities import quantity
 
@@ -21,6 +24,26 @@ def sizes(found: Named | Tried) -> str:
         f"{name} = {quantity(value, std, unit)}" + (f" ({about[name]})" if about.get(name) else "")
         for name, (value, std, unit) in found.parameters.items()
     )
+
+
+def not_believed(found: Discovery) -> tuple[str, list[str]]:
+    """What was tried and not believed, or what would have been the next: a title and its lines."""
+    beside = " beside what is named" if found.named else ""
+    if found.rejected:
+        each = [f"{phrase(t.candidate)}: {sizes(t)}; {against(t)}" for t in found.rejected]
+        return f"tried{beside}, and not believed", each
+    if found.named and found.remaining:
+        return f"next{beside}, and not refitted", [_not_refitted(found.remaining)]
+    return "", []
+
+
+def _not_refitted(scores: Sequence[Score]) -> str:
+    best = max(scores, key=lambda s: s.gain)
+    chance = min(1.0, max(best.p_value, best.block_p_value) * len(scores))
+    why = f"chance {chance:.2g} that one of {len(scores)} does as well by luck"
+    if chance < ALPHA:
+        why = "beyond chance, but at a size of the wrong sign, or larger than physics admits"
+    return f"{phrase(best.candidate)}: gain {best.gain:.3g}, {why}"
 
 
 def against(tried: Tried) -> str:

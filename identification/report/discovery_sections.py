@@ -8,7 +8,7 @@ import numpy as np
 
 from identification.discovery.result import Discovery
 from identification.discovery.score import Score
-from identification.discovery.words import against, phrase, sizes
+from identification.discovery.words import not_believed, phrase
 from identification.log import halves
 from identification.report.discovery_figures import (
     force_figure,
@@ -113,13 +113,9 @@ def rivals_section(found: Discovery) -> Section:
     )
     if not rows and found.named:
         text += "\n\nNo other explanation comes near those that are named."
-    if found.rejected:
-        text += "\n\nRefitted" + (" beside what is named" if found.named else "")
-        text += ", and not believed: "
-        text += "; ".join(
-            f"{phrase(t.candidate)}, {sizes(t)} ({against(t)})" for t in found.rejected
-        )
-        text += "."
+    title, lines = not_believed(found)
+    if lines:
+        text += f"\n\n{title.capitalize()}: {' '.join(map(sentence, lines))}"
     return Section(
         "Who could explain it",
         text,

@@ -6,7 +6,7 @@ from math import isfinite
 from typing import Any
 
 from identification.discovery.result import Discovery, Gap
-from identification.discovery.words import against, phrase, sizes
+from identification.discovery.words import not_believed, phrase
 from identification.quantities import alike, quantity
 from identification.verdict_discovery import (
     diff_line,
@@ -21,6 +21,7 @@ SHOWN = 0.005  # chance of an explanation that is worth a line
 
 def discovery_text(found: Discovery) -> str:
     """All of it, in paragraphs."""
+    title, lines = not_believed(found)
     parts = [
         "\n".join(discovery_verdict(found)),
         "\n".join(_diff(found)),
@@ -31,7 +32,7 @@ def discovery_text(found: Discovery) -> str:
         "\n".join(["where the final model still fails:", *(f"  {s}" for s in found.left)])
         if found.left
         else "",
-        "\n".join(_rejected(found)),
+        "\n".join([f"{title}:", *(f"  {line}" for line in lines)]) if lines else "",
         "\n".join(_detectable(found)),
         f"{sum(found.seconds.values()):.1f} s",
     ]
@@ -65,16 +66,6 @@ def _gap(found: Discovery) -> list[str]:
 
     out = ["error on unseen data:", line("before", before, found.before)]
     return [*out, line("after", after, found.after)] if found.named else out
-
-
-def _rejected(found: Discovery) -> list[str]:
-    if not found.rejected:
-        return []
-    beside = " beside what is named" if found.named else ""
-    lines = [f"tried{beside}, and not believed:"]
-    for tried in found.rejected:
-        lines += [f"  {phrase(tried.candidate)}: {sizes(tried)}", f"    {against(tried)}"]
-    return lines
 
 
 def _detectable(found: Discovery) -> list[str]:

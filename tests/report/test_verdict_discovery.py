@@ -90,6 +90,14 @@ def test_what_was_tried_and_not_believed_is_told_with_its_size_and_why() -> None
     assert "not believed" not in discovery_text(found("nothing missing"))
 
 
+def test_where_nothing_was_tried_beside_a_name_the_next_is_told_and_why_not() -> None:
+    text = discovery_text(replace(found(), rejected=()))
+    told = text[text.index("next beside what is named, and not refitted:") :]
+    assert told.splitlines()[1].startswith(
+        "  friction: one drive differs, drive 3: gain 70, beyond"
+    )
+
+
 def test_a_diff_line_reads_as_one() -> None:
     (named,) = found().named
     assert diff_line(named).startswith("+ friction: Stribeck peak, all drives: f_s = 4.12 ± 0.21")
