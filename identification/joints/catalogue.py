@@ -99,6 +99,9 @@ def _catalogue(
         effect("offset", "f_0", [size("f_0", 0.2 * F, f, "constant force")], "force: constant"),
         effect("stiffness", "-k q", [size("k", 0.3 * F / L, f"{f}/{x}", "of a spring", 1)],
                "spring: pulls back to zero"),
+        effect("hardening", "-k_3 q³",
+               [size("k_3", 0.3 * F / L**3, f"{f}/{x}^3", "of a spring that hardens, or softens")],
+               "spring: grows with the cube of the way", "Duffing 1918"),
     ]  # fmt: skip
     return [e for e in out if e.effect.places]
 
