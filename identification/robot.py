@@ -16,6 +16,7 @@ from identification.joints.axes import axes
 from identification.joints.catalogue import TURNS, joint_effects
 from identification.joints.input_effects import drives, input_effects
 from identification.joints.model import read_model
+from identification.joints.named import means_effect, unknown_number
 from identification.joints.plant import JointPlant, candidates, joint_plant
 from identification.log import Log
 from identification.plant import start_place
@@ -120,4 +121,12 @@ def robot_of(file: RobotFile, log: Log) -> Robot:
             raise unknown_name("effect", name, (e.name for e in effects))
     records = [free_parameter(file, name, model, effects, log) for name in file.free]
     plant = joint_plant(file.model, [r for r, _ in records], log, joints=known, effects=effects)
+    for name in file.fixed:
+        if name not in plant.parameters.values():
+            if means_effect(name, effects):
+                raise unknown_number(name, effects)
+            raise InputError(
+                f"{name!r} under fixed in {file.path} is no number of an effect; write its value"
+                f" into {file.model}, or name it under free"
+            )
     return Robot(file, log, plant.with_values(file.fixed), np.array([std for _, std in records]))

@@ -151,6 +151,16 @@ def test_a_robot_with_an_effect_reads_back_to_the_bit(folder, tmp_path):
         ),
         (("[columns]", "[effects]\njoints = ['arm']\n[columns]"), "known: slide"),
         (("= [", "= {"), "is not TOML"),
+        (
+            ("joint/slide.damping", "coulomb_friction.f_c@slid"),
+            "'slid'; did you mean 'slide'? known: slide",
+        ),
+        (("joint/slide.damping", "coulmb_friction.f_c@slide"), "did you mean 'coulomb_friction'?"),
+        (("joint/slide.damping", "coulomb_friction.f_c"), "did you mean 'coulomb_friction.f_c@sli"),
+        (("joint/slide.damping", "delay.tau@forc"), "input in 'delay.tau@forc': 'forc'; did you"),
+        (("joint/slide.damping", "stribeck_friction.v_s"), "give its value under [fixed]"),
+        (("[columns]", "[fixed]\n'coulomb_friction.f_c@slid' = 1.0\n[columns]"), "known: slide\n"),
+        (("[columns]", "[fixed]\n'joint/slide.armature' = 1.0\n[columns]"), "no number of an eff"),
     ],
 )
 def test_mistakes_are_named(folder, capsys, change, said):
