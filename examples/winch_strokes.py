@@ -87,8 +87,8 @@ def law(mass, w, terms=5):
 
 def balance(strokes):
     """What the strokes of motor 2 say, and its slow ones of all others; i_0, G, c, μ G, d [A]."""
-    print("strokes: motor, mass, speed of the drum (lifting is positive), mean current ± its std over"
-          " turns, how far K_t i is above m g r")  # fmt: skip
+    print("strokes: motor, mass, speed of the drum (lifting is positive), mean current ± its std"
+          " over turns, how far K_t i is above m g r")  # fmt: skip
     for s in sorted(strokes, key=lambda s: (s.motor, s.mass, s.w)):
         share = 100 * (s.mean * K_T / (s.mass * G * RADIUS) - 1)
         print(f"motor {s.motor}, {s.mass} kg, {s.w / TURN:+.2f} rev/s:"

@@ -171,6 +171,21 @@ def test_mistakes_are_named(folder, capsys, change, said):
     assert said in refused(capsys, "fit", path, folder / "plain.csv")
 
 
+@pytest.mark.parametrize(
+    ("change", "line"),
+    [(("</body>", ""), "Line number=3"), (('gear="5"', 'geer="5"'), "'geer' Element 'general', lin"),
+     (('joint="slide" gear', 'joint="slid" gear'), "target 'slid'")],
+)  # fmt: skip
+def test_a_model_that_is_broken_is_told_with_its_path_and_line(folder, capsys, change, line):
+    (folder / "broken.xml").write_text(SLIDER.replace(*change, 1))
+    path = folder / "broken.toml"
+    path.write_text(TOML.replace("slider.xml", "broken.xml"))
+    said = refused(capsys, "fit", path, folder / "plain.csv")
+    assert f"the model {folder / 'broken.xml'} cannot be read (" in said
+    assert line in said
+    assert said.endswith("correct it there\n")
+
+
 def test_a_column_that_the_log_lacks_is_a_matter_of_the_file_that_names_it(folder, capsys):
     path = folder / "column.toml"
     path.write_text(TOML.replace('position = "x"', 'position = "y"'))
