@@ -22,6 +22,7 @@ from identification.log import Log
 from identification.plant import start_place
 from identification.predictor import output_columns
 from identification.read import read_log
+from identification.robot_checks import refuse_every, refuse_milliseconds, refuse_unnamed
 from identification.robot_file import RobotFile
 from identification.robot_parameters import free_parameter, measured_start, unit_of
 
@@ -72,9 +73,11 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     """A log with the columns of a robot.
 
     Raises:
-        InputError: as `read_log`, or a name in the robot's file is no actuator or sensor.
+        InputError: as `read_log`, a name in the robot's file is no actuator or sensor, or its
+            log has too few samples for it, or time that is hardly in seconds.
     """
     model = read_model(file.model).compile()
+    refuse_unnamed(model, file)
     inputs = tuple(model.actuator(i).name for i in range(model.nu))
     sensors = {model.sensor(i).name: int(model.sensor_type[i]) for i in range(model.nsensor)}
     positions = (n for n, t in sensors.items() if t == int(mujoco.mjtSensor.mjSENS_JOINTPOS))
@@ -97,6 +100,8 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
         path, [own[n] for n in inputs], [own[n] for n in outputs],
         units={own[n]: u for n, u in units.items()}, named_in=file.path,
     )  # fmt: skip
+    refuse_milliseconds(model, file, log, Path(path))
+    refuse_every(file, log)
     given = {n: u for n in inputs if (u := log.units.get(own[n]))}
     log = replace(log, input_names=inputs, output_names=outputs, units={**units, **given})
     return decimate(log, file.every) if file.every > 1 else log

@@ -35,10 +35,7 @@ def read_model(source: str | Path) -> mujoco.MjSpec:
     text = str(source)
     given = text.lstrip().startswith("<")
     try:
-        if given:
-            spec = mujoco.MjSpec.from_string(text)
-        else:
-            spec = mujoco.MjSpec.from_file(text)
+        spec = mujoco.MjSpec.from_string(text) if given else mujoco.MjSpec.from_file(text)
         spec.compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
         reason = quoted(" ".join(str(error).split()), _LONGEST)  # MuJoCo writes several lines
