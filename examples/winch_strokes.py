@@ -87,12 +87,16 @@ def law(mass, w, terms=5):
 
 def balance(strokes):
     """What the strokes of motor 2 say, and its slow ones of all others; i_0, G, c, μ G, d [A]."""
+    print("strokes: motor, mass, speed of the drum (lifting is positive), mean current ± its std"
+          " over turns, how far K_t i is above m g r")  # fmt: skip
     for s in sorted(strokes, key=lambda s: (s.motor, s.mass, s.w)):
         share = 100 * (s.mean * K_T / (s.mass * G * RADIUS) - 1)
         print(f"motor {s.motor}, {s.mass} kg, {s.w / TURN:+.2f} rev/s:"
               f" {s.mean:6.2f} ± {s.std:.2f} A, {share:+.1f} % of m g r")  # fmt: skip
     mass, motor, w, i = np.array([(s.mass, s.motor, s.w, s.mean) for s in strokes]).T
     slow = (motor == 2) & (np.abs(w) < 1.5 * TURN)
+    print("fitted: i_0 torque without a mass, r radius at which the mass pulls, c Coulomb friction,"
+          " μ its growth in shares of the load, d viscous friction; ± std")  # fmt: skip
     for rows, words in ((slow, "0.5 and 1 rev/s"), (motor == 2, "all strokes")):
         x, std = fitted(law(mass, w)[rows], i[rows])
         scale = np.array([1e3, 1e3 / G, 1e3, 100 / (K_T * x[1]), 1e3]) * K_T

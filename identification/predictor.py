@@ -135,7 +135,7 @@ def output_columns(model: mujoco.MjModel, names: Sequence[str]) -> list[tuple[st
     columns = []
     for name in names:
         if name not in sensors:
-            raise unknown_name("sensor", name, sensors)
+            raise unknown_name("sensor", name, filter(None, sensors))
         field, address = fields.get(int(model.sensor_type[sensors[name]]), (None, None))
         if field is None or address is None:
             raise InputError(

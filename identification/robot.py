@@ -16,11 +16,13 @@ from identification.joints.axes import axes
 from identification.joints.catalogue import TURNS, joint_effects
 from identification.joints.input_effects import drives, input_effects
 from identification.joints.model import read_model
+from identification.joints.named import means_effect, unknown_number
 from identification.joints.plant import JointPlant, candidates, joint_plant
 from identification.log import Log
 from identification.plant import start_place
 from identification.predictor import output_columns
 from identification.read import read_log
+from identification.robot_checks import refuse_every, refuse_milliseconds, refuse_unnamed
 from identification.robot_file import RobotFile
 from identification.robot_parameters import free_parameter, measured_start, unit_of
 
@@ -71,9 +73,11 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     """A log with the columns of a robot.
 
     Raises:
-        InputError: as `read_log`, or a name in the robot's file is no actuator or sensor.
+        InputError: as `read_log`, a name in the robot's file is no actuator or sensor, or its
+            log has too few samples for it, or time that is hardly in seconds.
     """
     model = read_model(file.model).compile()
+    refuse_unnamed(model, file)
     inputs = tuple(model.actuator(i).name for i in range(model.nu))
     sensors = {model.sensor(i).name: int(model.sensor_type[i]) for i in range(model.nsensor)}
     positions = (n for n, t in sensors.items() if t == int(mujoco.mjtSensor.mjSENS_JOINTPOS))
@@ -96,6 +100,8 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
         path, [own[n] for n in inputs], [own[n] for n in outputs],
         units={own[n]: u for n, u in units.items()}, named_in=file.path,
     )  # fmt: skip
+    refuse_milliseconds(model, file, log, Path(path))
+    refuse_every(file, log)
     given = {n: u for n in inputs if (u := log.units.get(own[n]))}
     log = replace(log, input_names=inputs, output_names=outputs, units={**units, **given})
     return decimate(log, file.every) if file.every > 1 else log
@@ -120,4 +126,12 @@ def robot_of(file: RobotFile, log: Log) -> Robot:
             raise unknown_name("effect", name, (e.name for e in effects))
     records = [free_parameter(file, name, model, effects, log) for name in file.free]
     plant = joint_plant(file.model, [r for r, _ in records], log, joints=known, effects=effects)
+    for name in file.fixed:
+        if name not in plant.parameters.values():
+            if means_effect(name, effects):
+                raise unknown_number(name, effects)
+            raise InputError(
+                f"{name!r} under fixed in {file.path} is no number of an effect; write its value"
+                f" into {file.model}, or name it under free"
+            )
     return Robot(file, log, plant.with_values(file.fixed), np.array([std for _, std in records]))

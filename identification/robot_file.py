@@ -58,7 +58,7 @@ _EFFECTS: dict[str, tuple[type | tuple[type, ...], str]] = {
     **dict.fromkeys(("joints", "only"), (list, "a list of names")),
     "turns": (list, "a list of numbers above zero"),
 }
-_POSITIVE = ("horizon", "every", "known", "scale")
+_POSITIVE = ("every", "known", "scale")
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ import numpy as np
 from identification.effect_parameters import effect_parameters
 from identification.errors import InputError
 from identification.joints.effect import JointEffect
+from identification.joints.named import means_effect, unknown_number
 from identification.log import Log
 from identification.parameter import Parameter
 from identification.paths import read, resolve
@@ -56,7 +57,15 @@ def free_parameter(
             )
         record, guess = replace(own, **given), KNOWN * largest
     else:
-        record, guess = _in_model(said.get("path", name), name, model, log, given)
+        path = said.get("path", name)
+        if any(path == f"{e.name}.{s.name}" for e in effects for s in e.effect.shapes):
+            raise InputError(
+                f"{file.path} frees {path}, which says how an effect looks and not how large it is:"
+                " give its value under [fixed]"
+            )
+        if means_effect(path, effects):
+            raise unknown_number(path, effects)
+        record, guess = _in_model(path, name, model, log, given)
     if record.lower >= 0 and record.value > 0:
         return record, float(said.get("known", KNOWN))
     return record, float(said.get("known", guess)) / record.scale

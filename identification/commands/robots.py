@@ -31,11 +31,14 @@ class OnRobot:
         """The robot compiled for its log, and the records that confirm.
 
         Raises:
-            InputError: a file cannot be what it should be.
+            InputError: a file cannot be what it should be, or the model's steps are too coarse.
         """
         from identification.robot import read_robot_log, robot_of
         from identification.robot_file import read_robot
+        from identification.step_error import refuse_coarse_steps
 
         file = read_robot(self.robot)
         records = tuple(read_robot_log(file, path) for path in self.confirm)
-        return robot_of(file, read_robot_log(file, self.log)), records
+        robot = robot_of(file, read_robot_log(file, self.log))
+        refuse_coarse_steps(robot)
+        return robot, records

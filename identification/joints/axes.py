@@ -16,6 +16,7 @@ import mujoco
 import numpy as np
 
 from identification.errors import InputError
+from identification.joints.frozen import refuse_frozen
 from identification.log import Log
 from identification.names import listed
 from identification.noise import noise_floor
@@ -77,14 +78,22 @@ def axes(model: mujoco.MjModel, log: Log) -> tuple[Axis, ...]:
         log: its inputs are those of the model's actuators.
 
     Raises:
-        InputError: an output is no sensor of a joint, never changes, or is huge.
+        InputError: an output is no sensor of a joint, never changes, freezes, or is huge.
     """
     _refuse_useless(log)
-    seen: dict[int, list[tuple[str, np.ndarray]]] = {}
+    seen: dict[int, dict[str, int]] = {}
     for k, (field, i) in enumerate(output_columns(model, log.output_names)):
         at = model.jnt_qposadr if field == "qpos" else model.jnt_dofadr
-        seen.setdefault(int(np.flatnonzero(at == i)[0]), []).append((field, log.outputs[:, k]))
-    return tuple(_axis(model, log, j, seen[j]) for j in sorted(seen))
+        seen.setdefault(int(np.flatnonzero(at == i)[0]), {})[field] = k
+    for j, own in seen.items():
+        inputs = [_control(model, i) for i in drives_of(model, j)] or [*range(model.nu)]
+        for k in own.values():
+            others = [i for i in own.values() if i != k]
+            refuse_frozen(log, k, log.inputs[:, inputs], log.outputs[:, others])
+    return tuple(
+        _axis(model, log, j, {field: log.outputs[:, k] for field, k in seen[j].items()})
+        for j in sorted(seen)
+    )
 
 
 def _refuse_useless(log: Log) -> None:
@@ -105,9 +114,8 @@ def _refuse_useless(log: Log) -> None:
         )
 
 
-def _axis(model: mujoco.MjModel, log: Log, j: int, seen: list[tuple[str, np.ndarray]]) -> Axis:
+def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray]) -> Axis:
     h = log.sampling_time
-    columns = dict(seen)
     way = columns["qpos"] if "qpos" in columns else np.cumsum(columns["qvel"]) * h
     rates = columns["qvel"] if "qvel" in columns else _rate(way, h)
     speed, travel = float(np.abs(rates).max()), float(np.ptp(way))

@@ -68,6 +68,7 @@ def _numbers(row):  # type: ignore[no-untyped-def]
         load_constant(row + 80), load_constant(row + 88), load_constant(row + 96),
         load_constant(row + 104), load_constant(row + 112), load_constant(row + 120),
         load_constant(row + 128), load_constant(row + 136), load_constant(row + 144),
+        load_constant(row + 152),
     )  # fmt: skip
 
 

@@ -16,7 +16,7 @@ from identification.joints.effect import JointEffect, places
 PROBE = 0.01  # of the largest plausible size
 TURNS = (*map(float, range(1, 13)), 14.0, 16.0, 18.0, 20.0, 24.0, 28.0)  # harmonics of a turn
 SPEEDS = (0.03, 0.06, 0.12, 0.25, 0.5)  # Stribeck velocities to try, of the top speed
-WAVES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)  # of a slide's travel
+WAVES = (1.0, 2.0, 4.0, 8.0, 16.0)  # periods of a slide's travel; less is not seen to repeat
 
 
 def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple[JointEffect, ...]:
@@ -99,6 +99,9 @@ def _catalogue(
         effect("offset", "f_0", [size("f_0", 0.2 * F, f, "constant force")], "force: constant"),
         effect("stiffness", "-k q", [size("k", 0.3 * F / L, f"{f}/{x}", "of a spring", 1)],
                "spring: pulls back to zero"),
+        effect("hardening", "-k_3 q³",
+               [size("k_3", 0.3 * F / L**3, f"{f}/{x}^3", "of a spring that hardens, or softens")],
+               "spring: grows with the cube of the way", "Duffing 1918"),
     ]  # fmt: skip
     return [e for e in out if e.effect.places]
 
@@ -109,4 +112,4 @@ def _waves(kind: Kind, travel: float, turns: Sequence[float]) -> Shape:
         low, high = min(*turns, 1.0), max(48.0, *turns)
         return Shape("n", "", tuple(turns), low, high, free=False, about="periods in a turn")
     grid = tuple(2 * pi * w / travel for w in WAVES)
-    return Shape("n", "rad/m", grid, 0.5 * grid[0], 4 * grid[-1], about="wave number")
+    return Shape("n", "rad/m", grid, grid[0], 4 * grid[-1], about="wave number")

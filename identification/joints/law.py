@@ -11,7 +11,7 @@
         - (f_q s + d_q v) q                     friction along the way
         - (a_f cos n_f q + b_f sin n_f q) s     friction that repeats along the way
         + a cos n q + b sin n q                 cogging
-        + f_0 - k q                             offset, stiffness
+        + f_0 - k q - k_3 q³                    offset, stiffness, its hardening
 
 q, v: position and velocity [rad, rad/s or m, m/s]; f: torque or force [N m or N], as MuJoCo's
 qfrc_passive counts it. v₀ is fixed for each joint, `Axis.smooth`, 1 % of its top speed: friction
@@ -27,7 +27,9 @@ from typing import Any
 from numba import njit
 
 # The letters above, in the order of a joint's user data behind its key.
-Numbers: Any = namedtuple("Numbers", "v_0 f_c f_a d_a f_s v_s c mu f_q d_q a_f b_f n_f a b n f_0 k")
+Numbers: Any = namedtuple(
+    "Numbers", "v_0 f_c f_a d_a f_s v_s c mu f_q d_q a_f b_f n_f a b n f_0 k k_3"
+)
 
 
 @njit(error_model="numpy")
@@ -43,6 +45,7 @@ def force(q, v, f_u, p):  # type: ignore[no-untyped-def]
     s = tanh(v / p.v_0)
     f = p.f_0 - p.k * q - p.f_c * s - p.f_a * abs(s) - p.d_a * abs(v) - p.c * v * abs(v)
     f -= p.mu * abs(f_u) * s + (p.f_q * s + p.d_q * v) * q
+    f -= p.k_3 * q * q * q
     if p.f_s != 0.0:
         f -= p.f_s * exp(-((v / p.v_s) ** 2)) * s
     if p.a_f != 0.0 or p.b_f != 0.0:

@@ -17,7 +17,9 @@ from identification.errors import InputError, unknown_name
 from identification.joints.axes import Axis
 from identification.joints.callback import KEY, WIDTH
 from identification.joints.law import Numbers
+from identification.names import quoted
 
+_LONGEST = 200  # of MuJoCo's words in a message
 _HELD = {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}
 
 
@@ -31,14 +33,14 @@ def read_model(source: str | Path) -> mujoco.MjSpec:
         InputError: it cannot be read or compiled.
     """
     text = str(source)
+    given = text.lstrip().startswith("<")
     try:
-        if text.lstrip().startswith("<"):
-            spec = mujoco.MjSpec.from_string(text)
-        else:
-            spec = mujoco.MjSpec.from_file(text)
+        spec = mujoco.MjSpec.from_string(text) if given else mujoco.MjSpec.from_file(text)
         spec.compile()
     except (ValueError, OSError, mujoco.FatalError) as error:
-        raise InputError(f"the model cannot be read: {error}") from error
+        reason = quoted(" ".join(str(error).split()), _LONGEST)  # MuJoCo writes several lines
+        where = "the model" if given else f"the model {text}"
+        raise InputError(f"{where} cannot be read ({reason}); correct it there") from error
     return spec
 
 

@@ -82,6 +82,8 @@ def test_a_force_is_what_the_equation_says():
     )
     for v in (-0.7, 0.02, 0.5):
         assert force(0.3, v, 0.0, p) == pytest.approx(1 - 2 * tanh(v / 0.1) - 3 * abs(v), abs=1e-15)
+    spring = p._replace(v_0=1.0, f_c=0.0, d_a=0.0, f_0=0.0, k=4.0, k_3=-5.0)
+    assert force(0.3, 0.0, 0.0, spring) == pytest.approx(-4 * 0.3 + 5 * 0.3**3, abs=1e-15)
     up, down = force(0.0, 0.5, 0.0, p) - 1, force(0.0, -0.5, 0.0, p) - 1
     assert (up, down) == pytest.approx((-2 - 1.5, 2 - 1.5), abs=1e-3)  # d_a brakes one way only
 

@@ -153,6 +153,17 @@ def test_the_periods_of_a_motor_that_is_known_are_tried_on_hinges_only():
     assert grids((7.0, 84.0))["slide_cogging"] == grids()["slide_cogging"]
 
 
+def test_what_repeats_on_a_slide_is_seen_to_repeat():
+    """A wave longer than the travel is a spring or an offset by another name."""
+    travel = 0.3
+    effects = {e.name: e for e in joint_effects((Axis("s", "slide", 1.0, 1.0, travel),))}
+    for name in ("cogging", "periodic_friction"):
+        (shape,) = effects[name].effect.shapes
+        assert shape.lower == shape.grid[0] == pytest.approx(2 * np.pi / travel)
+        assert np.array(shape.grid) == pytest.approx(shape.grid[0] * np.array([1, 2, 4, 8, 16]))
+        assert shape.grid[-1] < shape.upper
+
+
 def test_a_window_is_explained_as_well_among_others_where_the_joint_sticks_as_by_itself():
     """Stiff friction forgets the first rate at once; an undamped step from there goes anywhere."""
     u = np.where(np.arange(400)[:, None] % 100 < 50, steps(400, hold=10), 0.3)

@@ -151,6 +151,16 @@ def test_a_robot_with_an_effect_reads_back_to_the_bit(folder, tmp_path):
         ),
         (("[columns]", "[effects]\njoints = ['arm']\n[columns]"), "known: slide"),
         (("= [", "= {"), "is not TOML"),
+        (
+            ("joint/slide.damping", "coulomb_friction.f_c@slid"),
+            "'slid'; did you mean 'slide'? known: slide",
+        ),
+        (("joint/slide.damping", "coulmb_friction.f_c@slide"), "did you mean 'coulomb_friction'?"),
+        (("joint/slide.damping", "coulomb_friction.f_c"), "did you mean 'coulomb_friction.f_c@sli"),
+        (("joint/slide.damping", "delay.tau@forc"), "input in 'delay.tau@forc': 'forc'; did you"),
+        (("joint/slide.damping", "stribeck_friction.v_s"), "give its value under [fixed]"),
+        (("[columns]", "[fixed]\n'coulomb_friction.f_c@slid' = 1.0\n[columns]"), "known: slide\n"),
+        (("[columns]", "[fixed]\n'joint/slide.armature' = 1.0\n[columns]"), "no number of an eff"),
     ],
 )
 def test_mistakes_are_named(folder, capsys, change, said):
@@ -159,6 +169,70 @@ def test_mistakes_are_named(folder, capsys, change, said):
     assert text != TOML
     path.write_text(text)
     assert said in refused(capsys, "fit", path, folder / "plain.csv")
+
+
+@pytest.mark.parametrize(
+    ("change", "thing"),
+    [(('general name="force"', "general"), "actuator"), (('name="position" ', ""), "sensor")],
+)
+@pytest.mark.parametrize("outputs", ["", "outputs = ['position']\n"])
+def test_a_thing_without_a_name_is_told(folder, capsys, change, thing, outputs):
+    (folder / "unnamed.xml").write_text(SLIDER.replace(*change, 1))
+    path = folder / "unnamed.toml"
+    path.write_text(outputs + TOML.replace("slider.xml", "unnamed.xml"))
+    said = refused(capsys, "fit", path, folder / "plain.csv")
+    assert f"{thing} 0 of {folder / 'unnamed.xml'}, counted from 0, has no name; give it" in said
+
+
+def test_how_much_a_log_may_be_thinned_is_told(folder, capsys):
+    path = folder / "every.toml"
+    path.write_text("every = 240\n" + TOML)
+    said = refused(capsys, "fit", path, folder / "plain.csv")
+    assert f"every in {path} is 240" in said
+    assert said.endswith("it may be 239 at most\n")
+    path.write_text("every = 239\n" + TOML)
+    assert len(read_robot_log(read_robot(path), folder / "plain.csv")) == 6
+    (folder / "lines.toml").write_text('hold = "foh"')
+    (folder / "lines.csv").write_text((folder / "plain.csv").read_text())
+    assert "leave every out" in refused(capsys, "fit", path, folder / "lines.csv")
+
+
+@pytest.mark.parametrize(
+    ("command", "horizon", "most"),
+    [("fit", h, 6) for h in (0, -1, 0.02, 6.1)] + [("discover", h, 3) for h in (0, 0.02, 5, 6.1)],
+)
+def test_how_long_a_horizon_may_be_is_told(folder, capsys, command, horizon, most):
+    path = folder / "horizon.toml"
+    path.write_text(f"horizon = {horizon}\n" + TOML)
+    said = refused(capsys, command, path, folder / "plain.csv")
+    assert f"horizon in {path} is {horizon} s" in said
+    assert f"it may be 0.03 s, of 3 samples, to {most} s, to fit" in said
+
+
+def test_time_in_milliseconds_is_asked_for_and_converted(folder, capsys):
+    log = simulated({})
+    write_log(replace(log, time=1e3 * log.time), folder / "slow.csv")
+    said = refused(capsys, "fit", folder / "robot.toml", folder / "slow.csv")
+    assert "is sampled every 10 s, 5000 steps of" in said
+    assert f'in ms? then write time = "ms" under [units] in {folder / "slow.toml"}' in said
+    (folder / "slow.toml").write_text('units.time = "ms"')
+    read = read_robot_log(read_robot(folder / "robot.toml"), folder / "slow.csv")
+    assert read.sampling_time == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize(
+    ("change", "line"),
+    [(("</body>", ""), "Line number=3"), (('gear="5"', 'geer="5"'), "'geer' Element 'general', li"),
+     (('joint="slide" gear', 'joint="slid" gear'), "target 'slid'")],
+)  # fmt: skip
+def test_a_model_that_is_broken_is_told_with_its_path_and_line(folder, capsys, change, line):
+    (folder / "broken.xml").write_text(SLIDER.replace(*change, 1))
+    path = folder / "broken.toml"
+    path.write_text(TOML.replace("slider.xml", "broken.xml"))
+    said = refused(capsys, "fit", path, folder / "plain.csv")
+    assert f"the model {folder / 'broken.xml'} cannot be read (" in said
+    assert line in said
+    assert said.endswith("correct it there\n")
 
 
 def test_a_column_that_the_log_lacks_is_a_matter_of_the_file_that_names_it(folder, capsys):
