@@ -22,7 +22,7 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     from identification.discovery.columns import columns, common, single
     from identification.discovery.extend import Base, fit_with
     from identification.discovery.score import score
-    from identification.discovery.steps import significant
+    from identification.discovery.significant import significant
     from identification.kalman.noise_fit import fit_noise
     from inca_mj.comparison import timestep_for
     from inca_mj.discover import KNOWN, TIMESTEP

@@ -17,6 +17,7 @@ from identification import Log, Parameter, Predictor
 from identification.decimate import decimate
 from identification.discovery.discover import discover
 from identification.discovery.extend import Base
+from identification.discovery.words import not_believed
 from identification.estimate_windows import estimate_windows
 from identification.estimation import estimate
 from identification.joints.plant import candidates, joint_plant
@@ -66,6 +67,7 @@ def main(folder, figure=None):
     print(found.verdict, "| unexplained:", found.unexplained)
     for named in found.named:
         print(named.candidate.effect.name, named.parameters, f"confidence {named.confidence:.2f}")
+    print(*not_believed(found))
 
     more = {n: v for n, v in found.final.at.values.items() if n not in free}  # its sizes
     best = estimate_windows(plant, log, (*START, *more), HORIZON, {**fit.values, **more})

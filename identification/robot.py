@@ -22,7 +22,12 @@ from identification.log import Log
 from identification.plant import start_place
 from identification.predictor import output_columns
 from identification.read import read_log
-from identification.robot_checks import refuse_every, refuse_milliseconds, refuse_unnamed
+from identification.robot_checks import (
+    refuse_every,
+    refuse_milliseconds,
+    refuse_same_stem,
+    refuse_unnamed,
+)
 from identification.robot_file import RobotFile
 from identification.robot_parameters import free_parameter, measured_start, unit_of
 
@@ -76,6 +81,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
         InputError: as `read_log`, a name in the robot's file is no actuator or sensor, or its
             log has too few samples for it, or time that is hardly in seconds.
     """
+    refuse_same_stem(file, Path(path))
     model = read_model(file.model).compile()
     refuse_unnamed(model, file)
     inputs = tuple(model.actuator(i).name for i in range(model.nu))

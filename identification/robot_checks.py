@@ -14,6 +14,19 @@ from identification.sampling import MIN_ROWS, rows_between
 MOST_STEPS = 100.0  # of the model in a sample; more is mostly time in ms
 
 
+def refuse_same_stem(file: RobotFile, log: Path) -> None:
+    """Refuse a robot's file that would be read as the log's own TOML.
+
+    Raises:
+        InputError: it has the log's name.
+    """
+    if log.with_suffix(".toml").resolve() == file.path.resolve():
+        raise InputError(
+            f"{file.path} bears the name of {log} and would be read as what its log's own TOML says"
+            " of units and parts; rename one of them"
+        )
+
+
 def refuse_unnamed(model: mujoco.MjModel, file: RobotFile) -> None:
     """Refuse actuators without a name, and sensors of positions that may be meant as outputs.
 

@@ -22,11 +22,14 @@ from identification.discovery.passes import backward, swap
 from identification.discovery.proof import prove
 from identification.discovery.result import Discovery, Tried, Verdict
 from identification.discovery.score import Score
+from identification.discovery.significant import too_large
 from identification.discovery.steps import Accepted, Step, fitted, scores_of
+from identification.discovery.words import beyond
 from identification.effect import Effect
 from identification.errors import InputError
 from identification.kalman.noise_fit import ALLOWED
 from identification.log import Log
+from identification.sensitivity import refuse_without_effect
 
 MOST = 3  # effects
 EXPLAINED = 0.5  # of the gap on unseen data that named effects must close to be more than a guess
@@ -49,13 +52,14 @@ def discover(
         progress: is told a line per stage.
 
     Raises:
-        InputError: the log is too short, or a name is unknown.
+        InputError: the log is too short, a name is unknown, or a free parameter has no effect.
         DivergenceError: the nominal model cannot be simulated.
     """
     _refuse_unfit(log)
     say = progress or (lambda line: None)
     clock = _Clock()
     nominal = fitted(base, log, (), {})
+    refuse_without_effect(nominal.refit.at.J, base.names, log)
     clock("nominal fit")
     say(f"nominal fit: {1e3 * nominal.unseen.rms:.3g}e-3 on unseen data")
     sensed = _sensitivities(base, nominal, effects)
@@ -81,10 +85,12 @@ def discover(
         ranked = scores_of(step, sensed)
     clock("refits")
     left = left_over(step) + (() if accepted else in_doubt(rejected))
+    if (other := too_large(first, [a.step.candidates[-1].effect.name for a in kept])) is not None:
+        left += (beyond(other),)
     explained = _explained(nominal, step)
     named = named_of(base, kept, step, sensed, explained if left else 1.0)
     verdict: Verdict = "nothing missing"
-    if named and (not left or (explained > EXPLAINED and believed(step))):
+    if named and (not left or (explained > EXPLAINED and believed(step) and other is None)):
         verdict = "named"
     elif named or left:
         verdict = "unknown effect"

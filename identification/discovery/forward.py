@@ -16,6 +16,7 @@ from identification.discovery.locate import left_over
 from identification.discovery.proof import prove
 from identification.discovery.result import Tried
 from identification.discovery.score import Score
+from identification.discovery.significant import significant
 from identification.discovery.steps import (
     Accepted,
     Step,
@@ -23,7 +24,6 @@ from identification.discovery.steps import (
     holds,
     parameters_of,
     proven,
-    significant,
 )
 from identification.errors import DivergenceError, InputError
 from identification.kalman.innovations import whiteness

@@ -14,20 +14,19 @@ from identification.discovery.columns import Column
 from identification.discovery.extend import Base
 from identification.discovery.forward import CONTENDERS
 from identification.discovery.proof import prove
+from identification.discovery.significant import LIKE, significant
 from identification.discovery.steps import (
     Accepted,
     Step,
     fitted,
     holds,
     scores_of,
-    significant,
 )
 from identification.effect import Candidate
 from identification.errors import DivergenceError, InputError
 from identification.log import Log
 
 HOPELESS = 0.5  # share of an effect's gain that a rival must have had to be tried again
-LIKE = 0.8  # share of an effect's score that another must have to be tried in its place
 
 
 def backward(

@@ -32,7 +32,6 @@ from identification.kalman.noise_fit import Level
 from identification.kalman.noise_model import Noise, whitener
 from identification.kalman.refit import Refit
 
-ALPHA = 0.01  # family-wise chance of a name where nothing is missing, before the proof
 BLOCKS = 40
 SMALLER = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # noise of the inputs to try, in units of the nominal
 

@@ -1,8 +1,6 @@
 """What the steps of a discovery are made of: a model with some effects, and when one is worth it.
 
-A candidate is worth a refit when it explains more than chance at a family-wise error of `ALPHA`,
-by the noise model and by blocks, with a size that is plausible; an effect is worth a name when
-unseen data confirm it beyond chance, and by enough to matter.
+An effect is worth a name when unseen data confirm it beyond chance, and by enough to matter.
 """
 
 from __future__ import annotations
@@ -16,7 +14,7 @@ from identification.discovery.columns import Column
 from identification.discovery.extend import Base, fit_with
 from identification.discovery.proof import Unseen, unseen
 from identification.discovery.result import Proof
-from identification.discovery.score import ALPHA, Score, score
+from identification.discovery.score import Score, score
 from identification.effect import Candidate
 from identification.kalman.innovations import MATTERS
 from identification.kalman.refit import Refit
@@ -133,32 +131,6 @@ def scores_of(step: Step, columns: Sequence[Column]) -> tuple[Score, ...]:
         and c.candidate.effect.name not in effects
     ]  # fmt: skip
     return score(step.refit, others)
-
-
-def significant(scores: Sequence[Score]) -> list[Score]:
-    """Scores beyond chance with plausible sizes, the best shape of each effect and place."""
-    each: dict[tuple[str, str], Score] = {}
-    for s in sorted(scores, key=_as_a_whole, reverse=True):
-        likely = max(s.p_value, s.block_p_value) * len(scores) < ALPHA
-        if likely and plausible(s.candidate, s.size) and s.gain > 0:
-            each.setdefault((s.candidate.effect.name, s.candidate.where), s)
-    return sorted(each.values(), key=lambda s: -s.gain)
-
-
-def _as_a_whole(s: Score) -> float:
-    """Gain of a score, less where its size is not the one that the effect has when it is there."""
-    fixed = [size.present for size in s.candidate.effect.sizes]
-    if fixed[0] is None or s.size[0] <= 0:
-        return s.gain
-    return s.gain * float(np.exp(-abs(np.log(s.size[0] / fixed[0]))))
-
-
-def plausible(candidate: Candidate, size: np.ndarray) -> bool:
-    """Whether sizes have the right sign and are not beyond what physics admits."""
-    for value, s in zip(size, candidate.effect.sizes, strict=True):
-        if s.sign * value < 0 or abs(value) > s.farthest:
-            return False
-    return True
 
 
 def matters(proof: Proof) -> bool:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from identification.discovery.result import Discovery, Named, Tried
-from identification.discovery.score import ALPHA, Score
+from identification.discovery.score import Score
+from identification.discovery.significant import ALPHA, chance
 from identification.effect import Candidate
 from identification.quantities import quantity
 
@@ -39,11 +40,26 @@ def not_believed(found: Discovery) -> tuple[str, list[str]]:
 
 def _not_refitted(scores: Sequence[Score]) -> str:
     best = max(scores, key=lambda s: s.gain)
-    chance = min(1.0, max(best.p_value, best.block_p_value) * len(scores))
-    why = f"chance {chance:.2g} that one of {len(scores)} does as well by luck"
-    if chance < ALPHA:
+    luck = chance(best, scores)
+    why = f"chance {luck:.2g} that one of {len(scores)} does as well by luck"
+    if luck < ALPHA:
         why = "beyond chance, but at a size of the wrong sign, or larger than physics admits"
     return f"{phrase(best.candidate)}: gain {best.gain:.3g}, {why}"
+
+
+def beyond(score: Score) -> str:
+    """A candidate that explains more than what is named, at a size that is not believed."""
+    each = zip(score.candidate.effect.sizes, score.size, strict=True)
+    said = ", ".join(
+        f"{s.name} = {quantity(value, unit=s.unit)} where {quantity(s.farthest, unit=s.unit)} is"
+        " thought to be the most"
+        for s, value in each
+        if abs(value) > s.farthest
+    )
+    return (
+        f"{phrase(score.candidate)}, which would explain more than what is named (gain"
+        f" {score.gain:.4g}), but only at {said}"
+    )
 
 
 def against(tried: Tried) -> str:

@@ -1,7 +1,7 @@
 """Candidate effects of the hinge and slide joints of a robot; their law is in `law`.
 
 A size is plausible up to a share of what the drives can do: of F for a force, of F/V for what
-grows with speed, of F/L for what grows along the way (see `axes`).
+grows with speed, of F/A for what grows along the way, A half the travel (see `axes`).
 """
 
 from __future__ import annotations
@@ -45,6 +45,7 @@ def _catalogue(
     axes: tuple[Axis, ...], kind: Kind, turns: Sequence[float], prefix: str
 ) -> list[JointEffect]:
     F, V, L = (max(getattr(a, word) for a in axes) for word in ("force", "speed", "travel"))
+    A = L / 2
     f, x = ("N m", "rad") if kind == "hinge" else ("N", "m")
     at = places("joint", tuple(a.joint for a in axes))
     plain = tuple(a.joint for a in axes if a.plain)
@@ -87,20 +88,20 @@ def _catalogue(
                [size("mu", 0.2, "", "share of the load", 1)], "friction: grows with the load",
                "Hamon, Gautier, Garrec 2010", where=places("joint", plain)),
         effect("position_dependent_friction", "-f_q q tanh(v/v₀)",
-               [size("f_q", 0.3 * F / L, f"{f}/{x}", "growth along the way")],
+               [size("f_q", 0.3 * F / A, f"{f}/{x}", "growth along the way")],
                "friction: Coulomb level changes along the way"),
         effect("position_dependent_damping", "-d_q q v",
-               [size("d_q", 0.3 * F / (V * L), f"{f} s/{x}^2", "growth along the way")],
+               [size("d_q", 0.3 * F / (V * A), f"{f} s/{x}^2", "growth along the way")],
                "friction: viscous, changes along the way"),
         effect("periodic_friction", "-(a cos nq + b sin nq) tanh(v/v₀)", list(waves),
                "friction: repeats along the way", shapes=(n,), columns=("a_f", "b_f", "n_f")),
         effect("cogging", "a cos nq + b sin nq", list(waves), "motor: cogging", "Krishnan 2010",
                (n,)),
         effect("offset", "f_0", [size("f_0", 0.2 * F, f, "constant force")], "force: constant"),
-        effect("stiffness", "-k q", [size("k", 0.3 * F / L, f"{f}/{x}", "of a spring", 1)],
+        effect("stiffness", "-k q", [size("k", 0.3 * F / A, f"{f}/{x}", "of a spring", 1)],
                "spring: pulls back to zero"),
         effect("hardening", "-k_3 q³",
-               [size("k_3", 0.3 * F / L**3, f"{f}/{x}^3", "of a spring that hardens, or softens")],
+               [size("k_3", 0.3 * F / A**3, f"{f}/{x}^3", "of a spring that hardens, or softens")],
                "spring: grows with the cube of the way", "Duffing 1918"),
     ]  # fmt: skip
     return [e for e in out if e.effect.places]

@@ -186,3 +186,12 @@ def test_a_friction_that_the_data_do_not_want_goes_to_nothing_and_no_search_fail
     fit = estimate_windows(plant, log, ("mass", unwanted.name), 0.2, too_much)
     assert fit.values[unwanted.name] < 1e-9
     assert fit.std[1] == np.inf
+
+
+def test_what_grows_along_the_way_may_take_its_share_of_the_drive_at_the_end_of_a_swing():
+    axis = Axis("s", "slide", 16.7, 1.0, 0.55)
+    effects = {e.name: e.effect for e in joint_effects((axis,))}
+    A, share = axis.travel / 2, 0.3 * axis.force
+    (k,), (k_3,) = effects["stiffness"].sizes, effects["hardening"].sizes
+    assert k.largest * A == pytest.approx(share)
+    assert k_3.largest * A**3 == pytest.approx(share)

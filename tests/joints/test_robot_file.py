@@ -287,3 +287,13 @@ def test_where_nothing_is_missing_the_fitted_model_is_confirmed(folder, capsys):
     (there,) = found["confirm"]
     assert there["after"] == pytest.approx(5e-4, rel=0.15)
     assert there["before"] > there["after"]
+
+
+def test_a_robots_file_that_bears_the_name_of_its_log_is_told_so(folder, capsys):
+    path = folder / "plain.toml"
+    path.write_text(TOML)
+    try:
+        said = refused(capsys, "fit", path, folder / "plain.csv")
+    finally:
+        path.unlink()
+    assert "would be read as what its log's own TOML says" in said

@@ -1,0 +1,72 @@
+"""Which scores are worth a refit, and which of the others a name must not hide."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from discovery_cases import EFFECTS, base, record, slider, wander
+
+from identification import InputError, Parameter
+from identification.discovery.discover import discover
+from identification.discovery.score import Score
+from identification.discovery.significant import significant, too_large
+from identification.discovery.words import beyond
+from identification.effect import Candidate, Effect, Size
+from identification.kalman.noise_fit import Level
+from identification.kalman.noise_model import Noise
+
+
+def scored(name, size, gain, p=1e-9, sign=0, largest=1.0):
+    effect = Effect(name, "f", (Size("f", "N", largest, 1e-3, sign),), places={"joint": ""})
+    level = Level(Noise(0.0, 0.1), 1.0, 0.0)
+    return Score(Candidate(effect, "joint", {}), np.array([size]), np.ones(1), gain, p, p, 1.0,
+                 level)  # fmt: skip
+
+
+MILD = scored("mild", 0.5, 100.0)
+
+
+@pytest.mark.parametrize(
+    ("other", "hides"),
+    [
+        (scored("stiff", 6.0, 200.0), True),  # five times the largest is 5
+        (scored("stiff", 4.0, 200.0), False),  # it was refitted
+        (scored("stiff", 6.0, 110.0), False),  # no better than what is named
+        (scored("stiff", 6.0, 200.0, p=0.2), False),  # luck
+        (scored("stiff", -6.0, 200.0, sign=1), False),  # physics forbids it
+    ],
+)
+def test_a_name_must_not_hide_what_explains_more_at_a_size_beyond_belief(other, hides):
+    scores = (other, MILD)
+    found = too_large(scores, ["mild"])
+    assert found is (other if hides else None)
+    assert too_large(scores, []) is None
+    assert too_large(scores, ["mild", "stiff"]) is None
+    if hides:
+        assert [s.candidate.effect.name for s in significant(scores)] == ["mild"]
+        assert "f = 6 N where 5 N is thought to be the most" in beyond(other)
+
+
+def test_one_that_explains_less_is_not_named_in_place_of_one_that_may_not_be_so_large():
+    spring, *others = EFFECTS
+    (k,) = spring.sizes
+    weak = replace(spring, sizes=(replace(k, largest=0.2),))  # of which 1 N/m is believed
+    log = record(slider(mass=2.2, damping=2.7, **{"spring.k": 5.0}), 500, seed=11,
+                 error=wander(500, 0.03, 0.1, seed=8))  # fmt: skip
+    answer = discover(base(), log, (weak, *others))
+    assert answer.verdict != "nothing missing"
+    assert "spring" not in {n.candidate.effect.name for n in answer.named}
+    assert not answer.named
+    free = discover(base(), log, EFFECTS)
+    assert [n.candidate.effect.name for n in free.named] == ["spring"]
+
+
+def test_a_free_parameter_that_no_output_feels_is_refused():
+    idle = Parameter("width", 1.0, "kg m^2", "body/cart.inertia[1]", lower=0.0)
+    plant = slider()
+    own = replace(plant.parameters, records=(*plant.parameters, idle))
+    robot = base()
+    robot = replace(robot, plant=replace(plant, parameters=own),
+                    names=(*robot.names, "width"), std=np.append(robot.std, 0.3))  # fmt: skip
+    with pytest.raises(InputError, match="width has no effect on position"):
+        discover(robot, record(slider(), 500), EFFECTS)
