@@ -11,12 +11,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from scipy.stats import chi2
+
 from identification.discovery.extend import Base
 from identification.discovery.locate import left_over
 from identification.discovery.proof import prove
 from identification.discovery.result import Tried
 from identification.discovery.score import Score
-from identification.discovery.significant import significant
+from identification.discovery.significant import ALPHA, plausible, significant
 from identification.discovery.steps import (
     Accepted,
     Step,
@@ -30,6 +32,7 @@ from identification.kalman.innovations import whiteness
 from identification.log import Log
 
 CONTENDERS = 3  # explanations that are refitted at most
+HIDDEN = 2  # effects that are refitted although their scores may be luck
 CLOSE = 0.3  # share of the best gain that makes a contender
 ELSEWHERE = 0.7  # share of an effect's best gain that makes another place a contender
 
@@ -39,7 +42,9 @@ def add(
 ) -> tuple[Accepted | None, tuple[Tried, ...]]:
     """The best effect to add to a model, if any is worth it, and those that were not."""
     tried: list[Step] = []
-    for s in _contenders(significant(ranked)):
+    contenders = _contenders(significant(ranked))
+    hidden = not contenders and not step.candidates and bool(step.refit.level.noise.ratio)
+    for s in _likeliest(ranked) if hidden else contenders:
         sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
         more = (*step.candidates, s.candidate)
         try:
@@ -49,7 +54,8 @@ def add(
             continue
         gain = new.criterion - step.criterion
         say(f"{s.candidate.effect.name}, {s.candidate.where}: gain {gain:.0f}")
-        tried.append(new)
+        if not hidden or _beyond_chance(new, step, len(ranked)):
+            tried.append(new)
     tried.sort(key=_criterion, reverse=True)
     if tried and _structured(tried[0]):
         tried[0] = _other_shape(base, whole, step, tried[0], ranked)
@@ -65,6 +71,25 @@ def add(
         mine = new.candidates[-1]
         rejected.append(Tried(mine, parameters_of(base, new, mine), gain, proof))
     return None, tuple(rejected)
+
+
+def _likeliest(ranked: Sequence[Score]) -> list[Score]:
+    """What may hide as an error of the inputs: the best of two effects, whose scores are luck.
+
+    Base parameters that were bent for want of an effect lie too far for a score, which is linear.
+    """
+    best: dict[str, Score] = {}
+    for s in ranked:
+        if s.gain > 0 and plausible(s.candidate, s.size):
+            best.setdefault(s.candidate.effect.name, s)
+    return [*best.values()][:HIDDEN]
+
+
+def _beyond_chance(new: Step, step: Step, n: int) -> bool:
+    """Whether a refit gains more than the best of n candidates does by luck."""
+    more = len(new.refit.at.q) - len(step.refit.at.q)
+    gain = 2 * (new.refit.log_posterior - step.refit.log_posterior)
+    return bool(chi2.sf(gain, more) * n < ALPHA)
 
 
 def _contenders(found: Sequence[Score]) -> list[Score]:

@@ -130,6 +130,16 @@ def test_what_fitted_samples_want_and_unseen_ones_do_not_prove_is_neither_named_
     assert "offset, joint, f = " in clause
 
 
+@pytest.mark.parametrize("sizes", [{"spring.k": 5.0}, {}])
+def test_an_effect_that_hides_as_an_error_of_the_inputs_is_refitted_although_its_score_is_luck(
+    monkeypatch, sizes
+):
+    monkeypatch.setattr("identification.discovery.forward.significant", lambda ranked: [])
+    answer = found(**sizes)
+    assert {f"{n.candidate.effect.name}.k" for n in answer.named} == set(sizes)
+    assert answer.verdict == ("named" if sizes else "nothing missing")
+
+
 def test_what_was_refitted_beside_a_name_and_not_believed_is_kept(monkeypatch):
     def spy(*arguments):
         if arguments[2].candidates:  # beside a first name nothing is proven
