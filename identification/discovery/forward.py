@@ -32,7 +32,6 @@ from identification.kalman.innovations import whiteness
 from identification.log import Log
 
 CONTENDERS = 3  # explanations that are refitted at most
-HIDDEN = 2  # effects that are refitted although their scores may be luck
 CLOSE = 0.3  # share of the best gain that makes a contender
 ELSEWHERE = 0.7  # share of an effect's best gain that makes another place a contender
 
@@ -74,7 +73,7 @@ def add(
 
 
 def _likeliest(ranked: Sequence[Score]) -> list[Score]:
-    """What may hide as an error of the inputs: the best of two effects, whose scores are luck.
+    """What may hide as an error of the inputs: the best of few effects, whose scores are luck.
 
     Base parameters that were bent for want of an effect lie too far for a score, which is linear.
     """
@@ -82,7 +81,7 @@ def _likeliest(ranked: Sequence[Score]) -> list[Score]:
     for s in ranked:
         if s.gain > 0 and plausible(s.candidate, s.size):
             best.setdefault(s.candidate.effect.name, s)
-    return [*best.values()][:HIDDEN]
+    return [*best.values()][:CONTENDERS]
 
 
 def _beyond_chance(new: Step, step: Step, n: int) -> bool:
