@@ -4,7 +4,8 @@ Of those that were refitted the most likely one is chosen, by BIC, and accepted 
 so too: beyond chance and, but for a first effect that leaves nothing else to explain, by enough to
 matter; a second name is often but the wrong shape of the first. Where the best leaves structure in
 the fitted samples, its next likely shape is tried, and for a first effect a start at the nominal
-values.
+values. Where no score is beyond chance but inputs are said to err, the best are refitted all the
+same, and must then gain beyond chance.
 """
 
 from __future__ import annotations
