@@ -9,6 +9,7 @@ advance in one `Batch.rollout`, on native threads.
 
 from __future__ import annotations
 
+import copy
 import ctypes
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -128,6 +129,8 @@ def rollout(
     if len(own) not in (1, n):
         raise InputError(f"{len(own)} input sequences for {n} simulations; give one, or one each")
 
+    model = copy.copy(model)
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR  # nobody reads them
     batch = Batch(model, n, nthread or min(threads(), n))
     _expand(batch, numbers)
     for field, row in zip(("qpos", "qvel", "act"), rows, strict=True):

@@ -55,7 +55,9 @@ def discover(
         DivergenceError: the nominal model cannot be simulated.
     """
     step = timestep_for(log.sampling_time, timestep)
-    plant = build_twin(parameters, geometry, timestep=step, effects=effects, settled=settled)
+    plant = build_twin(
+        parameters, geometry, timestep=step, effects=effects, settled=settled, visual=False
+    )
     refuse_miswired(log, plant)
     base = Base(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
     return told(search(base, log, [e.effect for e in effects], progress))

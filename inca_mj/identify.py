@@ -105,7 +105,8 @@ def identify(
             one start is asked for.
         DivergenceError: the nominal values cannot be simulated.
     """
-    plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
+    timestep = timestep_for(log.sampling_time, timestep)
+    plant = build_twin(parameters, geometry, timestep=timestep, visual=False)
     refuse_miswired(log, plant)
     fitted = log.part("estimation")
 

@@ -58,7 +58,8 @@ def identify_windows(
             f"windows cannot find {', '.join(free)} alone: each has a start of its own; name a"
             f" parameter of the robot too, such as {', '.join(UNKNOWN)}"
         )
-    plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
+    timestep = timestep_for(log.sampling_time, timestep)
+    plant = build_twin(parameters, geometry, timestep=timestep, visual=False)
     refuse_miswired(log, plant)
     fitted = log.part("estimation")
     names = tuple(dict.fromkeys((*(free or MECHANICS), *POSE)))
@@ -92,7 +93,8 @@ def identify_innovations(
         InputError: as `identify`.
         DivergenceError: the nominal values cannot be simulated.
     """
-    plant = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
+    timestep = timestep_for(log.sampling_time, timestep)
+    plant = build_twin(parameters, geometry, timestep=timestep, visual=False)
     refuse_miswired(log, plant)
     names = tuple(free) or (*MECHANICS, *POSE)
     found = estimate_innovations(plant, log, names, progress=progress)

@@ -139,6 +139,7 @@ def build_twin(
     timestep: float = TIMESTEP,
     effects: Sequence[DriveEffect] = (),
     settled: bool = False,
+    visual: bool = True,
 ) -> Twin:
     """Build and compile the robot, and install the law of its cables in this process.
 
@@ -148,6 +149,7 @@ def build_twin(
         timestep: of the RK4 integrator [s].
         effects: candidate effects to compile into the law; their sizes become parameters.
         settled: see `Layout`.
+        visual: whether it can be drawn; without its shapes it moves the same, and sooner.
 
     Raises:
         InputError: the start has no pretension, two effects have one name, or another library
@@ -158,6 +160,7 @@ def build_twin(
     native.install(layout)
     spec = build(parameters, geometry, layout)
     spec.option.timestep = timestep
+    spec.compiler.discardvisual = not visual
     model = spec.compile()
     write_values(model, parameters, geometry, layout)
     return Twin(parameters, geometry, model, layout.effects, settled)

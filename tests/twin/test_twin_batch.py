@@ -93,6 +93,18 @@ def test_threads_change_no_bit():
     np.testing.assert_array_equal(one, two)
 
 
+def test_what_is_only_drawn_moves_no_bit():
+    start, currents = moving(2), prbs(11, 0.01)
+    bare = build_twin(visual=False)
+    assert bare.model.ngeom == 0 < NOMINAL.model.ngeom
+    drawn, plain = (
+        rollout(robot.model, start, currents, 0.01, record=("qpos", "qvel", "act"))
+        for robot in (NOMINAL, bare)
+    )
+    for field, values in drawn.items():
+        np.testing.assert_array_equal(values, plain[field])
+
+
 @pytest.mark.parametrize("name", SETS)
 def test_a_batch_is_a_loop_over_single_simulations(name):
     robot = build_twin(parameter_set(name))
