@@ -9,6 +9,7 @@ import numpy as np
 
 from identification.log import Log
 from identification.predictor import Predictor
+from identification.quantities import alike
 from identification.robot import Robot
 from identification.window_error import window_error
 
@@ -21,22 +22,34 @@ class Confirmed:
         log: name of the record.
         before: rms error of the first, over all outputs.
         after: of the second.
+        unit: of the errors, empty where the outputs have several.
+        models: what the two are, in words.
     """
 
     log: str
     before: float
     after: float
+    unit: str
+    models: tuple[str, str]
 
     def __str__(self) -> str:
         change = 100 * ((self.after / self.before) ** 2 - 1) if self.before else 0.0
+        before, after = alike([self.before, self.after], self.unit)
+        first, second = self.models
         return (
-            f"On {self.log}: {self.before:.3g} rms before, {self.after:.3g} after, mean square"
-            f" {change:+.0f} %."
+            f"On {self.log}: {before} rms {first}, {after} {second}; mean square {change:+.0f} %."
         )
 
 
+AS_WRITTEN, FITTED = "with the values of the robot's file", "with those that were fitted"
+
+
 def confirmed(
-    robot: Robot, log: Log, before: Mapping[str, float], after: Mapping[str, float]
+    robot: Robot,
+    log: Log,
+    before: Mapping[str, float],
+    after: Mapping[str, float],
+    models: tuple[str, str] = (AS_WRITTEN, FITTED),
 ) -> Confirmed:
     """Two sets of values on a record: over the robot's horizon, or in a free run of all of it.
 
@@ -45,13 +58,14 @@ def confirmed(
         log: the record; it starts where it measured.
         before: values that are not the plant's own.
         after: likewise.
+        models: what the two are, in words.
 
     Raises:
         InputError: the windows do not fit the record.
         DivergenceError: one of the models cannot be simulated.
     """
     a, b = (_rms(robot, log, values) for values in (before, after))
-    return Confirmed(log.name, a, b)
+    return Confirmed(log.name, a, b, log.output_unit, models)
 
 
 def unseen(robot: Robot, before: Mapping[str, float], after: Mapping[str, float]) -> Confirmed:
@@ -67,7 +81,7 @@ def unseen(robot: Robot, before: Mapping[str, float], after: Mapping[str, float]
         return confirmed(robot, part, before, after)
     rows = np.isin(log.time, part.time)
     a, b = (float(np.sqrt(np.mean(_free_run(robot, log, v)[rows] ** 2))) for v in (before, after))
-    return Confirmed(part.name, a, b)
+    return Confirmed(part.name, a, b, part.output_unit, (AS_WRITTEN, FITTED))
 
 
 def _rms(robot: Robot, log: Log, values: Mapping[str, float]) -> float:

@@ -92,6 +92,12 @@ class Log:
         """From the first sample to the last [s]."""
         return float(self.time[-1] - self.time[0])
 
+    @property
+    def output_unit(self) -> str:
+        """The unit of all outputs, empty where they have several or none is known."""
+        units = {self.units.get(name, "") for name in self.output_names}
+        return units.pop() if len(units) == 1 else ""
+
     def between(self, start: float, end: float) -> Log:
         """The samples of [start, end) [s]; time keeps its zero, and the splits are dropped.
 

@@ -31,7 +31,7 @@ def discovery_verdict(found: Discovery) -> list[str]:
 def nothing(found: Discovery) -> str:
     """Nothing is missing, as far as this log can tell."""
     seen, unseen = split_detectable(found.detectable)
-    left, noise = alike([found.before.rms, floor_rms(found)], output_unit(found))
+    left, noise = alike([found.before.rms, floor_rms(found)], found.log.output_unit)
     said = (
         "Nothing is missing: what the fitted model leaves unexplained is noise,"
         f" {left} rms on unseen data where the sensors and unlogged disturbances make {noise}."
@@ -111,7 +111,7 @@ def _retuned(named: Named) -> str:
 
 def _proof(found: Discovery) -> str:
     before, after, floor = found.before.rms, found.after.rms, floor_rms(found)
-    was, now, noise = alike([before, after, floor], output_unit(found))
+    was, now, noise = alike([before, after, floor], found.log.output_unit)
     whom = "it" if len(found.named) == 1 else "them"
     made = ", of sensors and unlogged errors of the inputs" if floor > found.noise_rms else ""
     said = (
@@ -159,12 +159,6 @@ def floor_rms(found: Discovery) -> float:
     return hypot(found.noise_rms, found.disturbance_rms if believed else 0.0)
 
 
-def output_unit(found: Discovery) -> str:
-    """The unit of the outputs, "" where the log does not say one for all."""
-    units = {found.log.units.get(name, "") for name in found.log.output_names}
-    return units.pop() if len(units) == 1 else ""
-
-
 def _largest(d: Detectable) -> float:
     return next((s.largest for s in d.candidate.effect.sizes if s.name == d.size), float("inf"))
 
@@ -174,7 +168,7 @@ def _smallest(d: Detectable) -> str:
 
 
 def _size(found: Discovery, rms: float) -> str:
-    return alike([rms], output_unit(found))[0]
+    return alike([rms], found.log.output_unit)[0]
 
 
 def _unique(names: Iterable[str]) -> list[str]:

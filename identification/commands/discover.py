@@ -18,6 +18,8 @@ from identification.commands.robots import OnRobot
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery
 
+WITHOUT = "without what is named", "with it"
+
 
 @dataclass(frozen=True)
 class Discover(OnRobot):
@@ -40,8 +42,8 @@ class Discover(OnRobot):
         found = discover(robot.base, robot.log, robot.candidates, note)
         before, after = found.nominal.at.values, final_values(found)
         # with nothing named, the fitted model beside the one that the file describes
-        first = before if found.named else {}
-        pairs = [confirmed(robot, log, first, after) for log in records]
+        compared = (before, after, WITHOUT) if found.named else ({}, after)
+        pairs = [confirmed(robot, log, *compared) for log in records]
         record: dict[str, Any] = finite(discovery_to_json(found))
         record = {**record, "confirm": [vars(c) for c in pairs]}
         if self.output.json:

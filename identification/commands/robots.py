@@ -31,14 +31,21 @@ class OnRobot:
         """The robot compiled for its log, and the records that confirm.
 
         Raises:
-            InputError: a file cannot be what it should be, or the model's steps are too coarse.
+            InputError: a file cannot be what it should be, the model's steps are too coarse, or a
+                log is not wired as the model is.
         """
+        from identification.joints.axes import axes
         from identification.robot import read_robot_log, robot_of
         from identification.robot_file import read_robot
         from identification.step_error import refuse_coarse_steps
+        from identification.wiring import refuse_miswired
 
         file = read_robot(self.robot)
         records = tuple(read_robot_log(file, path) for path in self.confirm)
         robot = robot_of(file, read_robot_log(file, self.log))
         refuse_coarse_steps(robot)
+        for log in records:
+            axes(robot.plant.model, log)  # a sensor that froze confirms nothing
+        for log in (robot.log, *records):
+            refuse_miswired(robot, log)
         return robot, records

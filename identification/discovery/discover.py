@@ -16,6 +16,7 @@ from identification.discovery.confidence import named_of
 from identification.discovery.detectable import detectable
 from identification.discovery.extend import Base
 from identification.discovery.forward import add
+from identification.discovery.held import held_otherwise
 from identification.discovery.locate import believed, in_doubt, input_error, left_over, located
 from identification.discovery.missing import missing_forces
 from identification.discovery.passes import backward, swap
@@ -98,6 +99,7 @@ def discover(
         named, step, ranked = (), nominal, first
     missing = missing_forces(nominal.refit) if verdict != "nothing missing" else ()
     where = located(nominal, missing) if verdict != "nothing missing" else ()
+    where += held_otherwise(nominal) if left else ()
     return Discovery(
         log, verdict, named, bool(left), step.refit.level.sigma, step.unseen.disturbance,
         nominal.unseen.gap, step.unseen.gap, nominal.refit, step.refit,

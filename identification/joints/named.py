@@ -23,8 +23,9 @@ def unknown_number(name: str, effects: Sequence[JointEffect]) -> InputError:
     own = next((e.effect for e in effects if e.name == head), None)
     if own is None:
         return unknown_name(f"effect in {name!r}:", head, (e.name for e in effects))
-    if at and size in {s.name for s in own.sizes}:
+    numbers = [p.name for p in effect_parameters(own)]
+    if at and any(n.startswith(f"{head}.{size}@") for n in numbers):
         known = {at[1:]: where.partition(" ")[0] for where, at in own.places.items() if at}
         (kind,) = set(known.values())
         return unknown_name(f"{kind} in {name!r}:", place, known)
-    return unknown_name(f"number of {head}:", name, (p.name for p in effect_parameters(own)))
+    return unknown_name(f"number of {head}:", name, numbers)

@@ -19,7 +19,6 @@ from identification.report.discovery_figures import (
 from identification.report.page import Section, Table
 from identification.verdict_discovery import (
     floor_rms,
-    output_unit,
     sentence,
 )
 
@@ -39,7 +38,7 @@ def unseen_rows(found: Discovery) -> np.ndarray:
 
 def gap_section(found: Discovery) -> Section:
     """How the gap shrinks on data that the fit has not seen."""
-    unit, rows = output_unit(found), unseen_rows(found)
+    unit, rows = found.log.output_unit, unseen_rows(found)
     log, before, after = found.log, *_errors(found)
     figure = gap_figure(
         log.time[rows], before[rows], None if after is None else after[rows],
@@ -68,7 +67,7 @@ def gap_section(found: Discovery) -> Section:
 
 def where_section(found: Discovery) -> Section:
     """Where the nominal model fails, and where the final one still does."""
-    rows, unit = unseen_rows(found), output_unit(found)
+    rows, unit = unseen_rows(found), found.log.output_unit
     before, after = _errors(found)
     left = [f"With what is named: {'; '.join(found.left)}."] if found.left else []
     figure = rms_figure(

@@ -12,7 +12,6 @@ from identification.verdict_discovery import (
     diff_line,
     discovery_verdict,
     floor_rms,
-    output_unit,
     split_detectable,
 )
 
@@ -56,7 +55,7 @@ def _diff(found: Discovery) -> list[str]:
 
 
 def _gap(found: Discovery) -> list[str]:
-    unit, floor = output_unit(found), floor_rms(found)
+    unit, floor = found.log.output_unit, floor_rms(found)
 
     before, after = alike([found.before.rms, found.after.rms], unit)
 

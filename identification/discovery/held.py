@@ -1,0 +1,41 @@
+"""Were the inputs held otherwise between their samples, would a model have less to explain?
+
+Samples of a straight line taken for steps come half a sample late, which no effect of a robot is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from identification.discovery.steps import Step
+from identification.errors import DivergenceError
+from identification.kalman.point import point
+from identification.kalman.refit import noise_at
+from identification.quantities import alike
+
+LEFT = 0.5  # of the inputs' error, below which the other hold is the likelier one
+IN_WORDS = {"foh": "run in straight lines between their samples", "zoh": "hold until the next"}
+
+
+def held_otherwise(nominal: Step) -> tuple[str, ...]:
+    """A sentence where inputs held otherwise would have to err far less.
+
+    Args:
+        nominal: the fitted model without effects.
+    """
+    fit, at = nominal.refit, nominal.refit.at
+    (other,) = {*IN_WORDS} - {at.log.hold}
+    predictor = replace(at.predictor, log=replace(at.log, hold=other))
+    try:
+        there = point(predictor, at.space, at.q, at.linear)
+    except DivergenceError:
+        return ()
+    level = noise_at(there, fit.prior, fit.level)
+    if level.input_std >= LEFT * fit.level.input_std:
+        return ()
+    unit = at.log.units.get(at.log.input_names[0], "")
+    then, now = alike([level.input_std, fit.level.input_std], unit)
+    return (
+        f"if its inputs {IN_WORDS[other]}, they would have to err by {then} rms and not by {now}:"
+        f' is it not hold = "{other}" in the log\'s TOML?',
+    )

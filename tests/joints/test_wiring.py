@@ -1,0 +1,91 @@
+"""A log that another unit, sign or order of columns explains far better is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from joint_cases import ARM, SLIDER, arm, run, slider, slider_log, steps
+
+from identification import Log, write_log
+from identification.__main__ import main
+from identification.errors import InputError
+from identification.robot import read_robot_log, robot_of
+from identification.robot_file import read_robot
+from identification.units import UNITS
+from identification.wiring import refuse_miswired
+
+RNG = np.random.default_rng(5)
+
+
+def robot(folder, model, log, free):
+    """A robot whose file gives its true values, and a log as it is read for it."""
+    (folder / "robot.xml").write_text(model)
+    (folder / "robot.toml").write_text(f'model = "robot.xml"\nfree = ["{free}"]\n')
+    write_log(log, folder / "log.csv")
+    file = read_robot(folder / "robot.toml")
+    read = read_robot_log(file, folder / "log.csv")
+    return robot_of(file, read), read
+
+
+@pytest.fixture(scope="module")
+def cart(tmp_path_factory):
+    log = slider_log(steps(800))
+    y = run(slider(), log)
+    log = replace(log, outputs=y + 1e-3 * RNG.standard_normal(y.shape), units={})
+    return robot(tmp_path_factory.mktemp("cart"), SLIDER, log, "joint/slide.damping")
+
+
+@pytest.fixture(scope="module")
+def two_joints(tmp_path_factory):
+    u = steps(800, 2, hold=30)
+    t = np.arange(len(u)) * 0.01
+    log = Log(t, u, np.stack([np.sin(2 * t), np.cos(3 * t)], axis=1), ("up", "low"), ("a", "b"))
+    y = run(arm(), log)
+    log = replace(log, outputs=y + 1e-3 * RNG.standard_normal(y.shape))
+    return robot(tmp_path_factory.mktemp("arm"), ARM, log, "joint/elbow.damping")
+
+
+def refused(robot, log):
+    with pytest.raises(InputError) as caught:
+        refuse_miswired(robot, log)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("values", [{}, {"mass": 0.6}, {"mass": 6.0}, {"damping": 12.0}])
+def test_a_log_as_the_model_reads_it_passes_even_where_its_values_are_threefold_off(cart, values):
+    own, log = cart
+    y = run(slider(), log, **values) if values else log.outputs
+    refuse_miswired(own, replace(log, outputs=y))
+
+
+@pytest.mark.parametrize("word", [w for w, (si, factor) in UNITS.items() if si == "m" != w])
+def test_another_unit_is_named(cart, word):
+    own, log = cart
+    said = refused(own, replace(log, outputs=log.outputs / UNITS[word][1]))
+    assert f'position = "{word}"' in said
+    assert "robot.toml" in said
+
+
+def test_a_turned_sign_is_named(cart, two_joints):
+    own, log = cart
+    assert "turn the sign of column position" in refused(own, replace(log, outputs=-log.outputs))
+    own, log = two_joints
+    refuse_miswired(own, log)
+    assert "turn the sign of column b" in refused(own, replace(log, outputs=log.outputs * [1, -1]))
+
+
+def test_exchanged_columns_are_named(two_joints):
+    own, log = two_joints
+    said = refused(own, replace(log, outputs=log.outputs[:, ::-1]))
+    assert "exchange a and b under [columns]" in said
+
+
+@pytest.mark.parametrize("command", ["fit", "discover"])
+def test_the_commands_refuse_it_for_the_log_and_for_its_records(cart, tmp_path, capsys, command):
+    own, log = cart
+    wrong = tmp_path / "mm.csv"
+    write_log(replace(log, outputs=1e3 * log.outputs, units={}), wrong)
+    right = own.file.path.with_name("log.csv")
+    for logs in ([wrong], [right, "--confirm", wrong]):
+        assert main([command, str(own.file.path), *map(str, logs)]) == 2
+        assert "log 'mm'" in capsys.readouterr().err
