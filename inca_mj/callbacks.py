@@ -96,15 +96,8 @@ def callbacks(layout: Layout) -> dict[str, Callable[..., Any]]:
         gx, gy, gz = 0.0, 0.0, 0.0
         x, y, z, current, more = np.nan, np.nan, np.nan, np.nan, 0.0
         if some and word(m, M.nuser_actuator) > KEY:
-            row, act = _row(m, i), _act(m, d, i)
-            time, current = load_constant(d + 8 * D.time), _current(m, d, i)
-            x, y, z = span(m, d, k)
-            rest = Drive(
-                time, 0.0, 0.0, current, 0.0, x, y, z, length, d_0, np.nan, np.nan, np.nan,
-                np.nan, R, drive(m, i, law.R_S), drive(m, i, law.K_S), drive(m, i, law.B_C),
-                drive(m, i, law.BETA), double(m, M.actuator_gear, 6 * i), lambda_,
-            )  # fmt: skip
-            s = _moving(rest, phi, omega, length, np.nan, np.nan, np.nan)
+            row, act, s = _row(m, i), _act(m, d, i), _begun(m, d, i)
+            x, y, z, current = s.rx, s.ry, s.rz, s.i
             R += added_radius(s, row, act)
             longer, gx, gy, gz = added_path(s, row, act)
             length += longer
@@ -113,8 +106,7 @@ def callbacks(layout: Layout) -> dict[str, Callable[..., Any]]:
                 rate += gx * v[0] + gy * v[1] + gz * v[2]
             d_0_dot = law.no_load_rate(length, d_0, omega, R)
             strain, strain_rate = (length - d_0) / d_0, (rate - d_0_dot) / d_0
-            s = _moving(rest, phi, omega, length, strain, strain_rate, np.nan)
-            more = added_tension(s, row, act)
+            more = added_tension(_strained(s, length, strain, strain_rate), row, act)
             if drive(m, i, KEY) != key:
                 more = np.nan
         d_0_dot = law.no_load_rate(length, d_0, omega, R)
@@ -182,8 +174,7 @@ def callbacks(layout: Layout) -> dict[str, Callable[..., Any]]:
             return 0.0
         current = _current(m, d, i)
         if some and word(m, M.nuser_actuator) > KEY:
-            s = seen(m, d, i, state(m, d, i))
-            current += added_current(s, _row(m, i), _act(m, d, i))
+            current += added_current(_begun(m, d, i), _row(m, i), _act(m, d, i))
         return current
 
     def sensor(m, d, stage):  # type: ignore[no-untyped-def]
@@ -209,9 +200,23 @@ def callbacks(layout: Layout) -> dict[str, Callable[..., Any]]:
 
 
 @njit
-def _moving(s, phi, omega, d, strain, strain_rate, T):  # type: ignore[no-untyped-def]
-    """A drive with its motion, and as much of its cable as is known."""
+def _begun(m, d, i):  # type: ignore[no-untyped-def]
+    """Drive i as the hooks before the tension see it."""
+    joint, k = integer(m, M.actuator_trnid, 2 * i), np.int64(drive(m, i, law.CABLE))
+    x, y, z = span(m, d, k)
     return Drive(
-        s.time, phi, omega, s.i, 0.0, s.rx, s.ry, s.rz, d, s.d_0, strain, strain_rate, T, s.F_s,
-        s.R, s.R_s, s.k_s, s.b_c, s.beta, s.K_t, s.lambda_,
+        load_constant(d + 8 * D.time), double(d, D.qpos, integer(m, M.jnt_qposadr, joint)),
+        double(d, D.qvel, integer(m, M.jnt_dofadr, joint)), _current(m, d, i), 0.0, x, y, z,
+        double(d, D.ten_length, k), load_constant(_act(m, d, i)), np.nan, np.nan, np.nan, np.nan,
+        drive(m, i, law.R), drive(m, i, law.R_S), drive(m, i, law.K_S), drive(m, i, law.B_C),
+        drive(m, i, law.BETA), double(m, M.actuator_gear, 6 * i), cable(m, k, law.LAMBDA),
+    )  # fmt: skip
+
+
+@njit
+def _strained(s, d, strain, strain_rate):  # type: ignore[no-untyped-def]
+    """A drive whose cable is known but for its tension."""
+    return Drive(
+        s.time, s.phi, s.omega, s.i, 0.0, s.rx, s.ry, s.rz, d, s.d_0, strain, strain_rate, s.T,
+        s.F_s, s.R, s.R_s, s.k_s, s.b_c, s.beta, s.K_t, s.lambda_,
     )  # fmt: skip
