@@ -52,16 +52,19 @@ def larger(candidate: Candidate, size: np.ndarray) -> bool:
 def too_large(scores: Sequence[Score], named: Sequence[str]) -> Score | None:
     """What explains more than all that is named, beyond chance, but at a size beyond belief.
 
+    An effect that explains as much with another shape, at a size that is believed, had its trial.
+
     Args:
         scores: of all candidates on the nominal fit.
         named: effects that are named.
     """
     own = max((s.gain for s in scores if s.candidate.effect.name in named), default=np.inf)
+    heard = {s.candidate.effect.name: s.gain for s in reversed(significant(scores))}
     found = [
         s for s in scores
         if chance(s, scores) < ALPHA
         and possible(s.candidate, s.size) and larger(s.candidate, s.size)
-        and LIKE * s.gain > own
+        and LIKE * s.gain > own and s.gain > heard.get(s.candidate.effect.name, 0.0)
     ]  # fmt: skip
     return max(found, key=lambda s: s.gain, default=None)
 

@@ -47,6 +47,13 @@ def test_a_name_must_not_hide_what_explains_more_at_a_size_beyond_belief(other, 
         assert "f = 6 N where 5 N is thought to be the most" in beyond(other)
 
 
+@pytest.mark.parametrize(("gain", "heard"), [(250.0, True), (150.0, False)])
+def test_an_effect_of_another_shape_that_was_refitted_does_not_hide(gain, heard):
+    beyond_belief, believed = scored("stiff", 6.0, 200.0), scored("stiff", 4.0, gain)
+    found = too_large((beyond_belief, believed, MILD), ["mild"])
+    assert found is (None if heard else beyond_belief)
+
+
 def test_one_that_explains_less_is_not_named_in_place_of_one_that_may_not_be_so_large():
     spring, *others = EFFECTS
     (k,) = spring.sizes
