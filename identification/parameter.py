@@ -99,13 +99,22 @@ class ParameterSet:
         """The values by name, each in its parameter's unit."""
         return {p.name: p.value for p in self.records}
 
-    def with_values(self, values: Mapping[str, float]) -> ParameterSet:
+    def with_values(self, values: Mapping[str, float], source: str = "") -> ParameterSet:
         """The same set with some values replaced.
+
+        Args:
+            values: the new ones.
+            source: of them; each keeps that of its old value when empty.
 
         Raises:
             InputError: a name is unknown, or a value is outside its parameter's bounds.
         """
         for name in values:
             self[name]
-        records = tuple(replace(p, value=float(values.get(p.name, p.value))) for p in self)
+        records = tuple(
+            replace(p, value=float(values[p.name]), source=source or p.source)
+            if p.name in values
+            else p
+            for p in self
+        )
         return replace(self, records=records)

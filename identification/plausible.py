@@ -16,6 +16,8 @@ from identification.names import group, lookup
 from identification.table import Table
 from identification.units import units_that_fit
 
+TURN = 0.1  # of a turn, by which a jump of a wrapped angle differs from one
+
 
 def check_plausible(
     table: Table,
@@ -57,8 +59,18 @@ def check_plausible(
                 raise InputError(
                     f"{table.place(row + 1)}: {name} changes by {speed[row]:.4g} {unit}/s, "
                     f"more than the plausible {rate:g} {unit}/s"
-                    + _cure(name, unit, speed[row] / factors[name], rate, sidecar)
+                    + (
+                        _wrapped(unit, column[row + 1] - column[row])
+                        or _cure(name, unit, speed[row] / factors[name], rate, sidecar)
+                    )
                 )
+
+
+def _wrapped(unit: str, jump: float) -> str:
+    """What to do where an angle jumps by a turn."""
+    if unit != "rad" or abs(abs(jump) - 2 * np.pi) > TURN * 2 * np.pi:
+        return ""
+    return ", a jump of a whole turn: the angle is wrapped; unwrap it (numpy.unwrap)"
 
 
 def _cure(name: str, unit: str, raw: float, limit: float, sidecar: Path) -> str:

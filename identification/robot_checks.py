@@ -5,12 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 
 import mujoco
+import numpy as np
 
 from identification.errors import InputError
 from identification.log import Log
+from identification.noise import noise_floor
+from identification.plant import start_place
+from identification.predictor import output_columns
+from identification.quantities import alike
 from identification.robot_file import RobotFile
 from identification.sampling import MIN_ROWS, rows_between
 
+CLEAR, NEAR = 5.0, 0.01  # of an output's noise, of its travel: a start that is not the model's
 MOST_STEPS = 100.0  # of the model in a sample; more is mostly time in ms
 
 
@@ -89,6 +95,26 @@ def _left(log: Log, every: int) -> bool:
         return False
     rows = (rows_between(time, *split) for split in log.splits.values())
     return all(last - first >= MIN_ROWS for first, last in rows)
+
+
+def refuse_start(file: RobotFile, model: mujoco.MjModel, log: Log) -> None:
+    """Refuse a free run that would begin elsewhere than the log does.
+
+    Raises:
+        InputError: a position that the log measured first is neither free nor the model's.
+    """
+    free = (file.records.get(name, {}).get("path", name) for name in file.free)
+    own = {start_place(str(path), model) for path in free}
+    noise, travel = noise_floor(log.outputs), np.ptp(log.outputs, axis=0)
+    for k, (field, i) in enumerate(output_columns(model, log.output_names)):
+        off = abs(log.outputs[0, k] - model.qpos0[i]) if field == "qpos" else 0.0
+        if (field, i) not in own and off > max(CLEAR * noise[k], NEAR * travel[k]):
+            name, unit = log.output_names[k], log.units.get(log.output_names[k], "")
+            there, here = alike([float(log.outputs[0, k]), float(model.qpos0[i])], unit)
+            raise InputError(
+                f"log {log.name!r} begins at {name} = {there} and {file.model} at {here}; write"
+                f' "qpos[{i}]" under free in {file.path}: it then begins where it was measured'
+            )
 
 
 def refuse_horizon(file: RobotFile, log: Log) -> None:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 # The floor bounds the noise from above and errs by a few percent itself.
 ABOVE = 1.2
 HOLDS = 1.2  # times what is to be expected on unseen data
+GROWN = 10.0  # times the fitted residual; a free run that loses itself confirms nothing
 LEVEL = 0.01  # of the residual's tests: one false alarm in a hundred
 
 
@@ -129,6 +130,12 @@ def _unseen(fit: Fit) -> list[str]:
         held = "what was fitted holds there too"
         if _above(fit) > ABOVE:
             held = "no worse than on what was fitted, but what is missing is missing there too"
+    if ratio < HOLDS and fit.validation_rms > GROWN * fit.rms:
+        return [
+            f"On unseen data the residual is {fit.validation_rms:.3g} rms,"
+            f" {fit.validation_rms / fit.rms:.0f} times that of the fitted part; so small errors of"
+            " the parameters may do that there, and it says little. Judge over a horizon."
+        ]
     return [
         f"On unseen data the residual is {fit.validation_rms:.3g} rms,"
         f" {ratio:.2f} times what the fit leads one to expect: {held}."

@@ -36,13 +36,27 @@ def nothing(found: Discovery) -> str:
         "Nothing is missing: what the fitted model leaves unexplained is noise,"
         f" {left} rms on unseen data where the sensors and unlogged disturbances make {noise}."
     )
+    if floor_rms(found) > found.noise_rms:
+        said += _unlogged(found)
     if seen:
         listed = "; ".join(f"{phrase(d.candidate)}, {_smallest(d)}" for d in seen[:SHOWN])
         said += f" The log would have shown, in 9 cases of 10, effects as small as: {listed}."
     if unseen:
-        names = _unique(d.candidate.effect.name for d in unseen)
-        said += f" It cannot speak of {', '.join(names)}: no plausible size would show in it."
+        names = _unique(d.candidate.effect.phrase or d.candidate.effect.name for d in unseen)
+        said += f" No plausible size would show in it of these: {'; '.join(names)}."
     return said
+
+
+def _unlogged(found: Discovery) -> str:
+    """What of the noise is taken for errors of the inputs, on which the verdict rests."""
+    level, log = found.final.level, found.log
+    sensors = alike([found.noise_rms], log.output_unit)[0]
+    size = quantity(level.input_std, unit=log.units.get(log.input_names[0], ""))
+    return (
+        f" The sensors alone make {sensors}; the rest is what inputs do that err by {size} rms"
+        f" beside what the log says, for {level.noise.time:.2g} s at a time. If they are surely"
+        " known better, something is missing."
+    )
 
 
 def unknown(found: Discovery) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from identification import Log
 from identification.discovery.discover import discover as search
+from identification.discovery.discover import refuse_unfit
 from identification.discovery.extend import Base
 from identification.discovery.result import Discovery
 from identification.parameter import ParameterSet
@@ -54,10 +55,13 @@ def discover(
         InputError: the log is too short, or its start has no pretension.
         DivergenceError: the nominal model cannot be simulated.
     """
+    refuse_unfit(log)
     step = timestep_for(log.sampling_time, timestep)
+    refuse_miswired(log, build_twin(parameters, geometry, timestep=step, visual=False))
+    if progress is not None:
+        progress(f"compiling the law of the cables with {len(effects)} effects")
     plant = build_twin(
         parameters, geometry, timestep=step, effects=effects, settled=settled, visual=False
     )
-    refuse_miswired(log, plant)
     base = Base(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
     return told(search(base, log, [e.effect for e in effects], progress))

@@ -31,7 +31,7 @@ def named_twin(found: Discovery) -> Twin:
     known = with_effects(replace(plant.parameters, records=base), effects)
     at = final_values(found)
     return build_twin(
-        known.with_values({p.name: at[p.name] for p in known if p.name in at}),
+        known.with_values({p.name: at[p.name] for p in known if p.name in at}, "fitted to the log"),
         plant.geometry,
         timestep=plant.model.opt.timestep,
         effects=effects,

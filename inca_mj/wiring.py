@@ -16,6 +16,7 @@ from scipy.optimize import linear_sum_assignment
 
 from identification import Log, Predictor
 from identification.errors import DivergenceError, InputError
+from identification.joints.frozen import refuse_frozen
 from inca_mj.logs import ANGLES
 from inca_mj.twin import Twin
 
@@ -36,8 +37,10 @@ def refuse_miswired(log: Log, plant: Twin) -> None:
         plant: its nominal twin.
 
     Raises:
-        InputError: an encoder is dead, reversed, swapped with another or in another unit.
+        InputError: an encoder is dead, frozen, reversed, swapped with another or in another unit.
     """
+    for k in range(log.outputs.shape[1]):
+        refuse_frozen(log, k, log.inputs[:, [k]], log.outputs[:, :0])
     y, predicted = _motion(log, plant)
     moving = np.sqrt(np.mean(predicted**2, axis=0)) > MOTION if len(y) else np.zeros(0, bool)
     if not moving.all() or not len(y):

@@ -33,12 +33,13 @@ class Discover(OnRobot):
         from identification.discovery.final import final_values
         from identification.files import whole_folder
         from identification.report.discovery_text import discovery_text, finite
-        from identification.robot_checks import refuse_search_horizon
+        from identification.robot_checks import refuse_search_horizon, refuse_start
         from identification.robot_write import write_robot
 
         refuse_folder(self.output.out)
         robot, records = self.read()
         refuse_search_horizon(robot.file, robot.log)
+        refuse_start(robot.file, robot.plant.model, robot.log)
         found = discover(robot.base, robot.log, robot.candidates, note)
         before, after = found.nominal.at.values, final_values(found)
         # with nothing named, the fitted model beside the one that the file describes

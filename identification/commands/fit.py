@@ -31,17 +31,19 @@ class Fit(OnRobot):
         """Fit, confirm, say, keep."""
         from identification.confirm import confirmed
         from identification.files import whole_folder
-        from identification.robot_checks import refuse_horizon
+        from identification.robot_checks import refuse_horizon, refuse_start
         from identification.robot_write import write_robot
 
         refuse_folder(self.output.out)
         robot, records = self.read()
         _refuse_short(robot)
         refuse_horizon(robot.file, robot.log)
+        if robot.file.horizon is None:
+            refuse_start(robot.file, robot.plant.model, robot.log)
         record, values = self._windows(robot) if robot.file.horizon else self._free_run(robot)
         found = [confirmed(robot, log, {}, values) for log in records]
         record["confirm"] = [vars(c) for c in found]
-        record["verdict"] += [*_far(record["parameters"]), *map(str, found)]
+        record["verdict"] = [*_far(record["parameters"]), *record["verdict"], *map(str, found)]
         if self.output.json:
             say_json(record)
         else:

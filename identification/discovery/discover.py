@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from identification.discovery.changed import changed
 from identification.discovery.columns import Column, columns, common, single
 from identification.discovery.confidence import named_of
 from identification.discovery.detectable import detectable
@@ -56,7 +57,7 @@ def discover(
         InputError: the log is too short, a name is unknown, or a free parameter has no effect.
         DivergenceError: the nominal model cannot be simulated.
     """
-    _refuse_unfit(log)
+    refuse_unfit(log)
     say = progress or (lambda line: None)
     clock = _Clock()
     nominal = fitted(base, log, (), {})
@@ -85,10 +86,11 @@ def discover(
     if len(accepted) > 1:
         ranked = scores_of(step, sensed)
     clock("refits")
-    left = left_over(step) + (() if accepted else in_doubt(rejected))
+    left = left_over(step) + changed(step) + (() if accepted else in_doubt(rejected))
     if (other := too_large(first, [a.step.candidates[-1].effect.name for a in kept])) is not None:
         left += (beyond(other),)
     explained = _explained(nominal, step)
+    left = (*(held_otherwise(nominal) if left else ()), *left)
     named = named_of(base, kept, step, sensed, explained if left else 1.0)
     verdict: Verdict = "nothing missing"
     if named and (not left or (explained > EXPLAINED and believed(step) and other is None)):
@@ -99,7 +101,6 @@ def discover(
         named, step, ranked = (), nominal, first
     missing = missing_forces(nominal.refit) if verdict != "nothing missing" else ()
     where = located(nominal, missing) if verdict != "nothing missing" else ()
-    where += held_otherwise(nominal) if left else ()
     return Discovery(
         log, verdict, named, bool(left), step.refit.level.sigma, step.unseen.disturbance,
         nominal.unseen.gap, step.unseen.gap, nominal.refit, step.refit,
@@ -126,8 +127,12 @@ def _sensitivities(base: Base, nominal: Step, effects: Sequence[Effect]) -> tupl
     return everywhere + columns(nominal.refit.at, single([s.candidate for s in best.values()]))
 
 
-def _refuse_unfit(log: Log) -> None:
-    """Refuse a log that cannot be fitted at its beginning and confirmed on the rest."""
+def refuse_unfit(log: Log) -> None:
+    """Refuse a log that cannot be fitted at its beginning and confirmed on the rest.
+
+    Raises:
+        InputError: it is too short, or its part `estimation` is not its beginning.
+    """
     part = log.part("estimation")
     n, rest = len(part), len(log) - len(part)
     if min(n, rest) < SHORTEST:

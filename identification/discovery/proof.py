@@ -37,6 +37,7 @@ class Unseen:
 
     Attributes:
         refit: the fit.
+        whole: the log.
         e: free-run residual, shape (N, ny).
         innovations: whitened, in units of σ, shape (N, ny).
         filter: what whitened them.
@@ -47,6 +48,7 @@ class Unseen:
     """
 
     refit: Refit
+    whole: Log
     e: np.ndarray
     innovations: np.ndarray
     filter: Whitener
@@ -93,7 +95,7 @@ def unseen(fit: Refit, whole: Log, horizon: float | None = None) -> Unseen:
             measured = windows(whole, horizon).outputs[late].reshape(judged.shape)
             moved = disturbed_windows(filter_, ratio, nu, starts[late], L)
     disturbance = fit.level.sigma * np.sqrt(moved.mean()) if moved.size else 0.0
-    return Unseen(fit, at.e, E, filter_, first, float(disturbance), measured, judged)
+    return Unseen(fit, whole, at.e, E, filter_, first, float(disturbance), measured, judged)
 
 
 def prove(without: Unseen, with_it: Unseen) -> Proof:

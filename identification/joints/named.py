@@ -24,6 +24,11 @@ def unknown_number(name: str, effects: Sequence[JointEffect]) -> InputError:
     if own is None:
         return unknown_name(f"effect in {name!r}:", head, (e.name for e in effects))
     numbers = [p.name for p in effect_parameters(own)]
+    # of a robot with slides and hinges each kind has effects of its own
+    there = [p.name for e in effects for p in effect_parameters(e.effect)
+             if at and p.name.endswith(f"{head}.{size}@{place}")]  # fmt: skip
+    if there:
+        return unknown_name(f"number of {head}:", name, there)
     if at and any(n.startswith(f"{head}.{size}@") for n in numbers):
         known = {at[1:]: where.partition(" ")[0] for where, at in own.places.items() if at}
         (kind,) = set(known.values())

@@ -69,13 +69,24 @@ def point(
         DivergenceError: a simulation left the finite numbers.
     """
     inside = space.inside(q)
-    moves = np.where(inside + STEP > space.upper, -STEP, STEP)
-    values = space.decode(np.vstack([inside, inside + np.diag(moves)]))
-    predicted = predictor.predict(values)
-    J = np.moveaxis((predicted[1:] - predicted[0]) / moves[:, None, None], 0, -1)
+    predicted, J = _sensitivities(predictor, space, inside)
     if linear is None:
-        linear = linearise(predictor, values[0])
-    return Point(predictor, space, inside, predictor.log.outputs - predicted[0], J, linear)
+        linear = linearise(predictor, space.decode(inside))
+    return Point(predictor, space, inside, predictor.log.outputs - predicted, J, linear)
+
+
+def sensitivities(at: Point, whole: Log) -> np.ndarray:
+    """J of the same values on a longer log, shape (N, ny, p)."""
+    return _sensitivities(replace(at.predictor, log=whole), at.space, at.q)[1]
+
+
+def _sensitivities(
+    predictor: Predictor, space: Coordinates, q: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """ŷ at q, shape (N, ny), and J, shape (N, ny, p)."""
+    moves = np.where(q + STEP > space.upper, -STEP, STEP)
+    predicted = predictor.predict(space.decode(np.vstack([q, q + np.diag(moves)])))
+    return predicted[0], np.moveaxis((predicted[1:] - predicted[0]) / moves[:, None, None], 0, -1)
 
 
 def beyond(at: Point, whole: Log) -> Point:

@@ -168,7 +168,7 @@ def keep(result: Identification, profiles: Sequence[Profile], out: Path, robot: 
     from inca_mj.sections_information import information_section
 
     plant = result.fit.estimate.predictor.plant
-    final = plant.parameters.with_values(result.values)
+    final = plant.parameters.with_values(result.values, "fitted to the log")
     shown = compare(result.log, final, robot.place(), timestep=robot.step)
     about = (
         f"What {result.log.name} says of the parameters at their estimate, for white noise of the"

@@ -10,6 +10,9 @@ from joint_cases import DAMPING, MASS, SLIDER, slider_log, steps
 from identification import Predictor, write_log
 from identification.__main__ import main
 from identification.commands.fit import _far
+from identification.joints.axes import Axis
+from identification.joints.catalogue import TURNS, joint_effects
+from identification.joints.named import unknown_number
 from identification.joints.plant import joint_plant
 from identification.robot import read_robot_log, robot_of
 from identification.robot_file import read_robot
@@ -182,6 +185,21 @@ def test_a_thing_without_a_name_is_told(folder, capsys, change, thing, outputs):
     path.write_text(outputs + TOML.replace("slider.xml", "unnamed.xml"))
     said = refused(capsys, "fit", path, folder / "plain.csv")
     assert f"{thing} 0 of {folder / 'unnamed.xml'}, counted from 0, has no name; give it" in said
+
+
+@pytest.mark.parametrize("command", ["fit", "discover"])
+def test_a_start_that_is_not_the_models_must_be_free(folder, capsys, command):
+    path = folder / "held.toml"
+    path.write_text(TOML.replace('"qpos[0]", ', ""))
+    said = refused(capsys, command, path, folder / "other.csv")
+    assert "begins at position = 0.2" in said
+    assert 'write "qpos[0]" under free' in said
+
+
+def test_an_effect_of_the_other_kind_of_joint_is_suggested():
+    crane = (Axis("swing", "hinge", 1.0, 1.0, 1.0), Axis("x", "slide", 1.0, 1.0, 1.0))
+    said = str(unknown_number("coulomb_friction.f_c@x", joint_effects(crane, TURNS)))
+    assert "did you mean 'slide_coulomb_friction.f_c@x'?" in said
 
 
 def test_how_much_a_log_may_be_thinned_is_told(folder, capsys):

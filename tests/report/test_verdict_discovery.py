@@ -60,7 +60,7 @@ def test_nothing_missing_says_what_would_have_been_seen() -> None:
     (said,) = discovery_verdict(found("nothing missing"))
     assert said.startswith("Nothing is missing: ")
     assert "Stribeck peak, all drives, f_s 200 µN m" in said
-    assert "It cannot speak of delay" in said
+    assert "No plausible size would show in it of these: motor: current comes late." in said
 
 
 def test_an_unknown_effect_is_not_named() -> None:

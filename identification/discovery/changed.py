@@ -1,0 +1,64 @@
+"""Does what was fitted hold on the other samples? A robot may change, or show more of itself.
+
+    δ = argmin ‖E - F δ‖² + Σ ((q_j + δ_j - q̄_j)/s_j)²        over all samples, F = ∂E/∂q
+
+Parameters that a fit knows only roughly predict other samples only roughly; what a small change of
+them does not take away from the innovations there is no uncertainty of theirs.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.stats import ttest_ind
+from threadpoolctl import threadpool_limits
+
+from identification.discovery.proof import BLOCKS, Unseen
+from identification.discovery.steps import Step
+from identification.kalman.innovations import MATTERS, SURE
+from identification.kalman.point import sensitivities
+
+
+def changed(step: Step) -> tuple[str, ...]:
+    """A sentence where the unseen samples are farther off than the fitted ones, beyond chance."""
+    seen, first = step.unseen, step.unseen.first
+    fitted, E = seen.innovations[:first], seen.innovations
+    if not _louder(fitted, E[first:]):
+        return ()
+    left = E - _taken(seen)
+    if not _louder(fitted, left[first:]):
+        return ()
+    log, ratio = seen.refit.at.log, _power(left[first:]).mean() / _power(fitted).mean()
+    blocks = np.array_split(_power(left[first:]), BLOCKS)
+    worst = int(np.argmax([b.mean() for b in blocks]))
+    at = log.time[-1] + log.sampling_time * (1 + sum(map(len, blocks[:worst])))
+    return (
+        f"samples that were not fitted, which are {np.sqrt(ratio):.3g} times as far off as those"
+        f" that were, most of all about {at:.3g} s: the robot changed, or does there what the"
+        " fitted part never shows",
+    )
+
+
+def _power(E: np.ndarray) -> np.ndarray:
+    return np.mean(E**2, axis=1)
+
+
+def _louder(fitted: np.ndarray, unseen: np.ndarray) -> bool:
+    """Whether unseen innovations are larger, beyond chance and by enough to matter."""
+    a, b = (np.array([part.mean() for part in np.array_split(_power(E), BLOCKS)])
+            for E in (fitted, unseen))  # fmt: skip
+    # logarithms, as a few blocks far off would be scatter and no difference
+    p = ttest_ind(np.log(b), np.log(a), equal_var=False, alternative="greater").pvalue
+    return bool(p < SURE and b.mean() > (1 + MATTERS) * a.mean())
+
+
+def _taken(seen: Unseen) -> np.ndarray:
+    """What a small change of the parameters takes from the innovations of all samples, (N, ny)."""
+    fit = seen.refit
+    with threadpool_limits(1, "blas"):
+        J = sensitivities(fit.at, seen.whole)
+        F = seen.filter(J).reshape(seen.e.size, -1) / fit.level.sigma
+        rows = np.vstack([F, np.diag(fit.prior)])
+        target = np.concatenate([seen.innovations.ravel(), fit.prior * (fit.mean - fit.at.q)])
+        scale = np.linalg.norm(rows, axis=0) + 1e-300
+        move = np.linalg.lstsq(rows / scale, target, rcond=1e-12)[0] / scale
+    return (F @ move).reshape(seen.e.shape)

@@ -1,0 +1,48 @@
+"""A robot that changes after the fitted samples is told from one that does not."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+from discovery_cases import EFFECTS, SENSOR, SLIDER, STEP, base, record, slider, wander
+
+from identification.discovery.changed import changed
+from identification.discovery.discover import discover
+from identification.discovery.steps import fitted
+
+N = 800
+
+
+def changing(damping, seed=11):
+    """A log of the slider whose damping becomes another one after its first half."""
+    log = record(slider(mass=2.2, damping=2.7), N, seed=seed)
+    model = mujoco.MjModel.from_xml_string(SLIDER)
+    model.body_mass[1], model.dof_damping[0] = 2.2, 2.7
+    data = mujoco.MjData(model)
+    mujoco.mj_setConst(model, data)
+    y = np.zeros((N, 1))
+    for k in range(1, N):
+        model.dof_damping[0] = 2.7 if k < N // 2 else damping
+        data.ctrl[:] = log.inputs[k - 1]
+        mujoco.mj_step(model, data, round(STEP / model.opt.timestep))
+        y[k] = data.qpos
+    noise = SENSOR * np.random.default_rng(seed).standard_normal(y.shape)
+    return replace(log, outputs=y + noise)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_robot_that_stays_as_it_is_has_not_changed(seed):
+    error = wander(N, 0.03 * (seed % 2), 0.1, seed=seed)
+    log = record(slider(mass=2.2, damping=2.7), N, seed=seed, error=error)
+    assert changed(fitted(base(), log, (), {})) == ()
+    assert changed(fitted(base(), changing(2.7, seed), (), {})) == ()
+
+
+def test_a_change_after_the_fitted_samples_is_never_called_nothing_missing():
+    log = changing(4.0)
+    (said,) = changed(fitted(base(), log, (), {}))
+    assert "times as far off as those that were" in said
+    answer = discover(base(), log, EFFECTS)
+    assert answer.verdict == "unknown effect"
+    assert said in answer.left
