@@ -52,6 +52,14 @@ def test_a_reversed_encoder(plant, drive):
         refuse_miswired(changed(reverse), plant)
 
 
+def test_an_encoder_that_freezes(plant):
+    def freeze(y):
+        y[700:, 3] = y[700, 3]
+
+    with pytest.raises(InputError, match=r"angle_4 of log 'log' repeats .* a frozen sensor"):
+        refuse_miswired(changed(freeze), plant)
+
+
 @pytest.mark.parametrize("drive", range(8))
 def test_an_encoder_that_another_sign_hardly_mends_is_not_refused(plant, drive):
     """Of a log whose anchor was 0.1 m off, one angle had a correlation of -0.5 with the model's."""

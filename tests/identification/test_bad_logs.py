@@ -121,6 +121,17 @@ def test_degrees_taken_for_radians_move_too_fast(tmp_path, refusal):
     assert read(path, **options).outputs == pytest.approx(log.outputs)
 
 
+def test_a_wrapped_angle_is_to_be_unwrapped(tmp_path, refusal):
+    log, path = wave(n=300), tmp_path / "log.csv"
+    turning = np.column_stack([np.linspace(0, 7, len(log)), log.outputs[:, 1:]])
+    angles = (turning + np.pi) % (2 * np.pi) - np.pi
+    content = np.column_stack([log.time, log.inputs, angles])
+    np.savetxt(path, content, delimiter=",", header=HEADER.strip(), comments="")
+    text = refusal(read, path, units=UNITS, rates={"angle": 50})
+    for word in ("angle_1 changes by", "a jump of a whole turn", "unwrap it"):
+        assert word in text
+
+
 def test_a_size_that_no_unit_explains_is_a_bad_row(csv, refusal):
     text = refusal(read, csv(lines((7, "0.05,1,1e9,3,5\n"))), units=UNITS, limits={"current": 20})
     assert "line 7" in text

@@ -63,6 +63,12 @@ def test_nothing_missing_says_what_would_have_been_seen() -> None:
     assert "No plausible size would show in it of these: motor: current comes late." in said
 
 
+def test_nothing_missing_says_which_unlogged_errors_it_rests_on() -> None:
+    (said,) = discovery_verdict(replace(found("nothing missing"), disturbance_rms=0.5))
+    assert "The sensors alone make " in said
+    assert "If they are surely known better, something is missing." in said
+
+
 def test_an_unknown_effect_is_not_named() -> None:
     (said,) = discovery_verdict(found("unknown effect"))
     assert said.startswith("Something is missing that none of the 3 known effects surely explains")
