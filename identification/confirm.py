@@ -13,6 +13,8 @@ from identification.quantities import alike
 from identification.robot import Robot
 from identification.window_error import window_error
 
+AS_WRITTEN, FITTED = "with the values of the robot's file", "with those that were fitted"
+
 
 @dataclass(frozen=True)
 class Confirmed:
@@ -39,9 +41,6 @@ class Confirmed:
         return (
             f"On {self.log}: {before} rms {first}, {after} {second}; mean square {change:+.0f} %."
         )
-
-
-AS_WRITTEN, FITTED = "with the values of the robot's file", "with those that were fitted"
 
 
 def confirmed(

@@ -44,13 +44,8 @@ def window_error(
         InputError: the windows do not fit the log, or a name is unknown.
         DivergenceError: the model cannot be simulated.
     """
-    none, cut = np.zeros(0), windows(log, length)
-    predictor = Predictor(plant, log, (), dict(values or {}))
-    space = Coordinates((), none.astype(bool), none, none, none)
-    sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
-    believed = first_states(predictor, none, cut)
-    shooting = Shooting(predictor, space, cut, believed, np.eye(log.outputs.shape[1]) / sigma)
-    d = np.zeros((len(cut.starts), 2 * plant.model.nv + plant.model.na))
+    shooting, d = _fixed(plant, log, length, values)
+    none = np.zeros(0)
     at = tangent(shooting, none, d)
     damping = np.full(len(d), FIRST_DAMPING)
     for _ in range(STEPS):
@@ -70,3 +65,35 @@ def window_error(
         if np.all(small | (damping > MOST_DAMPING)):
             break
     return shooting.error(at.r)
+
+
+def first_error(plant: Plant, log: Log, length: float) -> np.ndarray:
+    """Errors in the same windows, each from the state where it is believed to begin.
+
+    Args:
+        plant: the model, with its own values.
+        log: what was measured.
+        length: of a window [s].
+
+    Returns:
+        Shape (W, L, ny), in the outputs' unit.
+
+    Raises:
+        InputError: the windows do not fit the log.
+        DivergenceError: the model cannot be simulated.
+    """
+    shooting, d = _fixed(plant, log, length, None)
+    return shooting.error(shooting.residual(np.zeros(0), d))
+
+
+def _fixed(
+    plant: Plant, log: Log, length: float, values: Mapping[str, float] | None
+) -> tuple[Shooting, np.ndarray]:
+    """Windows of a model of which nothing is free, and no moves of their states, (W, nx)."""
+    none, cut = np.zeros(0), windows(log, length)
+    predictor = Predictor(plant, log, (), dict(values or {}))
+    space = Coordinates((), none.astype(bool), none, none, none)
+    sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
+    believed = first_states(predictor, none, cut)
+    shooting = Shooting(predictor, space, cut, believed, np.eye(log.outputs.shape[1]) / sigma)
+    return shooting, np.zeros((len(cut.starts), 2 * plant.model.nv + plant.model.na))

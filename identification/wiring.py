@@ -15,16 +15,14 @@ from itertools import combinations, product
 
 import numpy as np
 
-from identification.coordinates import Coordinates
 from identification.errors import DivergenceError, InputError
 from identification.log import Log
 from identification.names import listed
-from identification.predictor import Predictor
 from identification.robot import Robot
 from identification.sampling import MIN_ROWS
-from identification.shooting import Shooting
 from identification.units import UNITS
-from identification.windows import first_states, windows
+from identification.window_error import first_error
+from identification.windows import windows
 
 LENGTHS = (0.1, 1.0)  # of windows, shares of a log, where the robot has no horizon of its own
 UNEXPLAINED = 0.05  # least ε of an output that is not what it says
@@ -103,8 +101,9 @@ def _readings(robot: Robot, log: Log, bad: np.ndarray) -> Iterator[Reading]:
             yield Reading(replace(log, outputs=y * scale), changed, said,
                           f"write {told} under [units] of the log's TOML")  # fmt: skip
     for turned in [*([k] for k in wrong), *([wrong] if len(wrong) > 1 else [])]:
+        mirror = f", or of {listed(into)}" if len(turned) == y.shape[1] else ""  # looks the same
         yield Reading(replace(log, outputs=_turned(y, turned)), turned, "with the other sign",
-                      f"turn the sign of {listed(out[k] for k in turned)}")  # fmt: skip
+                      f"turn the sign of {listed(out[k] for k in turned)}{mirror}")  # fmt: skip
     for k in range(u.shape[1]):
         yield Reading(replace(log, inputs=_turned(u, [k])), wrong,
                       "with the other sign of an input",
@@ -140,20 +139,14 @@ def _exchanged(signals: np.ndarray, i: int, j: int) -> np.ndarray:
 
 def _unexplained(robot: Robot, log: Log, length: float) -> np.ndarray | None:
     """ε of each output, shape (ny,); None where nothing can be simulated so."""
-    none = np.zeros(0)
     if not MIN_ROWS * log.sampling_time <= length <= log.duration:
         return None  # too short to tell, and whoever fits it will say so
-    cut = windows(log, length)
-    predictor = Predictor(robot.plant, log, ())
-    space = Coordinates((), none.astype(bool), none, none, none)
-    d = np.zeros((len(cut.starts), 2 * robot.plant.model.nv + robot.plant.model.na))
     try:
-        shooting = Shooting(predictor, space, cut, first_states(predictor, none, cut),
-                            np.eye(log.outputs.shape[1]))  # fmt: skip
-        error = shooting.error(shooting.residual(none, d))
+        error = first_error(robot.plant, log, length)
     except DivergenceError:
         return None
-    moved = np.sum((cut.outputs - cut.outputs[:, :1]) ** 2, axis=(0, 1))
+    y = windows(log, length).outputs
+    moved = np.sum((y - y[:, :1]) ** 2, axis=(0, 1))
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio: np.ndarray = np.sum(error**2, axis=(0, 1)) / moved
     return np.where(moved > 0, ratio, 0.0)

@@ -52,7 +52,8 @@ def discover(
             began, so that it starts at rest; else it was held where the nominal one rests.
 
     Raises:
-        InputError: the log is too short, or its start has no pretension.
+        InputError: the log is too short, is not wired as the robot is, or its start has no
+            pretension.
         DivergenceError: the nominal model cannot be simulated.
     """
     refuse_unfit(log)

@@ -14,17 +14,25 @@ from threadpoolctl import threadpool_limits
 
 from identification.discovery.proof import BLOCKS, Unseen
 from identification.discovery.steps import Step
+from identification.errors import DivergenceError
 from identification.kalman.innovations import MATTERS, SURE
 from identification.kalman.point import sensitivities
 
 
 def changed(step: Step) -> tuple[str, ...]:
-    """A sentence where the unseen samples are farther off than the fitted ones, beyond chance."""
+    """A sentence where the unseen samples are farther off than the fitted ones, beyond chance.
+
+    Args:
+        step: a fitted model, seen on the whole log.
+    """
     seen, first = step.unseen, step.unseen.first
     fitted, E = seen.innovations[:first], seen.innovations
     if not _louder(fitted, E[first:]):
         return ()
-    left = E - _taken(seen)
+    try:
+        left = E - _taken(seen)
+    except DivergenceError:  # where a parameter that is moved a little loses the robot
+        left = E
     if not _louder(fitted, left[first:]):
         return ()
     log, ratio = seen.refit.at.log, _power(left[first:]).mean() / _power(fitted).mean()

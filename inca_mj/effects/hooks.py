@@ -40,7 +40,7 @@ class DriveEffect:
 
     Attributes:
         effect: name, law, sizes, shapes and places.
-        current: (Drive, p) -> Δi [A].
+        current: (Drive, p) -> Δi [A], of what is known before the tension.
         radius: (Drive, p) -> ΔR [m], of phi and x.
         path: (Drive, p) -> (ΔL [m], ∂ΔL/∂rx, ∂ΔL/∂ry, ∂ΔL/∂rz), of rx, ry, rz.
         tension: (Drive, p) -> ΔT [N].

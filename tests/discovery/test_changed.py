@@ -10,6 +10,7 @@ from discovery_cases import EFFECTS, SENSOR, SLIDER, STEP, base, record, slider,
 from identification.discovery.changed import changed
 from identification.discovery.discover import discover
 from identification.discovery.steps import fitted
+from identification.errors import DivergenceError
 
 N = 800
 
@@ -31,12 +32,29 @@ def changing(damping, seed=11):
     return replace(log, outputs=y + noise)
 
 
+def far(said):
+    """How many times as far off."""
+    return float(said.split(" times as far off")[0].split()[-1])
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_a_robot_that_stays_as_it_is_has_not_changed(seed):
     error = wander(N, 0.03 * (seed % 2), 0.1, seed=seed)
     log = record(slider(mass=2.2, damping=2.7), N, seed=seed, error=error)
     assert changed(fitted(base(), log, (), {})) == ()
     assert changed(fitted(base(), changing(2.7, seed), (), {})) == ()
+
+
+def test_a_robot_that_a_small_change_of_a_parameter_loses_is_judged_without_it(monkeypatch):
+    step = fitted(base(), changing(4.0), (), {})
+    (said,) = changed(step)
+
+    def lost(*_):
+        raise DivergenceError("lost")
+
+    monkeypatch.setattr("identification.discovery.changed.sensitivities", lost)
+    (other,) = changed(step)
+    assert far(other) > far(said) > 2
 
 
 def test_a_change_after_the_fitted_samples_is_never_called_nothing_missing():

@@ -1,5 +1,7 @@
 """What a log cannot say is said in words; what it can is not called unknown."""
 
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
@@ -92,6 +94,22 @@ def test_a_value_at_its_bound_is_reported():
         fit = assess(estimate(plant, LOG, ("stiffness",), options=Options(method=method)))
         assert fit.at_bound.all(), method
         assert "At a bound: stiffness" in " ".join(verdict(fit))
+
+
+@pytest.mark.parametrize(
+    ("unseen", "expected", "said"),
+    [
+        (1.1, 1.0, "what was fitted holds there too"),
+        (3.0, 1.0, "it does not hold"),
+        (40.0, 1e4, "40 times that of the fitted part"),  # chaos confirms nothing
+    ],
+)
+def test_what_unseen_data_say_depends_on_what_they_could(unseen, expected, said):
+    fit = assess(estimate(slider(x0=0.0, **{**OFF, "gear": 5.0}), LOG, ALL[:3]))
+    judged = replace(
+        fit, validation_rms=unseen * fit.rms, validation_expected=expected * fit.rms
+    )  # fmt: skip
+    assert said in verdict(judged)[-1]
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0])

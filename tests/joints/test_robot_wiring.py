@@ -124,7 +124,8 @@ def test_two_units_at_once_and_one_of_two_are_named(hanging, two_joints):
 
 def test_inputs_that_are_turned_or_exchanged_are_told(hanging, two_joints):
     own, log = hanging
-    assert "turn the sign of" in refused(own, replace(log, inputs=-log.inputs))
+    said = refused(own, replace(log, inputs=-log.inputs))
+    assert "turn the sign of pos, ang, or of push" in said  # which of them, none can tell
     own, log = two_joints
     said = refused(own, replace(log, inputs=log.inputs[:, ::-1]))
     assert "exchange up and low under [columns]" in said

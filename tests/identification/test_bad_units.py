@@ -1,0 +1,43 @@
+"""Numbers too large to be true are refused with the unit, or the turn, that would explain them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from example_logs import HEADER, UNITS, lines, read, wave
+
+
+def test_milliamperes_taken_for_amperes(csv, refusal):
+    text = refusal(read, csv(lines((7, "0.05,1,1000,3,5\n"))), units=UNITS, limits={"current": 20})
+    for word in ("line 7", "current_2 is 1000 A", "20 A", 'units.current = "mA"', "log.toml"):
+        assert word in text
+
+
+def test_degrees_taken_for_radians_move_too_fast(tmp_path, refusal):
+    log = wave(n=300)
+    path = tmp_path / "log.csv"
+    content = np.column_stack([log.time, log.inputs, np.rad2deg(log.outputs)])
+    np.savetxt(path, content, delimiter=",", header=HEADER.strip(), comments="")
+    options = {"units": UNITS, "limits": {"angle": 400}, "rates": {"angle": 5}}
+    text = refusal(read, path, **options)
+    for word in ("angle_1 changes by", "plausible 5 rad/s", 'units.angle = "deg"'):
+        assert word in text
+    path.with_suffix(".toml").write_text('units.angle = "deg"')
+    assert read(path, **options).outputs == pytest.approx(log.outputs)
+
+
+def test_a_wrapped_angle_is_to_be_unwrapped(tmp_path, refusal):
+    log, path = wave(n=300), tmp_path / "log.csv"
+    turning = np.column_stack([np.linspace(0, 7, len(log)), log.outputs[:, 1:]])
+    angles = (turning + np.pi) % (2 * np.pi) - np.pi
+    content = np.column_stack([log.time, log.inputs, angles])
+    np.savetxt(path, content, delimiter=",", header=HEADER.strip(), comments="")
+    text = refusal(read, path, units=UNITS, rates={"angle": 50})
+    for word in ("angle_1 changes by", "a jump of a whole turn", "unwrap it"):
+        assert word in text
+
+
+def test_a_size_that_no_unit_explains_is_a_bad_row(csv, refusal):
+    text = refusal(read, csv(lines((7, "0.05,1,1e9,3,5\n"))), units=UNITS, limits={"current": 20})
+    assert "line 7" in text
+    assert "repair" in text
