@@ -29,9 +29,10 @@ def named_twin(found: Discovery) -> Twin:
     effects = tuple(e for e in plant.effects if e.name in names)
     base = tuple(p for p in plant.parameters if p.where != "effect")
     known = with_effects(replace(plant.parameters, records=base), effects)
-    at = final_values(found)
+    at = {name: value for name, value in final_values(found).items() if name in known.values()}
+    free = {name: at[name] for name in found.final.at.space.names if name in at}
     return build_twin(
-        known.with_values({p.name: at[p.name] for p in known if p.name in at}, "fitted to the log"),
+        known.with_values(at).with_values(free, "fitted to the log"),
         plant.geometry,
         timestep=plant.model.opt.timestep,
         effects=effects,

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from identification.discovery.along import goes_along
 from identification.discovery.changed import changed
 from identification.discovery.columns import Column, columns, common, single
 from identification.discovery.confidence import named_of
@@ -86,7 +87,8 @@ def discover(
     if len(accepted) > 1:
         ranked = scores_of(step, sensed)
     clock("refits")
-    left = left_over(step) + changed(step) + (() if accepted else in_doubt(rejected))
+    left = left_over(step) + changed(step) + goes_along(step)
+    left += () if accepted else in_doubt(rejected)
     if (other := too_large(first, [a.step.candidates[-1].effect.name for a in kept])) is not None:
         left += (beyond(other),)
     explained = _explained(nominal, step)

@@ -50,6 +50,12 @@ def test_the_named_twin_is_the_final_fit() -> None:
     )
 
 
+def test_only_what_was_free_has_the_log_as_its_source() -> None:
+    fit = found().final.at.space.names
+    for p in named_twin(found()).parameters:
+        assert (p.source == "fitted to the log") == (p.name in fit), p.name
+
+
 def test_a_law_that_is_not_at_hand_is_named(saved: Path) -> None:
     with pytest.raises(InputError, match=r"stribeck_friction; pass them"):
         load_twin(saved, effects=CATALOGUE[1:])

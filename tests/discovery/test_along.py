@@ -1,0 +1,111 @@
+"""Errors of the inputs that follow from what was logged are told from those that are random."""
+
+import mujoco
+import numpy as np
+import pytest
+from discovery_cases import SENSOR, STEP, base, linear_plant, record, slider, steps, wander
+from discovery_cases import response as dense
+
+from identification import Log, Parameter, ParameterSet
+from identification.discovery.along import _apart, _curves, followed, goes_along, response
+from identification.discovery.extend import Base
+from identification.discovery.steps import fitted
+from identification.errors import DivergenceError
+from identification.kalman.noise_model import Noise, whitener
+from identification.plant import ModelPlant
+from identification.predictor import Predictor
+
+N = 1000
+
+CARTS = """<mujoco>
+  <option timestep="0.01" gravity="0 0 0" integrator="RK4"/>
+  <worldbody>
+    <body name="one"><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>
+      <joint name="a" type="slide" axis="1 0 0" damping="3"/></body>
+    <body name="two"><inertial pos="0 0 0" mass="3" diaginertia="1 1 1"/>
+      <joint name="b" type="slide" axis="1 0 0" damping="4"/></body>
+  </worldbody>
+  <actuator><motor name="f" joint="a"/><motor name="g" joint="b"/></actuator>
+  <sensor><jointpos name="x" joint="a"/><jointpos name="y" joint="b"/></sensor>
+</mujoco>"""
+
+
+def carts(crosstalk, seed):
+    """A fit of two carts, the second of which feels a share of the force on the first."""
+    records = tuple(
+        Parameter(f"{n}_{w}", v, "", f"{kind}/{w}.{n}", lower=0.0, upper=100.0)
+        for w, n, v, kind in (("one", "mass", 2.2, "body"), ("two", "mass", 2.8, "body"),
+                              ("a", "damping", 2.7, "joint"), ("b", "damping", 4.3, "joint"))
+    )  # fmt: skip
+    plant = ModelPlant(mujoco.MjModel.from_xml_string(CARTS), ParameterSet("carts", records))
+    time, u = STEP * np.arange(N), 5 * np.hstack([steps(N, 1), steps(N, 2)])
+    error = 0.1 * np.hstack([wander(N, 1.0, 0.1, seed), wander(N, 1.0, 0.1, seed + 50)])
+    error[:, 1] += crosstalk * u[:, 0]
+    names = ("f", "g"), ("x", "y")
+    y = Predictor(plant, Log(time, u + error, 0 * u, *names), ()).predict(np.empty((1, 0)))[0]
+    y += SENSOR * np.random.default_rng(seed).standard_normal(y.shape)
+    log = Log(time, u, y, *names, units=dict.fromkeys("fg", "N") | dict.fromkeys("xy", "m"))
+    free = tuple(p.name for p in records)
+    return fitted(Base(plant, free, np.full(len(free), 0.3)), log, (), {})
+
+
+def test_the_response_is_that_of_the_dense_plant():
+    rng = np.random.default_rng(3)
+    plant = linear_plant(rng)
+    n, _, nu = plant.B.shape
+    r = rng.standard_normal((n + 1, nu, 4))
+    expected = (dense(plant) @ r.reshape(-1, 4)).reshape(n + 1, -1, 4)
+    found = response(whitener(plant, Noise(0.3, 0.1), STEP), r)
+    np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9)
+
+
+def test_curves_sum_to_one_and_each_is_of_one_input():
+    x = np.random.default_rng(1).standard_normal((50, 3))
+    np.testing.assert_allclose(_curves(x).sum(axis=2), 1)
+    r = _apart(_curves(x)).reshape(50, 3, 3, -1)
+    for i in range(3):
+        assert not np.delete(r[:, i], i, axis=1).any()
+        np.testing.assert_allclose(np.sqrt(np.mean(r[:, i, i] ** 2, axis=0)), 1)
+        np.testing.assert_allclose(r[:, i, i].mean(axis=0), 0, atol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_random_error_goes_along_with_nothing(seed):
+    error = wander(N, 0.05, 0.1, seed=seed)
+    step = fitted(base(), record(slider(mass=2.2, damping=2.7), N, seed, error), (), {})
+    assert step.refit.level.input_std > 0
+    assert len(followed(step.unseen)) == 3
+    assert goes_along(step) == ()
+    assert goes_along(carts(0.0, seed)) == ()
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_crosstalk_is_told_with_its_size_and_the_input_that_feels_it(seed):
+    step = carts(0.1, seed)
+    (said,) = goes_along(step)
+    assert "the other inputs" in said
+    assert "most of all on g" in said
+    best = max(followed(step.unseen), key=lambda f: f.share)
+    felt = 0.1 * np.std(step.unseen.whole.inputs[:, 0])
+    assert best.error[1] == pytest.approx(felt, rel=0.2)
+    assert best.error[0] < 0.5 * best.error[1]
+
+
+def test_an_error_along_the_rate_is_told_as_that():
+    n, robot = 2000, slider(mass=2.2, damping=2.7)
+    random = error = wander(n, 0.02, 0.1, seed=2)
+    for _ in range(30):  # the force follows from the motion that it makes
+        y = record(robot, n, 2, error, noise=0.0).outputs
+        error = (error + random + 0.15 * np.sin(5 * np.gradient(y, STEP, axis=0))) / 2
+    (said,) = goes_along(fitted(base(), record(robot, n, 2, error), (), {}))
+    assert "the rate of its output" in said
+
+
+def test_a_robot_that_a_small_change_of_a_parameter_loses_is_not_asked(monkeypatch):
+    step = carts(0.1, 2)
+
+    def lost(*_):
+        raise DivergenceError("lost")
+
+    monkeypatch.setattr("identification.discovery.along.sensitivities", lost)
+    assert goes_along(step) == ()
