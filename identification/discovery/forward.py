@@ -2,10 +2,10 @@
 
 Of those that were refitted the most likely one is chosen, by BIC, and accepted when unseen data say
 so too: beyond chance and, but for a first effect that leaves nothing else to explain, by enough to
-matter; a second name is often but the wrong shape of the first. Where the best leaves structure in
-the fitted samples, its next likely shape is tried, and for a first effect a start at the nominal
-values. Where no score is beyond chance but inputs are said to err, the best are refitted all the
-same, and must then gain beyond chance.
+matter; a second name is often but the wrong shape of the first. Where the best leaves structure,
+its next likely shape is tried, and for a first effect a start at the nominal values. Where no score
+is beyond chance but inputs are said to err, the best are refitted all the same, and must then gain
+beyond chance.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 
 from scipy.stats import chi2
 
+from identification.discovery.along import goes_along
 from identification.discovery.extend import Base
 from identification.discovery.locate import left_over
 from identification.discovery.proof import prove
@@ -108,8 +109,9 @@ def _criterion(step: Step) -> float:
 
 
 def _structured(step: Step) -> bool:
-    """Whether the fitted samples' innovations are not white."""
-    return whiteness(step.innovations, step.refit.at.log.sampling_time).correlated
+    """Whether innovations are not white, or what the noise model takes for chance is none."""
+    white = whiteness(step.innovations, step.refit.at.log.sampling_time)
+    return white.correlated or bool(goes_along(step))
 
 
 def _from_nominal(base: Base, whole: Log, step: Step, best: Step) -> Step:

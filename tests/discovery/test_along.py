@@ -9,8 +9,10 @@ from discovery_cases import response as dense
 from identification import Log, Parameter, ParameterSet
 from identification.discovery.along import _apart, _curves, followed, goes_along, response
 from identification.discovery.extend import Base
+from identification.discovery.forward import _structured
 from identification.discovery.steps import fitted
 from identification.errors import DivergenceError
+from identification.kalman.innovations import whiteness
 from identification.kalman.noise_model import Noise, whitener
 from identification.plant import ModelPlant
 from identification.predictor import Predictor
@@ -77,6 +79,7 @@ def test_a_random_error_goes_along_with_nothing(seed):
     assert len(followed(step.unseen)) == 3
     assert goes_along(step) == ()
     assert goes_along(carts(0.0, seed)) == ()
+    assert not _structured(step)
 
 
 @pytest.mark.parametrize("seed", [1, 2])
@@ -97,8 +100,11 @@ def test_an_error_along_the_rate_is_told_as_that():
     for _ in range(30):  # the force follows from the motion that it makes
         y = record(robot, n, 2, error, noise=0.0).outputs
         error = (error + random + 0.15 * np.sin(5 * np.gradient(y, STEP, axis=0))) / 2
-    (said,) = goes_along(fitted(base(), record(robot, n, 2, error), (), {}))
+    step = fitted(base(), record(robot, n, 2, error), (), {})
+    (said,) = goes_along(step)
     assert "the rate of its output" in said
+    assert not whiteness(step.innovations, STEP).correlated
+    assert _structured(step)
 
 
 def test_a_robot_that_a_small_change_of_a_parameter_loses_is_not_asked(monkeypatch):
