@@ -125,9 +125,10 @@ def _retuned(named: Named) -> str:
 
 def _proof(found: Discovery) -> str:
     before, after, floor = found.before.rms, found.after.rms, floor_rms(found)
-    was, now, noise = alike([before, after, floor], found.log.output_unit)
+    was, now, noise, own = alike([before, after, floor, found.noise_rms], found.log.output_unit)
     whom = "it" if len(found.named) == 1 else "them"
-    made = ", of sensors and unlogged errors of the inputs" if floor > found.noise_rms else ""
+    rest = f", of which sensors make {own} and unlogged errors of the inputs the rest"
+    made = rest if floor > found.noise_rms else ""
     said = (
         f"On data that the fit has not seen, the error falls from {was} to {now} rms"
         f" with {whom} in the model; the noise is {noise}{made}."
