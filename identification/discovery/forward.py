@@ -2,10 +2,8 @@
 
 Of those that were refitted the most likely one is chosen, by BIC, and accepted when unseen data say
 so too: beyond chance and, but for a first effect that leaves nothing else to explain, by enough to
-matter; a second name is often but the wrong shape of the first. Where the best leaves structure,
-its next likely shape is tried, and for a first effect a start at the nominal values. Where no score
-is beyond chance but inputs are said to err, the best are refitted all the same, and must then gain
-beyond chance.
+matter; a second name is often but the wrong shape of the first. Where no score is beyond chance but
+inputs are said to err, the best are refitted all the same, and must then gain beyond chance.
 """
 
 from __future__ import annotations
@@ -14,12 +12,12 @@ from collections.abc import Callable, Sequence
 
 from scipy.stats import chi2
 
-from identification.discovery.along import goes_along
 from identification.discovery.extend import Base
 from identification.discovery.locate import left_over
 from identification.discovery.proof import prove
 from identification.discovery.result import Tried
 from identification.discovery.score import Score
+from identification.discovery.shapes import improved
 from identification.discovery.significant import ALPHA, plausible, significant
 from identification.discovery.steps import (
     Accepted,
@@ -30,7 +28,6 @@ from identification.discovery.steps import (
     proven,
 )
 from identification.errors import DivergenceError, InputError
-from identification.kalman.innovations import whiteness
 from identification.log import Log
 
 CONTENDERS = 3  # explanations that are refitted at most
@@ -57,11 +54,9 @@ def add(
         say(f"{s.candidate.effect.name}, {s.candidate.where}: gain {gain:.0f}")
         if not hidden or _beyond_chance(new, step, len(ranked)):
             tried.append(new)
-    tried.sort(key=_criterion, reverse=True)
-    if tried and _structured(tried[0]):
-        tried[0] = _other_shape(base, whole, step, tried[0], ranked)
-    if tried and not step.candidates and _structured(tried[0]):
-        tried[0] = _from_nominal(base, whole, step, tried[0])
+    tried.sort(key=lambda new: new.criterion, reverse=True)
+    if tried:
+        tried[0] = improved(base, whole, step, tried[0], ranked)
     rejected: list[Tried] = []
     clean = not step.candidates and not left_over(step)
     for k, new in enumerate(tried):
@@ -102,44 +97,3 @@ def _contenders(found: Sequence[Score]) -> list[Score]:
             out.append(s)
             best.setdefault(s.candidate.effect.name, s.gain)
     return out[:CONTENDERS]
-
-
-def _criterion(step: Step) -> float:
-    return step.criterion
-
-
-def _structured(step: Step) -> bool:
-    """Whether innovations are not white, or what the noise model takes for chance is none."""
-    white = whiteness(step.innovations, step.refit.at.log.sampling_time)
-    return white.correlated or bool(goes_along(step))
-
-
-def _from_nominal(base: Base, whole: Log, step: Step, best: Step) -> Step:
-    """The better of a fit and of one that begins at the nominal values.
-
-    A wrong model may have led the base parameters astray, too far to come back.
-    """
-    old = {n: step.refit.at.values[n] for c in step.candidates for n in c.free}
-    new = {n: best.refit.at.values[n] for n in best.candidates[-1].free}
-    try:
-        return max(best, fitted(base, whole, best.candidates, {**old, **new}), key=_criterion)
-    except (DivergenceError, InputError):
-        return best
-
-
-def _other_shape(base: Base, whole: Log, step: Step, best: Step, ranked: Sequence[Score]) -> Step:
-    """The better of a fit and of one whose fixed shapes (a power, a kind) are the next likely."""
-    mine = best.candidates[-1]
-    fixed = [shape.name for shape in mine.effect.shapes if not shape.free]
-    for s in ranked:
-        c = s.candidate
-        same = c.effect.name == mine.effect.name and c.where == mine.where
-        if same and any(c.shape[name] != mine.shape[name] for name in fixed):
-            sizes = dict(zip(c.sizes, s.size, strict=True))
-            start = {**step.refit.at.values, **sizes}
-            try:
-                other = fitted(base, whole, (*step.candidates, c), start, step)
-            except (DivergenceError, InputError):
-                return best
-            return max(best, other, key=_criterion)
-    return best

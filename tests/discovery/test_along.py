@@ -9,7 +9,7 @@ from discovery_cases import response as dense
 from identification import Log, Parameter, ParameterSet
 from identification.discovery.along import _apart, _curves, followed, goes_along, response
 from identification.discovery.extend import Base
-from identification.discovery.forward import _structured
+from identification.discovery.shapes import structured
 from identification.discovery.steps import fitted
 from identification.errors import DivergenceError
 from identification.kalman.innovations import whiteness
@@ -79,7 +79,7 @@ def test_a_random_error_goes_along_with_nothing(seed):
     assert len(followed(step.unseen)) == 3
     assert goes_along(step) == ()
     assert goes_along(carts(0.0, seed)) == ()
-    assert not _structured(step)
+    assert not structured(step)
 
 
 @pytest.mark.parametrize("seed", [1, 2])
@@ -104,7 +104,7 @@ def test_an_error_along_the_rate_is_told_as_that():
     (said,) = goes_along(step)
     assert "the rate of its output" in said
     assert not whiteness(step.innovations, STEP).correlated
-    assert _structured(step)
+    assert structured(step)
 
 
 def test_a_robot_that_a_small_change_of_a_parameter_loses_is_not_asked(monkeypatch):

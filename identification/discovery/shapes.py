@@ -1,0 +1,100 @@
+"""The best refit of an effect, looked at again: another start, another shape, the usual shape.
+
+Where it leaves structure its next likely shape is tried, and for a first effect a start at the
+nominal values. Where the data hardly tell its kind from the usual one, the usual one is taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from identification.discovery.along import goes_along
+from identification.discovery.extend import Base
+from identification.discovery.score import Score
+from identification.discovery.steps import Step, fitted
+from identification.effect import Candidate
+from identification.errors import DivergenceError, InputError
+from identification.kalman.innovations import whiteness
+from identification.log import Log
+
+BARE = 2.0  # of BIC, below which a difference is hardly worth a mention (Kass, Raftery 1995)
+
+
+def improved(base: Base, whole: Log, step: Step, best: Step, ranked: Sequence[Score]) -> Step:
+    """The best refit of the last candidate, or a better one of the same effect.
+
+    Args:
+        base: the nominal model.
+        whole: the log.
+        step: the model without the candidate.
+        best: the model with it.
+        ranked: scores of all candidates on `step`.
+    """
+    if structured(best):
+        best = _other_shape(base, whole, step, best, ranked)
+    if not step.candidates and structured(best):
+        best = _from_nominal(base, whole, step, best)
+    return _as_usual(base, whole, step, best, ranked)
+
+
+def structured(step: Step) -> bool:
+    """Whether innovations are not white, or what the noise model takes for chance is none."""
+    white = whiteness(step.innovations, step.refit.at.log.sampling_time)
+    return white.correlated or bool(goes_along(step))
+
+
+def _from_nominal(base: Base, whole: Log, step: Step, best: Step) -> Step:
+    """The better of a fit and of one that begins at the nominal values.
+
+    A wrong model may have led the base parameters astray, too far to come back.
+    """
+    old = {n: step.refit.at.values[n] for c in step.candidates for n in c.free}
+    new = {n: best.refit.at.values[n] for n in best.candidates[-1].free}
+    try:
+        return max(best, fitted(base, whole, best.candidates, {**old, **new}), key=_criterion)
+    except (DivergenceError, InputError):
+        return best
+
+
+def _other_shape(base: Base, whole: Log, step: Step, best: Step, ranked: Sequence[Score]) -> Step:
+    """The better of a fit and of one whose fixed shapes (a power, a kind) are the next likely."""
+    mine = best.candidates[-1]
+    fixed = [shape.name for shape in mine.effect.shapes if not shape.free]
+    for s in _same(mine, ranked):
+        if any(s.candidate.shape[name] != mine.shape[name] for name in fixed):
+            return max(best, _shaped(base, whole, step, s) or best, key=_criterion)
+    return best
+
+
+def _as_usual(base: Base, whole: Log, step: Step, best: Step, ranked: Sequence[Score]) -> Step:
+    """A fit whose kinds are the usual ones, where the data hardly tell it from the best."""
+    mine = best.candidates[-1]
+    usual = {s.name: s.usual for s in mine.effect.shapes if not s.free and s.usual is not None}
+    if all(mine.shape[name] == value for name, value in usual.items()):
+        return best
+    for s in _same(mine, ranked):
+        if all(s.candidate.shape[name] == value for name, value in usual.items()):
+            other = _shaped(base, whole, step, s)
+            return other if other and best.criterion - other.criterion < BARE else best
+    return best
+
+
+def _same(mine: Candidate, ranked: Sequence[Score]) -> Iterator[Score]:
+    """Scores of an effect at its place, whatever the shape."""
+    for s in ranked:
+        if s.candidate.effect.name == mine.effect.name and s.candidate.where == mine.where:
+            yield s
+
+
+def _shaped(base: Base, whole: Log, step: Step, s: Score) -> Step | None:
+    """A model with a candidate fitted; None where that cannot be simulated."""
+    sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
+    more = (*step.candidates, s.candidate)
+    try:
+        return fitted(base, whole, more, {**step.refit.at.values, **sizes}, step)
+    except (DivergenceError, InputError):
+        return None
+
+
+def _criterion(step: Step) -> float:
+    return step.criterion

@@ -1,0 +1,80 @@
+"""Of kinds of one effect that a log does not tell apart the usual one is taken."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from identification.discovery import shapes
+from identification.discovery.shapes import BARE, improved
+from identification.effect import Candidate, Effect, Shape, Size
+from inca_mj.discover import discover
+from inca_mj.effects.current_saturation import CURRENT_SATURATION
+from inca_mj.worlds import Setting, effect, world
+
+KINDS = Effect(
+    "limit",
+    "clip",
+    (Size("c", "", 1.0, 0.1),),
+    (
+        Shape("at", "N", (1.0, 2.0), 0.1, 9.0),
+        Shape("soft", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0),
+    ),
+    {"joint": ""},
+)
+
+
+def candidate(soft):
+    return Candidate(KINDS, "joint", {"at": 1.0, "soft": soft})
+
+
+def of(soft, criterion):
+    return SimpleNamespace(candidates=(candidate(soft),), criterion=criterion)
+
+
+def choose(monkeypatch, best, other, white=True):
+    """What becomes of the best fit, and the kinds that were refitted."""
+    asked = []
+
+    def shaped(base, whole, step, s):
+        asked.append(s.candidate.shape["soft"])
+        return other
+
+    monkeypatch.setattr(shapes, "structured", lambda step: not white)
+    monkeypatch.setattr(shapes, "_shaped", shaped)
+    ranked = [SimpleNamespace(candidate=candidate(soft)) for soft in (1.0, 0.0)]
+    more = SimpleNamespace(candidates=(None,))
+    return improved(None, None, more, best, ranked), asked
+
+
+@pytest.mark.parametrize(("ahead", "usual"), [(BARE - 0.1, True), (BARE + 0.1, False)])
+def test_another_kind_must_be_better_by_more_than_a_bare_mention(monkeypatch, ahead, usual):
+    best, other = of(1.0, 100.0 + ahead), of(0.0, 100.0)
+    chosen, asked = choose(monkeypatch, best, other)
+    assert chosen is (other if usual else best)
+    assert asked == [0.0]
+
+
+def test_the_usual_kind_is_not_refitted_where_it_is_the_best_or_nothing_else_can_be(monkeypatch):
+    best = of(0.0, 100.0)
+    assert choose(monkeypatch, best, of(1.0, 99.0)) == (best, [])
+    best = of(1.0, 100.0)
+    assert choose(monkeypatch, best, None) == (best, [0.0])
+
+
+def test_where_structure_is_left_the_next_kind_is_tried_and_the_likelier_kept(monkeypatch):
+    best, other = of(0.0, 100.0), of(1.0, 130.0)
+    chosen, asked = choose(monkeypatch, best, other, white=False)
+    assert asked[0] == 1.0
+    assert chosen is other
+
+
+def test_a_limit_that_two_levels_of_current_reach_alike_is_a_hard_one():
+    setting = Setting(duration=4.5)  # PRBS: 0.5 and 1 A
+    log, truth = world(71, [replace(effect("current_saturation"), i_max=0.9)], setting=setting)
+    assert np.unique(log.inputs).size == 2
+    answer = discover(log, effects=(CURRENT_SATURATION,))
+    (named,) = answer.named
+    assert named.candidate.shape["soft"] == 0.0
+    assert named.parameters["i_max"][0] == pytest.approx(truth.sizes[0]["i_max"], rel=0.02)
