@@ -12,6 +12,7 @@ _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 _TAKE = ("N", "m", "s", "A", "g", "V", "W", "Hz")  # units that take a prefix where they lead
 _SMALL = ("rad",)  # those that take small ones only: nobody says kiloradian
 _LEAST = 1e-3  # smaller numbers, in units without a prefix, are said as powers of ten
+_FINEST = 1e-5  # a smaller std is said as a power of ten
 _DIGITS = 3  # of a value whose std is not known
 
 
@@ -28,7 +29,7 @@ def quantity(value: float, std: float = float("nan"), unit: str = "") -> str:
     known = isfinite(std) and std > 0
     factor, unit = _scale(max(abs(value), std if known else 0.0), unit, exact=std == 0)
     value, std = value / factor, std / factor
-    if known and std < _LEAST:
+    if known and std < _FINEST:
         return f"{value:.6g} ± {std:.1e} {unit}".strip()
     if not known:
         return f"{_plain(value, _DIGITS)} {unit}".strip()
@@ -37,9 +38,15 @@ def quantity(value: float, std: float = float("nan"), unit: str = "") -> str:
 
 
 def alike(values: Sequence[float], unit: str) -> list[str]:
-    """Several values with one prefix, that of the largest, so that they compare at a glance."""
+    """Several values with one prefix, so that they compare at a glance.
+
+    It is that of the largest, or where that has none and the smallest needs one, the milli's.
+    """
     known = [abs(v) for v in values if isfinite(v)]
-    factor, name = _scale(max(known, default=0.0), unit, exact=True)
+    most, least = max(known, default=0.0), min(known, default=0.0)
+    factor, name = _scale(most, unit, exact=True)
+    if factor == 1.0 and 0 < least < _LEAST and most < 1:
+        factor, name = _scale(0.01, unit, exact=True)
     return [
         f"{_plain(v / factor, _DIGITS)} {name}".strip() if isfinite(v) else "unknown"
         for v in values

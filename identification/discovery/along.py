@@ -73,10 +73,11 @@ def goes_along(step: Step) -> tuple[str, ...]:
         return ()
     best, log = max(found, key=lambda f: f.share), step.unseen.whole
     rms, worst = float(np.sqrt(np.mean(best.error**2))), log.input_names[best.error.argmax()]
+    size = quantity(rms, unit=log.units.get(worst, ""))
     return (
-        f"an error of the inputs that nobody logged and that is not random: it goes along with"
-        f" {best.what}, {quantity(rms, unit=log.units.get(worst, ''))} rms, most of all on {worst},"
-        f" and takes {100 * max(best.fall, best.share):.0f} % off the error on unseen data",
+        f"an error of the inputs that nobody logged, {size} rms, that is not random: it goes along"
+        f" with {best.what}, most of all on {worst}, and with it the mean square on unseen data is"
+        f" {100 * max(best.fall, best.share):.0f} % less",
     )
 
 
@@ -96,7 +97,7 @@ def followed(seen: Unseen) -> tuple[Followed, ...]:
 
 
 def families(seen: Unseen) -> Iterator[Family]:
-    """What errors of the inputs are tried."""
+    """What errors of the inputs are tried; as many outputs as inputs are taken for theirs."""
     u, y = seen.whole.inputs, seen.whole.outputs - seen.e
     nu = u.shape[1]
     if nu > 1:

@@ -87,11 +87,11 @@ def discover(
     if len(accepted) > 1:
         ranked = scores_of(step, sensed)
     clock("refits")
-    left = left_over(step) + changed(step) + goes_along(step)
-    left += () if accepted else in_doubt(rejected)
+    along = goes_along(step)
+    left = (*left_over(step), *changed(step), *along, *(() if accepted else in_doubt(rejected)))
     if (other := too_large(first, [a.step.candidates[-1].effect.name for a in kept])) is not None:
         left += (beyond(other),)
-    explained = _explained(nominal, step)
+    explained = _explained(nominal, step, random=not along)
     left = (*(held_otherwise(nominal) if left else ()), *left)
     named = named_of(base, kept, step, sensed, explained if left else 1.0)
     verdict: Verdict = "nothing missing"
@@ -111,13 +111,14 @@ def discover(
     )  # fmt: skip
 
 
-def _explained(nominal: Step, step: Step) -> float:
+def _explained(nominal: Step, step: Step, random: bool) -> float:
     """Share of the gap on unseen data that effects close.
 
-    The gap ends at what sensors and input errors make, if these can be believed.
+    The gap ends at what sensors and input errors make, if these can be believed: as small as noise
+    is, and random.
     """
     proof = prove(nominal.unseen, step.unseen)
-    return proof.share if input_error(step.refit) <= ALLOWED else proof.above
+    return proof.share if random and input_error(step.refit) <= ALLOWED else proof.above
 
 
 def _sensitivities(base: Base, nominal: Step, effects: Sequence[Effect]) -> tuple[Column, ...]:

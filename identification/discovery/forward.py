@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 
 from scipy.stats import chi2
 
+from identification.discovery.along import goes_along
 from identification.discovery.extend import Base
 from identification.discovery.locate import left_over
 from identification.discovery.proof import prove
@@ -62,7 +63,7 @@ def add(
     for k, new in enumerate(tried):
         proof = prove(step.unseen, new.unseen)
         gain = new.criterion - step.criterion
-        if gain > 0 and (holds(proof) or (clean and proven(proof))):
+        if gain > 0 and (holds(proof) or (clean and proven(proof) and not goes_along(new))):
             return Accepted(new, proof, gain, tuple(tried[:k] + tried[k + 1 :])), ()
         mine = new.candidates[-1]
         rejected.append(Tried(mine, parameters_of(base, new, mine), gain, proof))

@@ -24,7 +24,7 @@ NAN, INF = float("nan"), float("inf")
         (0.01, 0.001, "N s²/m²", "10.0 ± 1.0 mN s²/m²"),
         (0.0, NAN, "N m", "0 N m"),
         (INF, NAN, "m", "unknown"),
-        (2e-4, 1e-5, "m²", "0.0002 ± 1.0e-05 m²"),
+        (2e-4, 1e-5, "m²", "0.000200 ± 0.000010 m²"),
         (2.38e-6, NAN, "1/s", "2.38e-06 1/s"),
         (120.0, 5.0, "rad/s", "120 ± 5 rad/s"),
     ],
@@ -35,5 +35,8 @@ def test_quantities(value: float, std: float, unit: str, said: str) -> None:
 
 def test_one_prefix_for_all() -> None:
     assert alike([0.0805, 0.000499], "rad") == ["80.5 mrad", "0.499 mrad"]
+    assert alike([0.131, 0.000676], "rad") == ["131 mrad", "0.676 mrad"]
+    assert alike([0.131, 0.0676], "rad") == ["0.131 rad", "0.0676 rad"]
+    assert alike([0.131, 0.000676], "m²") == ["0.131 m²", "6.76e-04 m²"]
     assert alike([0.02, float("nan")], "") == ["0.0200", "unknown"]
     assert alike([], "rad") == []
