@@ -37,6 +37,11 @@ def quantity(value: float, std: float = float("nan"), unit: str = "") -> str:
     return f"{value:.{places}f} ± {std:.{places}f} {unit}".strip()
 
 
+def chance(p: float) -> str:
+    """A small probability."""
+    return f"{p:.0e}" if p > 0 else "below 1e-300"
+
+
 def alike(values: Sequence[float], unit: str) -> list[str]:
     """Several values with one prefix, so that they compare at a glance.
 

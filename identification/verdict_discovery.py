@@ -78,7 +78,7 @@ def unexplained(found: Discovery) -> str:
     """What is left after the named effects."""
     more = "what is named" if len(found.named) == 1 else "all that is named"
     ratio = found.after.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
-    times = f", {ratio:.3g} times the noise" if isfinite(ratio) else ""
+    times = f", {ratio:.3g} times the noise" if 1 < ratio < float("inf") else ""
     return " ".join(
         [
             f"Something is left beside {more} that no known effect explains: the model is still"
@@ -99,15 +99,16 @@ def _named(found: Discovery, named: Named) -> str:
             [f"{phrase(named.candidate)} ({100 * named.confidence:.0f} %)"]
             + [f"{phrase(r.candidate)} ({100 * r.confidence:.0f} %)" for r in rivals]
         )
+        first = "Missing from the model" if named is found.named[0] else "Missing too"
         return (
-            f"Missing from the model is one of these, which this log cannot tell apart: {each};"
+            f"{first} is one of these, which this log cannot tell apart: {each};"
             f" together {100 * min(total, 1.0):.0f} %. The first is put into the model:"
             f" {sizes(named)}." + (f" {named.advice}" if named.advice else "")
         )
     first = "Missing from the model" if named is found.named[0] else "Missing too"
     return (
         f"{first}: {phrase(named.candidate)}, {sizes(named)}"
-        f"; confidence {100 * named.confidence:.0f} %."
+        f"; confidence {100 * named.confidence:.0f} % among the known effects."
     )
 
 

@@ -36,14 +36,25 @@ def changed(step: Step) -> tuple[str, ...]:
     if not _louder(fitted, left[first:]):
         return ()
     log, ratio = seen.refit.at.log, _power(left[first:]).mean() / _power(fitted).mean()
-    blocks = np.array_split(_power(left[first:]), BLOCKS)
-    worst = int(np.argmax([b.mean() for b in blocks]))
-    at = log.time[-1] + log.sampling_time * (1 + sum(map(len, blocks[:worst])))
+    at = log.time[-1] + log.sampling_time * (1 + _onset(_power(fitted), _power(left[first:])))
     return (
-        f"samples that were not fitted, which are {np.sqrt(ratio):.3g} times as far off as those"
-        f" that were, most of all about {at:.3g} s: the robot changed, or does there what the"
-        " fitted part never shows",
+        f"samples that were not fitted, which a predictor of the next sample misses by"
+        f" {np.sqrt(ratio):.3g} times as much as those that were, from about {at:.3g} s on: the"
+        " robot changed, or does there what the fitted part never shows",
     )
+
+
+def _onset(fitted: np.ndarray, unseen: np.ndarray) -> int:
+    """First sample of the unseen ones from which on they differ the most from all before."""
+    ends = np.array_split(np.arange(len(unseen)), BLOCKS)
+    a, b = (np.log([part.mean() for part in np.array_split(p, BLOCKS)]) for p in (fitted, unseen))
+
+    def apart(k: int) -> float:
+        before, after = np.concatenate([a, b[:k]]), b[k:]
+        n, m = len(before), len(after)
+        return float((after.mean() - before.mean()) * np.sqrt(n * m / (n + m)))
+
+    return int(ends[max(range(BLOCKS), key=apart)][0])
 
 
 def _power(E: np.ndarray) -> np.ndarray:

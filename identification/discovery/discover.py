@@ -104,7 +104,8 @@ def discover(
     missing = missing_forces(nominal.refit) if verdict != "nothing missing" else ()
     where = located(nominal, missing) if verdict != "nothing missing" else ()
     return Discovery(
-        log, verdict, named, bool(left), step.refit.level.sigma, step.unseen.disturbance,
+        log, verdict, named, bool(left), step.refit.level.sigma,
+        0.0 if along else step.unseen.disturbance,
         nominal.unseen.gap, step.unseen.gap, nominal.refit, step.refit,
         log.outputs - nominal.unseen.e, log.outputs - step.unseen.e, first, ranked,
         detectable(ranked), where, left, missing, clock.seconds, base.horizon, rejected,

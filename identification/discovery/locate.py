@@ -16,7 +16,7 @@ from identification.discovery.words import phrase, sizes
 from identification.kalman.innovations import SURE, whiteness
 from identification.kalman.noise_fit import ALLOWED
 from identification.kalman.refit import Refit
-from identification.quantities import quantity
+from identification.quantities import chance, quantity
 
 TELLING = 0.1  # share of a missing force that is worth a sentence
 BELIEVED = 1.0  # the same, above which the log's inputs are not what moved the robot
@@ -58,7 +58,7 @@ def shares(fit: Refit, force: np.ndarray) -> Mapping[str, float]:
 
 
 def located(nominal: Step, missing: Sequence[MissingForce]) -> tuple[str, ...]:
-    """Where the nominal model fails, in sentences."""
+    """Where the nominal model fails on the fitted samples, in sentences."""
     fit = nominal.refit
     log, e = fit.at.log, fit.at.e
     out = []
@@ -68,8 +68,9 @@ def located(nominal: Step, missing: Sequence[MissingForce]) -> tuple[str, ...]:
     name = log.output_names[worst]
     unit = log.units.get(name, "")
     out.append(
-        f"the error is largest on {name}: {rms[worst]:.3g} {unit} rms,"
-        f" {100 * share:.0f} % of all, {rms[worst] / fit.level.sigma:.1f} times the sensors' noise"
+        "of the fitted samples the error is largest on"
+        f" {name}: {quantity(rms[worst], unit=unit)} rms, {100 * share:.0f} % of all,"
+        f" {rms[worst] / fit.level.sigma:.1f} times the sensors' noise"
     )
     energy = np.add.reduceat(
         np.sum(e**2, axis=1), np.linspace(0, len(e), 10, endpoint=False).astype(int)
@@ -112,17 +113,17 @@ def left_over(step: Step) -> tuple[str, ...]:
     if white.p_line < SURE:
         out.append(
             f"a line at {white.frequency:.2f} Hz on {log.output_names[white.channel]} that no"
-            f" candidate explains (chance {white.p_line:.0e})"
+            f" candidate explains (chance {chance(white.p_line)})"
         )
     if white.p_louder < SURE:
         out.append(
             f"{log.output_names[white.loudest]} is noisier than the others"
-            f" (chance {white.p_louder:.0e})"
+            f" (chance {chance(white.p_louder)})"
         )
     if white.correlated:
         out.append(
             f"innovations that are not white: {100 * white.predictable:.0f} % of their power"
-            f" follows from the samples before (chance {white.p_correlation:.0e})"
+            f" follows from the samples before (chance {chance(white.p_correlation)})"
         )
     if step.stretched:
         out.append(

@@ -150,7 +150,8 @@ class Discovery:
         named: the missing effects, the most telling first.
         unexplained: whether something is left that no named effect explains.
         noise_rms: of the sensors, estimated from the data.
-        disturbance_rms: what unlogged input errors do to the free run, by the noise model.
+        disturbance_rms: what unlogged input errors do to the free run, by the noise model; zero
+            where they are not random.
         before: the gap of the nominal model, fitted.
         after: the gap of the model with the named effects.
         nominal: the fit without effects.

@@ -69,7 +69,8 @@ def where_section(found: Discovery) -> Section:
     """Where the nominal model fails, and where the final one still does."""
     rows, unit = unseen_rows(found), found.log.output_unit
     before, after = _errors(found)
-    left = [f"With what is named: {'; '.join(found.left)}."] if found.left else []
+    title = "With what is named" if found.named else "What is left"
+    left = [f"{title}: {'; '.join(found.left)}."] if found.left else []
     figure = rms_figure(
         _rms(before[rows]), None if after is None else _rms(after[rows]), floor_rms(found),
         found.log.output_names, unit,

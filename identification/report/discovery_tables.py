@@ -34,25 +34,26 @@ def parameters_section(found: Discovery) -> Section:
     plant = found.final.at.predictor.plant
     first, last = std_of(found.nominal), std_of(found.final)
     nominal, values = found.nominal.at.values, final_values(found)
-    rows = []
+    rows, held = [], []
     for p in plant.parameters:
         if p.name not in last and p.name not in first:
+            held += [p.name] if p.where not in ("effect", "start") else []
             continue
-        rows.append(
-            (
-                p.name,
-                "–" if p.where == "effect" else quantity(p.value, unit=p.unit),
-                _value(nominal.get(p.name), first.get(p.name), p.unit),
-                _value(values[p.name], last.get(p.name), p.unit),
-            )
+        row = (
+            p.name,
+            "–" if p.where == "effect" else quantity(p.value, unit=p.unit),
+            _value(nominal.get(p.name), first.get(p.name), p.unit),
+            _value(values[p.name], last.get(p.name), p.unit),
         )
+        rows.append(row if found.named else row[:3])
+    titles = ("parameter", "nominal", "fitted without effects", "fitted with what is named")
+    said = "A std holds for the model as it is: that of a wrong model is too small."
+    if held:
+        said += f" So it is where {' or '.join(held)}, held at the nominal value, is not that."
     return Section(
         "The parameters",
-        "A std holds for the model as it is: that of a wrong model is too small.",
-        table=Table(
-            ("parameter", "nominal", "fitted without effects", "fitted with what is named"),
-            tuple(rows),
-        ),
+        said,
+        table=Table(titles if found.named else titles[:3], tuple(rows)),
     )
 
 

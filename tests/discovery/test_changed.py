@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from discovery_cases import EFFECTS, SENSOR, SLIDER, STEP, base, record, slider, wander
 
-from identification.discovery.changed import changed
+from identification.discovery.changed import _onset, changed
 from identification.discovery.discover import discover
 from identification.discovery.steps import fitted
 from identification.errors import DivergenceError
@@ -33,8 +33,8 @@ def changing(damping, seed=11):
 
 
 def far(said):
-    """How many times as far off."""
-    return float(said.split(" times as far off")[0].split()[-1])
+    """How many times as much is missed."""
+    return float(said.split(" times as much as")[0].split()[-1])
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -43,6 +43,14 @@ def test_a_robot_that_stays_as_it_is_has_not_changed(seed):
     log = record(slider(mass=2.2, damping=2.7), N, seed=seed, error=error)
     assert changed(fitted(base(), log, (), {})) == ()
     assert changed(fitted(base(), changing(2.7, seed), (), {})) == ()
+
+
+@pytest.mark.parametrize("first", [0, 100, 260])
+def test_the_change_is_dated(first):
+    rng = np.random.default_rng(first)
+    power = rng.chisquare(8, (2, 400)) / 8
+    power[1, first:] *= 3
+    assert abs(_onset(*power) - first) <= 20  # a block
 
 
 def test_a_robot_that_a_small_change_of_a_parameter_loses_is_judged_without_it(monkeypatch):
@@ -60,7 +68,7 @@ def test_a_robot_that_a_small_change_of_a_parameter_loses_is_judged_without_it(m
 def test_a_change_after_the_fitted_samples_is_never_called_nothing_missing():
     log = changing(4.0)
     (said,) = changed(fitted(base(), log, (), {}))
-    assert "times as far off as those that were" in said
+    assert "times as much as those that were" in said
     answer = discover(base(), log, EFFECTS)
     assert answer.verdict == "unknown effect"
     assert said in answer.left

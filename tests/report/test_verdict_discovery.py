@@ -17,7 +17,8 @@ def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
     said = discovery_verdict(found())
     assert said[0] == (
         "Missing from the model: friction: Stribeck peak, all drives, f_s = 4.12 ± 0.21 mN m"
-        " (height of the peak), v_s = 1.88 ± 0.10 rad/s (its half width); confidence 97 %."
+        " (height of the peak), v_s = 1.88 ± 0.10 rad/s (its half width);"
+        " confidence 97 % among the known effects."
     )
     assert "On data that the fit has not seen, the error falls from" in said[1]
     assert said[1].count("mrad") == 3
