@@ -8,9 +8,11 @@ from discovery_cases import response as dense
 
 from identification import Log, Parameter, ParameterSet
 from identification.discovery.along import _apart, _curves, followed, goes_along, response
+from identification.discovery.discover import discover
 from identification.discovery.extend import Base
 from identification.discovery.shapes import structured
 from identification.discovery.steps import fitted
+from identification.effect import Effect, Size
 from identification.errors import DivergenceError
 from identification.kalman.innovations import whiteness
 from identification.kalman.noise_model import Noise, whitener
@@ -32,14 +34,19 @@ CARTS = """<mujoco>
 </mujoco>"""
 
 
+SPRING = Effect("spring", "-k x", (Size("k", "N/m", 30.0, 1e-2, 1),), places={"joint": ""})
+
+
 def carts(crosstalk, seed):
-    """A fit of two carts, the second of which feels a share of the force on the first."""
+    """Two carts, the second of which feels a share of the force on the first, and their log."""
     records = tuple(
         Parameter(f"{n}_{w}", v, "", f"{kind}/{w}.{n}", lower=0.0, upper=100.0)
         for w, n, v, kind in (("one", "mass", 2.2, "body"), ("two", "mass", 2.8, "body"),
                               ("a", "damping", 2.7, "joint"), ("b", "damping", 4.3, "joint"))
     )  # fmt: skip
-    plant = ModelPlant(mujoco.MjModel.from_xml_string(CARTS), ParameterSet("carts", records))
+    spring = Parameter("spring.k", 0.0, "N/m", "joint/a.stiffness", lower=0.0, upper=1e3)
+    known = ParameterSet("carts", (*records, spring))
+    plant = ModelPlant(mujoco.MjModel.from_xml_string(CARTS), known)
     time, u = STEP * np.arange(N), 5 * np.hstack([steps(N, 1), steps(N, 2)])
     error = 0.1 * np.hstack([wander(N, 1.0, 0.1, seed), wander(N, 1.0, 0.1, seed + 50)])
     error[:, 1] += crosstalk * u[:, 0]
@@ -48,7 +55,7 @@ def carts(crosstalk, seed):
     y += SENSOR * np.random.default_rng(seed).standard_normal(y.shape)
     log = Log(time, u, y, *names, units=dict.fromkeys("fg", "N") | dict.fromkeys("xy", "m"))
     free = tuple(p.name for p in records)
-    return fitted(Base(plant, free, np.full(len(free), 0.3)), log, (), {})
+    return Base(plant, free, np.full(len(free), 0.3)), log
 
 
 def test_the_response_is_that_of_the_dense_plant():
@@ -78,13 +85,13 @@ def test_a_random_error_goes_along_with_nothing(seed):
     assert step.refit.level.input_std > 0
     assert len(followed(step.unseen)) == 3
     assert goes_along(step) == ()
-    assert goes_along(carts(0.0, seed)) == ()
+    assert goes_along(fitted(*carts(0.0, seed), (), {})) == ()
     assert not structured(step)
 
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_crosstalk_is_told_with_its_size_and_the_input_that_feels_it(seed):
-    step = carts(0.1, seed)
+    step = fitted(*carts(0.1, seed), (), {})
     (said,) = goes_along(step)
     assert "the other inputs" in said
     assert "most of all on g" in said
@@ -92,6 +99,17 @@ def test_crosstalk_is_told_with_its_size_and_the_input_that_feels_it(seed):
     felt = 0.1 * np.std(step.unseen.whole.inputs[:, 0])
     assert best.error[1] == pytest.approx(felt, rel=0.2)
     assert best.error[0] < 0.5 * best.error[1]
+
+
+def test_crosstalk_is_an_unknown_effect_and_no_noise():
+    base, log = carts(0.1, 2)
+    answer = discover(base, log, (SPRING,))
+    assert answer.verdict == "unknown effect"
+    assert answer.disturbance_rms == 0.0
+    assert any("the other inputs" in said for said in answer.left)
+    quiet = discover(*carts(0.0, 2), (SPRING,))
+    assert quiet.verdict == "nothing missing"
+    assert quiet.disturbance_rms > 0
 
 
 def test_an_error_along_the_rate_is_told_as_that():
@@ -108,7 +126,7 @@ def test_an_error_along_the_rate_is_told_as_that():
 
 
 def test_a_robot_that_a_small_change_of_a_parameter_loses_is_not_asked(monkeypatch):
-    step = carts(0.1, 2)
+    step = fitted(*carts(0.1, 2), (), {})
 
     def lost(*_):
         raise DivergenceError("lost")
