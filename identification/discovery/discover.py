@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from identification.discovery.along import goes_along
+from identification.discovery.both import both
 from identification.discovery.changed import changed
 from identification.discovery.columns import Column, columns, common, single
 from identification.discovery.confidence import named_of
@@ -74,12 +75,15 @@ def discover(
     rejected: tuple[Tried, ...] = ()
     step = nominal
     while len(accepted) < MOST:
-        new, rejected = add(base, log, step, ranked, say)
+        new, rejected, hopeful = add(base, log, step, ranked, say)
+        more: tuple[Accepted, ...] = () if new is None else (new,)
+        if hopeful is not None and len(accepted) + 2 <= MOST:
+            more = both(base, log, step, hopeful, sensed, say)
         clock("refits")
-        if new is None:
+        if not more:
             break
-        accepted.append(new)
-        step = new.step
+        accepted += more
+        step, rejected = accepted[-1].step, ()
         ranked = scores_of(step, sensed)
         clock("scores")
     kept, step = backward(base, log, accepted, step)

@@ -38,8 +38,13 @@ ELSEWHERE = 0.7  # share of an effect's best gain that makes another place a con
 
 def add(
     base: Base, whole: Log, step: Step, ranked: Sequence[Score], say: Callable[[str], None]
-) -> tuple[Accepted | None, tuple[Tried, ...]]:
-    """The best effect to add to a model, if any is worth it, and those that were not."""
+) -> tuple[Accepted | None, tuple[Tried, ...], Step | None]:
+    """The best effect to add to a model, if any is worth it; else those that were not.
+
+    Returns:
+        the effect; what was tried; and of that the likeliest model that foretells unseen samples,
+        though its free run is no nearer.
+    """
     tried: list[Step] = []
     contenders = _contenders(significant(ranked))
     hidden = not contenders and not step.candidates and bool(step.refit.level.noise.ratio)
@@ -59,15 +64,18 @@ def add(
     if tried:
         tried[0] = improved(base, whole, step, tried[0], ranked)
     rejected: list[Tried] = []
+    hopeful: Step | None = None
     clean = not step.candidates and not left_over(step)
     for k, new in enumerate(tried):
         proof = prove(step.unseen, new.unseen)
         gain = new.criterion - step.criterion
         if gain > 0 and (holds(proof) or (clean and proven(proof) and not goes_along(new))):
-            return Accepted(new, proof, gain, tuple(tried[:k] + tried[k + 1 :])), ()
+            return Accepted(new, proof, gain, tuple(tried[:k] + tried[k + 1 :])), (), None
+        if gain > 0 and proven(proof) and hopeful is None:
+            hopeful = new
         mine = new.candidates[-1]
         rejected.append(Tried(mine, parameters_of(base, new, mine), gain, proof))
-    return None, tuple(rejected)
+    return None, tuple(rejected), hopeful
 
 
 def _likeliest(ranked: Sequence[Score]) -> list[Score]:
