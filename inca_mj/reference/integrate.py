@@ -166,8 +166,8 @@ def _refuse_bad_state(t: float, x: np.ndarray) -> None:
     if abs(pitch) > SINGULAR:
         raise DivergenceError(
             f"the platform's pitch reached {degrees(pitch):.1f}° at t = {t:.6g} s, where roll,"
-            " pitch and yaw are singular; lower the currents, or use the MuJoCo twin, whose"
-            " quaternion is not"
+            " pitch and yaw are singular; lower the currents, take a smaller step if it is a fixed"
+            " one, or use the MuJoCo twin, whose quaternion is not"
         )
 
 

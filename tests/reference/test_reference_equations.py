@@ -132,7 +132,9 @@ def test_a_force_acts_once_and_at_its_point():
     np.testing.assert_allclose(held.acceleration, 0, atol=1e-12)
     R_AB = plain_rotation(x[at.EULER])
     torque = R_AB.T @ np.cross(R_AB @ [0, 0.02, 0], [0, 0, 0.1725 * 9.81])
-    np.testing.assert_allclose(held.angular_acceleration * [0.8e-4, 1.5e-4, 1.8e-4], torque)
+    np.testing.assert_allclose(
+        held.angular_acceleration * [0.8e-4, 1.5e-4, 1.8e-4], torque, atol=1e-15
+    )
 
 
 def test_current_winds_in_and_the_drum_spring_cannot_push():

@@ -1,5 +1,6 @@
 """A model on disk is the model in memory: the shipped one, and any that is exported."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,11 +21,19 @@ SHIPPED = Path(__file__).parents[2] / "models" / "inca6d.xml"
 START = {"x": 0.02, "y": 0.03, "z": 1.41, "roll": 0.04, "pitch": -0.06, "yaw": 0.1}
 
 
+def short(text):
+    """A text with numbers of 12 digits: T(0) is solved for, its last ones are the processor's."""
+    return re.sub(r"-?\d+\.\d+(e-?\d+)?", lambda number: f"{float(number[0]):.12g}", text)
+
+
 def test_the_shipped_model_is_the_builders():
     text = SHIPPED.read_text(encoding="utf-8")
-    assert text == to_xml(build(parameter_set(), INCA)), "write it anew: build_twin().save(...)"
+    fresh = to_xml(build(parameter_set(), INCA))
+    assert short(text) == short(fresh), "write it anew: build_twin().save(...)"
     shipped, built = mujoco.MjModel.from_xml_path(str(SHIPPED)), build_twin().model
-    assert differing(shipped, built) == set()
+    ours, theirs = arrays(shipped), arrays(built)
+    for name in differing(shipped, built):
+        np.testing.assert_allclose(ours[name], theirs[name], rtol=1e-12, atol=1e-15, err_msg=name)
 
 
 def test_the_shipped_model_looks_like_the_builders():
