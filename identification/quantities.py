@@ -37,7 +37,7 @@ def quantity(value: float, std: float = float("nan"), unit: str = "") -> str:
     return f"{value:.{places}f} ± {std:.{places}f} {unit}".strip()
 
 
-def chance(p: float) -> str:
+def probability(p: float) -> str:
     """A small probability."""
     return f"{p:.0e}" if p > 0 else "below 1e-300"
 

@@ -90,6 +90,7 @@ def unexplained(found: Discovery) -> str:
 
 def _named(found: Discovery, named: Named) -> str:
     """A missing effect; with `one_of` the set of which the data cannot choose."""
+    first = "Missing from the model" if named is found.named[0] else "Missing too"
     if named.one_of and named.rivals:
         rivals = [r for r in named.rivals if r.confidence >= 0.1 * named.confidence] or [
             named.rivals[0]
@@ -99,13 +100,11 @@ def _named(found: Discovery, named: Named) -> str:
             [f"{phrase(named.candidate)} ({100 * named.confidence:.0f} %)"]
             + [f"{phrase(r.candidate)} ({100 * r.confidence:.0f} %)" for r in rivals]
         )
-        first = "Missing from the model" if named is found.named[0] else "Missing too"
         return (
             f"{first} is one of these, which this log cannot tell apart: {each};"
             f" together {100 * min(total, 1.0):.0f} %. The first is put into the model:"
             f" {sizes(named)}." + (f" {named.advice}" if named.advice else "")
         )
-    first = "Missing from the model" if named is found.named[0] else "Missing too"
     return (
         f"{first}: {phrase(named.candidate)}, {sizes(named)}"
         f"; confidence {100 * named.confidence:.0f} % among the known effects."

@@ -67,8 +67,8 @@ def goes_along(step: Step) -> tuple[str, ...]:
     Args:
         step: a fitted model, seen on the whole log.
     """
-    found = [f for f in followed(step.unseen) if max(f.share, f.fall) > MATTERS]
-    found = [f for f in found if f.chance < SURE]
+    tried = followed(step.unseen)
+    found = [f for f in tried if f.chance * len(tried) < SURE and max(f.share, f.fall) > MATTERS]
     if not found:
         return ()
     best, log = max(found, key=lambda f: f.share), step.unseen.whole
@@ -101,7 +101,7 @@ def families(seen: Unseen) -> Iterator[Family]:
     u, y = seen.whole.inputs, seen.whole.outputs - seen.e
     nu = u.shape[1]
     if nu > 1:
-        yield Family("the other inputs", _apart(np.repeat(u[:, None], nu, axis=1)))
+        yield Family("the other inputs", _apart(u[:, None] * (1 - np.eye(nu))))
     yield Family("its own input", _apart(_curves(u)))
     if y.shape[1] == nu:
         yield Family("its output", _apart(_curves(y)))

@@ -13,8 +13,7 @@ from identification.discovery.columns import Column
 from identification.discovery.extend import Base
 from identification.discovery.forward import add
 from identification.discovery.proof import prove
-from identification.discovery.steps import Accepted, Step, fitted, holds, scores_of
-from identification.errors import DivergenceError, InputError
+from identification.discovery.steps import Accepted, Step, fitted_if_any, holds, scores_of
 from identification.log import Log
 
 
@@ -41,9 +40,9 @@ def both(
         return ()
     pair = second.step
     other = pair.candidates[-1]
-    try:
-        alone = fitted(base, whole, (*step.candidates, other), pair.refit.at.values, pair)
-    except (DivergenceError, InputError):
+    rest = (*step.candidates, other)
+    alone = fitted_if_any(base, whole, rest, pair.refit.at.values, pair)
+    if alone is None:
         return ()
     proof = prove(alone.unseen, pair.unseen)
     if not (holds(proof) and holds(prove(step.unseen, pair.unseen))):

@@ -47,7 +47,7 @@ def changed(step: Step) -> tuple[str, ...]:
 def _onset(fitted: np.ndarray, unseen: np.ndarray) -> int:
     """First sample of the unseen ones from which on they differ the most from all before."""
     ends = np.array_split(np.arange(len(unseen)), BLOCKS)
-    a, b = (np.log([part.mean() for part in np.array_split(p, BLOCKS)]) for p in (fitted, unseen))
+    a, b = np.log(_blocks(fitted)), np.log(_blocks(unseen))
 
     def apart(k: int) -> float:
         before, after = np.concatenate([a, b[:k]]), b[k:]
@@ -57,14 +57,17 @@ def _onset(fitted: np.ndarray, unseen: np.ndarray) -> int:
     return int(ends[max(range(BLOCKS), key=apart)][0])
 
 
+def _blocks(power: np.ndarray) -> np.ndarray:
+    return np.array([part.mean() for part in np.array_split(power, BLOCKS)])
+
+
 def _power(E: np.ndarray) -> np.ndarray:
     return np.mean(E**2, axis=1)
 
 
 def _louder(fitted: np.ndarray, unseen: np.ndarray) -> bool:
     """Whether unseen innovations are larger, beyond chance and by enough to matter."""
-    a, b = (np.array([part.mean() for part in np.array_split(_power(E), BLOCKS)])
-            for E in (fitted, unseen))  # fmt: skip
+    a, b = _blocks(_power(fitted)), _blocks(_power(unseen))
     # logarithms, as a few blocks far off would be scatter and no difference
     p = ttest_ind(np.log(b), np.log(a), equal_var=False, alternative="greater").pvalue
     return bool(p < SURE and b.mean() > (1 + MATTERS) * a.mean())

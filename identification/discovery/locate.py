@@ -16,7 +16,7 @@ from identification.discovery.words import phrase, sizes
 from identification.kalman.innovations import SURE, whiteness
 from identification.kalman.noise_fit import ALLOWED
 from identification.kalman.refit import Refit
-from identification.quantities import chance, quantity
+from identification.quantities import probability, quantity
 
 TELLING = 0.1  # share of a missing force that is worth a sentence
 BELIEVED = 1.0  # the same, above which the log's inputs are not what moved the robot
@@ -113,17 +113,17 @@ def left_over(step: Step) -> tuple[str, ...]:
     if white.p_line < SURE:
         out.append(
             f"a line at {white.frequency:.2f} Hz on {log.output_names[white.channel]} that no"
-            f" candidate explains (chance {chance(white.p_line)})"
+            f" candidate explains (chance {probability(white.p_line)})"
         )
     if white.p_louder < SURE:
         out.append(
             f"{log.output_names[white.loudest]} is noisier than the others"
-            f" (chance {chance(white.p_louder)})"
+            f" (chance {probability(white.p_louder)})"
         )
     if white.correlated:
         out.append(
             f"innovations that are not white: {100 * white.predictable:.0f} % of their power"
-            f" follows from the samples before (chance {chance(white.p_correlation)})"
+            f" follows from the samples before (chance {probability(white.p_correlation)})"
         )
     if step.stretched:
         out.append(

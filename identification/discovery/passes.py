@@ -18,12 +18,11 @@ from identification.discovery.significant import LIKE, significant
 from identification.discovery.steps import (
     Accepted,
     Step,
-    fitted,
+    fitted_if_any,
     holds,
     scores_of,
 )
 from identification.effect import Candidate
-from identification.errors import DivergenceError, InputError
 from identification.log import Log
 
 HOPELESS = 0.5  # share of an effect's gain that a rival must have had to be tried again
@@ -37,7 +36,7 @@ def backward(
     for old in accepted[:-1]:
         mine = old.step.candidates[-1]
         rest = tuple(c for c in step.candidates if c is not mine)
-        without = _tried(base, log, rest, step.refit.at.values, step)
+        without = fitted_if_any(base, log, rest, step.refit.at.values, step)
         if without is not None and without.criterion > step.criterion:
             kept, step = [a for a in kept if a is not old], without
     return kept, step
@@ -59,7 +58,7 @@ def swap(
         for theirs, start in _rivals(base, log, old, rest, step, columns):
             if any(theirs.effect.name == c.effect.name for c in rest):
                 continue
-            new = _tried(base, log, (*rest, theirs), {**step.refit.at.values, **start}, step)
+            new = fitted_if_any(base, log, (*rest, theirs), {**step.refit.at.values, **start}, step)
             if new is None:
                 continue
             proof = prove(nominal.unseen, new.unseen)
@@ -87,7 +86,7 @@ def _rivals(
         for r in old.others
         if old.step.criterion - r.criterion <= HOPELESS * old.gain
     }
-    without = _tried(base, log, rest, step.refit.at.values, step)
+    without = fitted_if_any(base, log, rest, step.refit.at.values, step)
     scores = [] if without is None else significant(scores_of(without, columns))
     own = next((s.gain for s in scores if _key(s.candidate) == _key(mine)), 0.0)
     for s in scores:
@@ -99,13 +98,3 @@ def _rivals(
 
 def _key(candidate: Candidate) -> tuple[str, str]:
     return candidate.effect.name, candidate.where
-
-
-def _tried(
-    base: Base, log: Log, candidates: tuple[Candidate, ...], start: Mapping[str, float], near: Step
-) -> Step | None:
-    """A model with some effects; None where it cannot be simulated."""
-    try:
-        return fitted(base, log, candidates, start, near)
-    except (DivergenceError, InputError):
-        return None

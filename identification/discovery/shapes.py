@@ -11,9 +11,8 @@ from collections.abc import Iterator, Sequence
 from identification.discovery.along import goes_along
 from identification.discovery.extend import Base
 from identification.discovery.score import Score
-from identification.discovery.steps import Step, fitted
+from identification.discovery.steps import Step, fitted_if_any
 from identification.effect import Candidate
-from identification.errors import DivergenceError, InputError
 from identification.kalman.innovations import whiteness
 from identification.log import Log
 
@@ -31,9 +30,10 @@ def improved(base: Base, whole: Log, step: Step, best: Step, ranked: Sequence[Sc
         ranked: scores of all candidates on `step`.
     """
     if structured(best):
-        best = _other_shape(base, whole, step, best, ranked)
-    if not step.candidates and structured(best):
-        best = _from_nominal(base, whole, step, best)
+        other = _other_shape(base, whole, step, best, ranked)
+        if not step.candidates and (other is best or structured(other)):
+            other = _from_nominal(base, whole, step, other)
+        best = other
     return _as_usual(base, whole, step, best, ranked)
 
 
@@ -50,10 +50,8 @@ def _from_nominal(base: Base, whole: Log, step: Step, best: Step) -> Step:
     """
     old = {n: step.refit.at.values[n] for c in step.candidates for n in c.free}
     new = {n: best.refit.at.values[n] for n in best.candidates[-1].free}
-    try:
-        return max(best, fitted(base, whole, best.candidates, {**old, **new}), key=_criterion)
-    except (DivergenceError, InputError):
-        return best
+    again = fitted_if_any(base, whole, best.candidates, {**old, **new})
+    return max(best, again or best, key=_criterion)
 
 
 def _other_shape(base: Base, whole: Log, step: Step, best: Step, ranked: Sequence[Score]) -> Step:
@@ -90,10 +88,7 @@ def _shaped(base: Base, whole: Log, step: Step, s: Score) -> Step | None:
     """A model with a candidate fitted; None where that cannot be simulated."""
     sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
     more = (*step.candidates, s.candidate)
-    try:
-        return fitted(base, whole, more, {**step.refit.at.values, **sizes}, step)
-    except (DivergenceError, InputError):
-        return None
+    return fitted_if_any(base, whole, more, {**step.refit.at.values, **sizes}, step)
 
 
 def _criterion(step: Step) -> float:

@@ -16,6 +16,7 @@ from identification.discovery.proof import Unseen, unseen
 from identification.discovery.result import Proof
 from identification.discovery.score import Score, score
 from identification.effect import Candidate
+from identification.errors import DivergenceError, InputError
 from identification.kalman.innovations import MATTERS
 from identification.kalman.refit import Refit
 from identification.log import Log
@@ -119,6 +120,20 @@ def fitted(
     nearby = None if near is None else near.refit
     fit = fit_with(base, whole.part("estimation"), candidates, start, near=nearby)
     return Step(candidates, fit, unseen(fit, whole, base.horizon))
+
+
+def fitted_if_any(
+    base: Base,
+    whole: Log,
+    candidates: tuple[Candidate, ...],
+    start: Mapping[str, float],
+    near: Step | None = None,
+) -> Step | None:
+    """As `fitted`; None where the model cannot be simulated or cannot stand at its start."""
+    try:
+        return fitted(base, whole, candidates, start, near)
+    except (DivergenceError, InputError):
+        return None
 
 
 def scores_of(step: Step, columns: Sequence[Column]) -> tuple[Score, ...]:

@@ -7,7 +7,7 @@ from discovery_cases import SENSOR, STEP, base, linear_plant, record, slider, st
 from discovery_cases import response as dense
 
 from identification import Log, Parameter, ParameterSet
-from identification.discovery.along import _apart, _curves, followed, goes_along, response
+from identification.discovery.along import _apart, _curves, families, followed, goes_along, response
 from identification.discovery.discover import discover
 from identification.discovery.extend import Base
 from identification.discovery.shapes import structured
@@ -99,6 +99,9 @@ def test_crosstalk_is_told_with_its_size_and_the_input_that_feels_it(seed):
     felt = 0.1 * np.std(step.unseen.whole.inputs[:, 0])
     assert best.error[1] == pytest.approx(felt, rel=0.2)
     assert best.error[0] < 0.5 * best.error[1]
+    others = next(iter(families(step.unseen))).r.reshape(-1, 2, 2, 2)
+    assert not np.einsum("niii->ni", others).any()  # its own input is not among them
+    assert others[:, 0, 0, 1].any()
 
 
 def test_crosstalk_is_an_unknown_effect_and_no_noise():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from identification.quantities import alike, quantity
+from identification.quantities import alike, probability, quantity
 
 NAN, INF = float("nan"), float("inf")
 
@@ -40,3 +40,8 @@ def test_one_prefix_for_all() -> None:
     assert alike([0.131, 0.000676], "m²") == ["0.131 m²", "6.76e-04 m²"]
     assert alike([0.02, float("nan")], "") == ["0.0200", "unknown"]
     assert alike([], "rad") == []
+
+
+def test_a_chance_that_underflows_is_not_called_zero() -> None:
+    assert probability(3.4e-21) == "3e-21"
+    assert probability(0.0) == "below 1e-300"

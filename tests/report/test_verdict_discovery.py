@@ -9,6 +9,7 @@ from fake_discovery import NOISE, found
 from identification.discovery.discovery_json import discovery_to_json
 from identification.kalman.noise_fit import Level
 from identification.kalman.noise_model import Noise
+from identification.report.discovery_tables import parameters_section
 from identification.report.discovery_text import discovery_text
 from identification.verdict_discovery import diff_line, discovery_verdict, floor_rms
 
@@ -55,6 +56,18 @@ def test_two_effects_are_two_sentences() -> None:
     said = discovery_verdict(found(several=True))
     assert said[1].startswith("Missing too: ")
     assert "delta = 20.0 ± 3.0 %" in said[1]
+    several = found(several=True)
+    tied = replace(several.named[1], one_of=True, rivals=several.named[0].rivals)
+    said = discovery_verdict(replace(several, named=(several.named[0], tied)))
+    assert said[1].startswith("Missing too is one of these")
+
+
+def test_the_table_says_what_was_held_and_has_no_column_of_names_where_there_are_none() -> None:
+    named, none = parameters_section(found()), parameters_section(found("unknown effect"))
+    assert "I_x or I_y or I_z" in named.text
+    assert "b_v" not in named.text
+    assert len(named.table.columns) == len(none.table.columns) + 1 == 4
+    assert all(len(row) == 3 for row in none.table.rows)
 
 
 def test_nothing_missing_says_what_would_have_been_seen() -> None:
