@@ -67,8 +67,8 @@ def goes_along(step: Step) -> tuple[str, ...]:
     Args:
         step: a fitted model, seen on the whole log.
     """
-    tried = followed(step.unseen)
-    found = [f for f in tried if f.chance * len(tried) < SURE and max(f.share, f.fall) > MATTERS]
+    tried = followed(step.unseen)  # each a test of its own, as the others of what is left
+    found = [f for f in tried if f.chance < SURE and max(f.share, f.fall) > MATTERS]
     if not found:
         return ()
     best, log = max(found, key=lambda f: f.share), step.unseen.whole
