@@ -67,7 +67,7 @@ def study(task: dict[str, Any]) -> dict[str, Any]:
     begin = time.perf_counter()
     try:
         log, truth = log_of(task)
-        from inca_mj.discover import discover
+        from inca_mj.workflows.discovery import discover
 
         # a world stands at rest with what it lacks, as a robot that was let go; practice was held
         answer = answer_of(discover(log, settled="seed" in task))

@@ -24,10 +24,10 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     from identification.discovery.score import score
     from identification.discovery.significant import significant
     from identification.kalman.noise_fit import fit_noise
-    from inca_mj.comparison import timestep_for
-    from inca_mj.discover import KNOWN, TIMESTEP
     from inca_mj.effects.catalogue import CATALOGUE
-    from inca_mj.twin import build_twin
+    from inca_mj.twin.twin import build_twin
+    from inca_mj.workflows.comparison import timestep_for
+    from inca_mj.workflows.discovery import KNOWN, TIMESTEP
     from inca_mj.worlds import Setting, world
 
     begin = time.perf_counter()
@@ -67,8 +67,8 @@ def residuals(at: Any, draws: int, coloured: bool, rng: Any) -> Any:
     """Measured less predicted of a model that lacks nothing, shape (draws, N, ny)."""
     import numpy as np
 
-    from identification.predictor import output_columns
-    from identification.rollout import rollout
+    from identification.model.predictor import output_columns
+    from identification.model.rollout import rollout
     from inca_mj.worlds.measure import coloured as wander
 
     y, inputs, log = at.log.outputs - at.e, at.log.inputs, at.log

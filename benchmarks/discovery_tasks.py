@@ -95,7 +95,7 @@ def world_tasks(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
 def log_of(task: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
     """The log of a task, and its truth."""
     if "practice" in task:
-        from inca_mj.logs import read_inca_log
+        from inca_mj.twin.logs import read_inca_log
 
         return read_inca_log(task["practice"]), task["truth"]
     from inca_mj.worlds import Setting, draw_effect, world

@@ -21,17 +21,18 @@ import naive_fit
 import numpy as np
 from twin import BURST, least, stepper
 
-from identification import InputError, Log, predictor
+from identification import InputError, Log
 from identification.bridge_sysid import from_sysid, sysid_residual, to_sysid_parameters
-from identification.estimation import Estimate, estimate
-from identification.rollout import rollout, threads
-from inca_mj.identify import MECHANICS, POSE
-from inca_mj.inputs import make_input
-from inca_mj.logs import run_to_log
-from inca_mj.parameters import parameter_set
-from inca_mj.run import simulate
-from inca_mj.trials import TRIALS, run_trial
-from inca_mj.twin import Twin, build_twin
+from identification.estimation.estimation import Estimate, estimate
+from identification.model import predictor
+from identification.model.rollout import rollout, threads
+from inca_mj.robot.inputs import make_input
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.twin.logs import run_to_log
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import Twin, build_twin
+from inca_mj.workflows.identification import MECHANICS, POSE
+from inca_mj.workflows.trials import TRIALS, run_trial
 
 FREE = (*MECHANICS, *POSE)
 DURATION, NOISE = 10.0, 6.7e-4  # [s], [rad]

@@ -13,10 +13,10 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from inca_mj.geometry import INCA
-from inca_mj.kinematics import rotation
-from inca_mj.parameters import GRAVITY
-from inca_mj.statics import start_from
+from inca_mj.robot.geometry import INCA
+from inca_mj.robot.kinematics import rotation
+from inca_mj.robot.parameters import GRAVITY
+from inca_mj.twin.statics import start_from
 
 TOLERANCE = 1e-6  # relative, of solve_ivp
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from inca_mj import law
+from inca_mj.robot import law
 
 
 def install(model: mujoco.MjModel) -> None:
-    """Install Python callbacks that do for this model what `inca_mj.callbacks` does."""
+    """Install Python callbacks that do for this model what `inca_mj.twin.callbacks` does."""
     drives, cables = model.actuator_user, model.tendon_user
     R, R_s, k_s, b_c, beta, T_0 = (
         drives[:, c] for c in (law.R, law.R_S, law.K_S, law.B_C, law.BETA, law.T_0)

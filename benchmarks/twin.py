@@ -21,11 +21,11 @@ import numpy as np
 import python_law
 from mujoco.batch import Batch
 
-from inca_mj import native
-from inca_mj.geometry import INCA
-from inca_mj.inputs import prbs
 from inca_mj.reference import simulate_reference
-from inca_mj.twin import Twin, build_twin
+from inca_mj.robot.geometry import INCA
+from inca_mj.robot.inputs import prbs
+from inca_mj.twin import native
+from inca_mj.twin.twin import Twin, build_twin
 
 ROOT = Path(__file__).resolve().parents[1]
 BURST = 50  # steps from the same moving state, so that both sides turn the same quaternions

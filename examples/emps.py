@@ -14,16 +14,16 @@ import numpy as np
 from scipy.io import loadmat
 
 from identification import Log, Parameter, Predictor
-from identification.decimate import decimate
-from identification.discovery.discover import discover
 from identification.discovery.extend import Base
-from identification.discovery.words import not_believed
-from identification.estimate_windows import estimate_windows
-from identification.estimation import estimate
-from identification.joints.plant import candidates, joint_plant
+from identification.discovery.search import discover
+from identification.effects.joint_plant import candidates, joint_plant
+from identification.estimation.estimation import estimate
+from identification.estimation.window_error import window_error
+from identification.estimation.window_estimate import estimate_windows
+from identification.logs.decimation import decimate
+from identification.report.discovery_words import not_believed
 from identification.report.style import save_png
 from identification.report.windows_figure import windows_figure
-from identification.window_error import window_error
 
 MODEL = Path(__file__).parents[1] / "models" / "emps.xml"
 F_C, F_0 = "coulomb_friction.f_c@slide", "offset.f_0@slide"

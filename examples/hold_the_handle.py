@@ -9,12 +9,12 @@ Run it: python examples/hold_the_handle.py
 
 import numpy as np
 
-from inca_mj import law
-from inca_mj.control import CONTROL_TIMESTEP, load
-from inca_mj.geometry import INCA
-from inca_mj.kinematics import euler, length_jacobian, rotation
-from inca_mj.parameters import GRAVITY, parameter_set
-from inca_mj.statics import start
+from inca_mj.robot import law
+from inca_mj.robot.geometry import INCA
+from inca_mj.robot.kinematics import euler, length_jacobian, rotation
+from inca_mj.robot.parameters import GRAVITY, parameter_set
+from inca_mj.twin.control import CONTROL_TIMESTEP, load
+from inca_mj.twin.statics import start
 
 p = parameter_set().values()
 WEIGHT = np.array([0, 0, p["m"] * GRAVITY, 0, 0, 0])

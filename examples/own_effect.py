@@ -11,7 +11,7 @@ from math import tanh
 import numpy as np
 from numba import njit
 
-from identification.effect import Effect, Size
+from identification.effects.effect import Effect, Size
 from inca_mj import build_twin, make_input, run_to_log, simulate
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.effects.hooks import DriveEffect
@@ -52,7 +52,7 @@ def log_with_it(seconds=10.0, c=5e-4, noise=5e-4):
 
 def find(log, effects=(*CATALOGUE, WINDING_FRICTION)):
     """What the nominal model lacks of a log, the own effect among the candidates."""
-    from inca_mj.discover import discover
+    from inca_mj.workflows.discovery import discover
 
     return discover(log, effects=effects)
 

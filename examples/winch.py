@@ -28,15 +28,15 @@ from winch_strokes import (
 )  # fmt: skip
 
 from identification import Log, Parameter
-from identification.discovery.discover import discover
 from identification.discovery.extend import Base
-from identification.estimate_windows import estimate_windows
-from identification.irregular import on_a_grid
-from identification.joints.axes import axes
-from identification.joints.catalogue import joint_effects
-from identification.joints.input_effects import drives, input_effects
-from identification.joints.model import read_model
-from identification.joints.plant import candidates, joint_plant
+from identification.discovery.search import discover
+from identification.effects.axes import axes
+from identification.effects.input_effects import drives, input_effects
+from identification.effects.joint_catalogue import joint_effects
+from identification.effects.joint_plant import candidates, joint_plant
+from identification.effects.rows import read_model
+from identification.estimation.window_estimate import estimate_windows
+from identification.logs.irregular import on_a_grid
 
 MODEL = Path(__file__).parents[1] / "models" / "winch.xml"
 ROTOR = 3e-4  # [kg m^2], a guess for an outrunner of this size; the load has m r^2

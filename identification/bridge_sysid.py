@@ -25,10 +25,10 @@ import mujoco
 import numpy as np
 
 from identification.errors import InputError
-from identification.log import Log
-from identification.paths import write
-from identification.predictor import Plant, output_columns
-from identification.rollout import State, hold, substeps
+from identification.logs.log import Log
+from identification.model.paths import write
+from identification.model.predictor import Plant, output_columns
+from identification.model.rollout import State, hold, substeps
 
 Residual = Callable[..., Any]
 

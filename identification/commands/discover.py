@@ -27,14 +27,14 @@ class Discover(OnRobot):
 
     def run(self) -> int:
         """Discover, confirm, say, keep."""
-        from identification.confirm import confirmed
-        from identification.discovery.discover import discover
-        from identification.discovery.discovery_json import discovery_to_json
         from identification.discovery.final import final_values
+        from identification.discovery.search import discover
         from identification.files import whole_folder
+        from identification.report.discovery_json import discovery_to_json
         from identification.report.discovery_text import discovery_text, finite
-        from identification.robot_checks import refuse_search_horizon, refuse_start
-        from identification.robot_write import write_robot
+        from identification.robot.checks import refuse_search_horizon, refuse_start
+        from identification.robot.confirmation import confirmed
+        from identification.robot.write import write_robot
 
         refuse_folder(self.output.out)
         robot, records = self.read()
@@ -69,8 +69,8 @@ def _keep(found: Discovery, confirmed: list[str], out: Path) -> None:
     """Write the report and its figures into a folder."""
     from identification.report import discovery_sections as parts
     from identification.report import discovery_tables as tables
+    from identification.report.discovery_verdict import discovery_verdict
     from identification.report.page import save_figures, write_report
-    from identification.verdict_discovery import discovery_verdict
 
     sections = [
         parts.gap_section(found),

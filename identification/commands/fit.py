@@ -16,8 +16,8 @@ from identification.commands.common import (
 from identification.commands.robots import OnRobot
 
 if TYPE_CHECKING:
-    from identification.estimate_windows import WindowEstimate
-    from identification.robot import Robot
+    from identification.estimation.window_estimate import WindowEstimate
+    from identification.robot.robot import Robot
 
 FEWEST = 10  # values for each parameter
 FARTHEST = 100.0  # factor from where a fit began that is hardly an estimate
@@ -29,10 +29,10 @@ class Fit(OnRobot):
 
     def run(self) -> int:
         """Fit, confirm, say, keep."""
-        from identification.confirm import confirmed
         from identification.files import whole_folder
-        from identification.robot_checks import refuse_horizon, refuse_start
-        from identification.robot_write import write_robot
+        from identification.robot.checks import refuse_horizon, refuse_start
+        from identification.robot.confirmation import confirmed
+        from identification.robot.write import write_robot
 
         refuse_folder(self.output.out)
         robot, records = self.read()
@@ -56,9 +56,9 @@ class Fit(OnRobot):
 
     def _free_run(self, robot: Robot) -> tuple[dict[str, Any], dict[str, float]]:
         """By the error of a free run, the start among the free parameters or held."""
-        from identification.estimation import estimate
-        from identification.fit import assess
-        from identification.fit_json import fit_to_json
+        from identification.estimation.estimation import estimate
+        from identification.estimation.fit import assess
+        from identification.report.fit_json import fit_to_json
 
         part = robot.log.part("estimation")
         found = estimate(robot.plant, part, robot.file.free, progress=note)
@@ -66,8 +66,8 @@ class Fit(OnRobot):
 
     def _windows(self, robot: Robot) -> tuple[dict[str, Any], dict[str, float]]:
         """By the errors over a horizon; every window has a start of its own."""
-        from identification.confirm import unseen
-        from identification.estimate_windows import estimate_windows
+        from identification.estimation.window_estimate import estimate_windows
+        from identification.robot.confirmation import unseen
 
         names = tuple(n for n in robot.file.free if n not in robot.starts)
         part, horizon = robot.log.part("estimation"), float(robot.file.horizon or 0)
@@ -106,8 +106,8 @@ def _as_record(robot: Robot, found: WindowEstimate, held_out: Any) -> dict[str, 
     """Windows as plain values, with the keys of a fit."""
     import numpy as np
 
-    from identification.noise import noise_floor
-    from identification.verdict import window_sentences
+    from identification.logs.noise import noise_floor
+    from identification.report.fit_verdict import window_sentences
 
     floor = float(np.sqrt(np.mean(noise_floor(robot.log.outputs) ** 2)))
     rows = zip(found.values.items(), found.std, found.start, found.at_bound, strict=True)

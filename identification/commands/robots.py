@@ -11,8 +11,8 @@ import tyro
 from identification.commands.common import Output, output_field
 
 if TYPE_CHECKING:
-    from identification.log import Log
-    from identification.robot import Robot
+    from identification.logs.log import Log
+    from identification.robot.robot import Robot
 
 
 @dataclass(frozen=True)
@@ -34,11 +34,11 @@ class OnRobot:
             InputError: a file cannot be what it should be, the model's steps are too coarse, or a
                 log is not wired as the model is.
         """
-        from identification.joints.axes import axes
-        from identification.robot import read_robot_log, robot_of
-        from identification.robot_file import read_robot
-        from identification.step_error import refuse_coarse_steps
-        from identification.wiring import refuse_miswired
+        from identification.effects.axes import axes
+        from identification.robot.file import read_robot
+        from identification.robot.robot import read_robot_log, robot_of
+        from identification.robot.step_error import refuse_coarse_steps
+        from identification.robot.wiring import refuse_miswired
 
         file = read_robot(self.robot)
         records = tuple(read_robot_log(file, path) for path in self.confirm)

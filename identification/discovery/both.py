@@ -14,7 +14,7 @@ from identification.discovery.extend import Base
 from identification.discovery.forward import add
 from identification.discovery.proof import prove
 from identification.discovery.steps import Accepted, Step, fitted_if_any, holds, scores_of
-from identification.log import Log
+from identification.logs.log import Log
 
 
 def both(

@@ -11,10 +11,10 @@ from itertools import product
 
 import numpy as np
 
-from identification.effect import Candidate, Effect
+from identification.effects.effect import Candidate, Effect
 from identification.errors import DivergenceError, InputError
 from identification.kalman.point import Point
-from identification.predictor import Predictor
+from identification.model.predictor import Predictor
 
 BATCH = 48  # simulations at a time: bounds the memory of their trajectories
 

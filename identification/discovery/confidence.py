@@ -21,7 +21,7 @@ from identification.discovery.extend import Base
 from identification.discovery.result import Named, Rival
 from identification.discovery.retuned import retuned
 from identification.discovery.steps import Accepted, Step, parameters_of
-from identification.effect import Candidate
+from identification.effects.effect import Candidate
 from identification.kalman.noise_model import whitener
 
 TEMPERATURE = 10.0

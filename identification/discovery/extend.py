@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.coordinates import Coordinates, coordinates
-from identification.effect import Candidate
+from identification.effects.effect import Candidate
 from identification.kalman.noise_fit import TIME
 from identification.kalman.point import point
 from identification.kalman.refit import Refit, refit
-from identification.log import Log
-from identification.parameter import Parameter, ParameterSet
-from identification.predictor import Plant, Predictor
+from identification.logs.log import Log
+from identification.model.coordinates import Coordinates, coordinates
+from identification.model.parameter import Parameter, ParameterSet
+from identification.model.predictor import Plant, Predictor
 
 SHAPE_STD = 1.0  # prior of a shape's logarithm about the grid value that scored best
 FARTHEST = 3.0  # factor by which a base parameter may leave its nominal value

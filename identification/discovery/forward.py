@@ -29,7 +29,7 @@ from identification.discovery.steps import (
     proven,
 )
 from identification.errors import DivergenceError, InputError
-from identification.log import Log
+from identification.logs.log import Log
 
 CONTENDERS = 3  # explanations that are refitted at most
 CLOSE = 0.3  # share of the best gain that makes a contender

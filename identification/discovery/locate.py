@@ -12,11 +12,11 @@ import numpy as np
 from identification.discovery.missing import MissingForce
 from identification.discovery.result import Tried
 from identification.discovery.steps import Step, matters
-from identification.discovery.words import phrase, sizes
 from identification.kalman.innovations import SURE, whiteness
 from identification.kalman.noise_fit import ALLOWED
 from identification.kalman.refit import Refit
 from identification.quantities import probability, quantity
+from identification.report.discovery_words import phrase, sizes
 
 TELLING = 0.1  # share of a missing force that is worth a sentence
 BELIEVED = 1.0  # the same, above which the log's inputs are not what moved the robot

@@ -22,8 +22,8 @@ from identification.discovery.steps import (
     holds,
     scores_of,
 )
-from identification.effect import Candidate
-from identification.log import Log
+from identification.effects.effect import Candidate
+from identification.logs.log import Log
 
 HOPELESS = 0.5  # share of an effect's gain that a rival must have had to be tried again
 

@@ -7,7 +7,8 @@
 
 Both residuals pass the filter of the model without the effect, so that neither predictor follows
 the data more closely than the other. rms is that of a free run, d what input errors do to it; where
-a free run drifts by them, rms and d are those over a horizon (see `identification.window_error`).
+a free run drifts by them, rms and d are those over a horizon (see
+`identification.estimation.window_error`).
 """
 
 from __future__ import annotations
@@ -20,13 +21,13 @@ from threadpoolctl import threadpool_limits
 from identification.discovery.disturbed import disturbed, disturbed_windows
 from identification.discovery.result import Gap, Proof
 from identification.errors import InputError
+from identification.estimation.metrics import fit_percent
+from identification.estimation.window_error import window_error
+from identification.estimation.windows import windows
 from identification.kalman.noise_model import Whitener, whitener
 from identification.kalman.point import beyond
 from identification.kalman.refit import Refit
-from identification.log import Log
-from identification.metrics import fit_percent
-from identification.window_error import window_error
-from identification.windows import windows
+from identification.logs.log import Log
 
 BLOCKS = 20
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from identification.discovery.missing import MissingForce
 from identification.discovery.score import Score
-from identification.effect import Candidate
+from identification.effects.effect import Candidate
 from identification.kalman.refit import Refit
-from identification.log import Log
+from identification.logs.log import Log
 
 Verdict = Literal["named", "nothing missing", "unknown effect"]
 

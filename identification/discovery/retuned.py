@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from identification.discovery.result import Retuned
-from identification.effect import Candidate
+from identification.effects.effect import Candidate
 from identification.kalman.problem import linearised
 from identification.kalman.refit import Refit
 

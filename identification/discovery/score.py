@@ -27,7 +27,7 @@ from scipy.stats import f as f_distribution
 from threadpoolctl import threadpool_limits
 
 from identification.discovery.columns import Column
-from identification.effect import Candidate
+from identification.effects.effect import Candidate
 from identification.kalman.noise_fit import Level
 from identification.kalman.noise_model import Noise, whitener
 from identification.kalman.refit import Refit

@@ -12,9 +12,9 @@ from identification.discovery.along import goes_along
 from identification.discovery.extend import Base
 from identification.discovery.score import Score
 from identification.discovery.steps import Step, fitted_if_any
-from identification.effect import Candidate
+from identification.effects.effect import Candidate
 from identification.kalman.innovations import whiteness
-from identification.log import Log
+from identification.logs.log import Log
 
 BARE = 2.0  # of BIC, below which a difference is hardly worth a mention (Kass, Raftery 1995)
 

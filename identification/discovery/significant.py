@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from identification.discovery.score import Score
-from identification.effect import Candidate
+from identification.effects.effect import Candidate
 
 ALPHA = 0.01  # family-wise chance of a name where nothing is missing, before the proof
 LIKE = 0.8  # share of a score that makes another one as good

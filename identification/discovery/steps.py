@@ -15,11 +15,11 @@ from identification.discovery.extend import Base, fit_with
 from identification.discovery.proof import Unseen, unseen
 from identification.discovery.result import Proof
 from identification.discovery.score import Score, score
-from identification.effect import Candidate
+from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
 from identification.kalman.innovations import MATTERS
 from identification.kalman.refit import Refit
-from identification.log import Log
+from identification.logs.log import Log
 
 T = 2.0  # t of the proof: 2.5 % one-sided
 END = 0.02  # of a logarithm: this near to its limit a parameter is at it

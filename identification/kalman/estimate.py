@@ -16,21 +16,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from identification.coordinates import coordinates
 from identification.errors import InputError
-from identification.estimation import Estimate
-from identification.fit import Fit, assess, combinations_of
-from identification.information import root_of
+from identification.estimation.estimation import Estimate
+from identification.estimation.fit import Fit, assess, combinations_of
+from identification.estimation.information import root_of
+from identification.estimation.options import Options, Progress, Status, prior_weight
+from identification.estimation.residuals import residual_tests
 from identification.kalman.linear import linearise
 from identification.kalman.noise_fit import Level
 from identification.kalman.noise_model import Noise, whitener
 from identification.kalman.point import Point, point
 from identification.kalman.refit import Refit, descent, finished
-from identification.log import Log
-from identification.options import Options, Progress, Status, prior_weight
-from identification.predictor import Plant, Predictor
-from identification.residuals import residual_tests
-from identification.sensitivity import refuse_without_effect, without_effect
+from identification.logs.log import Log
+from identification.model.coordinates import coordinates
+from identification.model.predictor import Plant, Predictor
+from identification.model.sensitivity import refuse_without_effect, without_effect
 
 FEWEST = 50  # samples of a log whose noise can be split into that of sensors and of inputs
 HOLD = 0.1  # 1/std of a ridge on q that keeps what no output feels where it is

@@ -20,8 +20,8 @@ import numpy as np
 from scipy.linalg import expm
 from threadpoolctl import threadpool_limits
 
-from identification.predictor import Predictor, output_columns
-from identification.rollout import rollout
+from identification.model.predictor import Predictor, output_columns
+from identification.model.rollout import rollout
 
 SHORT = 1e-6  # Euler step whose difference from the identity is F [s]
 EPS = 1e-6  # of the finite differences

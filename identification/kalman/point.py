@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.coordinates import Coordinates
 from identification.kalman.linear import LinearPlant, linearise
-from identification.log import Log
-from identification.predictor import Predictor
+from identification.logs.log import Log
+from identification.model.coordinates import Coordinates
+from identification.model.predictor import Predictor
 
 STEP = 1e-4  # of q, for forward differences
 

@@ -8,19 +8,19 @@ import numpy as np
 
 from identification.discovery.result import Discovery
 from identification.discovery.score import Score
-from identification.discovery.words import not_believed, phrase
-from identification.log import halves
+from identification.logs.log import halves
 from identification.report.discovery_figures import (
     force_figure,
     gains_figure,
     gap_figure,
     rms_figure,
 )
-from identification.report.page import Section, Table
-from identification.verdict_discovery import (
+from identification.report.discovery_verdict import (
     floor_rms,
     sentence,
 )
+from identification.report.discovery_words import not_believed, phrase
+from identification.report.page import Section, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from identification.discovery.final import final_values, std_of
 from identification.discovery.result import Detectable, Discovery
-from identification.discovery.words import phrase
 from identification.quantities import quantity
+from identification.report.discovery_verdict import split_detectable
+from identification.report.discovery_words import phrase
 from identification.report.page import Section, Table
-from identification.verdict_discovery import split_detectable
 
 
 def diff_section(found: Discovery, files: str = "") -> Section:

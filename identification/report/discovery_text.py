@@ -6,14 +6,14 @@ from math import isfinite
 from typing import Any
 
 from identification.discovery.result import Discovery, Gap
-from identification.discovery.words import not_believed, phrase
 from identification.quantities import alike, quantity
-from identification.verdict_discovery import (
+from identification.report.discovery_verdict import (
     diff_line,
     discovery_verdict,
     floor_rms,
     split_detectable,
 )
+from identification.report.discovery_words import not_believed, phrase
 
 SHOWN = 0.005  # chance of an explanation that is worth a line
 

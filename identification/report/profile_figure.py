@@ -6,7 +6,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from identification.profiles import LEVEL, Profile
+from identification.estimation.profiles import LEVEL, Profile
 from identification.report.style import SERIES, STYLE
 
 

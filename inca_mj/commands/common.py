@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import tyro
 
 if TYPE_CHECKING:
-    from identification.parameter import ParameterSet
-    from inca_mj.geometry import Geometry
+    from identification.model.parameter import ParameterSet
+    from inca_mj.robot.geometry import Geometry
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Values:
             InputError: a value is malformed, unknown, given twice or out of bounds.
         """
         from identification.errors import InputError
-        from inca_mj.parameters import parameter_set
+        from inca_mj.robot.parameters import parameter_set
 
         values: dict[str, float] = {}
         for name, value in map(_assignment, self.param):
@@ -49,7 +49,7 @@ class Values:
         Raises:
             InputError: the file cannot be read as one.
         """
-        from inca_mj.geometry import INCA, read_geometry
+        from inca_mj.robot.geometry import INCA, read_geometry
 
         return INCA if self.geometry is None else read_geometry(self.geometry)
 
@@ -77,7 +77,7 @@ def _assignment(text: str) -> tuple[str, float]:
 def cannot_draw() -> str:
     """Settle the OpenGL backend before MuJoCo is imported: "" or why nothing can be drawn."""
     from identification.errors import GraphicsError
-    from inca_mj.graphics import choose_backend
+    from inca_mj.rendering.graphics import choose_backend
 
     try:
         choose_backend()

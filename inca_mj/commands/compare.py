@@ -20,7 +20,7 @@ from identification.commands.common import (
 from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
-    from inca_mj.comparison import Comparison
+    from inca_mj.workflows.comparison import Comparison
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,8 @@ class Compare:
         """Compare, say and keep the result; 0 unless the input is bad."""
         do_not_draw()
         from identification.files import whole_folder
-        from inca_mj.comparison import compare
-        from inca_mj.logs import read_inca_log
+        from inca_mj.twin.logs import read_inca_log
+        from inca_mj.workflows.comparison import compare
 
         result = compare(
             read_inca_log(self.log),
@@ -59,7 +59,7 @@ class Compare:
 
 def summary(result: Comparison) -> str:
     """The comparison as a text table; an output that never moves has no fit."""
-    from identification.metrics import mean_fit
+    from identification.estimation.metrics import mean_fit
 
     rows = [
         (name, "-" if fit != fit else f"{fit:.2f}", f"{1e3 * error:.2f}")
@@ -77,8 +77,8 @@ def summary(result: Comparison) -> str:
 def keep(result: Comparison, out: Path) -> None:
     """Write the figure, the one-file report, the model and the run into a folder."""
     from identification.report.page import save_figures, write_report
-    from inca_mj.run import save_run
-    from inca_mj.sections import compare_section, compare_verdict, model_section
+    from inca_mj.report.sections import compare_section, compare_verdict, model_section
+    from inca_mj.twin.run import save_run
 
     sections = [compare_section(result), model_section(result.run.twin)]
     save_figures(sections, out)

@@ -19,7 +19,7 @@ from identification.commands.common import (
 from inca_mj.commands.common import Values, do_not_draw, values_field
 
 if TYPE_CHECKING:
-    from inca_mj.crosscheck import CrossCheck
+    from inca_mj.verification import CrossCheck
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Crosscheck:
     def run(self) -> int:
         """Check, say, keep; 0 when they agree, 1 when not."""
         do_not_draw()
-        from inca_mj.crosscheck import crosscheck
+        from inca_mj.verification import crosscheck
 
         result = crosscheck(
             self.robot.parameters(),
@@ -48,7 +48,7 @@ class Crosscheck:
         if self.output.out is not None:
             from identification.files import whole_folder
             from identification.report.page import save_figures, write_report
-            from inca_mj.sections import crosscheck_section
+            from inca_mj.report.sections import crosscheck_section
 
             sections = [crosscheck_section(result)]
             with whole_folder(self.output.out) as out:

@@ -22,8 +22,8 @@ from inca_mj.commands.common import Values, cannot_draw, do_not_draw, values_fie
 
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery
-    from inca_mj.run import Run
-    from inca_mj.twin import Twin
+    from inca_mj.twin.run import Run
+    from inca_mj.twin.twin import Twin
 
 FILMED = 6.0  # [s]; drawing costs several times as long
 FILES = "The model with it is in model.xml and effects.json; inca_mj.load_twin reads them."
@@ -51,8 +51,8 @@ class Discover:
             do_not_draw()
         from identification.files import whole_folder
         from identification.report.discovery_text import discovery_text
-        from inca_mj.discover import discover
-        from inca_mj.logs import read_inca_log
+        from inca_mj.twin.logs import read_inca_log
+        from inca_mj.workflows.discovery import discover
 
         log, parameters, place = (
             read_inca_log(self.log), self.robot.parameters(), self.robot.place()
@@ -78,7 +78,7 @@ class Discover:
 
 def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
     """The outcome and the path of its model as plain values; what is not finite is null."""
-    from identification.discovery.discovery_json import discovery_to_json
+    from identification.report.discovery_json import discovery_to_json
     from identification.report.discovery_text import finite
 
     record: dict[str, Any] = finite(discovery_to_json(found))
@@ -89,11 +89,11 @@ def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, 
     """Write report, figures, model, effects, result and film into a folder; the paths by kind."""
     from identification.report import discovery_sections as parts
     from identification.report import discovery_tables as tables
+    from identification.report.discovery_verdict import discovery_verdict
     from identification.report.page import save_figures, write_report
-    from identification.verdict_discovery import discovery_verdict
-    from inca_mj.discovery_model import named_twin, rerun
-    from inca_mj.effects.saved import save_twin
-    from inca_mj.sections import film_section, model_section
+    from inca_mj.report.sections import film_section, model_section
+    from inca_mj.twin.saved import save_twin
+    from inca_mj.workflows.discovery_model import named_twin, rerun
 
     robot = named_twin(found)
     model, effects = save_twin(robot, out)
@@ -135,8 +135,8 @@ def _base(robot: Twin) -> Twin:
 def _film(found: Discovery, robot: Twin, run: Run, out: Path) -> Path | None:
     """The final twin over the start of the log; None, and a sentence, where it cannot be."""
     from identification.errors import GraphicsError, InputError
-    from inca_mj.film import film
-    from inca_mj.logs import pose_of
+    from inca_mj.rendering.film import film
+    from inca_mj.twin.logs import pose_of
 
     shown = run.until(min(FILMED, float(run.time[-1])))
     n, pose = len(shown.time), pose_of(found.log)

@@ -21,7 +21,7 @@ from inca_mj.commands.common import Robot, do_not_draw, robot_field
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from inca_mj.excite import Design
+    from inca_mj.workflows.excitation import Design
 
 
 @dataclass(frozen=True)
@@ -57,12 +57,12 @@ class Excite:
         from math import radians
 
         from identification.files import whole_folder
-        from inca_mj.bench import SAMPLING
-        from inca_mj.comparison import timestep_for
-        from inca_mj.excite import design
-        from inca_mj.limits import Limits
-        from inca_mj.sections_information import design_json, design_verdict
-        from inca_mj.twin import build_twin
+        from inca_mj.report.sections_information import design_json, design_verdict
+        from inca_mj.twin.twin import build_twin
+        from inca_mj.workflows.bench import SAMPLING
+        from inca_mj.workflows.comparison import timestep_for
+        from inca_mj.workflows.excitation import design
+        from inca_mj.workflows.limits import Limits
 
         limits = Limits(*self.current, self.margin, self.reach, radians(self.turn))
         robot = build_twin(
@@ -105,9 +105,9 @@ def keep(result: Design, out: Path) -> None:
     """Write the input as a log that the twin replays, and the report with its figures."""
     from identification import write_log
     from identification.report.page import save_figures, write_report
-    from inca_mj.logs import run_to_log
-    from inca_mj.sections import run_section
-    from inca_mj.sections_information import design_section, design_verdict
+    from inca_mj.report.sections import run_section
+    from inca_mj.report.sections_information import design_section, design_verdict
+    from inca_mj.twin.logs import run_to_log
 
     notes = f"designed by inca excite: {result.best.name}, simulated"
     write_log(run_to_log(result.best.run, "excite", notes), out / "excite.csv")

@@ -14,7 +14,7 @@ from inca_mj.commands.common import Robot, cannot_draw, robot_field
 if TYPE_CHECKING:
     import numpy as np
 
-    from inca_mj.run import Run
+    from inca_mj.twin.run import Run
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Film:
             raise GraphicsError(blind)
         from identification.errors import InputError
         from identification.files import whole_folder
-        from inca_mj.film import film, stills
+        from inca_mj.rendering.film import film, stills
 
         run, measured, pose = self._scene()
         late = [t for t in self.still if not 0 <= t <= run.time[-1]]
@@ -84,9 +84,9 @@ class Film:
     def _scene(self) -> tuple[Run, np.ndarray | None, np.ndarray | None]:
         """The run to film, and the measured angles and pose of a log."""
         from identification.errors import InputError
-        from inca_mj.comparison import compare
-        from inca_mj.logs import pose_of, read_inca_log
-        from inca_mj.run import load_run
+        from inca_mj.twin.logs import pose_of, read_inca_log
+        from inca_mj.twin.run import load_run
+        from inca_mj.workflows.comparison import compare
 
         end = float("inf") if self.seconds is None else self.seconds
         if not end > 0:

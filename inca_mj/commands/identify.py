@@ -22,9 +22,9 @@ from identification.commands.common import (
 from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
-    from identification.fit import Fit
-    from identification.profiles import Profile
-    from inca_mj.identify import Identification
+    from identification.estimation.fit import Fit
+    from identification.estimation.profiles import Profile
+    from inca_mj.workflows.identification import Identification
 
 
 STOPPED = 130  # exit code after Ctrl-C, as a shell gives it
@@ -62,9 +62,9 @@ class Identify:
     def run(self) -> int:
         """Identify, say, keep."""
         do_not_draw()
+        from identification.estimation.profiles import profile
         from identification.files import whole_folder
-        from identification.profiles import profile
-        from inca_mj.identify_json import identification_json, profile_sentence
+        from inca_mj.report.identification_json import identification_json, profile_sentence
 
         refuse_folder(self.output.out)
         result = self._identify()
@@ -89,17 +89,17 @@ class Identify:
         """What the options ask for.
 
         Raises:
-            InputError: two options do not go together, or as `inca_mj.identify`.
+            InputError: two options do not go together, or as `inca_mj.workflows.identification`.
         """
         from identification.errors import InputError
-        from identification.estimation import Options
-        from inca_mj.identify import (
+        from identification.estimation.estimation import Options
+        from inca_mj.twin.logs import read_inca_log
+        from inca_mj.workflows.disturbed import identify_innovations, identify_windows
+        from inca_mj.workflows.identification import (
             MECHANICS,
             POSE,
             identify,
         )
-        from inca_mj.identify_disturbed import identify_innovations, identify_windows
-        from inca_mj.logs import read_inca_log
 
         if self.free == ():
             raise InputError(
@@ -141,9 +141,9 @@ class Identify:
 
 def summary(result: Identification, fit: Fit) -> str:
     """A fit as a text table and its verdict."""
-    from identification.metrics import mean_fit
-    from identification.verdict import verdict
-    from inca_mj.identify_json import identification_verdict, rows
+    from identification.estimation.metrics import mean_fit
+    from identification.report.fit_verdict import verdict
+    from inca_mj.report.identification_json import identification_verdict, rows
 
     cells = [
         (name, f"{value:.6g}", "unknown" if std == float("inf") else f"{std:.2g}", unit,
@@ -161,11 +161,11 @@ def summary(result: Identification, fit: Fit) -> str:
 def keep(result: Identification, profiles: Sequence[Profile], out: Path, robot: Robot) -> None:
     """Write figures, the one-file report and the identified model into a folder."""
     from identification.report.page import save_figures, write_report
-    from inca_mj.comparison import compare
-    from inca_mj.identify_json import identification_verdict
-    from inca_mj.sections import compare_section, model_section
-    from inca_mj.sections_fit import fit_section, profile_section
-    from inca_mj.sections_information import information_section
+    from inca_mj.report.identification_json import identification_verdict
+    from inca_mj.report.sections import compare_section, model_section
+    from inca_mj.report.sections_fit import fit_section, profile_section
+    from inca_mj.report.sections_information import information_section
+    from inca_mj.workflows.comparison import compare
 
     plant = result.fit.estimate.predictor.plant
     final = plant.parameters.with_values(result.values, "fitted to the log")

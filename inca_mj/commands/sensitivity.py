@@ -14,7 +14,7 @@ from inca_mj.commands.common import Robot, do_not_draw, robot_field
 if TYPE_CHECKING:
     import numpy as np
 
-    from identification.information import Information
+    from identification.estimation.information import Information
 
 
 @dataclass(frozen=True)
@@ -37,13 +37,13 @@ class Sensitivity:
     def run(self) -> int:
         """Analyse, say, keep."""
         do_not_draw()
-        from identification.experiment import Experiment, information
+        from identification.estimation.experiment import Experiment, information
         from identification.files import whole_folder
-        from inca_mj.comparison import timestep_for
-        from inca_mj.identify import POSE
-        from inca_mj.logs import ANGLES
-        from inca_mj.sections_information import information_json, information_verdict
-        from inca_mj.twin import build_twin
+        from inca_mj.report.sections_information import information_json, information_verdict
+        from inca_mj.twin.logs import ANGLES
+        from inca_mj.twin.twin import build_twin
+        from inca_mj.workflows.comparison import timestep_for
+        from inca_mj.workflows.identification import POSE
 
         currents, sampling, hold, sigma, about = self._experiment()
         robot = build_twin(
@@ -68,9 +68,9 @@ class Sensitivity:
         """Currents, sampling time [s], hold, noise [rad], and what they are in words."""
         import numpy as np
 
-        from identification.noise import noise_floor
-        from inca_mj.inputs import make_input
-        from inca_mj.logs import read_inca_log
+        from identification.logs.noise import noise_floor
+        from inca_mj.robot.inputs import make_input
+        from inca_mj.twin.logs import read_inca_log
 
         if self.log is None:
             sigma = 6.7e-4 if self.noise is None else self.noise
@@ -95,7 +95,7 @@ def summary(found: Information) -> str:
 def keep(found: Information, about: str, out: Path) -> None:
     """Write the figure and the one-file report into a folder."""
     from identification.report.page import save_figures, write_report
-    from inca_mj.sections_information import information_section, information_verdict
+    from inca_mj.report.sections_information import information_section, information_verdict
 
     sections = [information_section(found, about)]
     save_figures(sections, out)

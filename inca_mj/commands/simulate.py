@@ -14,7 +14,7 @@ from inca_mj.commands.common import Robot, do_not_draw, robot_field
 if TYPE_CHECKING:
     import numpy as np
 
-    from inca_mj.run import Run
+    from inca_mj.twin.run import Run
 
 
 @dataclass(frozen=True)
@@ -36,9 +36,9 @@ class Simulate:
         """Simulate, write, say."""
         do_not_draw()
         from identification.files import whole_folder
-        from inca_mj.comparison import timestep_for
-        from inca_mj.run import simulate
-        from inca_mj.twin import build_twin
+        from inca_mj.twin.run import simulate
+        from inca_mj.twin.twin import build_twin
+        from inca_mj.workflows.comparison import timestep_for
 
         currents, sampling_time, hold = self._currents()
         parameters, place = self.robot.parameters(), self.robot.place()
@@ -65,8 +65,8 @@ class Simulate:
 
     def _currents(self) -> tuple[np.ndarray, float, str]:
         from identification.errors import InputError
-        from inca_mj.inputs import INPUTS, make_input
-        from inca_mj.logs import read_inca_log
+        from inca_mj.robot.inputs import INPUTS, make_input
+        from inca_mj.twin.logs import read_inca_log
 
         if self.input in INPUTS:
             return make_input(self.input, self.duration, seed=self.seed), 0.01, "zoh"
@@ -101,9 +101,9 @@ def keep(result: Run, out: Path, notes: str) -> None:
     """Write log, run, model, the thesis' four figures and the report into a folder."""
     from identification import write_log
     from identification.report.page import save_figures, write_report
-    from inca_mj.logs import run_to_log
-    from inca_mj.run import save_run
-    from inca_mj.sections import model_section, run_section
+    from inca_mj.report.sections import model_section, run_section
+    from inca_mj.twin.logs import run_to_log
+    from inca_mj.twin.run import save_run
 
     write_log(run_to_log(result, notes=f"simulated by inca simulate: {notes}"), out / "log.csv")
     save_run(result, out / "run.npz")

@@ -19,7 +19,7 @@ from identification.commands.common import (
 from inca_mj.commands.common import do_not_draw
 
 if TYPE_CHECKING:
-    from inca_mj.trials import TrialResult
+    from inca_mj.workflows.trials import TrialResult
 
 
 @dataclass(frozen=True)
@@ -40,9 +40,9 @@ class Trials:
         """Run, say, keep."""
         do_not_draw()
         from identification.errors import unknown_name
-        from identification.estimation import Options
+        from identification.estimation.estimation import Options
         from identification.files import whole_folder
-        from inca_mj.trials import TRIALS, monte_carlo, run_trial
+        from inca_mj.workflows.trials import TRIALS, monte_carlo, run_trial
 
         for number in self.trial:
             if number not in range(1, len(TRIALS) + 1):
@@ -71,7 +71,7 @@ class Trials:
 
 def summary(result: TrialResult) -> str:
     """A trial as the thesis' table with a column of ours."""
-    from identification.verdict import verdict
+    from identification.report.fit_verdict import verdict
 
     shown = result.to_json()
     rows = [

@@ -12,7 +12,7 @@ its backlash as long as every cable stays taut.
 
 from numba import njit
 
-from identification.effect import Effect, Size
+from identification.effects.effect import Effect, Size
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.places import DRIVES_EACH
 

@@ -4,10 +4,10 @@ from math import sqrt
 
 from numba import njit
 
-from identification.effect import Effect, Size
+from identification.effects.effect import Effect, Size
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.places import CABLES
-from inca_mj.parameters import GRAVITY
+from inca_mj.robot.parameters import GRAVITY
 
 
 @njit

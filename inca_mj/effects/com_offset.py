@@ -3,7 +3,7 @@
 The platform's frame stays in its centre of mass, so the connectors move the other way: b_i - c.
 """
 
-from identification.effect import Effect, Size
+from identification.effects.effect import Effect, Size
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.places import PLATFORM
 

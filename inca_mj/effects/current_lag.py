@@ -11,7 +11,7 @@ u is constant over a step, so mean and moment of i over it (see `impulse`) are e
 import numpy as np
 from scipy.signal import lfilter
 
-from identification.effect import BEFORE, Effect, Size
+from identification.effects.effect import BEFORE, Effect, Size
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.impulse import stepwise
 from inca_mj.effects.places import DRIVES_EACH

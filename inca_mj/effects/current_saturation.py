@@ -8,7 +8,7 @@ from math import tanh
 
 from numba import njit
 
-from identification.effect import Effect, Shape, Size
+from identification.effects.effect import Effect, Shape, Size
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.places import DRIVES_EACH
 

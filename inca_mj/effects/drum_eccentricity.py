@@ -4,7 +4,7 @@ from math import cos, sin
 
 from numba import njit
 
-from identification.effect import Effect, Size
+from identification.effects.effect import Effect, Size
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.places import DRIVES_EACH
 

@@ -2,7 +2,7 @@
 
 from numba import njit
 
-from identification.effect import Effect, Size
+from identification.effects.effect import Effect, Size
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.places import ONE_DRIVE
 

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from identification.effect import Effect
+from identification.effects.effect import Effect
 
 # What a hook sees of a drive; NaN where it comes before the quantity is known.
 #   time [s]; phi [rad], omega [rad/s] of the motor; i [A] as logged; x own state

@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from zlib import crc32
 
 from identification.errors import InputError
-from inca_mj import law
 from inca_mj.effects.hooks import DriveEffect
+from inca_mj.robot import law
 
 KEY = law.ACTUATOR_COLUMNS  # column of `actuator_user` with the key of the set
 FIRST = KEY + 1

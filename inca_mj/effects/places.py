@@ -1,6 +1,6 @@
 """Where effects may act, with the suffix of their parameters' names."""
 
-from inca_mj.geometry import DRIVES
+from inca_mj.robot.geometry import DRIVES
 
 _EACH = {f"drive {k}": f"@{k}" for k in range(1, DRIVES + 1)}
 

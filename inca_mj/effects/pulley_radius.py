@@ -16,7 +16,7 @@ from math import atan2, cos, sin, sqrt
 
 from numba import njit
 
-from identification.effect import Effect, Shape, Size
+from identification.effects.effect import Effect, Shape, Size
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.places import CABLES
 

@@ -2,7 +2,7 @@
 
 from numba import njit
 
-from identification.effect import Effect, Shape, Size
+from identification.effects.effect import Effect, Shape, Size
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.places import DRIVES_EACH
 

@@ -6,7 +6,7 @@ K_t (1 - α ∫(i/1 A)² dt)   kind 1: warms with what its winding dissipates
 
 from numba import njit
 
-from identification.effect import Effect, Shape, Size
+from identification.effects.effect import Effect, Shape, Size
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.places import DRIVES_EACH
 

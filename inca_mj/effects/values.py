@@ -11,13 +11,13 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 
-from identification.effect_parameters import effect_parameters
-from identification.parameter import Parameter, ParameterSet
-from identification.paths import Slot
-from identification.predictor import Numbers
+from identification.effects.effect_parameters import effect_parameters
+from identification.model.parameter import Parameter, ParameterSet
+from identification.model.paths import Slot
+from identification.model.predictor import Numbers
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.layout import Layout, Place
-from inca_mj.geometry import DRIVES, Geometry
+from inca_mj.robot.geometry import DRIVES, Geometry
 
 
 def records(effects: Sequence[DriveEffect]) -> tuple[Parameter, ...]:

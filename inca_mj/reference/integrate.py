@@ -23,14 +23,14 @@ import numpy as np
 from scipy.integrate import DOP853
 
 from identification.errors import DivergenceError, InputError
-from identification.parameter import ParameterSet
-from inca_mj.geometry import Geometry
+from identification.model.parameter import ParameterSet
 from inca_mj.reference import layout as at
 from inca_mj.reference.equations import cables, derivative
 from inca_mj.reference.numbers import NO_FORCE, pack
 from inca_mj.reference.rk4 import rk4
 from inca_mj.reference.run import ReferenceRun
 from inca_mj.reference.statics import rest
+from inca_mj.robot.geometry import Geometry
 
 STEP = 1e-3  # default step of rk4 [s]
 SINGULAR = np.radians(89.0)  # largest pitch [rad]: Euler rates are up to 57 times ω there

@@ -22,8 +22,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inca_mj.geometry import Geometry
 from inca_mj.reference import equations
+from inca_mj.robot.geometry import Geometry
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from identification.errors import InputError
-from identification.parameter import ParameterSet
-from inca_mj.geometry import Geometry
-from inca_mj.parameters import GRAVITY
+from identification.model.parameter import ParameterSet
 from inca_mj.reference import layout as at
 from inca_mj.reference.statics import rest
+from inca_mj.robot.geometry import Geometry
+from inca_mj.robot.parameters import GRAVITY
 
 NO_FORCE = (0.0, 0.0, 0.0)
 

@@ -17,11 +17,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError
-from identification.parameter import ParameterSet
-from inca_mj.geometry import Geometry
-from inca_mj.parameters import GRAVITY, PRETENSION
+from identification.model.parameter import ParameterSet
 from inca_mj.reference import kinematics
 from inca_mj.reference import layout as at
+from inca_mj.robot.geometry import Geometry
+from inca_mj.robot.parameters import GRAVITY, PRETENSION
 
 UNBALANCED = 1e-9  # largest force [N] or torque [N m] left by the pretension
 

@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 import numpy as np
 
 from identification.errors import unknown_name
-from inca_mj.geometry import DRIVES
+from inca_mj.robot.geometry import DRIVES
 from inca_mj.worlds import cable, drum, friction, motor, place
 from inca_mj.worlds.effect import Effect, OneDriveEffect
 

@@ -9,7 +9,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from identification.errors import InputError
-from inca_mj.geometry import DRIVES
+from inca_mj.robot.geometry import DRIVES
 from inca_mj.worlds import layout as at
 
 

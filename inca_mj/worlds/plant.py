@@ -15,11 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import DivergenceError, InputError
-from identification.parameter import ParameterSet
-from inca_mj.geometry import DRIVES, Geometry
-from inca_mj.parameters import GRAVITY, PRETENSION
+from identification.model.parameter import ParameterSet
 from inca_mj.reference import kinematics, pack
 from inca_mj.reference import layout as base
+from inca_mj.robot.geometry import DRIVES, Geometry
+from inca_mj.robot.parameters import GRAVITY, PRETENSION
 from inca_mj.worlds import layout as at
 from inca_mj.worlds.effect import Effect, Numbers
 from inca_mj.worlds.integrate import PLAY_STEP, STEP, trajectory

@@ -14,9 +14,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from identification.errors import DivergenceError, InputError
-from identification.parameter import ParameterSet
-from inca_mj.geometry import Geometry
+from identification.model.parameter import ParameterSet
 from inca_mj.reference import layout as base
+from inca_mj.robot.geometry import Geometry
 from inca_mj.worlds import layout as at
 from inca_mj.worlds.effect import Effect
 from inca_mj.worlds.plant import make_plant, simulate_world

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from identification.log import Log
+from identification.logs.log import Log
 from inca_mj.worlds.effect import Effect
 
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError, unknown_name
-from identification.log import Log
-from identification.parameter import ParameterSet
-from inca_mj.geometry import DRIVES, INCA, Geometry
-from inca_mj.inputs import multisine, prbs
-from inca_mj.parameters import parameter_set
+from identification.logs.log import Log
+from identification.model.parameter import ParameterSet
 from inca_mj.reference import layout as base
+from inca_mj.robot.geometry import DRIVES, INCA, Geometry
+from inca_mj.robot.inputs import multisine, prbs
+from inca_mj.robot.parameters import parameter_set
 from inca_mj.worlds.effect import Effect
 from inca_mj.worlds.measure import coloured, encode, noise_rms
 from inca_mj.worlds.plant import make_plant, simulate_world

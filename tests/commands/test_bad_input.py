@@ -177,7 +177,7 @@ def test_a_wrong_command_is_told_the_right_ones(
 def test_bad_geometries(
     change, names: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from inca_mj.geometry import INCA
+    from inca_mj.robot.geometry import INCA
 
     exits, connectors = change(INCA.A, INCA.B)
     path = tmp_path / "geometry.toml"

@@ -10,8 +10,8 @@ import pytest
 
 from identification import read_log
 from inca_mj.cli import main
-from inca_mj.logs import ANGLES, CURRENTS, OPTIONAL, read_inca_log
-from inca_mj.run import load_run, simulate
+from inca_mj.twin.logs import ANGLES, CURRENTS, OPTIONAL, read_inca_log
+from inca_mj.twin.run import load_run, simulate
 
 LOG = Path(__file__).parents[2] / "examples" / "log.csv"
 PRACTICE = Path(__file__).parents[3] / "shared" / "data" / "practice_prbs"
@@ -86,7 +86,7 @@ def test_crosscheck_disagrees_aloud(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A reference of another robot must fail the check, with exit code 1."""
-    from inca_mj.crosscheck import check
+    from inca_mj.verification import check
 
     right = check.run_reference
     monkeypatch.setattr(

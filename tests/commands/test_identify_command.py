@@ -11,11 +11,11 @@ import pytest
 
 from identification import write_log
 from inca_mj.cli import main
-from inca_mj.inputs import make_input
-from inca_mj.logs import run_to_log
-from inca_mj.parameters import parameter_set
-from inca_mj.run import simulate
-from inca_mj.twin import build_twin
+from inca_mj.robot.inputs import make_input
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.twin.logs import run_to_log
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import build_twin
 
 TRUTH = {"b_v": 2.3e-4, "b_c": 0.0056}
 FREE = ("--free", "b_v", "b_c")

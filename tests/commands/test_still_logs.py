@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from identification import InputError, write_log
-from inca_mj.logs import read_inca_log
+from inca_mj.twin.logs import read_inca_log
 
 LOG = Path(__file__).parents[2] / "examples" / "log.csv"
 

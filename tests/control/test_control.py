@@ -6,7 +6,8 @@ pytest.importorskip("dm_control", reason="dm_control runs on neither MuJoCo 4 no
 from dm_control.rl.control import PhysicsError
 
 from identification.errors import InputError
-from inca_mj.control import (
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.twin.control import (
     CONTROL_TIMESTEP,
     HIGHEST_CURRENT,
     LOWEST_CURRENT,
@@ -15,9 +16,8 @@ from inca_mj.control import (
     TASKS,
     load,
 )
-from inca_mj.parameters import parameter_set
-from inca_mj.run import simulate
-from inca_mj.twin import build_twin
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import build_twin
 
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 

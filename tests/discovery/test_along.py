@@ -8,16 +8,16 @@ from discovery_cases import response as dense
 
 from identification import Log, Parameter, ParameterSet
 from identification.discovery.along import _apart, _curves, families, followed, goes_along, response
-from identification.discovery.discover import discover
 from identification.discovery.extend import Base
+from identification.discovery.search import discover
 from identification.discovery.shapes import structured
 from identification.discovery.steps import fitted
-from identification.effect import Effect, Size
+from identification.effects.effect import Effect, Size
 from identification.errors import DivergenceError
 from identification.kalman.innovations import whiteness
 from identification.kalman.noise_model import Noise, whitener
-from identification.plant import ModelPlant
-from identification.predictor import Predictor
+from identification.model.plant import ModelPlant
+from identification.model.predictor import Predictor
 
 N = 1000
 

@@ -5,8 +5,8 @@ from discovery_cases import EFFECTS, base, record, slider, wander
 
 from identification.discovery.both import both
 from identification.discovery.columns import columns, common
-from identification.discovery.discover import discover
 from identification.discovery.forward import add
+from identification.discovery.search import discover
 from identification.discovery.steps import fitted, holds, scores_of
 
 OFFSET, RUBBING = {"offset.f": -0.8}, {"rubbing.c": 1.0}
@@ -49,6 +49,6 @@ def test_a_search_goes_on_from_what_is_not_proven_alone(monkeypatch, sizes, name
             return None, rejected, new.step
         return new, rejected, hopeful
 
-    monkeypatch.setattr("identification.discovery.discover.add", doubtful)
+    monkeypatch.setattr("identification.discovery.search.add", doubtful)
     answer = discover(base(), log(**sizes), EFFECTS)
     assert {n.candidate.effect.name for n in answer.named} == names

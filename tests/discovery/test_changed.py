@@ -8,7 +8,7 @@ import pytest
 from discovery_cases import EFFECTS, SENSOR, SLIDER, STEP, base, record, slider, wander
 
 from identification.discovery.changed import _onset, changed
-from identification.discovery.discover import discover
+from identification.discovery.search import discover
 from identification.discovery.steps import fitted
 from identification.errors import DivergenceError
 

@@ -7,7 +7,7 @@ from scipy.stats import f, ncf
 
 from identification.discovery.detectable import NONCENTRALITY, detectable
 from identification.discovery.score import BLOCKS, Score
-from identification.effect import Candidate, Effect, Size
+from identification.effects.effect import Candidate, Effect, Size
 from identification.kalman.noise_fit import Level
 from identification.kalman.noise_model import Noise
 

@@ -5,8 +5,8 @@ Logs of 6 s and five candidates: enough to name what is large, at a tenth of the
 
 import pytest
 
-from inca_mj.discover import discover
 from inca_mj.effects.catalogue import CATALOGUE
+from inca_mj.workflows.discovery import discover
 from inca_mj.worlds import Setting, effect, world
 
 FEW = ("load_dependent_friction", "stribeck_friction", "air_drag", "external_force", "com_offset")

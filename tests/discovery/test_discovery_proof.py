@@ -6,7 +6,7 @@ from discovery_cases import EFFECTS, SENSOR, STEP, base, record, slider, wander
 
 from identification.discovery.proof import prove
 from identification.discovery.steps import fitted
-from identification.effect import Candidate
+from identification.effects.effect import Candidate
 
 SPRING = Candidate(EFFECTS[0], "joint", {})
 

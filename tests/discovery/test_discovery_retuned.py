@@ -17,11 +17,11 @@ from discovery_cases import (
 from identification import Parameter, ParameterSet
 from identification.discovery.extend import Base, fit_with
 from identification.discovery.retuned import WIDER, retuned
-from identification.effect import Candidate, Effect, Size
+from identification.effects.effect import Candidate, Effect, Size
 from identification.kalman.noise_fit import Level
 from identification.kalman.noise_model import Noise
 from identification.kalman.refit import Refit
-from identification.plant import ModelPlant
+from identification.model.plant import ModelPlant
 
 PRIOR, SIGMA = 0.2, 0.5  # std of what is known, of the noise
 CANDIDATE = Candidate(effect(), "joint", {})

@@ -7,13 +7,13 @@ import pytest
 from discovery_cases import EFFECTS, base, record, slider, wander
 
 from identification import InputError, Parameter
-from identification.discovery.discover import discover
 from identification.discovery.score import Score
+from identification.discovery.search import discover
 from identification.discovery.significant import significant, too_large
-from identification.discovery.words import beyond
-from identification.effect import Candidate, Effect, Size
+from identification.effects.effect import Candidate, Effect, Size
 from identification.kalman.noise_fit import Level
 from identification.kalman.noise_model import Noise
+from identification.report.discovery_words import beyond
 
 
 def scored(name, size, gain, p=1e-9, sign=0, largest=1.0):

@@ -11,9 +11,9 @@ from discovery_cases import EFFECTS, STEP, base, record, slider, wander
 
 from identification import InputError
 from identification.discovery.confidence import named_of
-from identification.discovery.discover import SHORTEST, _explained, discover
 from identification.discovery.forward import add
 from identification.discovery.passes import swap
+from identification.discovery.search import SHORTEST, _explained, discover
 from identification.discovery.steps import fitted
 
 ROOT = Path(__file__).parents[2]
@@ -55,7 +55,7 @@ def spied(monkeypatch, function):
         seen.append(arguments)
         return function(*arguments)
 
-    monkeypatch.setattr(f"identification.discovery.discover.{function.__name__}", spy)
+    monkeypatch.setattr(f"identification.discovery.search.{function.__name__}", spy)
     return seen
 
 
@@ -146,7 +146,7 @@ def test_what_was_refitted_beside_a_name_and_not_believed_is_kept(monkeypatch):
             monkeypatch.setattr("identification.discovery.steps.T", 1e9)
         return add(*arguments)
 
-    monkeypatch.setattr("identification.discovery.discover.add", spy)
+    monkeypatch.setattr("identification.discovery.search.add", spy)
     answer = found(**{"offset.f": -0.8, "rubbing.c": 1.0})
     rejected = {t.candidate.effect.name: t for t in answer.rejected}
     assert "rubbing" in rejected

@@ -7,9 +7,9 @@ from identification.discovery.locate import located
 from identification.discovery.missing import missing_forces
 from identification.discovery.proof import unseen
 from identification.discovery.steps import Step
-from inca_mj.discover import KNOWN
 from inca_mj.effects.delay import DELAY
-from inca_mj.twin import build_twin
+from inca_mj.twin.twin import build_twin
+from inca_mj.workflows.discovery import KNOWN
 from inca_mj.worlds import Setting, effect, world
 
 

@@ -8,9 +8,9 @@ import pytest
 
 from identification.discovery import shapes
 from identification.discovery.shapes import BARE, improved
-from identification.effect import Candidate, Effect, Shape, Size
-from inca_mj.discover import discover
+from identification.effects.effect import Candidate, Effect, Shape, Size
 from inca_mj.effects.current_saturation import CURRENT_SATURATION
+from inca_mj.workflows.discovery import discover
 from inca_mj.worlds import Setting, effect, world
 
 KINDS = Effect(

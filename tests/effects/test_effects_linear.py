@@ -5,8 +5,8 @@ from effect_cases import full
 
 from identification import Log, Predictor
 from identification.kalman.linear import linearise
-from inca_mj.inputs import make_input
-from inca_mj.logs import ANGLES, CURRENTS
+from inca_mj.robot.inputs import make_input
+from inca_mj.twin.logs import ANGLES, CURRENTS
 
 SMALL = 1e-4  # of a current's error [A]
 

@@ -5,12 +5,12 @@ import numpy as np
 from effect_cases import CATALOGUE, bare, full, probes, simulate
 from numba import njit
 
-from identification.effect import Effect, Size
-from identification.rollout import rollout
+from identification.effects.effect import Effect, Size
+from identification.model.rollout import rollout
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.places import DRIVES_EACH
-from inca_mj.inputs import make_input
-from inca_mj.twin import build_twin
+from inca_mj.robot.inputs import make_input
+from inca_mj.twin.twin import build_twin
 
 MODEL = [e for e in CATALOGUE if e.inputs is None and e.name != "current_saturation"]
 

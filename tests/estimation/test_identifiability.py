@@ -8,10 +8,10 @@ import pytest
 from estimation_plants import positive, record, slider
 
 from identification import DivergenceError, InputError, Parameter, ParameterSet
-from identification.estimation import Options, estimate
-from identification.fit import assess
-from identification.plant import ModelPlant
-from identification.verdict import verdict
+from identification.estimation.estimation import Options, estimate
+from identification.estimation.fit import assess
+from identification.model.plant import ModelPlant
+from identification.report.fit_verdict import verdict
 
 ALL = ("mass", "damping", "stiffness", "gear")
 OFF = {"mass": 2.4, "damping": 2.5, "stiffness": 17.0, "gear": 6.0}

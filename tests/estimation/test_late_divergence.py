@@ -5,8 +5,8 @@ import pytest
 from estimation_plants import record, slider
 
 from identification import DivergenceError
-from identification.estimation import Options, estimate
-from identification.search import Search
+from identification.estimation.estimation import Options, estimate
+from identification.estimation.search import Search
 
 HORIZONS = Options(horizons=(0.2, 1.0))
 

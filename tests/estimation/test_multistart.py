@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from estimation_plants import record, slider
 
-from identification import DivergenceError, InputError, multistart
-from identification.estimation import Options
-from identification.multistart import estimate_from
+from identification import DivergenceError, InputError
+from identification.estimation import multistart
+from identification.estimation.estimation import Options
+from identification.estimation.multistart import estimate_from
 
 ONCE = Options(horizons=(1.0,), max_evaluations=20)
 

@@ -8,9 +8,9 @@ from estimation_plants import record, slider
 from scipy.signal import lfilter
 
 from identification import InputError
-from identification.estimation import Options, estimate
-from identification.fit import assess
-from identification.profiles import _crossing, profile
+from identification.estimation.estimation import Options, estimate
+from identification.estimation.fit import assess
+from identification.estimation.profiles import _crossing, profile
 
 ONCE = Options(horizons=(1.0,))
 

@@ -5,8 +5,8 @@ import pytest
 from estimation_plants import pendulum, record, slider
 from scipy.stats import binom
 
-from identification.estimation import Options, estimate
-from identification.fit import assess
+from identification.estimation.estimation import Options, estimate
+from identification.estimation.fit import assess
 
 TRUTH = {"mass": 2.0, "damping": 3.0, "stiffness": 20.0}
 FAR = {"mass": 2.6, "damping": 2.1, "stiffness": 26.0}

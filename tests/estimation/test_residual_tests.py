@@ -6,8 +6,8 @@ from estimation_plants import steps
 from scipy.signal import lfilter
 from scipy.stats import kstest
 
-from identification.noise import noise_floor
-from identification.residuals import residual_tests
+from identification.estimation.residuals import residual_tests
+from identification.logs.noise import noise_floor
 
 N, SEEDS = 500, 200
 

@@ -5,9 +5,9 @@ import pytest
 from estimation_plants import measured, record, slider
 from scipy.optimize import approx_fprime
 
-from identification.estimation import Options, estimate
-from identification.fit import assess
-from identification.robust import _SLOPES, influence
+from identification.estimation.estimation import Options, estimate
+from identification.estimation.fit import assess
+from identification.estimation.robust import _SLOPES, influence
 
 RHO = {
     "linear": lambda z: z,

@@ -7,9 +7,9 @@ import pytest
 from estimation_plants import measured, record, slider
 
 from identification import InputError
-from identification.estimation import Options, estimate
-from identification.fit import assess
-from identification.noise import whitener_of
+from identification.estimation.estimation import Options, estimate
+from identification.estimation.fit import assess
+from identification.logs.noise import whitener_of
 
 NAMES = ("damping", "stiffness")
 START = {"damping": 2.3, "stiffness": 25.0}

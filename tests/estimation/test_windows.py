@@ -6,11 +6,11 @@ import pytest
 from estimation_plants import SLIDER, STEP, measured, record, slider, steps
 
 from identification import InputError, Log, ParameterSet
-from identification.estimate_windows import estimate_windows
-from identification.estimation import estimate
-from identification.plant import ModelPlant
-from identification.shooting import Tangent
-from identification.windows import windows
+from identification.estimation.estimation import estimate
+from identification.estimation.shooting import Tangent
+from identification.estimation.window_estimate import estimate_windows
+from identification.estimation.windows import windows
+from identification.model.plant import ModelPlant
 
 NAMES = ("mass", "damping")
 START = {"mass": 2.4, "damping": 2.3}

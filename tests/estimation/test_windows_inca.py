@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 from identification import InputError
-from identification.estimate_windows import estimate_windows
-from identification.windows import apart, moved
-from inca_mj.identify import POSE
-from inca_mj.identify_disturbed import identify_windows
-from inca_mj.inputs import make_input
-from inca_mj.logs import run_to_log
-from inca_mj.parameters import parameter_set
-from inca_mj.run import simulate
-from inca_mj.trials import SMALL
-from inca_mj.twin import build_twin
+from identification.estimation.window_estimate import estimate_windows
+from identification.estimation.windows import apart, moved
+from inca_mj.robot.inputs import make_input
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.twin.logs import run_to_log
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import build_twin
+from inca_mj.workflows.disturbed import identify_windows
+from inca_mj.workflows.identification import POSE
+from inca_mj.workflows.trials import SMALL
 
 NOISE = 2e-4  # [rad]
 OFF = {"x": 0.002, "y": -0.002, "z": 1.433}  # where the platform begins, and no angle says so

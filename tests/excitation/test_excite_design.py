@@ -10,12 +10,12 @@ import pytest
 
 from identification import InputError
 from inca_mj.cli import main
-from inca_mj.excite import design
-from inca_mj.inputs import prbs
-from inca_mj.limits import Limits, extent
-from inca_mj.recipes import changed, draw
-from inca_mj.run import simulate
-from inca_mj.twin import Twin, build_twin
+from inca_mj.robot.inputs import prbs
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import Twin, build_twin
+from inca_mj.workflows.excitation import design
+from inca_mj.workflows.limits import Limits, extent
+from inca_mj.workflows.recipes import changed, draw
 
 NAMES = ("b", "J", "b_v")
 

@@ -9,9 +9,9 @@ import pytest
 from excitation_cases import SIGMA, STEP, pushed, slider, step_sensitivity
 
 from identification import InputError
-from identification.estimation import Options, estimate
-from identification.experiment import information
-from identification.information import determinable
+from identification.estimation.estimation import Options, estimate
+from identification.estimation.experiment import information
+from identification.estimation.information import determinable
 
 NAMES = ("mass", "damping")
 
@@ -67,7 +67,7 @@ def test_the_scatter_of_fits_is_the_bound() -> None:
     trial = pushed(rough(3))
     found = information(trial, NAMES)
     clean = trial.log()
-    from identification.predictor import Predictor
+    from identification.model.predictor import Predictor
 
     exact = Predictor(trial.plant, clean, NAMES).predict(np.array([[2.0, 3.0]]))[0]
     rng, fits = np.random.default_rng(0), []

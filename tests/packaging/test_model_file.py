@@ -4,7 +4,7 @@ import pytest
 
 from identification.errors import InputError
 from inca_mj.files import model_path
-from inca_mj.twin import build_twin
+from inca_mj.twin.twin import build_twin
 
 
 def test_the_model_file_is_the_twin():

@@ -6,11 +6,11 @@ from hypothesis import given, settings
 from reference_cases import FORCE, FORCE_AT, currents, sets, states, taut, without_losses
 from scipy.integrate import solve_ivp
 
-from inca_mj.geometry import INCA
-from inca_mj.parameters import parameter_set
 from inca_mj.reference import derivative, energy, pack, power, rest
 from inca_mj.reference import layout as at
 from inca_mj.reference.equations import cables
+from inca_mj.robot.geometry import INCA
+from inca_mj.robot.parameters import parameter_set
 
 
 @settings(deadline=None)

@@ -14,11 +14,11 @@ from reference_cases import (
     states,
 )
 
-from inca_mj.geometry import INCA
-from inca_mj.parameters import parameter_set
 from inca_mj.reference import derivative, outputs, pack, rest
 from inca_mj.reference import layout as at
 from inca_mj.reference.equations import cables
+from inca_mj.robot.geometry import INCA
+from inca_mj.robot.parameters import parameter_set
 
 
 def obvious(x, i, value, T_0, G, b_G):

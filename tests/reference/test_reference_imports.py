@@ -5,7 +5,7 @@ from pathlib import Path
 
 import inca_mj.reference
 
-SHARED = {"inca_mj.geometry", "inca_mj.parameters", "inca_mj.reference"}
+SHARED = {"inca_mj.robot.geometry", "inca_mj.robot.parameters", "inca_mj.reference"}
 
 
 def imported(path):

@@ -5,10 +5,10 @@ import pytest
 from reference_cases import taut
 
 from identification.errors import DivergenceError, InputError
-from inca_mj.geometry import INCA
-from inca_mj.parameters import SETS, parameter_set
 from inca_mj.reference import kinematics, rest, simulate_reference
 from inca_mj.reference import layout as at
+from inca_mj.robot.geometry import INCA
+from inca_mj.robot.parameters import SETS, parameter_set
 
 
 def samples(seconds, rate=100):

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from reference_cases import plain_rotation, taut
 
-from inca_mj.geometry import INCA
-from inca_mj.parameters import parameter_set
 from inca_mj.reference import kinematics, outputs, pack, simulate_reference
 from inca_mj.reference import layout as at
+from inca_mj.robot.geometry import INCA
+from inca_mj.robot.parameters import parameter_set
 
 H = 2e-5  # sample time of the trajectory [s]
 EULER = np.array([0.4, -0.7, 1.1])

@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from identification.errors import InputError
-from inca_mj.geometry import INCA
-from inca_mj.parameters import SETS, parameter_set
 from inca_mj.reference import derivative, kinematics, pack, rest
 from inca_mj.reference.statics import wrench_matrix
+from inca_mj.robot.geometry import INCA
+from inca_mj.robot.parameters import SETS, parameter_set
 
 
 def imbalance(p):

@@ -12,16 +12,16 @@ from fake_discovery import EFFECTS, found, log
 
 from identification import write_log
 from inca_mj.cli import main
-from inca_mj.effects.saved import load_twin
+from inca_mj.twin.saved import load_twin
 
 
 @pytest.fixture(autouse=True)
 def outcome(monkeypatch: pytest.MonkeyPatch) -> list:
     """What the discovery finds; change its only entry for another."""
     result = [found()]
-    module = ModuleType("inca_mj.discover")
+    module = ModuleType("inca_mj.workflows.discovery")
     module.discover = lambda *_, **__: result[0]  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "inca_mj.discover", module)
+    monkeypatch.setitem(sys.modules, "inca_mj.workflows.discovery", module)
     return result
 
 

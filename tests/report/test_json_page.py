@@ -11,10 +11,10 @@ import pytest
 from identification import write_log
 from inca_mj.cli import main
 from inca_mj.commands.discover import as_json
-from inca_mj.inputs import make_input
-from inca_mj.logs import run_to_log
-from inca_mj.run import simulate
-from inca_mj.twin import build_twin
+from inca_mj.robot.inputs import make_input
+from inca_mj.twin.logs import run_to_log
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import build_twin
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")

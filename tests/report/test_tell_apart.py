@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 from fake_discovery import LATE, MISMATCH, STRIBECK, found
 
-from identification.verdict_discovery import discovery_verdict
-from inca_mj.tell_apart import Contrast, _distance, sentence, tell_apart, told
+from identification.report.discovery_verdict import discovery_verdict
+from inca_mj.workflows.look_alikes import Contrast, _distance, sentence, tell_apart, told
 
 
 @pytest.fixture(scope="module")

@@ -6,12 +6,12 @@ from math import hypot
 import pytest
 from fake_discovery import NOISE, found
 
-from identification.discovery.discovery_json import discovery_to_json
 from identification.kalman.noise_fit import Level
 from identification.kalman.noise_model import Noise
+from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_tables import parameters_section
 from identification.report.discovery_text import discovery_text
-from identification.verdict_discovery import diff_line, discovery_verdict, floor_rms
+from identification.report.discovery_verdict import diff_line, discovery_verdict, floor_rms
 
 
 def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:

@@ -10,12 +10,13 @@ import pytest
 from mujoco.batch import Batch
 
 from identification.errors import DivergenceError, InputError
+from identification.model.rollout import State
 from identification.native import structs
-from identification.rollout import State
-from inca_mj import law, native
-from inca_mj.inputs import make_input
-from inca_mj.run import simulate
-from inca_mj.twin import build_twin
+from inca_mj.robot import law
+from inca_mj.robot.inputs import make_input
+from inca_mj.twin import native
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import build_twin
 
 # User actuators, tendons and sensors with user data wide enough to be mistaken for the robot's.
 ORDINARY = f"""<mujoco>

@@ -7,13 +7,13 @@ from hypothesis import given, settings
 from mujoco.batch import Batch
 from twin_cases import differing, laws, moving
 
-from identification.paths import resolve
-from identification.rollout import rollout
-from inca_mj import law
-from inca_mj.inputs import prbs
-from inca_mj.parameters import SETS, parameter_set
-from inca_mj.run import simulate
-from inca_mj.twin import build_twin
+from identification.model.paths import resolve
+from identification.model.rollout import rollout
+from inca_mj.robot import law
+from inca_mj.robot.inputs import prbs
+from inca_mj.robot.parameters import SETS, parameter_set
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import build_twin
 
 NOMINAL = build_twin()
 START = {"x": 0.03, "y": -0.02, "z": 1.45, "roll": 0.05, "pitch": 0.02, "yaw": -0.1}

@@ -5,9 +5,9 @@ import pytest
 from scipy.integrate import simpson
 from twin_cases import every_step, forward, moving
 
-from identification.rollout import State
-from inca_mj.parameters import GRAVITY, parameter_set
-from inca_mj.twin import build_twin
+from identification.model.rollout import State
+from inca_mj.robot.parameters import GRAVITY, parameter_set
+from inca_mj.twin.twin import build_twin
 
 STEP = 2.5e-4
 CURRENT = np.array([1.0, 0.5, 1.0, 0.5, 0.5, 1.0, 1.0, 0.5])

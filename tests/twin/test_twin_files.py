@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from twin_cases import arrays, differing, laws, seeds
 
-from identification.export import to_xml
-from inca_mj.geometry import INCA
-from inca_mj.mjcf import build
-from inca_mj.parameters import parameter_set
-from inca_mj.run import simulate
-from inca_mj.twin import Twin, build_twin
+from identification.model.export import to_xml
+from inca_mj.robot.geometry import INCA
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.twin.mjcf import build
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import Twin, build_twin
 
 SHIPPED = Path(__file__).parents[2] / "models" / "inca6d.xml"
 START = {"x": 0.02, "y": 0.03, "z": 1.41, "roll": 0.04, "pitch": -0.06, "yaw": 0.1}

@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import given, settings
 from twin_cases import forward, laws, random_state, seeds, sets
 
-from inca_mj.parameters import parameter_set
-from inca_mj.twin import build_twin
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.twin.twin import build_twin
 
 ROBOT = build_twin()
 

@@ -4,14 +4,14 @@ import mujoco
 import numpy as np
 import pytest
 
-from inca_mj.crosscheck.order import slope
-from inca_mj.crosscheck.states import to_mujoco
-from inca_mj.geometry import INCA
-from inca_mj.parameters import parameter_set
 from inca_mj.reference import layout as at
 from inca_mj.reference import rest, simulate_reference
-from inca_mj.run import simulate
-from inca_mj.twin import build_twin
+from inca_mj.robot.geometry import INCA
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import build_twin
+from inca_mj.verification.order import slope
+from inca_mj.verification.states import to_mujoco
 
 COARSE = (1e-3, 5e-4, 2.5e-4)
 FINE = (2.5e-4, 1.25e-4, 6.25e-5)

@@ -5,11 +5,11 @@ import pytest
 from twin_cases import every_step, moving
 
 from identification.errors import InputError
-from identification.paths import read, resolve
-from identification.rollout import State
-from inca_mj import law
-from inca_mj.parameters import SETS, parameter_set
-from inca_mj.twin import build_twin
+from identification.model.paths import read, resolve
+from identification.model.rollout import State
+from inca_mj.robot import law
+from inca_mj.robot.parameters import SETS, parameter_set
+from inca_mj.twin.twin import build_twin
 
 # Thesis Tables 2.1 and 3.2, typed from the page.
 TABLES = {

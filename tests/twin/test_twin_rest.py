@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from inca_mj.inputs import make_input
-from inca_mj.parameters import SETS, parameter_set
-from inca_mj.run import simulate
-from inca_mj.twin import build_twin
+from inca_mj.robot.inputs import make_input
+from inca_mj.robot.parameters import SETS, parameter_set
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import build_twin
 
 OFF = {"x": 0.04, "y": -0.03, "z": 1.5, "roll": 0.1, "pitch": -0.05, "yaw": 0.15}
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from twin_cases import moving
 
-from identification.rollout import State
-from inca_mj.inputs import prbs
-from inca_mj.run import simulate
-from inca_mj.twin import build_twin
+from identification.model.rollout import State
+from inca_mj.robot.inputs import prbs
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import build_twin
 
 # The sign of a polar vector's entries, and where each drive lands.
 MIRRORS = {

@@ -11,9 +11,9 @@ from worlds_cases import simulate as simulate_world
 
 import inca_mj.worlds
 from identification.errors import InputError
-from inca_mj.geometry import INCA
 from inca_mj.reference import derivative, pack, simulate_reference
 from inca_mj.reference import layout as base
+from inca_mj.robot.geometry import INCA
 from inca_mj.worlds import (
     AnchorOffset,
     CableHardening,
@@ -28,7 +28,7 @@ from inca_mj.worlds import layout as at
 
 CLOSE = 1e-7  # the oracle is adaptive, at 1e-11 [rad]
 SHARED = {
-    *("inca_mj.geometry", "inca_mj.parameters", "inca_mj.inputs"),
+    *("inca_mj.robot.geometry", "inca_mj.robot.parameters", "inca_mj.robot.inputs"),
     *("inca_mj.reference", "inca_mj.worlds"),
 }
 

@@ -6,9 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from identification.predictor import Predictor
+from identification.model.predictor import Predictor
 from inca_mj.effects.catalogue import CATALOGUE
-from inca_mj.twin import build_twin
+from inca_mj.twin.twin import build_twin
 from inca_mj.worlds import SHAPES, Setting, draw_effect, world
 
 SEED = 11

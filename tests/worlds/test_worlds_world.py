@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from identification.errors import InputError
-from inca_mj.geometry import INCA
-from inca_mj.parameters import parameter_set
+from inca_mj.robot.geometry import INCA
+from inca_mj.robot.parameters import parameter_set
 from inca_mj.worlds import (
     EVERY,
     VARIED,

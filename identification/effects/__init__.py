@@ -1,0 +1,1 @@
+"""What a model may lack: effects of joints and inputs, and a plant that has them."""

@@ -1,0 +1,165 @@
+"""What is known of the joints whose effects are sought: magnitudes that make a size plausible.
+
+    F = max |force of its drives|       V = max |q̇|       L = max q - min q      over a log
+
+A size that would make a force of F at a speed V, or over a way L, is as large as physics admits;
+the catalogue counts in shares of it. Where a joint has no drive, F = M V²/L is what its inertia
+needs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError
+from identification.logs.frozen import refuse_frozen
+from identification.logs.log import Log
+from identification.logs.names import listed
+from identification.logs.noise import noise_floor
+from identification.model.predictor import output_columns
+
+Kind = Literal["hinge", "slide"]
+HUGE = 1e50  # of any unit
+SMOOTH = 0.01  # v₀ of the smooth sign, of the top speed
+NOISE, SHARE = 5.0, 0.1  # a difference of noise, in its std, may be so much of the largest
+
+_KINDS: dict[int, Kind] = {
+    int(mujoco.mjtJoint.mjJNT_HINGE): "hinge",
+    int(mujoco.mjtJoint.mjJNT_SLIDE): "slide",
+}
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A hinge or slide joint.
+
+    Attributes:
+        joint: its name.
+        kind: "hinge" or "slide".
+        force: largest force of its drives [N m or N].
+        speed: top speed [rad/s or m/s].
+        travel: how far it moves [rad or m].
+        plain: whether its drives' force is gain·u + bias: their load is then known.
+
+    Raises:
+        InputError: a magnitude is not positive.
+    """
+
+    joint: str
+    kind: Kind
+    force: float
+    speed: float
+    travel: float
+    plain: bool = True
+
+    def __post_init__(self) -> None:
+        for word in ("force", "speed", "travel"):
+            value = getattr(self, word)
+            if not (np.isfinite(value) and value > 0):
+                raise InputError(
+                    f"joint {self.joint!r} has {word} {value:g}; give a positive finite one"
+                )
+
+    @property
+    def smooth(self) -> float:
+        """v₀ of its smooth sign [rad/s or m/s]."""
+        return SMOOTH * self.speed
+
+
+def axes(model: mujoco.MjModel, log: Log) -> tuple[Axis, ...]:
+    """The joints whose motion a log shows, in the model's order.
+
+    Args:
+        model: with the log's sensors.
+        log: its inputs are those of the model's actuators.
+
+    Raises:
+        InputError: an output is no sensor of a joint, never changes, freezes, or is huge.
+    """
+    _refuse_useless(log)
+    seen: dict[int, dict[str, int]] = {}
+    for k, (field, i) in enumerate(output_columns(model, log.output_names)):
+        at = model.jnt_qposadr if field == "qpos" else model.jnt_dofadr
+        seen.setdefault(int(np.flatnonzero(at == i)[0]), {})[field] = k
+    for j, own in seen.items():
+        inputs = [_control(model, i) for i in drives_of(model, j)] or [*range(model.nu)]
+        for k in own.values():
+            others = [i for i in own.values() if i != k]
+            refuse_frozen(log, k, log.inputs[:, inputs], log.outputs[:, others])
+    return tuple(
+        _axis(model, log, j, {field: log.outputs[:, k] for field, k in seen[j].items()})
+        for j in sorted(seen)
+    )
+
+
+def _refuse_useless(log: Log) -> None:
+    """Refuse columns of which no magnitude can be made."""
+    columns = dict(zip(log.output_names, log.outputs.T, strict=True))
+    still = [name for name, column in columns.items() if not np.ptp(column)]
+    if still:
+        raise InputError(
+            f"{listed(still)} of log {log.name!r} never change{'s' * (len(still) == 1)}: a dead"
+            " sensor, or a joint that does not move; take a log in which it moves, or leave it out"
+        )
+    columns |= zip(log.input_names, log.inputs.T, strict=True)
+    huge = [name for name, column in columns.items() if np.abs(column).max() > HUGE]
+    if huge:
+        raise InputError(
+            f"{listed(huge)} of log {log.name!r} goes beyond {HUGE:g}, which no robot does; repair"
+            " or cut the log there"
+        )
+
+
+def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray]) -> Axis:
+    h = log.sampling_time
+    way = columns["qpos"] if "qpos" in columns else np.cumsum(columns["qvel"]) * h
+    rates = columns["qvel"] if "qvel" in columns else _rate(way, h)
+    speed, travel = float(np.abs(rates).max()), float(np.ptp(way))
+    drives = drives_of(model, j)
+    force = sum(abs(_at_full(model, i)) * float(np.abs(log.inputs[:, _control(model, i)]).max())
+                for i in drives)  # fmt: skip
+    if not force and travel > 0:
+        force = float(model.dof_M0[model.jnt_dofadr[j]]) * speed**2 / travel
+    name = model.joint(j).name
+    return Axis(name, _KINDS[int(model.jnt_type[j])], force, speed, travel,
+                all(_plain(model, i) for i in drives))  # fmt: skip
+
+
+def _rate(way: np.ndarray, h: float) -> np.ndarray:
+    """Difference quotients over the shortest lag at which noise does not make their largest."""
+    noise, lag = float(noise_floor(way[:, None])[0]), 1
+    while True:
+        rate = (way[lag:] - way[:-lag]) / (lag * h)
+        if NOISE * noise < SHARE * lag * h * np.abs(rate).max() or 8 * lag > len(way):
+            return rate
+        lag *= 2
+
+
+def drives_of(model: mujoco.MjModel, j: int) -> list[int]:
+    """Actuators that act on joint j."""
+    at = int(mujoco.mjtTrn.mjTRN_JOINT)
+    return [i for i in range(len(model.actuator_trntype))
+            if model.actuator_trntype[i] == at and model.actuator_trnid[i, 0] == j]  # fmt: skip
+
+
+def _control(model: mujoco.MjModel, i: int) -> int:
+    return int(model.actuator_ctrladr[i])
+
+
+def _at_full(model: mujoco.MjModel, i: int) -> float:
+    """Force of actuator i for a control of one."""
+    return float(model.actuator_gear[i, 0] * model.actuator_gainprm[i, 0])
+
+
+def _plain(model: mujoco.MjModel, i: int) -> bool:
+    """Whether the force of actuator i is gain·u + bias."""
+    biases = (mujoco.mjtBias.mjBIAS_NONE, mujoco.mjtBias.mjBIAS_AFFINE)
+    return (
+        int(model.actuator_dyntype[i]) == int(mujoco.mjtDyn.mjDYN_NONE)
+        and int(model.actuator_gaintype[i]) == int(mujoco.mjtGain.mjGAIN_FIXED)
+        and int(model.actuator_biastype[i]) in (int(b) for b in biases)
+    )

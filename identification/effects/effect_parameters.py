@@ -1,0 +1,31 @@
+"""The parameters of an effect: each size at each place, zero; each shape once."""
+
+from __future__ import annotations
+
+from identification.effects.effect import Effect, Shape, Size
+from identification.model.parameter import Parameter
+
+
+def effect_parameters(effect: Effect) -> tuple[Parameter, ...]:
+    """Records of `effect.size` + suffix at all places of an effect, and of `effect.shape`."""
+    sizes = [
+        _size(effect.parameter(size.name, where), size)
+        for size in effect.sizes
+        for where in effect.places
+    ]
+    return (*sizes, *(_shape(f"{effect.name}.{shape.name}", shape) for shape in effect.shapes))
+
+
+def _size(name: str, size: Size) -> Parameter:
+    lower = -size.farthest if size.sign <= 0 else 0.0
+    upper = size.farthest if size.sign >= 0 else 0.0
+    return Parameter(
+        name, 0.0, size.unit, "effect", lower, upper, size.name, size.about, scale=size.probe
+    )
+
+
+def _shape(name: str, shape: Shape) -> Parameter:
+    usual = shape.grid[len(shape.grid) // 2] if shape.usual is None else shape.usual
+    return Parameter(
+        name, usual, shape.unit, "effect", shape.lower, shape.upper, shape.name, shape.about
+    )

@@ -1,0 +1,89 @@
+"""Candidate effects of a robot's inputs; what they do to an input is in `inputs`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.effects.effect import BEFORE, Effect, Shape, Size
+from identification.effects.inputs import clipped, delayed, drifting, lagged
+from identification.effects.joint_effect import JointEffect, places
+from identification.errors import InputError
+from identification.logs.log import Log
+
+LIMITS = (0.5, 0.6, 0.7, 0.8, 0.9, 0.97)  # to try, of the largest input
+
+
+@dataclass(frozen=True)
+class Drive:
+    """An actuator and how far a log drives it.
+
+    Attributes:
+        actuator: its name.
+        largest: largest input [unit].
+        unit: SI unit of the input, "" when not known.
+    """
+
+    actuator: str
+    largest: float
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.largest) and self.largest > 0):
+            raise InputError(
+                f"input {self.actuator!r} is {self.largest:g} at most; leave it out, or take a log"
+                " that drives it"
+            )
+
+
+def drives(log: Log) -> tuple[Drive, ...]:
+    """The inputs of a log that are not zero throughout."""
+    largest = np.abs(log.inputs).max(axis=0)
+    return tuple(
+        Drive(name, float(u), log.units.get(name, ""))
+        for name, u in zip(log.input_names, largest, strict=True)
+        if u > 0
+    )
+
+
+def input_effects(drives: Sequence[Drive]) -> tuple[JointEffect, ...]:
+    """All candidates of some inputs, of one unit.
+
+    Args:
+        drives: the inputs.
+
+    Raises:
+        InputError: there is none.
+    """
+    if not drives:
+        raise InputError("no input moves; take a log whose inputs are not all zero")
+    at = places("input", tuple(d.actuator for d in drives))
+    u = max(d.largest for d in drives)
+    limit = Shape("u_max", drives[0].unit, tuple(u * s for s in LIMITS), 0.05 * u, 2 * u,
+                  about="the limit")  # fmt: skip
+    share = Size("c", "", 1.0, 0.02, 1, "share of the clipping, 1 when there is a limit", 1.0)
+    tau = "time constant"
+    return (
+        JointEffect(
+            Effect("delay", "u(t - τ)", (Size("tau", "s", 0.02, 5e-4, 1, "delay"),), (BEFORE,), at,
+                   phrase="input: comes late", probes=(1.0, 40**0.5, 40.0)),
+            inputs=delayed,
+        ),
+        JointEffect(
+            Effect("lag", "τ u̇' = u - u'", (Size("tau", "s", 0.01, 5e-4, 1, tau),), (BEFORE,), at,
+                   phrase="input: lags", probes=(1.0, 20**0.5, 20.0)),
+            inputs=lagged,
+        ),
+        JointEffect(
+            Effect("saturation", "u clipped at ±u_max", (share,), (limit,), at, "input: clipped"),
+            inputs=clipped,
+        ),
+        JointEffect(
+            Effect("gain_drift", "(1 - α t) u",
+                   (Size("alpha", "1/s", 0.01, 2e-4, about="relative loss a second"),), places=at,
+                   phrase="input: gain drifts"),
+            inputs=drifting,
+        ),
+    )  # fmt: skip

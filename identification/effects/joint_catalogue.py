@@ -1,0 +1,116 @@
+"""Candidate effects of the hinge and slide joints of a robot; their law is in `law`.
+
+A size is plausible up to a share of what the drives can do: of F for a force, of F/V for what
+grows with speed, of F/A for what grows along the way, A half the travel (see `axes`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import pi
+
+from identification.effects.axes import Axis, Kind
+from identification.effects.effect import Effect, Shape, Sign, Size
+from identification.effects.joint_effect import JointEffect, places
+
+PROBE = 0.01  # of the largest plausible size
+TURNS = (*map(float, range(1, 13)), 14.0, 16.0, 18.0, 20.0, 24.0, 28.0)  # harmonics of a turn
+SPEEDS = (0.03, 0.06, 0.12, 0.25, 0.5)  # Stribeck velocities to try, of the top speed
+WAVES = (1.0, 2.0, 4.0, 8.0, 16.0)  # periods of a slide's travel; less is not seen to repeat
+
+
+def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple[JointEffect, ...]:
+    """All candidates of some joints.
+
+    Hinges and slides have units of their own; where a robot has both, the names of the slides'
+    effects begin with `slide_`. Friction under load needs drives whose force is gain·u + bias.
+
+    Args:
+        axes: the joints.
+        turns: periods in a turn of a hinge that are tried; a motor's are multiples of its poles
+            and of its slots.
+    """
+    kinds: list[Kind] = ["hinge", "slide"]
+    groups = [(kind, tuple(a for a in axes if a.kind == kind)) for kind in kinds]
+    both = all(group for _, group in groups)
+    return tuple(
+        effect
+        for kind, group in groups
+        if group
+        for effect in _catalogue(group, kind, turns, "slide_" if both and kind == "slide" else "")
+    )
+
+
+def _catalogue(
+    axes: tuple[Axis, ...], kind: Kind, turns: Sequence[float], prefix: str
+) -> list[JointEffect]:
+    F, V, L = (max(getattr(a, word) for a in axes) for word in ("force", "speed", "travel"))
+    A = L / 2
+    f, x = ("N m", "rad") if kind == "hinge" else ("N", "m")
+    at = places("joint", tuple(a.joint for a in axes))
+    plain = tuple(a.joint for a in axes if a.plain)
+
+    def size(name: str, largest: float, unit: str, about: str, sign: Sign = 0) -> Size:
+        return Size(name, unit, largest, PROBE * largest, sign, about)
+
+    def effect(name: str, law: str, sizes: list[Size], phrase: str, reference: str = "",
+               shapes: tuple[Shape, ...] = (), where: dict[str, str] | None = None,
+               columns: tuple[str, ...] | None = None) -> JointEffect:  # fmt: skip
+        own = Effect(
+            prefix + name, law, tuple(sizes), shapes, at if where is None else where, phrase,
+            reference,
+        )  # fmt: skip
+        return JointEffect(own, columns or (*(s.name for s in sizes), *(s.name for s in shapes)))
+
+    v_s = Shape("v_s", f"{x}/s", tuple(V * s for s in SPEEDS), 0.01 * V, 2 * V,
+                about="half width of the peak")  # fmt: skip
+    n = _waves(kind, L, turns)
+    waves = (
+        size("a", 0.2 * F, f, "amplitude of the cosine"),
+        size("b", 0.2 * F, f, "amplitude of the sine"),
+    )
+    out = [
+        effect("coulomb_friction", "-f_c tanh(v/v₀)",
+               [size("f_c", 0.3 * F, f, "level", 1)], "friction: Coulomb"),
+        effect("asymmetric_friction", "-f_a |tanh(v/v₀)|",
+               [size("f_a", 0.1 * F, f, "half the difference of the two directions")],
+               "friction: Coulomb level differs by direction"),
+        effect("asymmetric_viscous_friction", "-d_a |v|",
+               [size("d_a", 0.3 * F / V, f"{f} s/{x}", "half the difference of the directions")],
+               "friction: viscous, differs by direction", "Janot, Gautier, Brunot 2019"),
+        effect("stribeck_friction", "-f_s exp(-(v/v_s)²) tanh(v/v₀)",
+               [size("f_s", 0.2 * F, f, "height of the peak", 1)], "friction: Stribeck peak",
+               "Armstrong-Hélouvry, Dupont, Canudas de Wit 1994", (v_s,)),
+        effect("quadratic_friction", "-c v |v|",
+               [size("c", 0.3 * F / V**2, f"{f} s^2/{x}^2", "drag", 1)],
+               "friction: grows with the square of speed"),
+        effect("load_dependent_friction", "-μ |f_u| tanh(v/v₀), f_u the drive's force",
+               [size("mu", 0.2, "", "share of the load", 1)], "friction: grows with the load",
+               "Hamon, Gautier, Garrec 2010", where=places("joint", plain)),
+        effect("position_dependent_friction", "-f_q q tanh(v/v₀)",
+               [size("f_q", 0.3 * F / A, f"{f}/{x}", "growth along the way")],
+               "friction: Coulomb level changes along the way"),
+        effect("position_dependent_damping", "-d_q q v",
+               [size("d_q", 0.3 * F / (V * A), f"{f} s/{x}^2", "growth along the way")],
+               "friction: viscous, changes along the way"),
+        effect("periodic_friction", "-(a cos nq + b sin nq) tanh(v/v₀)", list(waves),
+               "friction: repeats along the way", shapes=(n,), columns=("a_f", "b_f", "n_f")),
+        effect("cogging", "a cos nq + b sin nq", list(waves), "motor: cogging", "Krishnan 2010",
+               (n,)),
+        effect("offset", "f_0", [size("f_0", 0.2 * F, f, "constant force")], "force: constant"),
+        effect("stiffness", "-k q", [size("k", 0.3 * F / A, f"{f}/{x}", "of a spring", 1)],
+               "spring: pulls back to zero"),
+        effect("hardening", "-k_3 q³",
+               [size("k_3", 0.3 * F / A**3, f"{f}/{x}^3", "of a spring that hardens, or softens")],
+               "spring: grows with the cube of the way", "Duffing 1918"),
+    ]  # fmt: skip
+    return [e for e in out if e.effect.places]
+
+
+def _waves(kind: Kind, travel: float, turns: Sequence[float]) -> Shape:
+    """How often a periodic force repeats: in a turn, or in 2π m of a slide."""
+    if kind == "hinge":
+        low, high = min(*turns, 1.0), max(48.0, *turns)
+        return Shape("n", "", tuple(turns), low, high, free=False, about="periods in a turn")
+    grid = tuple(2 * pi * w / travel for w in WAVES)
+    return Shape("n", "rad/m", grid, grid[0], 4 * grid[-1], about="wave number")

@@ -1,0 +1,72 @@
+"""An MJCF model whose joints carry the numbers of their effects as user data.
+
+user data of a joint = (what the file gave it, KEY, numbers of `law.Numbers`)
+
+The row stands at the end, so that a model's own user data stay where they were.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from identification.effects.axes import Axis
+from identification.errors import InputError, unknown_name
+from identification.logs.names import quoted
+from identification.native.joint_callback import KEY, WIDTH
+from identification.native.joint_law import Numbers
+
+_LONGEST = 200  # of MuJoCo's words in a message
+_HELD = {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}
+
+
+def read_model(source: str | Path) -> mujoco.MjSpec:
+    """An MJCF as MuJoCo edits it.
+
+    Args:
+        source: path of the file, or its text, which begins with "<".
+
+    Raises:
+        InputError: it cannot be read or compiled.
+    """
+    text = str(source)
+    given = text.lstrip().startswith("<")
+    try:
+        spec = mujoco.MjSpec.from_string(text) if given else mujoco.MjSpec.from_file(text)
+        spec.compile()
+    except (ValueError, OSError, mujoco.FatalError) as error:
+        reason = quoted(" ".join(str(error).split()), _LONGEST)  # MuJoCo writes several lines
+        where = "the model" if given else f"the model {text}"
+        raise InputError(f"{where} cannot be read ({reason}); correct it there") from error
+    return spec
+
+
+def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis]) -> mujoco.MjModel:
+    """The compiled model with a row of effects on some joints, all sizes zero.
+
+    Args:
+        spec: the model, which is not changed.
+        axes: the joints.
+
+    Raises:
+        InputError: the model has no such hinge or slide joint.
+    """
+    own, spec = spec.copy().compile(), spec.copy()
+    joints = {joint.name: joint for joint in spec.joints if int(joint.type) in _HELD}
+    for axis in axes:
+        if axis.joint not in joints:
+            raise unknown_name("hinge or slide joint", axis.joint, joints)
+        given = own.jnt_user[own.joint(axis.joint).id]
+        row = np.zeros(WIDTH)
+        row[0], row[1 + Numbers._fields.index("v_0")] = KEY, axis.smooth
+        joints[axis.joint].userdata = np.concatenate([given, row])
+    spec.nuser_jnt = own.nuser_jnt + WIDTH
+    return spec.compile()
+
+
+def column(model: mujoco.MjModel, name: str) -> int:
+    """Column of `jnt_user` where a number of `law.Numbers` stands."""
+    return int(model.nuser_jnt) - WIDTH + 1 + Numbers._fields.index(name)

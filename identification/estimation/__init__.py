@@ -1,0 +1,1 @@
+"""Values of parameters from logs, and what they are worth."""

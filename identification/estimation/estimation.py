@@ -1,0 +1,123 @@
+"""Prediction-error estimation by a horizon that grows.
+
+    V(q) = Σ_k ‖C ε_k‖² + Σ_j ((q_j - q̄_j)/s_j)²,    ε_k = y_k - ŷ_k(q)            (thesis 3.2)
+
+`trace`: C = I/σ. `det`: CᵀC = Λ⁻¹ with Λ the covariance of the residual, re-estimated from the
+last fit until it stays, which is maximum likelihood for Gaussian noise of unknown covariance.
+
+A free run of a stiff robot is a wild function of its parameters over seconds and a tame one over a
+quarter of a second. So the fit begins on a short horizon and lengthens it, each time from the last
+result; a single fit over the whole log ends in a local minimum, as the thesis' did. A horizon that
+is too short to say something of a parameter must not carry it away, nor may round-off carry it
+along a direction that no output feels: each q is held to where the horizon before left it, by one
+noise std per unit (a factor e, or 1 m), a tenth on the last, which any information outweighs.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.estimation.options import HORIZONS as HORIZONS
+from identification.estimation.options import Options as Options
+from identification.estimation.options import Progress as Progress
+from identification.estimation.options import Status, prior_weight
+from identification.estimation.search import Search
+from identification.logs.log import Log
+from identification.logs.noise import noise_floor
+from identification.model.coordinates import Coordinates, coordinates
+from identification.model.predictor import Plant, Predictor
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Where a search ended.
+
+    Attributes:
+        predictor: the plant, the log and the names of the free parameters.
+        space: their coordinates.
+        start: starting values, shape (p,).
+        q: the estimate, shape (p,).
+        whitener: C of the criterion, shape (ny, ny).
+        weight: of each residual where the noise is relative, shape (n, ny); else ones.
+        options: how it was searched.
+        evaluations: how often the outputs were simulated.
+        jacobians: how often their sensitivities were.
+        status: `converged`, `iterations` (out of them) or `stopped` by the user.
+        seconds: wall time [s].
+    """
+
+    predictor: Predictor
+    space: Coordinates
+    start: np.ndarray
+    q: np.ndarray
+    whitener: np.ndarray
+    weight: np.ndarray
+    options: Options
+    evaluations: int
+    jacobians: int
+    status: Status
+    seconds: float
+
+    @property
+    def prior(self) -> np.ndarray:
+        """1/std of the prior of each q, zero where there is none, shape (p,)."""
+        return prior_weight(self.options, self.space.names)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The estimated values by name, in their units."""
+        return dict(zip(self.space.names, self.space.decode(self.q).tolist(), strict=True))
+
+
+def estimate(
+    plant: Plant,
+    log: Log,
+    names: Sequence[str],
+    start: Mapping[str, float] | None = None,
+    options: Options | None = None,
+    progress: Progress | None = None,
+    whitener: np.ndarray | None = None,
+) -> Estimate:
+    """Estimate parameters of a plant from a log, free-running from its first sample.
+
+    An interrupt (Ctrl-C) ends the search and keeps the best values so far.
+
+    Args:
+        plant: the model, with nominal values for whatever is not named.
+        log: what to explain.
+        names: the free parameters.
+        start: starting values by name; the plant's own where not given.
+        options: how to search.
+        progress: is told one line per accepted step.
+        whitener: C of the `trace` criterion, shape (ny, ny); I/σ, σ the noise floor, when None.
+
+    Raises:
+        InputError: a name is unknown or has no effect on the outputs, or a start is out of bounds.
+        DivergenceError: the start itself cannot be simulated.
+    """
+    began = time.perf_counter()
+    options = options or Options()
+    for name in (*names, *(start or {}), *options.priors):
+        plant.parameters[name]
+    own = {**plant.parameters.values(), **(start or {})}
+    first = np.array([own[name] for name in names])
+    space = coordinates(plant.parameters, names, first)
+    sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
+    search = Search(
+        Predictor(plant, log, tuple(names), dict(start or {})),
+        space,
+        space.encode(first),
+        np.eye(log.outputs.shape[1]) / sigma if whitener is None else whitener,
+        options,
+        progress,
+    )
+    search.refuse_idle()
+    status = search.run()
+    return Estimate(
+        search.predictor, space, first, search.best, search.whitener, search.weight, options,
+        search.evaluations, search.jacobians, status, time.perf_counter() - began,
+    )  # fmt: skip

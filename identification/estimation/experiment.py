@@ -1,0 +1,101 @@
+"""An experiment that could be done: its Fisher information, before it is.
+
+    S = ∂ŷ/∂q / σ  (n ny × p),   F = SᵀS                         white noise of std σ on each output
+
+See `identification.estimation.information` for what follows from it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError
+from identification.estimation.information import Information, root_of
+from identification.logs.log import Log
+from identification.model.coordinates import coordinates
+from identification.model.predictor import Plant, Predictor
+from identification.model.sensitivity import refuse_without_effect, sensitivity
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """An experiment that could be done.
+
+    Attributes:
+        plant: the model, at the values where its outputs' sensitivities are taken.
+        inputs: shape (n, nu), in the units of the model's controls.
+        sampling_time: between samples [s].
+        outputs: names of the model's sensors that will be read.
+        sigma: std of the white noise on each output, in the outputs' unit.
+        hold: "zoh" or "foh".
+        fixed: values of parameters where they are not the plant's own.
+
+    Raises:
+        InputError: the noise is not positive, or the inputs do not fit the model.
+    """
+
+    plant: Plant
+    inputs: np.ndarray = field(repr=False)
+    sampling_time: float
+    outputs: tuple[str, ...]
+    sigma: float
+    hold: str = "zoh"
+    fixed: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.sigma) and self.sigma > 0):
+            raise InputError(f"the noise has std {self.sigma:g}; give a positive one")
+        inputs, nu = np.asarray(self.inputs, float), self.plant.model.nu
+        if inputs.ndim != 2 or inputs.shape[1] != nu:
+            raise InputError(f"inputs have shape {inputs.shape}; the model takes (N, {nu})")
+
+    def log(self) -> Log:
+        """The inputs as a log whose outputs are still zero."""
+        model = self.plant.model
+        n = len(self.inputs)
+        return Log(
+            np.array(np.arange(n) * self.sampling_time, dtype=np.float64),
+            np.array(self.inputs, dtype=np.float64),
+            np.zeros((n, len(self.outputs))),
+            tuple(mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, i) or f"u{i}"
+                  for i in range(model.nu)),
+            self.outputs,
+            hold=self.hold,
+        )  # fmt: skip
+
+
+def information(
+    experiment: Experiment, names: Sequence[str], nuisance: Sequence[str] = ()
+) -> Information:
+    """What an experiment would say, from 2 p simulations.
+
+    Args:
+        experiment: the plant, its inputs, what is read and how noisy.
+        names: parameters that are asked for.
+        nuisance: parameters that are unknown too but of no interest, such as a start pose.
+
+    Raises:
+        InputError: a name is unknown or named twice, has no effect on any output, or there are
+            fewer readings than parameters.
+        DivergenceError: a simulation left the finite numbers.
+    """
+    every = (*names, *nuisance)
+    parameters = experiment.plant.parameters
+    own = {**parameters.values(), **experiment.fixed}
+    start = np.array([parameters[n].value if n not in own else own[n] for n in every])
+    space = coordinates(parameters, every, start)
+    log = experiment.log()
+    if log.outputs.size < len(every):
+        raise InputError(
+            f"{log.outputs.size} readings cannot tell {len(every)} parameters; take a longer log"
+        )
+    predictor = Predictor(experiment.plant, log, every, dict(experiment.fixed))
+    J = sensitivity(predictor, space, space.encode(start))
+    felt = replace(log, outputs=predictor.predict(start)[0])  # what would be measured
+    refuse_without_effect(J, every, felt)
+    S = J.reshape(-1, len(every)) / experiment.sigma
+    return Information(every, len(names), space.logarithmic, root_of(S))

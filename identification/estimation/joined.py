@@ -1,0 +1,45 @@
+"""Several records of one robot as one log, for a fit over windows that crosses no seam."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.estimation.windows import windows
+from identification.logs.log import Log
+
+
+def joined(logs: Sequence[Log], length: float, name: str = "joined") -> Log:
+    """Records one after the other, each cut to whole windows.
+
+    A free run, or a discovery, does not know of the seams; only what begins anew in each window of
+    this length (`estimate_windows`, `window_error`) may use it.
+
+    Args:
+        logs: of the same inputs, outputs and sampling time.
+        length: of a window [s].
+        name: of the whole.
+
+    Raises:
+        InputError: there is none, they differ, or one is shorter than a window of 3 samples.
+    """
+    if not logs:
+        raise InputError("no records to join; give one at least")
+    first = logs[0]
+    for log in logs:
+        same = (log.input_names, log.output_names, log.hold) == (
+            first.input_names, first.output_names, first.hold,
+        )  # fmt: skip
+        if not same or abs(log.sampling_time - first.sampling_time) > 1e-9 * first.sampling_time:
+            raise InputError(
+                f"record {log.name!r} differs from {first.name!r} in its columns, hold or sampling"
+                " time; join records of one experiment"
+            )
+    cuts = [windows(log, length) for log in logs]
+    u = np.concatenate([cut.inputs.reshape(-1, first.inputs.shape[1]) for cut in cuts])
+    y = np.concatenate([cut.outputs.reshape(-1, first.outputs.shape[1]) for cut in cuts])
+    time = first.sampling_time * np.arange(len(u), dtype=float)
+    return replace(first, time=time, inputs=u, outputs=y, extras={}, name=name, splits={})

@@ -1,0 +1,80 @@
+"""How well a simulation agrees with a log: fit, rms and loss, each over n samples."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.logs.sampling import FloatArray
+
+
+def fit_percent(y: FloatArray, y_hat: FloatArray) -> FloatArray:
+    """Fit of each channel, 100 (1 − ‖ŷ − y‖ / ‖y − ȳ‖) [%].
+
+    100 is perfect, 0 is no better than the mean of the measurement, and less is worse than that. A
+    channel that never moves has no scale to compare with: its fit is NaN.
+
+    Args:
+        y: measured outputs (n, ny).
+        y_hat: simulated outputs (n, ny).
+
+    Returns:
+        Fit (ny,) [%].
+
+    Raises:
+        InputError: the shapes differ or are not (n, ny).
+
+    Source:
+        Thesis, eq. 3.4, whose bracket is misprinted; this is the normalised root-mean-square fit
+        that MATLAB's `compare` shows.
+    """
+    if y.shape != y_hat.shape:
+        raise InputError(
+            f"measured outputs have shape {y.shape} and simulated ones {y_hat.shape}; "
+            "compare the same samples of the same channels"
+        )
+    _check_matrix(y)
+    # A constant is found by its range: its mean is rounded, so its deviations need not be zero.
+    scale = np.ptp(y, axis=0)
+    moving = scale > 0
+    scale = np.where(moving, scale, 1.0)
+    error = np.linalg.norm((y_hat - y) / scale, axis=0)
+    spread = np.linalg.norm((y - y.mean(axis=0)) / scale, axis=0)
+    ratio = np.divide(error, spread, out=np.full(len(spread), np.nan), where=moving)
+    return 100 * (1 - ratio)
+
+
+def mean_fit(fit: FloatArray) -> str:
+    """The mean fit in words; outputs that never move have none, and are left out."""
+    moving = fit[~np.isnan(fit)]
+    if not len(moving):
+        return "undefined: no output moves"
+    still = len(fit) - len(moving)
+    return f"{moving.mean():.3f} %" + (f" ({still} outputs never move)" if still else "")
+
+
+def rms(residual: FloatArray) -> FloatArray:
+    """Root mean square (ny,) of each channel of a residual (n, ny), in the channel's unit.
+
+    Raises:
+        InputError: the residual is not (n, ny).
+    """
+    _check_matrix(residual)
+    return np.sqrt(np.mean(residual**2, axis=0))
+
+
+def loss(residual: FloatArray) -> float:
+    """The quadratic loss (1/N) Σ_k ε_kᵀ ε_k of a residual ε (N, ny): thesis, eq. 3.5.
+
+    Raises:
+        InputError: the residual is not (n, ny).
+    """
+    _check_matrix(residual)
+    return float(np.sum(residual**2) / len(residual))
+
+
+def _check_matrix(values: FloatArray) -> None:
+    if values.ndim != 2 or len(values) == 0:
+        raise InputError(
+            f"outputs have shape {values.shape}; give (n, ny), a row for each of n > 0 samples"
+        )

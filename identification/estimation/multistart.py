@@ -1,0 +1,114 @@
+"""Several starts of one search, and the best end.
+
+    q⁽⁰⁾ = q_start,   q⁽ⁱ⁾ uniform in q_start ± spread, inside the bounds
+
+A criterion with local minima shows them this way: ends that agree are a reason to believe the best.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.errors import DivergenceError, InputError
+from identification.estimation.estimation import Estimate, Options, Progress, estimate
+from identification.logs.log import Log
+from identification.logs.noise import noise_floor
+from identification.model.coordinates import Coordinates, coordinates
+from identification.model.predictor import Plant
+
+ENOUGH = 1.5  # times the noise floor: a search that ends below needs no other
+ELSEWHERE = 0.1  # of the spread, for what is no logarithm: a pose is known to centimetres
+
+
+@dataclass(frozen=True)
+class Starts:
+    """Searches from several starts.
+
+    Attributes:
+        best: the search that explains the log best.
+        rms: of the residual of each search, infinite where it diverged, in order of the starts.
+        values: starting values, shape (n, p).
+    """
+
+    best: Estimate
+    rms: np.ndarray
+    values: np.ndarray
+
+
+def estimate_from(
+    plant: Plant,
+    log: Log,
+    names: Sequence[str],
+    n: int,
+    seed: int,
+    start: Mapping[str, float] | None = None,
+    spread: float = 0.5,
+    options: Options | None = None,
+    progress: Progress | None = None,
+) -> Starts:
+    """Search from the start, and from others around it until one ends near the noise floor.
+
+    Args:
+        plant: the model.
+        log: what to explain.
+        names: the free parameters.
+        n: how many starts at most, the given one included.
+        seed: of the other starts.
+        start: starting values by name; the plant's own where not given.
+        spread: largest distance of a start in ln(value) of a positive parameter; of others a
+            tenth, in units of their scale (m, rad).
+        options: how to search.
+        progress: is told one line per accepted step.
+
+    Raises:
+        InputError: fewer than one start, or as `estimate`.
+        DivergenceError: no start can be simulated.
+    """
+    if n < 1:
+        raise InputError(f"{n} starts; give one or more")
+    own = {**plant.parameters.values(), **(start or {})}
+    first = np.array([own[plant.parameters[name].name] for name in names])
+    values = _around(coordinates(plant.parameters, names, first), first, n, spread, seed)
+    floor = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2)))
+    best: Estimate | None = None
+    errors: list[float] = []
+    for k, row in enumerate(values):
+        begin = {**(start or {}), **dict(zip(names, row.tolist(), strict=True))}
+        try:
+            found = estimate(plant, log, names, begin, options, progress)
+            error = _rms(found)
+        except InputError:
+            if k == 0:
+                raise
+            errors.append(np.inf)  # a start that the plant cannot have
+            continue
+        except DivergenceError as lost:
+            errors.append(np.inf)
+            reason = lost
+            continue
+        if best is None or error < min(errors):
+            best = found
+        errors.append(error)
+        if error < ENOUGH * floor or found.status == "stopped":
+            break
+    if best is None:
+        raise reason
+    return Starts(best, np.array(errors), values[: len(errors)])
+
+
+def _around(space: Coordinates, first: np.ndarray, n: int, spread: float, seed: int) -> np.ndarray:
+    """The first start and n - 1 others around it, inside the bounds, shape (n, p)."""
+    q = space.encode(first)
+    reach = np.where(space.logarithmic, spread, ELSEWHERE * spread)
+    low, high = np.maximum(space.lower, q - reach), np.minimum(space.upper, q + reach)
+    share = np.random.default_rng(seed).uniform(0.01, 0.99, (n - 1, len(q)))
+    return np.concatenate([first[None], space.decode(low + share * (high - low))])
+
+
+def _rms(found: Estimate) -> float:
+    """Of the residual over all outputs."""
+    predicted = found.predictor.predict(found.space.decode(found.q))[0]
+    return float(np.sqrt(np.mean((found.predictor.log.outputs - predicted) ** 2)))

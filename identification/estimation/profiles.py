@@ -1,0 +1,155 @@
+"""The profile of one parameter: how well the others can make up for it.
+
+    V_p(c) = min over the others of V(q | q_j = c)
+    95 %:  V_p(c) - V_p(q̂_j) < 3.84 s_j²,    s_j² = cov(q̂)_jj / (A⁻¹)_jj       (Kent 1982)
+
+3.84 is the 95 % point of χ² with one degree of freedom (Venzon and Moolgavkar 1988). cov is that of
+`identification.estimation.fit`, A = Σ SᵀS: for white noise s_j² = V(q̂)/(n ny - p), for a coloured
+residual it is larger. Where V is a parabola this is the interval q̂ ± 1.96 std; where it is not, the
+profile is right and the std is not. A profile that stays below the line, or that no simulation can
+follow, shows a parameter that the log cannot tell: its interval is open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import chi2
+
+from identification.errors import DivergenceError, InputError
+from identification.estimation.estimation import Estimate
+from identification.estimation.estimation import estimate as search
+from identification.estimation.fit import Fit
+
+LEVEL = float(chi2.ppf(0.95, 1))  # 3.84
+REACH = 3.0  # std to each side, where no points are given
+WIDEST = 0.5  # of q to each side where the std is larger or infinite
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The smallest cost at given values of one parameter.
+
+    Attributes:
+        name: the parameter.
+        estimate: its estimated value.
+        values: where it was held, ascending, shape (k,).
+        rise: V_p - V(q̂) in units of s_j², infinite where no simulation was possible, shape (k,).
+        others: the other parameters there, by name, each (k,).
+        interval: 95 % interval of the value; an end that the profile does not reach is infinite.
+    """
+
+    name: str
+    estimate: float
+    values: np.ndarray
+    rise: np.ndarray
+    others: dict[str, np.ndarray]
+    interval: tuple[float, float]
+
+    @property
+    def open(self) -> bool:
+        """Whether the interval has an end that was not found between the given values."""
+        return bool(np.isinf(self.interval).any())
+
+
+def profile(
+    fit: Fit, name: str, points: int | Sequence[float] = 9, max_evaluations: int = 30
+) -> Profile:
+    """Profile one parameter of a fit, refitting the others from point to neighbour.
+
+    Args:
+        fit: an estimate and its uncertainty.
+        name: the parameter.
+        points: values of it, or how many to spread over ±3 std of its coordinate.
+        max_evaluations: of the outputs, per point.
+
+    Raises:
+        InputError: the name is not among the estimated ones, or fewer than two values remain.
+    """
+    estimate = fit.estimate
+    names = estimate.space.names
+    if name not in names:
+        raise InputError(f"{name!r} was not estimated; profile one of {', '.join(names)}")
+    j, best = names.index(name), estimate.values
+    values = _spread(fit, j, points) if isinstance(points, int) else np.sort(points)
+    if len(values) < 2:
+        raise InputError(f"a profile of {name} needs two values or more inside its bounds")
+    bottom = _cost(estimate, best)
+    scale = _scale(fit, j, bottom)
+    rise, found = np.full(len(values), np.inf), [best] * len(values)
+    middle = int(np.searchsorted(values, best[name]))
+    for way in (range(middle, len(values)), range(middle - 1, -1, -1)):
+        near = best
+        for i in way:
+            try:
+                found[i] = near = _refit(estimate, name, float(values[i]), near, max_evaluations)
+                rise[i] = (_cost(estimate, near) - bottom) / scale
+            except DivergenceError:
+                break
+    others = {n: np.array([f[n] for f in found]) for n in names if n != name}
+    ends = (_crossing(values, rise, best[name], -1), _crossing(values, rise, best[name], 1))
+    return Profile(name, best[name], values, rise, others, ends)
+
+
+def _std_q(fit: Fit, j: int) -> float:
+    """Std of q_j; infinite where the log cannot say."""
+    return float(fit.std[j] / fit.estimate.space.slope(fit.estimate.q)[j])
+
+
+def _scale(fit: Fit, j: int, bottom: float) -> float:
+    """s_j², or that of white noise where the log cannot say."""
+    known, alone = _std_q(fit, j), float(fit.found.std[j])
+    freedom = max(1, fit.residual.size - len(fit.std))
+    both = np.isfinite(known) and np.isfinite(alone) and known > 0
+    return max((known / alone) ** 2 if both else bottom / freedom, np.finfo(float).tiny)
+
+
+def _spread(fit: Fit, j: int, points: int) -> np.ndarray:
+    """Values evenly spaced in q_j, inside the bounds."""
+    space, q = fit.estimate.space, fit.estimate.q
+    reach = min(REACH * _std_q(fit, j), WIDEST)
+    moves = np.tile(q, (points, 1))
+    moves[:, j] += np.linspace(-reach, reach, points)
+    inside = (moves[:, j] > space.lower[j]) & (moves[:, j] < space.upper[j])
+    return space.decode(moves[inside])[:, j]
+
+
+def _refit(
+    estimate: Estimate, name: str, value: float, near: dict[str, float], most: int
+) -> dict[str, float]:
+    """The others' best values with one held, searched from a neighbour's."""
+    predictor, options = estimate.predictor, estimate.options
+    held = {**predictor.fixed, **near, name: value}
+    free = tuple(n for n in near if n != name)
+    if not free:
+        return {name: value}
+    once = replace(options, horizons=(1.0,), criterion="trace", max_evaluations=most, priors={})
+    found = search(
+        predictor.plant, predictor.log, free, held, once, whitener=estimate.whitener
+    ).values
+    return {n: value if n == name else found[n] for n in near}
+
+
+def _cost(estimate: Estimate, values: dict[str, float]) -> float:
+    """V of the estimate's criterion, covariance held."""
+    row = np.array([[values[n] for n in estimate.space.names]])
+    error = estimate.predictor.log.outputs - estimate.predictor.predict(row)[0]
+    return float(np.sum((error @ estimate.whitener.T) ** 2))
+
+
+def _crossing(values: np.ndarray, rise: np.ndarray, best: float, side: int) -> float:
+    """Where the profile crosses the level on one side; √rise is all but straight there."""
+    order = np.argsort(side * values)
+    beyond = order[side * values[order] > side * best]
+    inner_value, inner = best, 0.0
+    for i in beyond:
+        root = float(np.sqrt(max(0.0, rise[i])))
+        if root > np.sqrt(LEVEL):
+            if np.isinf(root):  # no simulation there: how far it rises is not known
+                break
+            share = (np.sqrt(LEVEL) - inner) / (root - inner)
+            return float(inner_value + share * (values[i] - inner_value))
+        inner_value, inner = float(values[i]), root
+    return side * np.inf

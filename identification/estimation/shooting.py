@@ -1,0 +1,173 @@
+"""Multiple shooting: the windows of a log, explained as well as their initial states can.
+
+    r_w(q, d_w) = [ C (y_w - ŷ_w(q, x̄_w ⊕ d_w)) ; -d_w/s ]      what a window leaves; its belief
+    X_w = -∂r_w/∂d_w = U s Vᵀ,  S_w = -∂r_w/∂q                    the tangent at a point
+
+    (X_wᵀX_w + μ) Δd_w + X_wᵀS_w Δq = X_wᵀ r_w                    Levenberg-Marquardt, all at once
+    Σ_w S_wᵀX_w Δd_w + (Σ_w S_wᵀS_w + μ) Δq = Σ_w S_wᵀ r_w
+
+Each Δd_w is eliminated by itself, so a window more costs no more than its simulations
+(condensing; Bock 1983). A tangent takes 1 + nx + p simulations of the log, all in one batch; a
+trial step takes one. What q itself is known by is S_w without what the states make up for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.estimation.windows import FirstStates, Windows, moved
+from identification.model.coordinates import Coordinates
+from identification.model.predictor import Predictor, output_columns
+from identification.model.rollout import State, hold, rollout, substeps
+from identification.model.sensitivity import FORWARD_STEP
+
+FELT = 1e-6  # of the strongest direction of a state, each entry scaled to its own effect
+
+
+@dataclass(frozen=True)
+class Shooting:
+    """What does not change during a search over windows.
+
+    Attributes:
+        predictor: the plant, the log and the names of p free parameters.
+        space: their coordinates.
+        cut: the windows.
+        first: where they are believed to begin.
+        whitener: C, shape (ny, ny).
+    """
+
+    predictor: Predictor
+    space: Coordinates
+    cut: Windows
+    first: FirstStates
+    whitener: np.ndarray
+
+    def states(self, d: np.ndarray) -> State:
+        """x̄ ⊕ d, W rows."""
+        return moved(self.predictor.plant.model, self.first.states, d)
+
+    def residual(self, q: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """r of all windows at q and d (W, nx), shape (W, L ny + nx).
+
+        Raises:
+            DivergenceError: a window left the finite numbers.
+        """
+        return self.joined(self.outputs(q[None], [d])[0], d)
+
+    def error(self, r: np.ndarray) -> np.ndarray:
+        """y - ŷ, shape (W, L, ny), of a residual of `residual`."""
+        outputs = self.cut.outputs
+        whitened = r[:, : outputs[0].size].reshape(outputs.shape)
+        return whitened @ np.linalg.inv(self.whitener).T
+
+    def joined(self, y: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """r, shape (W, L ny + nx), of outputs (W, L, ny) and d (W, nx)."""
+        left = (self.cut.outputs - y) @ self.whitener.T
+        return np.hstack([left.reshape(len(d), -1), -d * self.first.weight])
+
+    def outputs(self, q: np.ndarray, moves: list[np.ndarray]) -> np.ndarray:
+        """Outputs of k points q (k, p), each over all windows from its d: (k, W, L, ny)."""
+        predictor, W = self.predictor, len(self.cut.starts)
+        model = predictor.plant.model
+        _, numbers = predictor.settings(self.space.decode(q))
+        starts = [self.states(d) for d in moves]
+        rows = (np.concatenate([getattr(s, f) for s in starts]) for f in ("qpos", "qvel", "act"))
+        inputs, every, hold_kind = self._inputs(self.space.decode(q))
+        run = rollout(
+            model, State(*rows), inputs, predictor.log.sampling_time / every,
+            numbers=[(slot, np.repeat(column, W)) for slot, column in numbers],
+            record=("qpos", "qvel"), hold_kind=hold_kind,
+        )  # fmt: skip
+        run = {field: states[:, ::every] for field, states in run.items()}
+        columns = output_columns(model, predictor.log.output_names)
+        y = np.stack([run[field][:, :, i] for field, i in columns], axis=-1)
+        return y.reshape(len(q), W, *y.shape[1:])
+
+    def _inputs(self, values: np.ndarray) -> tuple[np.ndarray, int, str]:
+        """Inputs of all windows of k value sets, how many of them a sample has, and their hold.
+
+        What a plant makes of its inputs depends on those before the window.
+        """
+        predictor, cut, log = self.predictor, self.cut, self.predictor.log
+        every = substeps(log.sampling_time, predictor.plant.model.opt.timestep)
+        held = hold(log.inputs, every, log.hold)
+        made = predictor.inputs(values)(held)
+        if made is held:
+            return np.tile(cut.inputs, (len(values), 1, 1)), 1, log.hold
+        last = np.zeros((*made.shape[:-2], 1, made.shape[-1]))  # is not reached
+        made = np.broadcast_to(np.concatenate([made, last], axis=-2),
+                               (len(values), len(held) + 1, held.shape[1]))  # fmt: skip
+        steps = np.arange((cut.inputs.shape[1] - 1) * every + 1)
+        rows = every * cut.starts[:, None] + steps
+        return made[:, rows].reshape(-1, len(steps), held.shape[1]), every, "zoh"
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """All windows, linearised at a point; the columns of X have the norm 1 in U s Vᵀ.
+
+    Attributes:
+        r: residual there, shape (W, m), m = L ny + nx.
+        S: -∂r/∂q, shape (W, m, p).
+        U: shape (W, m, nx).
+        s: 0 where no state is felt, shape (W, nx).
+        Vt: shape (W, nx, nx).
+        size: norms of the columns of X, shape (W, nx).
+    """
+
+    r: np.ndarray
+    S: np.ndarray
+    U: np.ndarray
+    s: np.ndarray
+    Vt: np.ndarray
+    size: np.ndarray
+
+    @property
+    def projected(self) -> np.ndarray:
+        """S without what the states can make up for, shape (W m, p)."""
+        U = self.U * (self.s > 0)[:, None]
+        return (self.S - U @ (np.swapaxes(U, 1, 2) @ self.S)).reshape(-1, self.S.shape[2])
+
+    @property
+    def freedom(self) -> int:
+        """Directions of all states that are felt."""
+        return int((self.s > 0).sum())
+
+    def step(self, damping: float) -> tuple[np.ndarray, np.ndarray]:
+        """The damped step: Δq (p,) and Δd (W, nx)."""
+        against = np.swapaxes(self.U, 1, 2) @ self.S  # Uᵀ S, (W, nx, p)
+        left = np.einsum("wmk,wm->wk", self.U, self.r)
+        share = self.s**2 / (self.s**2 + damping)
+        H = np.einsum("wmp,wmq->pq", self.S, self.S)
+        g = np.einsum("wmp,wm->p", self.S, self.r)
+        H_q = H - np.einsum("wkp,wk,wkq->pq", against, share, against)
+        g_q = g - np.einsum("wkp,wk,wk->p", against, share, left)
+        size = np.sqrt(np.diag(H))
+        size = np.where(size > 0, size, 1.0)  # one that a search drove to nothing stays there
+        scaled = H_q / np.outer(size, size) + damping * np.eye(len(g))
+        dq = np.linalg.lstsq(scaled, g_q / size, rcond=None)[0] / size
+        along = self.s / (self.s**2 + damping) * (left - against @ dq)
+        return dq, np.einsum("wkx,wk->wx", self.Vt, along) / self.size
+
+
+def tangent(shooting: Shooting, q: np.ndarray, d: np.ndarray) -> Tangent:
+    """Linearise all windows at q (p,) and d (W, nx), by forward differences in one batch.
+
+    Raises:
+        DivergenceError: a window left the finite numbers.
+    """
+    p, nx = len(q), d.shape[1]
+    h = FORWARD_STEP
+    points = np.concatenate([np.tile(q, (1 + nx, 1)), q + h * np.eye(p)])
+    moves = [d, *(d + h * e for e in np.eye(nx)), *[d] * p]
+    y = shooting.outputs(points, moves)
+    r = np.stack([shooting.joined(*pair) for pair in zip(y, moves, strict=True)], axis=-1)
+    slopes = (r[..., :1] - r[..., 1:]) / h  # (W, m, nx + p)
+    X, S = slopes[..., :nx], slopes[..., nx:]
+    size = np.linalg.norm(X, axis=1)
+    size = np.where(size > 0, size, 1.0)
+    U, s, Vt = np.linalg.svd(X / size[:, None], full_matrices=False)
+    s = np.where(s > FELT * s[:, :1], s, 0.0)
+    return Tangent(r[..., 0], S, U, s, Vt, size)

@@ -1,0 +1,99 @@
+"""How well a model with given values predicts a log over a horizon, wherever it begins.
+
+r_w = y_w - ŷ_w(θ, x̄_w ⊕ d_w),   d_w the state at the start of window w that explains it best
+
+A free run of a robot that integrates its input drifts by whatever disturbs it; over a window the
+error is the model's. Nothing of the model is fitted here, so that a log which no fit has seen
+compares two models fairly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from identification.errors import DivergenceError
+from identification.estimation.shooting import Shooting, tangent
+from identification.estimation.windows import first_states, windows
+from identification.logs.log import Log
+from identification.logs.noise import noise_floor
+from identification.model.coordinates import Coordinates
+from identification.model.predictor import Plant, Predictor
+
+STEPS = 20  # of Levenberg and Marquardt, at most
+ENDED = 1e-3  # of the mean squared error: a window that changes by less is at its best
+FIRST_DAMPING, MOST_DAMPING = 1e-9, 1e2  # of the squared norms of X's columns
+
+
+def window_error(
+    plant: Plant, log: Log, length: float, values: Mapping[str, float] | None = None
+) -> np.ndarray:
+    """Errors of the outputs in windows of a log, each from its own best state.
+
+    Args:
+        plant: the model.
+        log: what was measured.
+        length: of a window [s].
+        values: parameters that are not the plant's own.
+
+    Returns:
+        Shape (W, L, ny), in the outputs' unit.
+
+    Raises:
+        InputError: the windows do not fit the log, or a name is unknown.
+        DivergenceError: the model cannot be simulated.
+    """
+    shooting, d = _fixed(plant, log, length, values)
+    none = np.zeros(0)
+    at = tangent(shooting, none, d)
+    damping = np.full(len(d), FIRST_DAMPING)
+    for _ in range(STEPS):
+        # A window has its own damping: where a joint sticks, its first rate is hardly felt.
+        before = np.sum(at.r**2, axis=1)
+        along = np.einsum("wmk,wm->wk", at.U, at.r) * at.s / (at.s**2 + damping[:, None])
+        trial = d + np.einsum("wkx,wk->wx", at.Vt, along) / at.size
+        try:
+            after = np.sum(shooting.residual(none, trial) ** 2, axis=1)
+        except DivergenceError:
+            after = np.full(len(d), np.inf)
+        better = after < before
+        damping = np.where(better, np.maximum(damping / 10, FIRST_DAMPING), 10 * damping)
+        d = np.where(better[:, None], trial, d)
+        at = tangent(shooting, none, d)
+        small = np.abs(after - before) <= ENDED * before.mean()
+        if np.all(small | (damping > MOST_DAMPING)):
+            break
+    return shooting.error(at.r)
+
+
+def first_error(plant: Plant, log: Log, length: float) -> np.ndarray:
+    """Errors in the same windows, each from the state where it is believed to begin.
+
+    Args:
+        plant: the model, with its own values.
+        log: what was measured.
+        length: of a window [s].
+
+    Returns:
+        Shape (W, L, ny), in the outputs' unit.
+
+    Raises:
+        InputError: the windows do not fit the log.
+        DivergenceError: the model cannot be simulated.
+    """
+    shooting, d = _fixed(plant, log, length, None)
+    return shooting.error(shooting.residual(np.zeros(0), d))
+
+
+def _fixed(
+    plant: Plant, log: Log, length: float, values: Mapping[str, float] | None
+) -> tuple[Shooting, np.ndarray]:
+    """Windows of a model of which nothing is free, and no moves of their states, (W, nx)."""
+    none, cut = np.zeros(0), windows(log, length)
+    predictor = Predictor(plant, log, (), dict(values or {}))
+    space = Coordinates((), none.astype(bool), none, none, none)
+    sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
+    believed = first_states(predictor, none, cut)
+    shooting = Shooting(predictor, space, cut, believed, np.eye(log.outputs.shape[1]) / sigma)
+    return shooting, np.zeros((len(cut.starts), 2 * plant.model.nv + plant.model.na))

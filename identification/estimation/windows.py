@@ -1,0 +1,138 @@
+"""Windows of a log whose initial states are nuisances.
+
+    x_w = x̄_w ⊕ d_w,   w = 1..W                     ⊕ in the tangent of qpos, in qvel and in act
+    x̄_w  measured where an output tells (and its rate), else on a free run of the values so far
+    s_j  = rms motion of state j on that run         how far x_w may well be from x̄_w
+
+A free run adds up all that disturbs the robot, and an unstable one loses it; a window forgets after
+its length. How d_w is found is told in `identification.estimation.shooting`.
+
+States that no output measures are treated as any other: a pose, a rate, or an activation such as
+the no-load length of a cable begins on the free run and is free within s_j. A direction of states
+that a window hardly feels (a platform and all its cables moved together) then stays where the run
+was, instead of being carried off by the noise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from identification.errors import DivergenceError, InputError
+from identification.logs.log import Log
+from identification.model.predictor import Predictor, output_columns
+from identification.model.rollout import State, rollout
+
+LEAST = 1e-3  # of the largest motion in its field: how far at least a state may be off
+
+
+@dataclass(frozen=True)
+class Windows:
+    """A log in W windows of L samples; a rest shorter than a window is left out.
+
+    Attributes:
+        inputs: shape (W, L, nu).
+        outputs: shape (W, L, ny).
+        starts: first sample of each window, shape (W,).
+    """
+
+    inputs: np.ndarray
+    outputs: np.ndarray
+    starts: np.ndarray
+
+
+def windows(log: Log, length: float) -> Windows:
+    """Split a log into windows of a length [s].
+
+    Raises:
+        InputError: a window has fewer than 3 samples, or the log is shorter than one.
+    """
+    samples = round(length / log.sampling_time) if np.isfinite(length) else 0
+    if samples < 3 or samples > len(log):
+        raise InputError(
+            f"windows of {length:g} s do not fit a log of {log.duration:g} s sampled every"
+            f" {log.sampling_time:g} s; take 3 samples or more, and no more than the log has"
+        )
+    starts = samples * np.arange(len(log) // samples)
+    rows = starts[:, None] + np.arange(samples)
+    return Windows(log.inputs[rows], log.outputs[rows], starts)
+
+
+@dataclass(frozen=True)
+class FirstStates:
+    """Where the windows are believed to begin.
+
+    Attributes:
+        states: x̄, W rows.
+        weight: 1/s of each tangent coordinate, 0 where nothing is believed, shape (nx,).
+    """
+
+    states: State
+    weight: np.ndarray
+
+
+def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> FirstStates:
+    """States at the windows' starts: measured where an output tells, else on a free run.
+
+    Where the free run diverges, what is not measured begins at the plant's start, and may be
+    anywhere.
+
+    Args:
+        predictor: the plant and the log.
+        values: of its free parameters, shape (p,).
+        cut: the windows.
+    """
+    plant, log = predictor.plant, predictor.log
+    model = plant.model
+    start, numbers = predictor.settings(values)
+    fields = ("qpos", "qvel", "act")
+    try:
+        run = rollout(
+            model, start, log.inputs, log.sampling_time, numbers=numbers, record=fields,
+            hold_kind=log.hold, before=predictor.inputs(values),
+        )  # fmt: skip
+        rows = {f: np.array(run[f][0, cut.starts]) for f in fields}
+        weight = 1 / _motion(model, State(*(run[f][0] for f in fields)))
+    except DivergenceError:
+        rows = {f: np.repeat(np.atleast_2d(getattr(start, f)), len(cut.starts), 0) for f in fields}
+        weight = np.zeros(2 * model.nv + model.na)
+    rate = np.gradient(log.outputs, log.sampling_time, axis=0)[cut.starts]
+    columns = list(enumerate(output_columns(model, log.output_names)))
+    for k, (field, i) in sorted(columns, key=lambda item: item[1][0]):  # a measured rate is last
+        rows[field][:, i] = log.outputs[cut.starts, k]
+        if field == "qpos":
+            joint = int(np.flatnonzero(model.jnt_qposadr == i)[0])
+            rows["qvel"][:, model.jnt_dofadr[joint]] = rate[:, k]
+    return FirstStates(State(**rows), weight)
+
+
+def _motion(model: mujoco.MjModel, run: State) -> np.ndarray:
+    """Rms distance of each tangent coordinate from the start of a run, shape (nx,)."""
+    first = State(*(np.broadcast_to(x[0], x.shape) for x in (run.qpos, run.qvel, run.act)))
+    far = apart(model, first, run)
+    parts = []
+    for part in np.split(far, [model.nv, 2 * model.nv], axis=1):
+        size = np.sqrt(np.mean(part**2, axis=0))
+        parts.append(np.maximum(size, LEAST * size.max(initial=0.0)))
+    size = np.concatenate(parts)
+    return np.where(size > 0, size, np.inf)  # a field at rest says nothing of how it may move
+
+
+def moved(model: mujoco.MjModel, states: State, step: np.ndarray) -> State:
+    """States moved along their tangent (qpos, qvel, act): by one step for all, or one each."""
+    W, nv = len(states.qpos), model.nv
+    steps = np.broadcast_to(step, (W, 2 * nv + model.na))
+    qpos = np.array(states.qpos)
+    for row, d in zip(qpos, steps, strict=True):
+        mujoco.mj_integratePos(model, row, np.ascontiguousarray(d[:nv]), 1.0)
+    return State(qpos, states.qvel + steps[:, nv : 2 * nv], states.act + steps[:, 2 * nv :])
+
+
+def apart(model: mujoco.MjModel, states: State, others: State) -> np.ndarray:
+    """The steps that move states to others, the inverse of `moved`, shape (W, nx)."""
+    turned = np.zeros((len(states.qpos), model.nv))
+    for row, qpos, other in zip(turned, states.qpos, others.qpos, strict=True):
+        mujoco.mj_differentiatePos(model, row, 1.0, qpos, other)
+    return np.hstack([turned, others.qvel - states.qvel, others.act - states.act])

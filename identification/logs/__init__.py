@@ -1,0 +1,1 @@
+"""A log of a robot: file in, checked value out."""

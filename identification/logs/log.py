@@ -1,0 +1,150 @@
+"""A log: what went into a robot and what came out of it, evenly sampled, in SI units."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from identification.errors import InputError, unknown_name
+from identification.logs.log_checks import check_log
+from identification.logs.sampling import MIN_ROWS, FloatArray, rows_between, sampling_time
+
+Splits = Mapping[str, tuple[float, float]]
+
+
+@dataclass(frozen=True, eq=False)
+class Log:
+    """One experiment: n samples of nu inputs and ny outputs; nothing in it can be changed.
+
+    Attributes:
+        time: time stamps (n,) [s], evenly spaced.
+        inputs: what was commanded (n, nu).
+        outputs: what was measured (n, ny).
+        input_names: names of the actuators (nu).
+        output_names: names of the sensors (ny).
+        extras: optional columns by name, each (n,), such as a measured pose.
+        units: SI unit by column name, where known.
+        name: what to call the log in a report.
+        notes: what its author says of it.
+        hold: the input between samples: "zoh" keeps the last, "foh" draws a straight line.
+        splits: named parts [start, end) [s], such as estimation and validation.
+
+    Raises:
+        InputError: shapes disagree, a number is not finite, time is uneven, a name is unusable, or
+            a split is empty or lets validation see the data of estimation.
+    """
+
+    time: FloatArray = field(repr=False)
+    inputs: FloatArray = field(repr=False)
+    outputs: FloatArray = field(repr=False)
+    input_names: tuple[str, ...]
+    output_names: tuple[str, ...]
+    extras: Mapping[str, FloatArray] = field(default_factory=dict, repr=False)
+    units: Mapping[str, str] = field(default_factory=dict, repr=False)
+    name: str = "log"
+    notes: str = ""
+    hold: str = "zoh"
+    splits: Splits = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        def put(attribute: str, value: object) -> None:
+            object.__setattr__(self, attribute, value)
+
+        for attribute in ("time", "inputs", "outputs"):
+            put(attribute, _frozen(getattr(self, attribute)))
+        put("input_names", tuple(self.input_names))
+        put("output_names", tuple(self.output_names))
+        put("extras", MappingProxyType({k: _frozen(v) for k, v in self.extras.items()}))
+        put("units", MappingProxyType(dict(self.units)))
+        put("splits", MappingProxyType({k: (a, b) for k, (a, b) in self.splits.items()}))
+        check_log(self)
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __reduce__(self) -> tuple[Callable[[dict[str, Any]], Log], tuple[dict[str, Any]]]:
+        # A mapping proxy cannot be pickled, and a log must reach other processes.
+        values = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        for name in ("extras", "units", "splits"):
+            values[name] = dict(values[name])
+        return _rebuild, (values,)
+
+    @property
+    def columns(self) -> dict[str, FloatArray]:
+        """Every column but time, by name, each (n,): inputs, outputs, extras."""
+        return {
+            **dict(zip(self.input_names, self.inputs.T, strict=True)),
+            **dict(zip(self.output_names, self.outputs.T, strict=True)),
+            **self.extras,
+        }
+
+    @property
+    def sampling_time(self) -> float:
+        """The constant step h [s]."""
+        return sampling_time(self.time)
+
+    @property
+    def duration(self) -> float:
+        """From the first sample to the last [s]."""
+        return float(self.time[-1] - self.time[0])
+
+    @property
+    def output_unit(self) -> str:
+        """The unit of all outputs, empty where they have several or none is known."""
+        units = {self.units.get(name, "") for name in self.output_names}
+        return units.pop() if len(units) == 1 else ""
+
+    def between(self, start: float, end: float) -> Log:
+        """The samples of [start, end) [s]; time keeps its zero, and the splits are dropped.
+
+        Raises:
+            InputError: fewer samples than a log needs are in there.
+        """
+        first, last = rows_between(self.time, start, end)
+        if last - first < MIN_ROWS:
+            raise InputError(
+                f"log {self.name!r} has {max(0, last - first)} samples in [{start:g}, {end:g}) s; "
+                f"take at least {MIN_ROWS} of [{self.time[0]:g}, {self.time[-1]:g}] s"
+            )
+        rows = slice(first, last)
+        return replace(
+            self,
+            time=self.time[rows],
+            inputs=self.inputs[rows],
+            outputs=self.outputs[rows],
+            extras={name: column[rows] for name, column in self.extras.items()},
+            splits={},
+        )
+
+    def part(self, name: str) -> Log:
+        """A named split; a log without splits has those of `halves`.
+
+        Raises:
+            InputError: the name is unknown.
+        """
+        splits = self.splits or halves(self)
+        if name not in splits:
+            raise unknown_name("part of the log", name, splits)
+        return replace(self.between(*splits[name]), name=f"{self.name} [{name}]")
+
+
+def halves(log: Log) -> Splits:
+    """The default splits: identify on the first half, confirm on the second."""
+    step = log.sampling_time
+    start, end = float(log.time[0]), float(log.time[-1]) + step
+    middle = float(log.time[len(log) // 2])
+    return {"estimation": (start, middle), "validation": (middle, end)}
+
+
+def _frozen(values: FloatArray) -> FloatArray:
+    array = np.array(values, dtype=np.float64)
+    array.setflags(write=False)
+    return array
+
+
+def _rebuild(values: dict[str, Any]) -> Log:
+    return Log(**values)

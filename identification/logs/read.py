@@ -1,0 +1,135 @@
+"""A log file to a `Log`: one reader for CSV and MATLAB, with an optional TOML beside it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.files import read_bytes
+from identification.logs.log import Log
+from identification.logs.names import check_column_names, check_keys, lookup
+from identification.logs.plausible import check_plausible
+from identification.logs.read_csv import parse_csv
+from identification.logs.read_mat import parse_mat
+from identification.logs.sampling import FloatArray, check_time, grid
+from identification.logs.sidecar import Sidecar, read_sidecar
+from identification.logs.table import Table, check_columns, check_finite, renamed
+from identification.logs.units import check_si, to_si
+
+
+def read_log(
+    path: str | os.PathLike[str],
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    optional: Sequence[str] = (),
+    *,
+    units: Mapping[str, str] | None = None,
+    limits: Mapping[str, float] | None = None,
+    rates: Mapping[str, float] | None = None,
+    named_in: Path | None = None,
+) -> Log:
+    """Read a log; columns may come in any order, and what a file cannot mean is refused.
+
+    The keys of `units`, `limits` and `rates` are columns or groups: "angle" is all of angle_1,
+    angle_2, and so on.
+
+    Args:
+        path: `.csv` with the header `time,<inputs>,<outputs>[,<optional>]`, or `.mat` with `u`,
+            `y`, `Ts`; a `.toml` of the same stem may say more (see `identification.logs.sidecar`).
+        inputs: names of the actuators (nu).
+        outputs: names of the sensors (ny).
+        optional: columns that may be there; they become `Log.extras`.
+        units: SI unit of each column; the sidecar may then give another unit of that quantity.
+        limits: largest plausible size [SI].
+        rates: largest plausible speed of change [SI/s]; catches degrees taken for radians.
+        named_in: the file that says `inputs` and `outputs`, for messages; the sidecar when None.
+
+    Returns:
+        The log in SI units, named after the file.
+
+    Raises:
+        InputError: the file cannot be read, or cannot be such a log; one sentence says why and how
+            to go on.
+    """
+    path, units, limits, rates = Path(path), units or {}, limits or {}, rates or {}
+    columns = (*inputs, *outputs, *optional)
+    check_column_names(columns)
+    for what, keys in (("unit", units), ("limit", limits), ("rate", rates)):
+        check_keys(f"{what} for column", keys, columns)
+    for unit in units.values():
+        check_si(unit)
+
+    table = _read_table(path, inputs, outputs, optional)
+    sidecar = read_sidecar(path.with_suffix(".toml"))
+    check_keys(f"column under 'units' in {sidecar.path}:", sidecar.units, ("time", *columns))
+    table = renamed(table, sidecar)
+    if "time" not in table.names and sidecar.sampling_time:
+        table = _with_time(table, sidecar.sampling_time)
+    check_columns(table, ("time", *inputs, *outputs), optional, sidecar, named_in)
+
+    si, factors = _conversions(table, sidecar, {**units, "time": "s"})
+    with np.errstate(over="ignore"):  # what overflows is refused as not finite
+        table = replace(table, data=table.data * [factors[name] for name in table.names])
+    check_finite(table)
+    time = table["time"]
+    check_time(time, table.place, sidecar.sampling_time)
+    if sidecar.sampling_time:  # then the stamps may be coarse, and the grid is better
+        time = grid(time[0], sidecar.sampling_time, len(time))
+    check_plausible(table, factors, si, limits, rates, sidecar.path)
+    return Log(
+        time=time,
+        inputs=_stacked(table, inputs),
+        outputs=_stacked(table, outputs),
+        input_names=tuple(inputs),
+        output_names=tuple(outputs),
+        extras={name: table[name] for name in optional if name in table.names},
+        units={name: unit for name, unit in si.items() if name != "time"},
+        name=path.stem,
+        notes=sidecar.notes,
+        hold=sidecar.hold,
+        splits=sidecar.splits,
+    )
+
+
+def _read_table(
+    path: Path, inputs: Sequence[str], outputs: Sequence[str], optional: Sequence[str]
+) -> Table:
+    raw = read_bytes(path)
+    if path.suffix.lower() == ".csv":
+        return parse_csv(raw, path)
+    if path.suffix.lower() == ".mat":
+        return parse_mat(raw, path, inputs, outputs, optional)
+    raise InputError(f"{path} is neither .csv nor .mat; export the log as one of these")
+
+
+def _with_time(table: Table, step: float) -> Table:
+    time = grid(0.0, step, len(table.data))
+    return replace(table, names=("time", *table.names), data=np.column_stack([time, table.data]))
+
+
+def _conversions(
+    table: Table, sidecar: Sidecar, units: Mapping[str, str]
+) -> tuple[dict[str, str], dict[str, float]]:
+    """The SI unit of each column, where known, and the factor that takes the file to it."""
+    si: dict[str, str] = {}
+    factors: dict[str, float] = {}
+    for name in table.names:
+        expected, given = lookup(units, name), lookup(sidecar.units, name)
+        unit, factors[name] = to_si(given) if given is not None else (expected, 1.0)
+        if expected and unit != expected:
+            raise InputError(
+                f"{sidecar.path} gives {name} in {given}, which measures {unit} and not "
+                f"{expected}; correct it there"
+            )
+        if unit:
+            si[name] = unit
+    return si, factors
+
+
+def _stacked(table: Table, names: Sequence[str]) -> FloatArray:
+    return table.data[:, [table.names.index(name) for name in names]]

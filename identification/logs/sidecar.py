@@ -1,0 +1,129 @@
+"""The TOML file beside a log, of the same stem: what its columns cannot say.
+
+sampling_time = 0.01                # [s]
+hold = "zoh"                        # or "foh"
+notes = "third run, warm motors"
+ignore = ["temperature"]            # columns of the file to leave out
+[units]                             # by column or by group; SI where not given
+current = "mA"
+[columns]                           # column of the file = name it should have
+q1 = "angle_1"
+[splits]                            # [start, end) [s]
+estimation = [0, 10]
+validation = [10, 20]
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from math import isfinite, isnan
+from pathlib import Path
+from typing import Any
+
+from identification.errors import InputError, unknown_name
+from identification.files import read_bytes
+from identification.logs.log_checks import HOLDS
+from identification.logs.names import quoted
+
+_LARGEST = 2**20  # [bytes] written by hand, so a megabyte is already a mistake
+
+
+@dataclass(frozen=True)
+class Sidecar:
+    """What a sidecar says; every key may be left out, and so may the file."""
+
+    path: Path
+    sampling_time: float | None = None
+    hold: str = "zoh"
+    notes: str = ""
+    ignore: tuple[str, ...] = ()
+    units: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, str] = field(default_factory=dict)
+    splits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+
+def read_sidecar(path: Path) -> Sidecar:
+    """Read the TOML beside a log; the defaults when there is none.
+
+    Raises:
+        InputError: it is not TOML, a key is unknown, or a value is of the wrong kind.
+    """
+    if not path.exists():
+        return Sidecar(path)
+    raw = read_bytes(path, _LARGEST)
+    try:
+        content = tomllib.loads(raw.decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        reason = quoted(str(error), 120) if str(error) else "nested too deeply"
+        raise InputError(f"{path} is not TOML ({reason}); correct it there") from error
+    values = {}
+    for key, value in content.items():
+        if key not in _KEYS:
+            raise unknown_name(f"key in {path}:", key, _KEYS)
+        kind, convert = _KEYS[key]
+        try:
+            values[key] = convert(value)
+        except (TypeError, OverflowError) as error:
+            raise InputError(f"{key} in {path} must be {kind}; correct it there") from error
+    return Sidecar(path, **values)
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise TypeError
+    return value
+
+
+def _hold(value: object) -> str:
+    if value not in HOLDS:
+        raise TypeError
+    return _text(value)
+
+
+def _number(value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or isnan(value):
+        raise TypeError
+    return float(value)
+
+
+def _step(value: object) -> float:
+    step = _number(value)
+    if not (isfinite(step) and step > 0):
+        raise TypeError
+    return step
+
+
+def _names(value: object) -> tuple[str, ...]:
+    if not isinstance(value, list):
+        raise TypeError
+    return tuple(_text(v) for v in value)
+
+
+def _texts(value: object) -> dict[str, str]:
+    if not isinstance(value, dict):
+        raise TypeError
+    return {name: _text(v) for name, v in value.items()}
+
+
+def _splits(value: object) -> dict[str, tuple[float, float]]:
+    if not isinstance(value, dict):
+        raise TypeError
+    pairs = {}
+    for name, pair in value.items():
+        if not (isinstance(pair, list) and len(pair) == 2):
+            raise TypeError
+        pairs[name] = (_number(pair[0]), _number(pair[1]))
+    return pairs
+
+
+_KEYS: dict[str, tuple[str, Callable[[object], Any]]] = {
+    "sampling_time": ("a positive number of seconds", _step),
+    "hold": (" or ".join(f'"{h}"' for h in HOLDS), _hold),
+    "notes": ("text in quotes", _text),
+    "ignore": ('a list of columns, such as ["temperature"]', _names),
+    "units": ('a table of units, such as current = "mA"', _texts),
+    "columns": ('a table of names, such as q1 = "angle_1"', _texts),
+    "splits": ("a table of parts in seconds, such as estimation = [0, 10]", _splits),
+}

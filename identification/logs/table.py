@@ -1,0 +1,109 @@
+"""Named columns of numbers as a file has them, before units and meaning."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from pathlib import Path
+
+import numpy as np
+
+from identification.errors import InputError, unknown_name
+from identification.logs.names import listed, quoted
+from identification.logs.sampling import FloatArray
+from identification.logs.sidecar import Sidecar
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns (n, c) of a file, with their names (c) and the place of each row in words."""
+
+    path: Path
+    names: tuple[str, ...]
+    data: FloatArray
+    place: Callable[[int], str]
+
+    def __getitem__(self, name: str) -> FloatArray:
+        return self.data[:, self.names.index(name)]
+
+
+def renamed(table: Table, sidecar: Sidecar) -> Table:
+    """The table with the columns of `sidecar.ignore` gone, and those of `sidecar.columns` renamed.
+
+    Raises:
+        InputError: the file lacks a column that is named there, or two columns get one name.
+    """
+    for what, wanted in (("columns", tuple(sidecar.columns)), ("ignore", sidecar.ignore)):
+        for name in wanted:
+            if name not in table.names:
+                raise unknown_name(
+                    f"column under {what!r} in {sidecar.path}:", name, map(quoted, table.names)
+                )
+    keep = [k for k, name in enumerate(table.names) if name not in sidecar.ignore]
+    names = tuple(sidecar.columns.get(table.names[k], table.names[k]) for k in keep)
+    twice = sorted({n for n in names if names.count(n) > 1})
+    if twice:
+        raise InputError(
+            f"{table.path} has {listed(twice)} more than once; keep one column of each name"
+        )
+    return replace(table, names=names, data=table.data[:, keep])
+
+
+def check_columns(
+    table: Table,
+    needed: Sequence[str],
+    optional: Sequence[str],
+    sidecar: Sidecar,
+    named_in: Path | None = None,
+) -> None:
+    """Refuse a table that lacks a needed column, or has one that nobody asked for.
+
+    Args:
+        table: of the file.
+        needed: columns that it must have.
+        optional: columns that it may have.
+        sidecar: the TOML beside the file.
+        named_in: another file whose [columns] say what is needed; the sidecar when None.
+
+    Raises:
+        InputError: a column is missing or unknown; the likely slip is named.
+    """
+    good = [*needed, *optional]
+    unknown = [n for n in table.names if n not in good]
+    missing = [n for n in needed if n not in table.names]
+    if missing:
+        close = get_close_matches(missing[0], unknown, n=1)
+        slip = f" (is {missing[0]} its column {quoted(close[0])}?)" if close else ""
+        time = ", or give sampling_time" if "time" in missing else ""
+        where = sidecar.path if time or named_in is None else named_in
+        raise InputError(
+            f"{table.path} lacks {_columns(missing)}{slip}; it has {listed(table.names)}; correct "
+            f"its names or map them under [columns]{time} in {where}"
+        )
+    if unknown:
+        close = get_close_matches(unknown[0], good, n=1)
+        slip = f" (is {quoted(unknown[0])} meant to be {close[0]}?)" if close else ""
+        raise InputError(
+            f"{table.path} has unknown {_columns(unknown)}{slip}; good names are {listed(good)}; "
+            f"remove the others or list them under 'ignore' in {sidecar.path}"
+        )
+
+
+def _columns(names: Sequence[str]) -> str:
+    return ("column " if len(names) == 1 else "columns ") + listed(names)
+
+
+def check_finite(table: Table) -> None:
+    """Refuse a cell that is not a finite number.
+
+    Raises:
+        InputError: a cell is NaN or infinite; its row and column are named.
+    """
+    bad = np.argwhere(~np.isfinite(table.data))
+    if bad.size:
+        row, column = bad[0]
+        raise InputError(
+            f"{table.place(int(row))}, column {quoted(table.names[column])}: "
+            f"{table.data[row, column]} is not a finite number; fill the gap or cut the log there"
+        )

@@ -1,0 +1,1 @@
+"""A MuJoCo model that predicts what a log should show."""

@@ -1,0 +1,107 @@
+"""Parameters as the optimiser sees them: numbers of order one without units.
+
+    q = ln(value)       where the value is positive and may not change sign (a mass, a stiffness)
+    q = value/scale     otherwise (a position, an angle, the size of an effect)
+
+A step in q is then a relative change, or metres and radians, of similar weight.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.model.parameter import ParameterSet
+
+FARTHEST = 700.0  # of a logarithm: beyond, exp overflows
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """A change of variables for p parameters.
+
+    Attributes:
+        names: the parameters, p of them.
+        logarithmic: which have q = ln(value), shape (p,).
+        lower: bounds of q, shape (p,).
+        upper: bounds of q, shape (p,).
+        scale: of those that are not logarithmic, shape (p,).
+    """
+
+    names: tuple[str, ...]
+    logarithmic: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    scale: np.ndarray
+
+    def encode(self, values: np.ndarray) -> np.ndarray:
+        """Values to q, shape (..., p)."""
+        logarithm = np.log(np.where(self.logarithmic, values, 1.0))
+        return np.where(self.logarithmic, logarithm, np.asarray(values) / self.scale)
+
+    def decode(self, q: np.ndarray) -> np.ndarray:
+        """The values of q, shape (..., p)."""
+        return np.where(
+            self.logarithmic,
+            np.exp(np.clip(np.where(self.logarithmic, q, 0.0), -FARTHEST, FARTHEST)),
+            q * self.scale,
+        )
+
+    def inside(self, q: np.ndarray) -> np.ndarray:
+        """The point inside the bounds nearest to q, shape (..., p)."""
+        return np.clip(q, self.lower, self.upper)
+
+    def slope(self, q: np.ndarray) -> np.ndarray:
+        """d value/d q, shape (..., p): a std in q times this is a std of the value."""
+        return np.where(self.logarithmic, self.decode(q), self.scale)
+
+    def on_bound(self, q: np.ndarray) -> np.ndarray:
+        """Which of q (p,) lie on a bound, shape (p,)."""
+        near = 1e-6 * np.maximum(1.0, np.abs(q))
+        return (q - self.lower < near) | (self.upper - q < near)
+
+
+def coordinates(
+    parameters: ParameterSet,
+    names: Sequence[str],
+    start: np.ndarray,
+    linear: Collection[str] = (),
+) -> Coordinates:
+    """Coordinates of some parameters of a set, fit for a search from `start`.
+
+    Args:
+        parameters: the set.
+        names: which are free.
+        start: their values, shape (p,).
+        linear: those of them that are not logarithmic though they are positive.
+
+    Raises:
+        InputError: nothing is free, a name occurs twice, or a start lies outside its bounds.
+    """
+    if not names:
+        raise InputError("no parameter is free; name at least one to estimate")
+    twice = sorted({n for n in names if list(names).count(n) > 1})
+    if twice:
+        raise InputError(f"parameter {twice[0]!r} is named twice; name each once")
+    records = [parameters[name] for name in names]
+    for record, value in zip(records, start, strict=True):
+        if not record.lower < value < record.upper:
+            raise InputError(
+                f"the start of {record.name} = {value:g} {record.unit}".rstrip()
+                + f" must lie inside ({record.lower:g}, {record.upper:g}); a search that starts"
+                " on a bound stays there"
+            )
+    logarithmic = np.array(
+        [r.lower >= 0 and v > 0 and r.name not in linear
+         for r, v in zip(records, start, strict=True)]
+    )  # fmt: skip
+    lower, upper, scale = (
+        np.array([getattr(r, field) for r in records]) for field in ("lower", "upper", "scale")
+    )
+    with np.errstate(divide="ignore"):
+        low = np.where(logarithmic, np.log(np.where(logarithmic, lower, 1.0)), lower / scale)
+        high = np.where(logarithmic, np.log(np.where(logarithmic, upper, 1.0)), upper / scale)
+    return Coordinates(tuple(names), logarithmic, low, high, scale)

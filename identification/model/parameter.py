@@ -1,0 +1,120 @@
+"""A parameter is one frozen record; a set of them is a frozen mapping from name to record."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import inf, isfinite
+
+from identification.errors import InputError, unknown_name
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number of a model: what it is, how large it may be, and where it goes.
+
+    Attributes:
+        name: canonical name, as in JSON, TOML and on the command line.
+        value: value in `unit`.
+        unit: SI unit, "" when dimensionless.
+        where: path in the MuJoCo model (see `identification.model.paths`), or "start" for an
+            initial condition.
+        lower: smallest admissible value [unit].
+        upper: largest admissible value [unit].
+        symbol: letter in the equations; `name` when not given.
+        about: what it is, in words.
+        source: table, data sheet or paper the value was taken from.
+        ties: further paths that follow it, each with the factor by which they do.
+        scale: a magnitude that matters [unit]; a search counts by it a value that may be zero.
+
+    Raises:
+        InputError: the bounds are in the wrong order, the value is outside them, or a tie's factor
+            is zero or not finite.
+    """
+
+    name: str
+    value: float
+    unit: str
+    where: str
+    lower: float = -inf
+    upper: float = inf
+    symbol: str = ""
+    about: str = ""
+    source: str = ""
+    ties: tuple[tuple[str, float], ...] = ()
+    scale: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not self.lower < self.upper:
+            raise InputError(
+                f"parameter {self.name!r}: lower bound {self.lower:g} must be less than "
+                f"upper bound {self.upper:g}"
+            )
+        if not (isfinite(self.value) and self.lower <= self.value <= self.upper):
+            raise InputError(
+                f"parameter {self.name!r} = {self.value:g} {self.unit}".rstrip()
+                + f" is outside its range [{self.lower:g}, {self.upper:g}];"
+                " give a value inside it (SI units)"
+            )
+        for path, factor in self.ties:
+            if not (isfinite(factor) and factor):
+                raise InputError(
+                    f"parameter {self.name!r} is tied to {path!r} by the factor {factor:g}; give a"
+                    " finite one that is not zero"
+                )
+
+    @property
+    def places(self) -> tuple[tuple[str, float], ...]:
+        """Every path that it writes, with its factor: `where` times 1, then the ties."""
+        return ((self.where, 1.0), *self.ties)
+
+
+@dataclass(frozen=True)
+class ParameterSet:
+    """Parameters by name, in a fixed order; `with_values` returns a new set.
+
+    Raises:
+        InputError: a name occurs twice.
+    """
+
+    name: str
+    records: tuple[Parameter, ...]
+
+    def __post_init__(self) -> None:
+        names = [p.name for p in self.records]
+        twice = sorted({n for n in names if names.count(n) > 1})
+        if twice:
+            raise InputError(f"parameter set {self.name!r} names {', '.join(twice)} twice")
+
+    def __getitem__(self, name: str) -> Parameter:
+        for parameter in self.records:
+            if parameter.name == name:
+                return parameter
+        raise unknown_name("parameter", name, (p.name for p in self.records))
+
+    def __iter__(self) -> Iterator[Parameter]:
+        return iter(self.records)
+
+    def values(self) -> dict[str, float]:
+        """The values by name, each in its parameter's unit."""
+        return {p.name: p.value for p in self.records}
+
+    def with_values(self, values: Mapping[str, float], source: str = "") -> ParameterSet:
+        """The same set with some values replaced.
+
+        Args:
+            values: the new ones.
+            source: of them; each keeps that of its old value when empty.
+
+        Raises:
+            InputError: a name is unknown, or a value is outside its parameter's bounds.
+        """
+        for name in values:
+            self[name]
+        records = tuple(
+            replace(p, value=float(values[p.name]), source=source or p.source)
+            if p.name in values
+            else p
+            for p in self
+        )
+        return replace(self, records=records)

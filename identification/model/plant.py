@@ -1,0 +1,117 @@
+"""Any MuJoCo model as a plant: every parameter is a path into the model or into its start.
+
+    θ_j -> mjModel entry              where = "joint/slide.damping", "body/cart.mass", …
+    θ_j -> entry of x₀                where = "qpos[0]", "qvel[3]", "act[1]"
+    c θ_j -> any of these             ties = (("joint/other.damping", c), …)
+
+Nothing else follows from the values. A plant whose start depends on its masses, or whose inertia on
+its shape, implements `identification.model.predictor.Plant` itself.
+"""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError
+from identification.model.parameter import ParameterSet
+from identification.model.paths import resolve, write
+from identification.model.predictor import Numbers
+from identification.model.rollout import State
+
+_START = re.compile(r"(?P<field>qpos|qvel|act)\[(?P<index>\d+)\]")
+
+
+@dataclass(frozen=True)
+class ModelPlant:
+    """A compiled model whose parameters are paths.
+
+    The model is copied and the parameters' values are written into the copy.
+
+    Attributes:
+        model: the compiled model.
+        parameters: what can be moved, with nominal values.
+        start: the initial state; the model's own (qpos0, at rest) when None.
+
+    Raises:
+        InputError: a path names nothing in the model, or two parameters name the same path.
+    """
+
+    model: mujoco.MjModel
+    parameters: ParameterSet
+    start: State | None = None
+
+    def __post_init__(self) -> None:
+        model, state = copy.copy(self.model), self.start or own_start(self.model)
+        start = {f: np.array(getattr(state, f), float).ravel() for f in ("qpos", "qvel", "act")}
+        paths = [path for p in self.parameters for path, _ in p.places]
+        twice = next((path for path in paths if paths.count(path) > 1), None)
+        if twice is not None:
+            names = [p.name for p in self.parameters for path, _ in p.places if path == twice]
+            raise InputError(
+                f"{' and '.join(names)} all go to {twice!r}; give each parameter a place of its own"
+            )
+        for parameter in self.parameters:
+            for path, factor in parameter.places:
+                place = start_place(path, model)
+                if place is None:
+                    write(model, resolve(model, path), factor * parameter.value)
+                else:
+                    start[place[0]][place[1]] = factor * parameter.value
+        mujoco.mj_setConst(model, mujoco.MjData(model))
+        object.__setattr__(self, "model", model)
+        object.__setattr__(self, "start", State(**start))
+
+    def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:
+        """Initial states (n rows) and model numbers of n value sets; see `Plant`.
+
+        Args:
+            names: parameters that differ from the plant's own, p of them.
+            values: their values, shape (n, p), in their units.
+
+        Raises:
+            InputError: a name is unknown.
+        """
+        start = self.start or own_start(self.model)
+        rows = {f: np.tile(getattr(start, f), (len(values), 1)) for f in ("qpos", "qvel", "act")}
+        numbers = []
+        for name, column in zip(names, values.T, strict=True):
+            for path, factor in self.parameters[name].places:
+                place = start_place(path, self.model)
+                if place is None:
+                    numbers.append((resolve(self.model, path), factor * column))
+                else:
+                    rows[place[0]][:, place[1]] = factor * column
+        return State(**rows), numbers
+
+    def inputs(
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
+    ) -> np.ndarray:
+        """The logged inputs, as they are; see `Plant`."""
+        return held
+
+
+def own_start(model: mujoco.MjModel) -> State:
+    """The state in which a model is reset: qpos0, at rest."""
+    return State(np.array(model.qpos0), np.zeros(model.nv), np.zeros(model.na))
+
+
+def start_place(where: str, model: mujoco.MjModel) -> tuple[str, int] | None:
+    """Field and index of a path such as `qpos[2]`; None for a path into the model.
+
+    Raises:
+        InputError: the state has no such entry.
+    """
+    match = _START.fullmatch(where)
+    if match is None:
+        return None
+    field, index = match["field"], int(match["index"])
+    size = {"qpos": model.nq, "qvel": model.nv, "act": model.na}[field]
+    if index >= size:
+        raise InputError(f"{where!r}: the model's {field} has {size} entries, counted from 0")
+    return field, index

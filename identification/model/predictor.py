@@ -1,0 +1,146 @@
+"""The predictor: parameter values in, predicted outputs out, for many value sets at once.
+
+    ŷ(t_k, θ) = h(x(t_k)),   x(0) = x₀(θ),   ẋ = f(x, u, θ)          (thesis 3.1, free run)
+
+A `Plant` says how values become a MuJoCo model's numbers and initial state. All value sets of a
+call advance in one `Batch.rollout`: a Jacobian of p columns is one call with 2 p simulations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError, unknown_name
+from identification.logs.log import Log
+from identification.model.parameter import ParameterSet
+from identification.model.paths import Slot
+from identification.model.rollout import State, rollout
+
+Numbers = Sequence[tuple[Slot, np.ndarray]]
+
+
+class Plant(Protocol):
+    """A model whose parameters can be moved."""
+
+    @property
+    def model(self) -> mujoco.MjModel:
+        """The compiled model."""
+
+    @property
+    def parameters(self) -> ParameterSet:
+        """Every parameter, with its nominal value."""
+
+    def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:
+        """Initial states (n rows) and model numbers of n value sets.
+
+        Args:
+            names: parameters that differ from the plant's own.
+            values: their values, shape (n, p).
+        """
+
+    def inputs(
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
+    ) -> np.ndarray:
+        """What of the logged inputs reaches the model, step by step.
+
+        Args:
+            names: as above.
+            values: as above.
+            held: logged inputs at the steps of the simulation, shape (steps, nu).
+            timestep: of the simulation [s].
+
+        Returns:
+            Shape (steps, nu) for all, or (n, steps, nu).
+        """
+
+
+@dataclass(frozen=True)
+class Predictor:
+    """Predicts a log's outputs from its inputs.
+
+    Attributes:
+        plant: the model.
+        log: inputs, outputs and sampling.
+        names: parameters that will vary.
+        fixed: values of parameters that will not, where they are not the plant's own.
+    """
+
+    plant: Plant
+    log: Log
+    names: tuple[str, ...]
+    fixed: Mapping[str, float] = field(default_factory=dict)
+
+    def _every(self, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray]:
+        """Names and values of all that differs from the plant's own, the fixed ones included."""
+        values = np.atleast_2d(values)
+        fixed = {n: v for n, v in self.fixed.items() if n not in self.names}
+        rest = np.broadcast_to(list(fixed.values()), (len(values), len(fixed)))
+        return (*self.names, *fixed), np.hstack([values, rest])
+
+    def settings(self, values: np.ndarray) -> tuple[State, Numbers]:
+        """Initial states and model numbers of n value sets (n, p), the fixed values included."""
+        return self.plant.settings(*self._every(values))
+
+    def inputs(self, values: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+        """What the plant makes of held inputs (steps, nu) for n value sets (n, p)."""
+        names, every = self._every(values)
+        timestep = self.plant.model.opt.timestep
+        return lambda held: self.plant.inputs(names, every, held, timestep)
+
+    def predict(self, values: np.ndarray, samples: int | None = None) -> np.ndarray:
+        """Outputs of n value sets over the first samples of the log.
+
+        Args:
+            values: shape (n, p), in the parameters' units.
+            samples: how many samples; all when None.
+
+        Returns:
+            Shape (n, samples, ny).
+
+        Raises:
+            DivergenceError: a simulation left the finite numbers.
+        """
+        log = self.log
+        start, numbers = self.settings(values)
+        columns = output_columns(self.plant.model, log.output_names)
+        states = rollout(
+            self.plant.model,
+            start,
+            log.inputs[:samples],
+            log.sampling_time,
+            numbers=numbers,
+            record=sorted({field for field, _ in columns}),
+            hold_kind=log.hold,
+            before=self.inputs(values),
+        )
+        return np.stack([states[field][:, :, i] for field, i in columns], axis=-1)
+
+
+def output_columns(model: mujoco.MjModel, names: Sequence[str]) -> list[tuple[str, int]]:
+    """Where each output stands in the state: its field (qpos or qvel) and index.
+
+    Raises:
+        InputError: a name is no sensor of the model, or no joint position or rate.
+    """
+    fields = {
+        int(mujoco.mjtSensor.mjSENS_JOINTPOS): ("qpos", model.jnt_qposadr),
+        int(mujoco.mjtSensor.mjSENS_JOINTVEL): ("qvel", model.jnt_dofadr),
+    }
+    sensors = {model.sensor(i).name: i for i in range(model.nsensor)}
+    columns = []
+    for name in names:
+        if name not in sensors:
+            raise unknown_name("sensor", name, filter(None, sensors))
+        field, address = fields.get(int(model.sensor_type[sensors[name]]), (None, None))
+        if field is None or address is None:
+            raise InputError(
+                f"sensor {name!r} is no joint position or rate; an output must be a jointpos or"
+                " jointvel sensor"
+            )
+        columns.append((field, int(address[model.sensor_objid[sensors[name]]])))
+    return columns

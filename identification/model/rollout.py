@@ -1,0 +1,183 @@
+"""Simulate a MuJoCo model under a log's inputs, many value sets at once.
+
+    u(t) = u_k on [t_k, t_{k+1})          zero-order hold ("zoh")
+    u(t) linear from u_k to u_{k+1}       first-order hold ("foh"), sampled at mid-step
+
+Every simulation has its own initial state and, where asked, its own model numbers; all of them
+advance in one `Batch.rollout`, on native threads.
+"""
+
+from __future__ import annotations
+
+import copy
+import ctypes
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from mujoco.batch import Batch
+
+from identification.errors import DivergenceError, InputError
+from identification.model.paths import Slot
+
+# From these entries MuJoCo derives nothing: writing them needs no mj_setConst.
+UNDERIVED = {
+    "actuator_user",
+    "tendon_user",
+    "body_user",
+    "numeric_data",
+    "dof_damping",
+    "jnt_stiffness",
+    "jnt_user",
+}
+
+
+@dataclass(frozen=True)
+class State:
+    """Where simulations begin: one row each, or one row for all.
+
+    Attributes:
+        qpos: shape (n, nq) or (nq,).
+        qvel: shape (n, nv) or (nv,).
+        act: shape (n, na) or (na,).
+    """
+
+    qpos: np.ndarray
+    qvel: np.ndarray
+    act: np.ndarray
+
+
+def threads() -> int:
+    """Processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def substeps(sampling_time: float, timestep: float) -> int:
+    """Simulation steps per sample.
+
+    Raises:
+        InputError: the sampling time is no whole number of steps.
+    """
+    n = round(sampling_time / timestep)
+    if n < 1 or abs(n * timestep - sampling_time) > 1e-6 * sampling_time:
+        raise InputError(
+            f"the step {timestep:g} s does not divide the sampling time {sampling_time:g} s;"
+            f" try {sampling_time / max(1, round(sampling_time / timestep)):g} s"
+        )
+    return n
+
+
+def hold(inputs: np.ndarray, n: int, kind: str = "zoh") -> np.ndarray:
+    """Controls of the simulation steps between the samples: (N, nu) -> ((N-1) n, nu)."""
+    if kind == "zoh":
+        return np.repeat(inputs[:-1], n, axis=0)
+    if kind != "foh":
+        raise InputError(f"unknown hold {kind!r}; known: foh, zoh")
+    weight = ((np.arange(n) + 0.5) / n)[None, :, None]
+    held = (1 - weight) * inputs[:-1, None] + weight * inputs[1:, None]
+    return held.reshape(-1, inputs.shape[1])
+
+
+def rollout(
+    model: mujoco.MjModel,
+    start: State,
+    inputs: np.ndarray,
+    sampling_time: float,
+    *,
+    numbers: Sequence[tuple[Slot, np.ndarray]] = (),
+    record: Sequence[str] = ("qpos",),
+    hold_kind: str = "zoh",
+    nthread: int | None = None,
+    before: Callable[[np.ndarray], np.ndarray] | None = None,
+) -> Mapping[str, np.ndarray]:
+    """Simulate n copies of a model under one input sequence.
+
+    Args:
+        model: the model; its timestep divides `sampling_time`.
+        start: initial states; the number of rows, or of `numbers`' entries, sets n.
+        inputs: shape (N, nu) for all, or (n, N, nu) for each its own, in the units of the
+            model's controls.
+        sampling_time: time between samples [s].
+        numbers: model entries that differ: slot and its values, shape (n,).
+        record: MjData fields of the state (qpos, qvel, act).
+        hold_kind: "zoh" or "foh".
+        nthread: native threads; all processors when None.
+        before: what happens to the held inputs on their way to the model, step by step:
+            (steps, nu) -> (steps, nu) for all or (n, steps, nu).
+
+    Returns:
+        For each recorded field an array (n, N, size), sample 0 being the start.
+
+    Raises:
+        InputError: shapes or hold do not fit.
+        DivergenceError: a simulation left the finite numbers.
+    """
+    inputs = np.asarray(inputs, float)
+    if inputs.ndim not in (2, 3) or inputs.shape[-1] != model.nu:
+        raise InputError(f"inputs have shape {inputs.shape}; the model takes (N, {model.nu})")
+    rows = [np.atleast_2d(x) for x in (start.qpos, start.qvel, start.act)]
+    n = max([len(r) for r in rows] + [len(values) for _, values in numbers])
+    every = substeps(sampling_time, model.opt.timestep)
+    own = inputs[None] if inputs.ndim == 2 else inputs
+    controls = np.stack([hold(u, every, hold_kind) for u in own])
+    if before is not None and len(own) == 1:
+        controls = before(controls[0])
+        controls = controls if controls.ndim == 3 else controls[None]
+    if len(own) not in (1, n):
+        raise InputError(f"{len(own)} input sequences for {n} simulations; give one, or one each")
+
+    model = copy.copy(model)
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR  # nobody reads them
+    batch = Batch(model, n, nthread or min(threads(), n))
+    _expand(batch, numbers)
+    for field, row in zip(("qpos", "qvel", "act"), rows, strict=True):
+        if row.shape[1]:
+            batch.bind(field)[:] = row
+    first = {field: np.array(batch.bind(field)) for field in record}
+    shared = np.broadcast_to(controls, (n, *controls.shape[1:]))
+    with _quiet():
+        steps = batch.rollout(shared.shape[1], shared, record=tuple(record))
+    _check_finished(batch, shared.shape[1] * model.opt.timestep)
+    return {
+        field: np.concatenate([first[field][:, None], steps[field][:, every - 1 :: every]], axis=1)
+        for field in record
+    }
+
+
+def _expand(batch: Batch, numbers: Sequence[tuple[Slot, np.ndarray]]) -> None:
+    for slot, values in numbers:
+        entries = batch.expand(slot.field)
+        column = () if slot.column is None else (slot.column,)
+        entries[(slice(None), list(slot.rows), *column)] = np.asarray(values)[:, None]
+    if not all(slot.field in UNDERIVED for slot, _ in numbers):
+        batch.set_const()
+
+
+@ctypes.CFUNCTYPE(None, ctypes.c_char_p)
+def _ignore(message: bytes) -> None:
+    """Drop a warning: a divergence becomes an error, not a MUJOCO_LOG.TXT in the user's folder."""
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(_ignore)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
+def _check_finished(batch: Batch, end: float) -> None:
+    """A simulation with a non-finite state stops, and its clock with it."""
+    reached = np.array(batch.bind("time")).ravel()
+    late = np.flatnonzero(~(reached > end * (1 - 1e-9)))
+    if late.size:
+        raise DivergenceError(
+            f"the simulation diverged at t = {reached[late[0]]:.4g} s"
+            + (f" (value set {late[0] + 1} of {len(reached)})" if len(reached) > 1 else "")
+            + "; use a smaller step, or values nearer to the nominal ones"
+        )

@@ -1,0 +1,190 @@
+"""What a discovery means, in sentences: one paragraph each of what was found and what was not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import hypot, isfinite
+
+from identification.discovery.locate import input_error
+from identification.discovery.result import Detectable, Discovery, Named
+from identification.kalman.noise_fit import ALLOWED
+from identification.quantities import alike, quantity
+from identification.report.discovery_words import phrase, sizes
+
+RETUNED = 0.05  # chance of it that is worth a sentence
+SHOWN = 4  # effects named where more could be
+
+
+def discovery_verdict(found: Discovery) -> list[str]:
+    """The verdict first, then what supports it."""
+    if found.verdict == "nothing missing":
+        return [nothing(found)]
+    if found.verdict == "unknown effect":
+        return [unknown(found)]
+    said = [f"{_named(found, named)}{_retuned(named)}" for named in found.named]
+    said.append(_proof(found))
+    if found.unexplained:
+        said.append(unexplained(found))
+    return said
+
+
+def nothing(found: Discovery) -> str:
+    """Nothing is missing, as far as this log can tell."""
+    seen, unseen = split_detectable(found.detectable)
+    left, noise = alike([found.before.rms, floor_rms(found)], found.log.output_unit)
+    said = (
+        "Nothing is missing: what the fitted model leaves unexplained is noise,"
+        f" {left} rms on unseen data where the sensors and unlogged disturbances make {noise}."
+    )
+    if floor_rms(found) > found.noise_rms:
+        said += _unlogged(found)
+    if seen:
+        listed = "; ".join(f"{phrase(d.candidate)}, {_smallest(d)}" for d in seen[:SHOWN])
+        said += f" The log would have shown, in 9 cases of 10, effects as small as: {listed}."
+    if unseen:
+        names = _unique(d.candidate.effect.phrase or d.candidate.effect.name for d in unseen)
+        said += f" No plausible size would show in it of these: {'; '.join(names)}."
+    return said
+
+
+def _unlogged(found: Discovery) -> str:
+    """What of the noise is taken for errors of the inputs, on which the verdict rests."""
+    level, log = found.final.level, found.log
+    sensors = alike([found.noise_rms], log.output_unit)[0]
+    size = quantity(level.input_std, unit=log.units.get(log.input_names[0], ""))
+    return (
+        f" The sensors alone make {sensors}; the rest is what inputs do that err by {size} rms"
+        f" beside what the log says, for {level.noise.time:.2g} s at a time. If they are surely"
+        " known better, something is missing."
+    )
+
+
+def unknown(found: Discovery) -> str:
+    """Something is missing that no known effect explains."""
+    tried = len({s.candidate.effect.name for s in found.scores})
+    ratio = found.before.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
+    return " ".join(
+        [
+            f"Something is missing that none of the {tried} known effects surely explains: the"
+            f" fitted model is {_size(found, found.before.rms)} rms off on unseen data"
+            + (f", {ratio:.3g} times the sensors' noise." if isfinite(ratio) else "."),
+            "It is not named here rather than named wrongly.",
+            *map(sentence, (*found.left, *found.located)),
+        ]
+    )
+
+
+def unexplained(found: Discovery) -> str:
+    """What is left after the named effects."""
+    more = "what is named" if len(found.named) == 1 else "all that is named"
+    ratio = found.after.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
+    times = f", {ratio:.3g} times the noise" if 1 < ratio < float("inf") else ""
+    return " ".join(
+        [
+            f"Something is left beside {more} that no known effect explains: the model is still"
+            f" {_size(found, found.after.rms)} rms off on unseen data{times}.",
+            *map(sentence, found.left),
+        ]
+    )
+
+
+def _named(found: Discovery, named: Named) -> str:
+    """A missing effect; with `one_of` the set of which the data cannot choose."""
+    first = "Missing from the model" if named is found.named[0] else "Missing too"
+    if named.one_of and named.rivals:
+        rivals = [r for r in named.rivals if r.confidence >= 0.1 * named.confidence] or [
+            named.rivals[0]
+        ]
+        total = named.confidence + sum(r.confidence for r in rivals)
+        each = "; ".join(
+            [f"{phrase(named.candidate)} ({100 * named.confidence:.0f} %)"]
+            + [f"{phrase(r.candidate)} ({100 * r.confidence:.0f} %)" for r in rivals]
+        )
+        return (
+            f"{first} is one of these, which this log cannot tell apart: {each};"
+            f" together {100 * min(total, 1.0):.0f} %. The first is put into the model:"
+            f" {sizes(named)}." + (f" {named.advice}" if named.advice else "")
+        )
+    return (
+        f"{first}: {phrase(named.candidate)}, {sizes(named)}"
+        f"; confidence {100 * named.confidence:.0f} % among the known effects."
+    )
+
+
+def _retuned(named: Named) -> str:
+    """That base parameters farther from what was known would explain the same."""
+    other = named.retuned
+    if other.confidence < RETUNED:
+        return ""
+    return (
+        f" Or it is no effect ({100 * other.confidence:.0f} %): with {other.parameter}"
+        f" {abs(other.distance):.2g} std {'above' if other.distance > 0 else 'below'} what was said"
+        " to be known of it, the model explains the same. Measure it, or record another motion."
+    )
+
+
+def _proof(found: Discovery) -> str:
+    before, after, floor = found.before.rms, found.after.rms, floor_rms(found)
+    was, now, noise, own = alike([before, after, floor, found.noise_rms], found.log.output_unit)
+    whom = "it" if len(found.named) == 1 else "them"
+    rest = f", of which sensors make {own} and unlogged errors of the inputs the rest"
+    made = rest if floor > found.noise_rms else ""
+    said = (
+        f"On data that the fit has not seen, the error falls from {was} to {now} rms"
+        f" with {whom} in the model; the noise is {noise}{made}."
+    )
+    above = before**2 - floor**2
+    if above > 0:
+        share = min(1.0, max(0.0, (before**2 - after**2) / above))
+        nearly = share > 0.995 and after > floor
+        percent = "more than 99" if nearly else f"{100 * share:.0f}"
+        said += f" That is {percent} % of the power that was above the noise."
+    return said
+
+
+def sentence(clause: str) -> str:
+    """A clause as a sentence."""
+    end = "" if clause.endswith((".", "!", "?")) else "."
+    return clause[:1].upper() + clause[1:] + end
+
+
+def diff_line(named: Named) -> str:
+    """A named effect as a line of a diff of the model."""
+    return f"+ {phrase(named.candidate)}: {sizes(named)}"
+
+
+def split_detectable(
+    detectable: Sequence[Detectable],
+) -> tuple[list[Detectable], list[Detectable]]:
+    """Effects that would be seen at a plausible size, the clearest first; and the others."""
+    largest = {id(d): _largest(d) for d in detectable}
+    seen = [d for d in detectable if d.smallest <= largest[id(d)]]
+    return (
+        sorted(seen, key=lambda d: d.smallest / largest[id(d)]),
+        [d for d in detectable if not d.smallest <= largest[id(d)]],
+    )
+
+
+def floor_rms(found: Discovery) -> float:
+    """What sensors and unlogged input errors make of a free run of the true model, rms.
+
+    Input errors count where they can be believed: with a model that is, and as small as noise is.
+    """
+    believed = found.verdict != "unknown effect" and input_error(found.final) <= ALLOWED
+    return hypot(found.noise_rms, found.disturbance_rms if believed else 0.0)
+
+
+def _largest(d: Detectable) -> float:
+    return next((s.largest for s in d.candidate.effect.sizes if s.name == d.size), float("inf"))
+
+
+def _smallest(d: Detectable) -> str:
+    return f"{d.size} {quantity(d.smallest, unit=d.unit)}"
+
+
+def _size(found: Discovery, rms: float) -> str:
+    return alike([rms], found.log.output_unit)[0]
+
+
+def _unique(names: Iterable[str]) -> list[str]:
+    return list(dict.fromkeys(names))

@@ -1,0 +1,55 @@
+"""A fit as plain values, for JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from identification.estimation.fit import Fit
+from identification.report.fit_verdict import verdict
+
+
+def fit_to_json(fit: Fit) -> dict[str, Any]:
+    """The numbers and the verdict of a fit; what is unknown or infinite is null."""
+    e = fit.estimate
+    parameters = e.predictor.plant.parameters
+    return {
+        "parameters": {
+            name: {
+                "value": e.values[name],
+                "std": _finite(std),
+                "unit": parameters[name].unit,
+                "initial": float(first),
+                "at_bound": bool(bound),
+            }
+            for name, std, first, bound in zip(
+                e.space.names, fit.std, e.start, fit.at_bound, strict=True
+            )
+        },
+        "combinations": [
+            {"name": str(c), "value": value, "std": _finite(std)}
+            for c, value, std in fit.combinations
+        ],
+        "fit_percent": _list(fit.fit_percent),
+        "validation_fit_percent": _list(fit.validation_fit_percent),
+        "loss": fit.loss,
+        "rms": fit.rms,
+        "validation_rms": _finite(fit.validation_rms),
+        "validation_expected": _finite(fit.validation_expected),
+        "noise_floor": float(np.sqrt(np.mean(fit.floor**2))),
+        "iterations": e.jacobians,
+        "evaluations": e.evaluations,
+        "seconds": e.seconds,
+        "status": e.status,
+        "verdict": verdict(fit),
+    }
+
+
+def _finite(value: float | None) -> float | None:
+    return None if value is None or not np.isfinite(value) else float(value)
+
+
+def _list(values: Iterable[float] | None) -> list[float | None] | None:
+    return None if values is None else [_finite(value) for value in values]

@@ -1,0 +1,142 @@
+"""What a fit means, in sentences a person can act on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from identification.estimation.identifiability import in_words
+
+if TYPE_CHECKING:
+    from identification.estimation.fit import Fit
+    from identification.estimation.window_estimate import WindowEstimate
+
+# The floor bounds the noise from above and errs by a few percent itself.
+ABOVE = 1.2
+HOLDS = 1.2  # times what is to be expected on unseen data
+GROWN = 10.0  # times the fitted residual; a free run that loses itself confirms nothing
+LEVEL = 0.01  # of the residual's tests: one false alarm in a hundred
+
+
+def verdict(fit: Fit) -> list[str]:
+    """Sentences: did it converge, what can be known, is the model enough, does it hold unseen."""
+    if fit.estimate.status == "stopped":  # what was not found says nothing of the model
+        return search_sentences(fit)
+    return [*search_sentences(fit), *identifiable_sentences(fit), *_enough(fit), *_unseen(fit)]
+
+
+def search_sentences(fit: Fit) -> list[str]:
+    """How the search ended."""
+    said = {
+        "converged": "The search converged.",
+        "iterations": "The search ran out of iterations; start nearer, or allow more.",
+        "stopped": "The search was stopped; these are the best values it had seen.",
+    }[fit.estimate.status]
+    bound = [n for n, at in zip(fit.found.names, fit.at_bound, strict=True) if at]
+    if bound:
+        return [said, f"At a bound: {', '.join(bound)}; widen it or fix the parameter."]
+    return [said]
+
+
+def identifiable_sentences(fit: Fit) -> list[str]:
+    """What can be known of the parameters."""
+    found = fit.found
+    if not len(found.blind):
+        values = np.array(list(fit.estimate.values.values()))
+        relative = fit.std / np.where(fit.estimate.space.logarithmic, np.abs(values), np.inf)
+        weak = [n for n, r in zip(found.names, relative, strict=True) if r > 0.5]
+        said = f"All {len(found.names)} directions of the parameters are felt by the outputs."
+        if weak:
+            said += (
+                f" Too weakly for this noise: {', '.join(weak)}, their std exceeds half the value."
+            )
+        return [said]
+    unknown = [n for n, u in zip(found.names, found.undetermined, strict=True) if u]
+    sentences = [
+        f"{found.rank} of {len(found.names)} directions are felt: {' and '.join(unknown)} trade off"
+        f" along ({'; '.join(in_words(d, found.names) for d in found.blind)}) without any output"
+        " feeling it."
+    ]
+    for combination, value, std in fit.combinations:
+        sentences.append(
+            f"Of {' and '.join(combination.exponents)} only {combination} can be known from this"
+            f" log: {value:.6g} ± {std:.2g}; fix one of them."
+        )
+    return sentences
+
+
+def window_sentences(found: WindowEstimate, floor: float) -> list[str]:
+    """How a search over windows ended, what it cannot know, and what it leaves."""
+    said = ["The search converged." if found.converged else "The search ran out of iterations."]
+    if bound := [n for n, at in zip(found.values, found.at_bound, strict=True) if at]:
+        said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
+    if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
+        said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
+    ratio = f", {found.rms / floor:.2f} of the noise floor {floor:.3g}" if floor > 0 else ""
+    said.append(
+        f"{len(found.residual)} windows of {found.length:g} s leave {found.rms:.3g} rms{ratio}."
+    )
+    return said
+
+
+def coloured_outputs(fit: Fit) -> int:
+    """How many outputs' residuals are not white."""
+    return int((fit.tests.white < LEVEL / len(fit.tests.white)).sum())
+
+
+def _floor(fit: Fit) -> float:
+    """Noise of all outputs, rms."""
+    return float(np.sqrt(np.mean(fit.floor**2)))
+
+
+def _above(fit: Fit) -> float:
+    """How many times the noise the residual is."""
+    return fit.rms / _floor(fit) if _floor(fit) > 0 else np.inf
+
+
+def _enough(fit: Fit) -> list[str]:
+    floor, ratio = _floor(fit), _above(fit)
+    sentences = [f"The residual is {fit.rms:.3g} rms, {ratio:.2f} of the noise floor {floor:.3g}."]
+    dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
+    coloured = coloured_outputs(fit)
+    if ratio > ABOVE:
+        sentences.append(
+            "That is more than noise: the model lacks something, or the robot was disturbed."
+        )
+    if dependent:
+        sentences.append(
+            f"{dependent} outputs' residuals depend on the input: what is missing is excited by it."
+        )
+    elif coloured:
+        sentences.append(
+            f"{coloured} outputs' residuals are coloured, none depends on the input: noise that is"
+            " not white, or an effect that the input does not excite."
+        )
+    elif ratio > ABOVE:
+        sentences.append("It is white and independent of the input: look at the sensors first.")
+    else:
+        sentences.append("The residual is white and independent of the input: the model suffices.")
+    return sentences
+
+
+def _unseen(fit: Fit) -> list[str]:
+    if fit.validation_rms is None:
+        return ["There is no unseen data to confirm it on."]
+    likely = max(fit.rms, fit.validation_expected or 0.0)
+    ratio = fit.validation_rms / likely if likely > 0 else np.inf
+    held = "it does not hold: too many parameters, or an effect missing"
+    if ratio < HOLDS:
+        held = "what was fitted holds there too"
+        if _above(fit) > ABOVE:
+            held = "no worse than on what was fitted, but what is missing is missing there too"
+    if ratio < HOLDS and fit.validation_rms > GROWN * fit.rms:
+        return [
+            f"On unseen data the residual is {fit.validation_rms:.3g} rms,"
+            f" {fit.validation_rms / fit.rms:.0f} times that of the fitted part; so small errors of"
+            " the parameters may do that there, and it says little. Judge over a horizon."
+        ]
+    return [
+        f"On unseen data the residual is {fit.validation_rms:.3g} rms,"
+        f" {ratio:.2f} times what the fit leads one to expect: {held}."
+    ]

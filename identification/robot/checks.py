@@ -1,0 +1,152 @@
+"""What a robot's file, its model and its log must agree on, before anything is simulated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError
+from identification.logs.log import Log
+from identification.logs.noise import noise_floor
+from identification.logs.sampling import MIN_ROWS, rows_between
+from identification.model.plant import start_place
+from identification.model.predictor import output_columns
+from identification.quantities import alike
+from identification.robot.file import RobotFile
+
+CLEAR, NEAR = 5.0, 0.01  # of an output's noise, of its travel: a start that is not the model's
+MOST_STEPS = 100.0  # of the model in a sample; more is mostly time in ms
+
+
+def refuse_same_stem(file: RobotFile, log: Path) -> None:
+    """Refuse a robot's file that would be read as the log's own TOML.
+
+    Raises:
+        InputError: it has the log's name.
+    """
+    if log.with_suffix(".toml").resolve() == file.path.resolve():
+        raise InputError(
+            f"{file.path} bears the name of {log} and would be read as what its log's own TOML says"
+            " of units and parts; rename one of them"
+        )
+
+
+def refuse_unnamed(model: mujoco.MjModel, file: RobotFile) -> None:
+    """Refuse actuators without a name, and sensors of positions that may be meant as outputs.
+
+    Raises:
+        InputError: there is one.
+    """
+    kind = int(mujoco.mjtSensor.mjSENS_JOINTPOS)
+    sensors = [(model.sensor(i).name, int(model.sensor_type[i])) for i in range(model.nsensor)]
+    things = [("actuator", i, model.actuator(i).name) for i in range(model.nu)]
+    if not file.outputs or not set(file.outputs) <= {name for name, _ in sensors}:
+        things += [("sensor", i, name) for i, (name, type_) in enumerate(sensors) if type_ == kind]
+    for what, i, name in things:
+        if not name:
+            raise InputError(
+                f"{what} {i} of {file.model}, counted from 0, has no name; give it one, such as the"
+                " name of its column in the log"
+            )
+
+
+def refuse_milliseconds(model: mujoco.MjModel, file: RobotFile, log: Log, path: Path) -> None:
+    """Refuse a log so slow beside the model's step that its time is hardly in seconds.
+
+    Raises:
+        InputError: a sample lasts more than `MOST_STEPS` steps.
+    """
+    h, step = log.sampling_time, float(model.opt.timestep)
+    if h > MOST_STEPS * step:
+        raise InputError(
+            f"{path} is sampled every {h:g} s, {h / step:.0f} steps of {file.model}; is its time in"
+            f' ms? then write time = "ms" under [units] in {path.with_suffix(".toml")}, else give'
+            f" the model a timestep of {h / MOST_STEPS:g} s or more"
+        )
+
+
+def refuse_every(file: RobotFile, log: Log) -> None:
+    """Refuse to thin a log whose parts would vanish, or whose inputs are not held.
+
+    Raises:
+        InputError: it is so.
+    """
+    if file.every == 1:
+        return
+    if log.hold != "zoh":
+        raise InputError(
+            f"every in {file.path} thins logs of hold 'zoh', and log {log.name!r} is of hold"
+            f" {log.hold!r}; leave every out"
+        )
+    if not _left(log, file.every):
+        largest = max((n for n in range(1, len(log)) if _left(log, n)), default=1)
+        raise InputError(
+            f"every in {file.path} is {file.every}, which leaves too few of the {len(log)} samples"
+            f" of log {log.name!r}; it may be {largest} at most"
+        )
+
+
+def _left(log: Log, every: int) -> bool:
+    """Whether every n-th sample leaves enough of each part of a log."""
+    time = log.time[: (len(log) - 1) // every * every + 1 : every]
+    if len(time) < 2 * MIN_ROWS:
+        return False
+    rows = (rows_between(time, *split) for split in log.splits.values())
+    return all(last - first >= MIN_ROWS for first, last in rows)
+
+
+def refuse_start(file: RobotFile, model: mujoco.MjModel, log: Log) -> None:
+    """Refuse a free run that would begin elsewhere than the log does.
+
+    Raises:
+        InputError: a position that the log measured first is neither free nor the model's.
+    """
+    free = (file.records.get(name, {}).get("path", name) for name in file.free)
+    own = {start_place(str(path), model) for path in free}
+    noise, travel = noise_floor(log.outputs), np.ptp(log.outputs, axis=0)
+    for k, (field, i) in enumerate(output_columns(model, log.output_names)):
+        off = abs(log.outputs[0, k] - model.qpos0[i]) if field == "qpos" else 0.0
+        if (field, i) not in own and off > max(CLEAR * noise[k], NEAR * travel[k]):
+            name, unit = log.output_names[k], log.units.get(log.output_names[k], "")
+            there, here = alike([float(log.outputs[0, k]), float(model.qpos0[i])], unit)
+            raise InputError(
+                f"log {log.name!r} begins at {name} = {there} and {file.model} at {here}; write"
+                f' "qpos[{i}]" under free in {file.path}: it then begins where it was measured'
+            )
+
+
+def refuse_horizon(file: RobotFile, log: Log) -> None:
+    """Refuse a horizon of which no window fits into both parts of a log.
+
+    Raises:
+        InputError: it is so.
+    """
+    most = min(len(log.part("estimation")), len(log.part("validation")))
+    _refuse(file, log, most, _samples(file, log) <= most)
+
+
+def refuse_search_horizon(file: RobotFile, log: Log) -> None:
+    """Refuse a horizon of which no window, as they divide a log, lies in its unseen part.
+
+    Raises:
+        InputError: it is so.
+    """
+    first, n = len(log.part("estimation")), _samples(file, log)
+    last = n and len(log) // n * n - n  # first sample of the last window
+    _refuse(file, log, (len(log) - first) // 2, last >= first)
+
+
+def _samples(file: RobotFile, log: Log) -> int:
+    return round((file.horizon or 0.0) / log.sampling_time)
+
+
+def _refuse(file: RobotFile, log: Log, most: int, fits: bool) -> None:
+    if file.horizon is None or (_samples(file, log) >= MIN_ROWS and fits):
+        return
+    h = log.sampling_time
+    raise InputError(
+        f"horizon in {file.path} is {file.horizon:g} s; in log {log.name!r} it may be"
+        f" {MIN_ROWS * h:g} s, of {MIN_ROWS} samples, to {most * h:g} s, to fit into what is unseen"
+    )

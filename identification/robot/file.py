@@ -1,0 +1,169 @@
+"""A TOML that says what a robot is: its model, its log's columns, what is free or missing.
+
+model = "emps.xml"                   # MJCF, beside this file
+outputs = ["position"]               # sensors that the log has; all joint positions if not given
+free = ["M", "joint/slide.damping", "coulomb_friction.f_c@slide"]
+horizon = 0.2                        # [s] to judge predictions over; a free run if not given
+every = 10                           # keep every n-th sample
+[fixed]                              # values of effects' parameters that are not free
+"stribeck_friction.v_s" = 0.05
+[columns]                            # actuator or sensor = column of the log, where they differ
+drive = "vir"
+[parameters.M]                       # of a free parameter; every key may be left out
+path = "body/carriage.mass"          # into the model; the name itself if not given
+value = 95.11                        # where the search begins; the model's own if not given
+known = 0.3                          # std: relative where it must be positive, else in its unit
+unit = "kg"
+lower = 0.0
+upper = 500.0
+scale = 1.0                          # a magnitude that matters, where it may be zero
+[effects]
+joints = ["slide"]                   # where they may act; the measured joints if not given
+turns = [1, 7, 14]                   # periods of a turn to try, where a motor's are known
+only = ["stribeck_friction"]         # candidates; all if not given
+
+A free name is a key under `parameters`, a path into the model or its start, or a size of an effect.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import inf, isfinite
+from pathlib import Path
+from typing import Any
+
+from identification.errors import InputError, unknown_name
+from identification.files import read_bytes
+from identification.logs.names import quoted
+
+_LARGEST = 2**20  # [bytes] written by hand
+_KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
+    "model": (str, "a path in quotes"),
+    "outputs": (list, "a list of sensors"),
+    "free": (list, "a list of parameters"),
+    "horizon": ((int, float), "a number of seconds"),
+    "every": (int, "a whole number of samples"),
+    "columns": (dict, "a table"),
+    "fixed": (dict, "a table of numbers"),
+    "parameters": (dict, "a table of tables"),
+    "effects": (dict, "a table"),
+}
+_RECORD: dict[str, tuple[type | tuple[type, ...], str]] = {
+    **dict.fromkeys(("path", "unit", "about"), (str, "text in quotes")),
+    **dict.fromkeys(("value", "known", "lower", "upper", "scale"), ((int, float), "a number")),
+}
+_EFFECTS: dict[str, tuple[type | tuple[type, ...], str]] = {
+    **dict.fromkeys(("joints", "only"), (list, "a list of names")),
+    "turns": (list, "a list of numbers above zero"),
+}
+_POSITIVE = ("every", "known", "scale")
+
+
+@dataclass(frozen=True)
+class RobotFile:
+    """What such a file says; see the module.
+
+    Attributes:
+        path: of the file.
+        model: path of the MJCF.
+        free: names of the free parameters.
+        outputs: sensors; empty for all joint positions.
+        horizon: [s], None for a free run.
+        every: n of every n-th sample.
+        columns: column of the log by actuator or sensor.
+        fixed: values of parameters of effects.
+        records: what is known of free parameters, by name.
+        joints: where effects may act; empty for the measured ones.
+        only: candidates by name; empty for all.
+        turns: periods of a turn to try; empty for the catalogue's.
+    """
+
+    path: Path
+    model: Path
+    free: tuple[str, ...]
+    outputs: tuple[str, ...] = ()
+    horizon: float | None = None
+    every: int = 1
+    columns: Mapping[str, str] = field(default_factory=dict)
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    records: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    joints: tuple[str, ...] = ()
+    only: tuple[str, ...] = ()
+    turns: tuple[float, ...] = ()
+
+
+def read_robot(path: str | Path) -> RobotFile:
+    """Read such a file.
+
+    Raises:
+        InputError: it cannot be read, is not TOML, or has a key or value that it may not have.
+    """
+    path = Path(path)
+    try:
+        content = tomllib.loads(read_bytes(path, _LARGEST).decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{path} is not TOML ({quoted(str(error), 120)}); correct it") from error
+    _check(content, _KINDS, str(path))
+    for key in ("model", "free"):
+        if not content.get(key):
+            raise InputError(f"{path} does not say {key!r}; give {_KINDS[key][1]}")
+    records = content.get("parameters", {})
+    for name, record in records.items():
+        if not isinstance(record, dict):
+            raise InputError(f"parameters.{name} in {path} must be a table")
+        _check(record, _RECORD, f"parameters.{name} in {path}")
+        if name not in content["free"]:
+            raise InputError(f"{path} tells of parameter {name!r}, which is not among its `free`")
+    columns, fixed = content.get("columns", {}), content.get("fixed", {})
+    _check(fixed, dict.fromkeys(fixed, ((int, float), "a number")), f"fixed in {path}")
+    effects = content.get("effects", {})
+    _check(effects, _EFFECTS, f"effects in {path}")
+    model = path.parent / content["model"]
+    if not model.is_file():
+        raise InputError(f"{path} names the model {model}, which is no file; correct it there")
+    return RobotFile(
+        path,
+        model,
+        _texts(content["free"], "free", path),
+        _texts(content.get("outputs", []), "outputs", path),
+        content.get("horizon"),
+        content.get("every", 1),
+        dict(zip(columns, _texts([*columns.values()], "columns", path), strict=True)),
+        {name: float(value) for name, value in fixed.items()},
+        records,
+        _texts(effects.get("joints", []), "effects.joints", path),
+        _texts(effects.get("only", []), "effects.only", path),
+        _numbers(effects.get("turns", []), "effects.turns", path),
+    )
+
+
+def _check(
+    table: Mapping[str, Any], kinds: Mapping[str, tuple[type | tuple[type, ...], str]], where: str
+) -> None:
+    for key, value in table.items():
+        if key not in kinds:
+            raise unknown_name(f"key in {where}:", key, kinds)
+        kind, words = kinds[key]
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        good = isinstance(value, kind) and not isinstance(value, bool)
+        if good and number:
+            good = isfinite(value) and (key not in _POSITIVE or value > 0)
+        if not good:
+            raise InputError(f"{key} in {where} must be {words}; correct it there")
+
+
+def _texts(values: list[Any], key: str, path: Path) -> tuple[str, ...]:
+    if not all(isinstance(v, str) for v in values) or len(set(values)) < len(values):
+        raise InputError(f"{key} in {path} must be names in quotes, each once")
+    return tuple(values)
+
+
+def _numbers(values: list[Any], key: str, path: Path) -> tuple[float, ...]:
+    for v in values:
+        if isinstance(v, bool) or not isinstance(v, int | float) or not 0 < v < inf:
+            raise InputError(f"{key} in {path} must be numbers above zero")
+    return tuple(map(float, values))

@@ -1,0 +1,123 @@
+"""The free parameters of a robot's TOML, each with what is known of it before the log speaks.
+
+What the file leaves out comes from the model, or from the log: a start that no one gave is what was
+measured first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fnmatch import fnmatchcase
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from identification.effects.effect_parameters import effect_parameters
+from identification.effects.joint_effect import JointEffect
+from identification.effects.named import means_effect, unknown_number
+from identification.errors import InputError
+from identification.logs.log import Log
+from identification.model.parameter import Parameter
+from identification.model.paths import read, resolve
+from identification.model.plant import own_start, start_place
+from identification.model.predictor import output_columns
+from identification.robot.file import RobotFile
+
+KNOWN = 0.3  # std of what nobody said more of: 30 % where positive, else of the plausible size
+SURE = 0.01  # of a joint's motion in the log: std of a start that was measured
+POSITIVE = ("mass", "inertia", "damping", "armature", "stiffness", "frictionloss")
+UNITS = {  # of a slide, of a hinge
+    "damping": ("N s/m", "N m s/rad"), "armature": ("kg", "kg m^2"),
+    "stiffness": ("N/m", "N m/rad"), "frictionloss": ("N", "N m"),
+    "qpos": ("m", "rad"), "qvel": ("m/s", "rad/s"),
+}  # fmt: skip
+
+
+def free_parameter(
+    file: RobotFile, name: str, model: mujoco.MjModel, effects: Sequence[JointEffect], log: Log
+) -> tuple[Parameter, float]:
+    """A free parameter, and the std of what is known of it in the search's coordinates.
+
+    Raises:
+        InputError: it is neither a path nor an effect's size, or it needs a value.
+    """
+    said = file.records.get(name, {})
+    given: dict[str, Any] = {k: said[k] for k in ("unit", "about") if k in said}
+    given |= {k: float(said[k]) for k in ("value", "lower", "upper", "scale") if k in said}
+    sizes = {p.name: (p, s.largest) for e in effects for s in e.effect.sizes
+             for p in effect_parameters(e.effect) if p.symbol == s.name}  # fmt: skip
+    if name in sizes:
+        own, largest = sizes[name]
+        if "value" not in given:
+            raise InputError(
+                f"{file.path} frees {name}, which is zero in the model: give it a value under"
+                f' [parameters."{name}"], or leave it to the candidates'
+            )
+        record, guess = replace(own, **given), KNOWN * largest
+    else:
+        path = said.get("path", name)
+        if any(path == f"{e.name}.{s.name}" for e in effects for s in e.effect.shapes):
+            raise InputError(
+                f"{file.path} frees {path}, which says how an effect looks and not how large it is:"
+                " give its value under [fixed]"
+            )
+        if means_effect(path, effects):
+            raise unknown_number(path, effects)
+        record, guess = _in_model(path, name, model, log, given)
+    if record.lower >= 0 and record.value > 0:
+        return record, float(said.get("known", KNOWN))
+    return record, float(said.get("known", guess)) / record.scale
+
+
+def measured_start(model: mujoco.MjModel, path: str, log: Log, own: float) -> float:
+    """The first sample of an entry of the start; its own value where it is not measured."""
+    place = start_place(path, model)
+    columns = output_columns(model, log.output_names)
+    return float(log.outputs[0, columns.index(place)]) if place in columns else own
+
+
+def _in_model(
+    path: str, name: str, model: mujoco.MjModel, log: Log, given: dict[str, Any]
+) -> tuple[Parameter, float]:
+    """A parameter that is a place in the model or in its start."""
+    fields: dict[str, Any] = {"where": path, "unit": unit_of(model, path)}
+    place = start_place(path, model)
+    if place is not None:
+        own = float(getattr(own_start(model), place[0])[place[1]])
+        moved = _moved(model, place, log)
+        fields |= {"value": measured_start(model, path, log, own), "scale": moved}
+        return Parameter(name, **{**fields, **given}), moved
+    value = read(model, resolve(model, path))
+    attribute = path.rpartition(".")[2].partition("[")[0]
+    scale = abs(value) or 1.0
+    fields |= {"value": value, "scale": scale, "lower": 0.0 if attribute in POSITIVE else -np.inf}
+    return Parameter(name, **{**fields, **given}), KNOWN * scale
+
+
+def unit_of(model: mujoco.MjModel, path: str) -> str:
+    """Of a body's mass, a joint's number or an entry of the start; "" of what else there is."""
+    place = start_place(path, model)
+    thing, _, attribute = path.partition("[")[0].rpartition(".")
+    kind, _, name = thing.partition("/")
+    joints: list[int] = []
+    if place is not None:
+        attribute = place[0]
+        at = model.jnt_qposadr if attribute == "qpos" else model.jnt_dofadr
+        joints = np.flatnonzero(at <= place[1])[-1:].tolist()
+    elif kind == "joint":
+        joints = [j for j in range(model.njnt) if fnmatchcase(model.joint(j).name, name)]
+    if not joints or attribute not in UNITS:
+        return "kg" if (kind, attribute) == ("body", "mass") else ""
+    types = (int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE))
+    found = int(model.jnt_type[joints[0]])
+    return UNITS[attribute][types.index(found)] if found in types else ""
+
+
+def _moved(model: mujoco.MjModel, place: tuple[str, int], log: Log) -> float:
+    """A magnitude that matters for an entry of the start: a little of its motion in the log."""
+    columns = output_columns(model, log.output_names)
+    if place in columns:
+        return SURE * float(np.ptp(log.outputs[:, columns.index(place)])) or 1.0
+    return 0.1

@@ -1,0 +1,143 @@
+"""A robot of a TOML file and its log: the plant, what is free of it, what it may lack."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from identification.discovery.extend import Base
+from identification.effects.axes import axes
+from identification.effects.effect import Effect
+from identification.effects.input_effects import drives, input_effects
+from identification.effects.joint_catalogue import TURNS, joint_effects
+from identification.effects.joint_plant import JointPlant, candidates, joint_plant
+from identification.effects.named import means_effect, unknown_number
+from identification.effects.rows import read_model
+from identification.errors import InputError, unknown_name
+from identification.logs.decimation import decimate
+from identification.logs.log import Log
+from identification.logs.read import read_log
+from identification.model.plant import start_place
+from identification.model.predictor import output_columns
+from identification.robot.checks import (
+    refuse_every,
+    refuse_milliseconds,
+    refuse_same_stem,
+    refuse_unnamed,
+)
+from identification.robot.file import RobotFile
+from identification.robot.parameters import free_parameter, measured_start, unit_of
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A robot and the log that it is to explain.
+
+    Attributes:
+        file: what its TOML says.
+        log: thinned, if so wished.
+        plant: its model with the effects.
+        std: what is known of its free parameters, in the search's coordinates, shape (p,).
+    """
+
+    file: RobotFile
+    log: Log
+    plant: JointPlant
+    std: np.ndarray
+
+    @property
+    def base(self) -> Base:
+        """What a discovery begins with."""
+        return Base(self.plant, self.file.free, self.std, self.file.horizon)
+
+    @property
+    def candidates(self) -> tuple[Effect, ...]:
+        """The effects that may be missing."""
+        found = candidates(self.plant, self.file.free)
+        return tuple(e for e in found if not self.file.only or e.name in self.file.only)
+
+    @property
+    def starts(self) -> tuple[str, ...]:
+        """Free parameters that are entries of the initial state."""
+        at = self.plant.parameters
+        return tuple(n for n in self.file.free
+                     if start_place(at[n].where, self.plant.model) is not None)  # fmt: skip
+
+    def started(self, log: Log) -> dict[str, float]:
+        """The free parameters of the start as another log of the robot measured them first."""
+        at = self.plant.parameters
+        return {
+            n: measured_start(self.plant.model, at[n].where, log, at[n].value) for n in self.starts
+        }
+
+
+def read_robot_log(file: RobotFile, path: str | Path) -> Log:
+    """A log with the columns of a robot.
+
+    Raises:
+        InputError: as `read_log`, a name in the robot's file is no actuator or sensor, or its
+            log has too few samples for it, or time that is hardly in seconds.
+    """
+    refuse_same_stem(file, Path(path))
+    model = read_model(file.model).compile()
+    refuse_unnamed(model, file)
+    inputs = tuple(model.actuator(i).name for i in range(model.nu))
+    sensors = {model.sensor(i).name: int(model.sensor_type[i]) for i in range(model.nsensor)}
+    positions = (n for n, t in sensors.items() if t == int(mujoco.mjtSensor.mjSENS_JOINTPOS))
+    outputs = file.outputs or tuple(positions)
+    if not (inputs and outputs):
+        raise InputError(
+            f"{file.model} has {len(inputs)} actuators and {len(sensors)} sensors; it needs an"
+            " actuator for every input and a jointpos or jointvel sensor for every output"
+        )
+    places = output_columns(model, outputs)
+    units = {
+        n: unit_of(model, f"{field}[{i}]") for n, (field, i) in zip(outputs, places, strict=True)
+    }
+    for name in file.columns:
+        if name not in (*inputs, *outputs):
+            raise unknown_name(f"actuator or sensor under columns in {file.path}:", name,
+                               (*inputs, *outputs))  # fmt: skip
+    own = {name: file.columns.get(name, name) for name in (*inputs, *outputs)}
+    log = read_log(
+        path, [own[n] for n in inputs], [own[n] for n in outputs],
+        units={own[n]: u for n, u in units.items()}, named_in=file.path,
+    )  # fmt: skip
+    refuse_milliseconds(model, file, log, Path(path))
+    refuse_every(file, log)
+    given = {n: u for n in inputs if (u := log.units.get(own[n]))}
+    log = replace(log, input_names=inputs, output_names=outputs, units={**units, **given})
+    return decimate(log, file.every) if file.every > 1 else log
+
+
+def robot_of(file: RobotFile, log: Log) -> Robot:
+    """Compile a robot for a log.
+
+    Raises:
+        InputError: a name, a path, a joint or an effect is unknown, or a value is missing.
+    """
+    spec = read_model(file.model)
+    model = spec.copy().compile()
+    known = axes(model, log)
+    for joint in file.joints:
+        if joint not in {a.joint for a in known}:
+            raise unknown_name("measured joint", joint, (a.joint for a in known))
+    known = tuple(a for a in known if not file.joints or a.joint in file.joints)
+    effects = (*joint_effects(known, file.turns or TURNS), *input_effects(drives(log)))
+    for name in file.only:
+        if name not in {e.name for e in effects}:
+            raise unknown_name("effect", name, (e.name for e in effects))
+    records = [free_parameter(file, name, model, effects, log) for name in file.free]
+    plant = joint_plant(file.model, [r for r, _ in records], log, joints=known, effects=effects)
+    for name in file.fixed:
+        if name not in plant.parameters.values():
+            if means_effect(name, effects):
+                raise unknown_number(name, effects)
+            raise InputError(
+                f"{name!r} under fixed in {file.path} is no number of an effect; write its value"
+                f" into {file.model}, or name it under free"
+            )
+    return Robot(file, log, plant.with_values(file.fixed), np.array([std for _, std in records]))

@@ -1,0 +1,121 @@
+"""What a model's own integration errs by on a log, beside the log's noise.
+
+    d(t) = ŷ_Δ(t) - ŷ_Δ/2(t)         Δ the model's timestep, the first `SECONDS` of a free run
+    e = rms d(t)                     or, where predictions are judged over a horizon H,
+    e = rms (d(t) - d(t - H))        what the two part by in that time
+
+Halving a step of order p leaves 2⁻ᵖ of its error: e is half of Euler's, and nearly all of RK4's.
+What is larger than the noise passes for an effect.
+"""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from identification.errors import DivergenceError, InputError
+from identification.logs.noise import noise_floor
+from identification.model.predictor import Predictor
+from identification.robot.robot import Robot
+
+SECONDS = 2.0  # of a free run; a longer one of an unstable robot would lose itself
+HALVINGS = 6  # of the timestep that are tried for one that would do
+NONE = 1e-6  # of an output's motion, an error that does not matter even where there is no noise
+INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")  # as MuJoCo counts them
+RK4 = INTEGRATORS.index("RK4")
+
+
+@dataclass(frozen=True)
+class StepError:
+    """Of one output.
+
+    Attributes:
+        output: its name.
+        error: e, in its unit.
+        noise: std of its noise, in its unit.
+    """
+
+    output: str
+    error: float
+    noise: float
+
+
+def refuse_coarse_steps(robot: Robot) -> None:
+    """Refuse a model whose integration errs by more than the noise of the log.
+
+    Raises:
+        InputError: it does.
+    """
+    try:
+        worst = step_error(robot)
+    except DivergenceError:  # its steps or its values: the search will tell
+        return
+    if worst.error <= worst.noise:
+        return
+    option, unit = robot.plant.model.opt, robot.log.units.get(worst.output, "")
+    raise InputError(
+        f"{robot.file.model} errs by {worst.error:.2g} {unit}".rstrip()
+        + f" in {worst.output} with integrator {INTEGRATORS[int(option.integrator)]} and timestep"
+        f" {option.timestep:g} s, more than the noise of log {robot.log.name!r},"
+        f" {worst.noise:.2g} {unit}".rstrip()
+        + f"; {_cure(robot)}"
+    )
+
+
+def step_error(robot: Robot) -> StepError:
+    """The error of the output whose error is the largest beside its noise.
+
+    Raises:
+        DivergenceError: a simulation left the finite numbers.
+    """
+    log, h = robot.log, robot.log.sampling_time
+    samples = 1 + int(min(SECONDS, log.duration) / h)
+    coarse, fine = (
+        Predictor(r.plant, log, ()).predict(np.empty((1, 0)), samples)[0]
+        for r in (robot, _stepped(robot, 0.5))
+    )
+    d, lag = coarse - fine, round((robot.file.horizon or 0.0) / h)
+    if 0 < lag < samples:
+        d = d[lag:] - d[:-lag]
+    e, noise = np.sqrt(np.mean(d**2, axis=0)), _noise(log.outputs)
+    k = int(np.argmax(e / noise))
+    return StepError(log.output_names[k], float(e[k]), float(noise[k]))
+
+
+def _noise(y: np.ndarray) -> np.ndarray:
+    """Std of the noise of each output; of an encoder that crosses few of its steps, theirs."""
+    steps = np.abs(np.diff(y, axis=0))
+    least = np.min(np.where(steps > 0, steps, np.inf), axis=0)
+    return np.maximum.reduce([noise_floor(y), least / 12**0.5, NONE * np.ptp(y, axis=0)])
+
+
+def _cure(robot: Robot) -> str:
+    """The largest step of RK4 that errs by less than the noise, and how to ask for it."""
+    option = robot.plant.model.opt
+    has = int(option.integrator) == RK4
+    for halvings in range(int(has), HALVINGS + 1):
+        finer = _stepped(robot, 0.5**halvings, RK4)
+        try:
+            found = step_error(finer)
+        except DivergenceError:
+            continue
+        if found.error <= found.noise:
+            wanted = [] if has else ['integrator="RK4"']
+            wanted += [f'timestep="{finer.plant.model.opt.timestep:.10g}"'] if halvings else []
+            return f"write {' and '.join(wanted)} into its <option>"
+    return (
+        f"no timestep of RK4 down to {0.5**HALVINGS * option.timestep:.2g} s would do: soften what"
+        " is stiff in it"
+    )
+
+
+def _stepped(robot: Robot, factor: float, integrator: int | None = None) -> Robot:
+    """The same robot with another timestep, and perhaps another integrator."""
+    model = copy.copy(robot.plant.model)
+    model.opt.timestep *= factor
+    if integrator is not None:
+        model.opt.integrator = integrator
+    plant = replace(robot.plant, bare=replace(robot.plant.bare, model=model))
+    return replace(robot, plant=plant)

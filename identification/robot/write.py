@@ -1,0 +1,63 @@
+"""A robot's TOML with what was found: it reads back as the robot that was fitted."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+from identification.files import write_text
+from identification.robot.robot import Robot
+
+
+def write_robot(robot: Robot, values: Mapping[str, float], path: Path, place: Path) -> Path:
+    """Write a robot with other values, the sizes of named effects among its free parameters.
+
+    Args:
+        robot: what was fitted.
+        values: of its free parameters and of effects that it now has, by name.
+        path: of the file to write.
+        place: the folder from which the file will be read.
+    """
+    file, at = robot.file, robot.plant.parameters
+    shapes = {f"{e.name}.{s.name}" for e in robot.plant.effects for s in e.effect.shapes}
+    fixed = {**file.fixed, **{n: v for n, v in values.items() if n in shapes}}
+    names = [*file.free, *(n for n in values if n not in (*file.free, *shapes))]
+    lines = [
+        f"model = {_text(os.path.relpath(file.model, place))}",
+        f"outputs = {_list(robot.log.output_names)}",
+        f"free = {_list(names)}",
+    ]
+    lines += [] if file.horizon is None else [f"horizon = {file.horizon!r}"]
+    lines += [f"every = {file.every}"] if file.every > 1 else []
+    tables: dict[str, dict[str, object]] = {"columns": dict(file.columns), "fixed": dict(fixed)}
+    for name in names:
+        said = {**file.records.get(name, {}), "unit": at[name].unit}
+        tables[f"parameters.{_text(name)}"] = {
+            **said, "value": float(values.get(name, at[name].value))
+        }  # fmt: skip
+    tables["effects"] = {
+        key: list(given)
+        for key, given in (("joints", file.joints), ("only", file.only), ("turns", file.turns))
+        if given
+    }
+    for title, table in tables.items():
+        if table:
+            lines += ["", f"[{title}]", *(f"{_text(k)} = {_value(v)}" for k, v in table.items())]
+    return write_text(path, "\n".join(lines) + "\n")
+
+
+def _text(text: str) -> str:
+    """A basic string of TOML: JSON's escapes are among its own."""
+    return json.dumps(text, ensure_ascii=False)
+
+
+def _list(names: tuple[str, ...] | list[str]) -> str:
+    return f"[{', '.join(map(_text, names))}]"
+
+
+def _value(value: object) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    return _text(value) if isinstance(value, str) else repr(value)

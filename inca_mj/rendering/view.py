@@ -1,0 +1,106 @@
+"""One camera's picture of the robot, with its measured ghost."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from math import atan, degrees, radians, tan
+
+import mujoco
+import numpy as np
+from matplotlib.colors import to_rgb
+
+from identification.errors import unknown_name
+from identification.report.style import MEASURED
+from inca_mj.rendering.graphics import renderer
+
+CAMERAS = ("front", "side", "handle")
+
+_GHOST_RGB = np.array(to_rgb(MEASURED))
+_GHOST_BODY, _GHOST_CABLE = 0.24, 0.35  # opacity
+_HALO, _THREAD = 1.3, 0.6  # the ghost is a halo where it agrees; its cables do not hide colours
+_SAMPLES = 4  # antialiasing; software OpenGL knows 0 and 4, and 0 breaks cables into dots
+_WIDE = 1.15  # width to height that a camera is made for
+_DYNAMIC = mujoco.mjtCatBit.mjCAT_DYNAMIC
+_TENDON, _CYLINDER = mujoco.mjtObj.mjOBJ_TENDON, mujoco.mjtGeom.mjGEOM_CYLINDER
+
+
+@dataclass(frozen=True)
+class View:
+    """A renderer with a model of its own, whose cables it may colour and thicken."""
+
+    camera: str
+    model: mujoco.MjModel
+    robot: mujoco.MjData
+    ghost: mujoco.MjData
+    draws: mujoco.Renderer
+
+    def draw(self, qpos: np.ndarray, colours: np.ndarray, ghost: np.ndarray | None) -> np.ndarray:
+        """The picture, shape (height, width, 3) of bytes.
+
+        Args:
+            qpos: positions of the simulated robot, shape (15,) [m, -, rad].
+            colours: of its cables, shape (8, 4) [0..1].
+            ghost: positions of the measured robot, shape (15,); not drawn when None.
+        """
+        self.model.tendon_rgba[:] = colours
+        _place(self.model, self.robot, qpos)
+        self.draws.update_scene(self.robot, self.camera)
+        if ghost is not None:
+            self._add_ghost(ghost)
+        scene = self.draws.scene
+        # On a CPU each of these costs several times the rest of the picture.
+        scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
+        scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
+        scene.flags[mujoco.mjtRndFlag.mjRND_HAZE] = True
+        return self.draws.render()
+
+    def _add_ghost(self, qpos: np.ndarray) -> None:
+        _place(self.model, self.ghost, qpos)
+        scene, option = self.draws.scene, mujoco.MjvOption()
+        first = scene.ngeom
+        mujoco.mjv_addGeoms(
+            self.model, self.ghost, option, mujoco.MjvPerturb(), _DYNAMIC.value, scene
+        )
+        for geom in scene.geoms[first : scene.ngeom]:
+            cable = geom.objtype == _TENDON
+            geom.rgba[:3] = _GHOST_RGB
+            geom.rgba[3] = _GHOST_CABLE if cable else _GHOST_BODY
+            geom.size[:2] *= _THREAD if cable else _HALO
+            geom.transparent = 1
+            if geom.type == _CYLINDER:  # a drum stays where it is: only the mark on its rim turns
+                geom.rgba[3] = 0.0
+
+
+@contextmanager
+def view(
+    model: mujoco.MjModel, camera: str, width: int, height: int, *, cable: float
+) -> Iterator[View]:
+    """Open a view of width x height pixels; `cable` is the radius cables are drawn with [m].
+
+    Raises:
+        InputError: the camera is unknown.
+        GraphicsError: no OpenGL context can be made here.
+    """
+    if camera not in CAMERAS:
+        raise unknown_name("camera", camera, CAMERAS)
+    own = copy.copy(model)
+    own.vis.global_.offwidth, own.vis.global_.offheight = width, height
+    own.vis.quality.offsamples = _SAMPLES
+    own.tendon_width[:] = cable
+    number = own.camera(camera).id
+    narrow = max(1.0, _WIDE * height / width)
+    own.cam_fovy[number] = 2 * degrees(atan(narrow * tan(radians(own.cam_fovy[number]) / 2)))
+    with renderer(own, width, height) as draws:
+        yield View(camera, own, mujoco.MjData(own), mujoco.MjData(own), draws)
+
+
+def _place(model: mujoco.MjModel, data: mujoco.MjData, qpos: np.ndarray) -> None:
+    """What drawing needs of a state: positions of bodies, lights, cameras and tendons."""
+    data.qpos[:] = qpos
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    mujoco.mj_camlight(model, data)
+    mujoco.mj_tendon(model, data)

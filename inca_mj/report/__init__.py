@@ -1,0 +1,1 @@
+"""What reports and JSON say of the robot."""

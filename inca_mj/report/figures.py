@@ -1,0 +1,90 @@
+"""Figures of runs and cross-checks, with units on every axis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from identification.report.style import GREY, INK, SERIES, STYLE
+from inca_mj.twin.run import Run
+
+_MARKERS = "osD^vPX*"
+
+
+def simulation_figures(run: Run) -> dict[str, Figure]:
+    """The four figures of the thesis' Figure 2.16, by name.
+
+    The thesis' caption of its part (d) repeats "angles of the motors"; its text speaks of roll,
+    pitch and yaw, and so does this.
+    """
+    drives = range(1, run.motor_angle.shape[1] + 1)
+    series: dict[str, tuple[str, np.ndarray, list[str]]] = {
+        "motor_angles": ("motor angle φ [rad]", run.motor_angle, [f"motor {k}" for k in drives]),
+        "cable_tensions": ("cable tension T [N]", run.tension, [f"cable {k}" for k in drives]),
+        "platform_position": ("platform position [m]", run.position, ["x", "y", "z"]),
+        "platform_angles": ("platform angle [rad]", run.angles, ["roll", "pitch", "yaw"]),
+    }
+    return {name: _over_time(run.time, *what) for name, what in series.items()}
+
+
+def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) -> Figure:
+    """Largest difference of the two models over the step, with the slope of a 4th-order method.
+
+    Args:
+        rows: one of each case and step: `case`, `step` [s], `max_angle_error` [rad],
+            `max_position_error` [m], `max_tension_error` [N].
+        order: the order of convergence observed; None when it could not be.
+    """
+    cases = list(dict.fromkeys(str(row["case"]) for row in rows))
+    with matplotlib.rc_context(STYLE):
+        figure = Figure((9.5, 3.6), layout="constrained")
+        for ax, (kind, unit) in zip(
+            figure.subplots(1, 3),
+            (("angle", "rad"), ("position", "m"), ("tension", "N")),
+            strict=True,
+        ):
+            error = f"max_{kind}_error"
+            for number, case in enumerate(cases):
+                # No error at all has no place on a logarithmic axis: a gap.
+                points = sorted((r["step"], r[error] or np.nan) for r in rows
+                                if str(r["case"]) == case)  # fmt: skip
+                ax.plot(*zip(*points, strict=True), color=SERIES[number % len(SERIES)],
+                        marker=_MARKERS[number % len(_MARKERS)], ms=4.5, label=case)  # fmt: skip
+            _slope(ax, rows, error)
+            ax.set(xscale="log", xlabel="step [ms]")
+            if any(row[error] for row in rows):
+                ax.set_yscale("log")
+            steps = sorted({row["step"] for row in rows})
+            ax.set_xticks(steps, [f"{1e3 * step:g}" for step in steps])
+            ax.minorticks_off()
+            ax.set_title(f"largest {kind} error [{unit}]", loc="left", color=INK)
+        observed = "" if order is None else f": observed order {order:.2f}"
+        figure.suptitle(f"twin against reference{observed}", color=INK, fontsize=10.5)
+        handles, labels = ax.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=min(5, len(labels)))
+    return figure
+
+
+def _over_time(time: np.ndarray, label: str, values: np.ndarray, names: list[str]) -> Figure:
+    with matplotlib.rc_context(STYLE):
+        figure = Figure((6.4, 3.4), layout="constrained")
+        ax = figure.subplots()
+        for k, name in enumerate(names):
+            ax.plot(time, values[:, k], color=SERIES[k], ls="-" if k < 4 else "--", label=name)
+        ax.set(xlabel="time [s]", ylabel=label, xlim=(time[0], time[-1]))
+        figure.legend(loc="outside upper center", ncols=min(4, len(names)))
+    return figure
+
+
+def _slope(ax: Axes, rows: Sequence[Mapping[str, Any]], error: str) -> None:
+    """A dashed line error ~ step⁴ just below the largest errors."""
+    steps = np.array(sorted({row["step"] for row in rows}))
+    largest = max((row[error] or 0.0 for row in rows if row["step"] == steps[-1]), default=0.0)
+    if largest > 0:
+        guide = 0.4 * largest * (steps / steps[-1]) ** 4
+        ax.plot(steps, guide, color=GREY, ls="--", lw=1, label="slope 4")

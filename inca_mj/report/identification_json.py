@@ -1,0 +1,178 @@
+"""An identification as plain values, for JSON and for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from identification.estimation.fit import Fit
+from identification.estimation.profiles import Profile
+from identification.estimation.window_estimate import WindowEstimate
+from identification.kalman.estimate import InnovationsFit
+from identification.report.fit_json import fit_to_json
+from identification.report.fit_verdict import (
+    HOLDS,
+    coloured_outputs,
+    identifiable_sentences,
+    search_sentences,
+    verdict,
+    window_sentences,
+)
+from inca_mj.workflows.identification import POSE, Identification
+
+# name, value, std, unit, start, on a bound
+Row = tuple[str, float, float, str, float, bool]
+
+
+def identification_json(
+    result: Identification, profiles: Sequence[Profile] = (), seed: int = 0
+) -> dict[str, Any]:
+    """The numbers and the verdict; what is unknown or infinite is null."""
+    record = fit_to_json(result.fit)
+    record["steps"] = [fit_to_json(fit) for fit in result.fits]
+    record["verdict"] = identification_verdict(result)
+    record["seconds"] = result.seconds
+    record["seed"] = seed
+    if result.starts:
+        record["starts"] = [[_finite(e) for e in errors] for errors in result.starts]
+    if (found := result.innovations) is not None:
+        record["innovations"] = {
+            "rms": found.rms, "validation_rms": found.validation_rms,
+            "sensor_std": found.level.sigma, "input_error_std": found.level.input_std,
+            "input_error_time": found.level.noise.time if found.level.noise.ratio else None,
+        }  # fmt: skip
+    if profiles:
+        record["profiles"] = {p.name: _profile(p) for p in profiles}
+    if (w := result.windows) is not None:
+        record["parameters"] = {
+            name: {"value": value, "std": _finite(std), "unit": unit, "initial": first,
+                   "at_bound": bound}
+            for name, value, std, unit, first, bound in rows(result, result.fit)
+        }  # fmt: skip
+        record["windows"] = {
+            "seconds": w.length, "count": len(w.residual), "rms": w.rms, "converged": w.converged,
+            "linearisations": w.tangents,
+        }  # fmt: skip
+    return record
+
+
+def identification_verdict(result: Identification) -> list[str]:
+    """What the fit to believe says, after what its windows and its starts say."""
+    if result.innovations is not None:
+        return innovations_verdict(result.innovations)
+    if result.windows is not None:
+        return windows_verdict(result.windows, result.fit)
+    said = verdict(result.fit)
+    if held := held_sentence(result.fit):
+        said.append(held)
+    if result.starts:
+        said.append(starts_sentence(result.starts[result.best]))
+    return said
+
+
+def rows(result: Identification, fit: Fit) -> list[Row]:
+    """A line of the table of parameters each: of the windows, if any, then of the fit."""
+    known = fit.estimate.predictor.plant.parameters
+    w, e = result.windows, fit.estimate
+    parts: list[tuple[Any, ...]] = []
+    if w is not None:
+        parts += [
+            part for part in zip(w.values, w.values.values(), w.std, w.start, w.at_bound,
+                                 strict=True)
+            if part[0] not in e.values
+        ]  # fmt: skip
+    parts += zip(e.values, e.values.values(), fit.std, e.start, fit.at_bound, strict=True)
+    return [
+        (name, float(value), float(std), known[name].unit, float(first), bool(bound))
+        for name, value, std, first, bound in parts
+    ]
+
+
+def windows_verdict(found: WindowEstimate, fit: Fit) -> list[str]:
+    """What the windows found, and how far their parameters carry in a free run."""
+    floor = float(np.sqrt(np.mean(fit.floor**2)))
+    said = window_sentences(found, floor)
+    unseen = "" if fit.validation_rms is None else f" and {fit.validation_rms:.3g} on unseen data"
+    said.append(
+        f"A free run with them, its start pose fitted, leaves {fit.rms:.3g} rms{unseen};"
+        " there small errors of parameters, and all that disturbs the robot, add up."
+    )
+    return said
+
+
+def innovations_verdict(found: InnovationsFit) -> list[str]:
+    """What an estimate by innovations says: of the noise, then of the fit."""
+    fit, noise = found.fit, found.level
+    said = [*search_sentences(fit), *identifiable_sentences(fit)]
+    if noise.noise.ratio:
+        log = fit.estimate.predictor.log
+        unit = log.units.get(log.input_names[0], "")
+        said.append(
+            f"The inputs err by {noise.input_std:.2g} {unit} rms beside what the log says, for"
+            f" {noise.noise.time:g} s at a time; the sensors' noise is {noise.sigma:.3g}."
+        )
+    else:
+        said.append(f"The inputs are as the log says; the sensors' noise is {noise.sigma:.3g}.")
+    if found.validation_rms is not None:
+        ratio = found.validation_rms / found.rms
+        held = "the model holds there too" if ratio < HOLDS else "the model does not hold there"
+        said.append(
+            f"One step ahead it errs by {found.rms:.3g} rms,"
+            f" by {found.validation_rms:.3g} on unseen data: {held}."
+        )
+        said.append(
+            f"A free run errs by {fit.rms:.3g}, by {fit.validation_rms:.3g} on unseen data;"
+            " there all that disturbs the robot adds up."
+        )
+    said.append(
+        "The innovations are white: the model suffices."
+        if not coloured_outputs(fit)
+        else f"The innovations of {coloured_outputs(fit)} outputs are coloured: the model lacks"
+        " something; `inca discover` looks for it."
+    )
+    return said
+
+
+def held_sentence(fit: Fit) -> str:
+    """That the start pose was not estimated, which spoils a fit where it is not known exactly."""
+    held = [name for name in POSE if name not in fit.estimate.values]
+    if len(held) < len(POSE):
+        return ""
+    return (
+        "The start pose is held where the parameter set puts it; where that is not exact, estimate"
+        f" it too: --free ... {' '.join(held)}."
+    )
+
+
+def starts_sentence(errors: np.ndarray) -> str:
+    """How many starts were needed, and how well they agree."""
+    best = float(errors.min())
+    same = int((errors < 1.01 * best).sum())
+    if len(errors) == 1:
+        return "The first start ended near the noise floor; no other was needed."
+    return (
+        f"{len(errors)} starts were tried; {same} ended within 1 % of the best, {best:.3g} rms,"
+        f" the worst at {float(errors.max()):.3g}."
+    )
+
+
+def profile_sentence(known: Profile) -> str:
+    """The 95 % interval of a profile."""
+    low, high = known.interval
+    said = f"{known.name}: {known.estimate:.6g}, 95 % interval [{low:.6g}, {high:.6g}]"
+    return said + ("; open: the log does not bound it here" if known.open else "")
+
+
+def _profile(known: Profile) -> dict[str, Any]:
+    return {
+        "value": known.estimate,
+        "interval": [_finite(end) for end in known.interval],
+        "values": known.values.tolist(),
+        "rise": [_finite(r) for r in known.rise],
+    }
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,111 @@
+"""What reports say: a section each for a comparison, a run, a check, a film, a model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from identification.estimation.metrics import mean_fit
+from identification.report.compare_figure import compare_figure
+from identification.report.page import Section, Table
+from inca_mj.report.figures import crosscheck_figure, simulation_figures
+from inca_mj.twin.run import Run
+from inca_mj.twin.twin import Twin
+from inca_mj.workflows.comparison import Comparison
+
+if TYPE_CHECKING:
+    from inca_mj.verification import CrossCheck
+
+
+def compare_verdict(result: Comparison) -> list[str]:
+    """What the comparison means, in sentences."""
+    fit, error = result.fit_percent, 1e3 * float(result.rms.mean())
+    cable = error * result.run.twin.parameters["R"].value
+    said = [f"The mean fit is {mean_fit(fit)}."]
+    if not np.isnan(fit).all():
+        worst = int(np.nanargmin(fit))
+        said = [
+            f"The twin explains {np.nanmean(fit):.1f} % of the motor angles' motion (mean fit);"
+            f" drive {worst + 1} is worst with {fit[worst]:.1f} %."
+        ]
+    if still := [str(i + 1) for i in np.flatnonzero(np.isnan(fit))]:
+        said.append(f"No fit is said of drives that never move: {', '.join(still)}.")
+    return [
+        *said,
+        f"The difference is {error:.1f} mrad rms, {cable:.2f} mm of cable.",
+    ]
+
+
+def compare_section(result: Comparison) -> Section:
+    """Measured against simulated, as MATLAB's `compare` shows it."""
+    log = result.log
+    figure = compare_figure(
+        log.time, log.outputs, result.run.motor_angle, result.fit_percent, log.output_names, "rad"
+    )
+    rows = zip(log.output_names, result.fit_percent, 1e3 * result.rms, strict=True)
+    return Section(
+        "Measured against simulated",
+        f"{len(log)} samples of {log.sampling_time:g} s, simulated from the currents alone.\n\n"
+        "Fit is 100 (1 − ‖ŷ − y‖/‖y − ȳ‖): 100 % is perfect, 0 % is as good as the mean."
+        + (f"\n\nThe log says: {log.notes}" if log.notes else ""),
+        figures=(("Measured and simulated motor angles", figure),),
+        table=Table(
+            ("output", "fit [%]", "rms [mrad]"),
+            tuple(
+                (name, "–" if np.isnan(fit) else float(fit), float(error))
+                for name, fit, error in rows
+            ),
+        ),
+    )
+
+
+def run_section(run: Run) -> Section:
+    """The four pictures of the thesis' Figure 2.16."""
+    return Section(
+        "What the robot does",
+        f"{len(run.time)} samples; the least tension is {run.tension.min():.2f} N, the largest"
+        f" {run.tension.max():.2f} N.",
+        figures=tuple(simulation_figures(run).items()),
+    )
+
+
+def crosscheck_section(result: CrossCheck) -> Section:
+    """Two models of one robot that share no code."""
+    keys = ("max_angle_error", "max_position_error", "max_tension_error")
+    return Section(
+        "Two independent models of one robot",
+        "The thesis' 36-state ODE (body axes, Euler angles), integrated adaptively, against the"
+        " MuJoCo twin at several steps. They share parameters and geometry and no line of physics.",
+        figures=(("Error against step", crosscheck_figure(result.rows, result.order)),),
+        table=Table(
+            ("case", "step [ms]", "angle [rad]", "position [m]", "tension [N]"),
+            tuple(
+                (row["case"], 1e3 * row["step"], *(row[key] for key in keys)) for row in result.rows
+            ),
+        ),
+    )
+
+
+def model_section(robot: Twin) -> Section:
+    """Every number of the robot and where it comes from."""
+    assumed = " These coordinates are assumed." if robot.geometry.assumed else ""
+    return Section(
+        "The model",
+        f"Parameter set {robot.parameters.name}. Geometry: {robot.geometry.source}.{assumed}",
+        table=Table(
+            ("parameter", "value", "unit", "what", "source"),
+            tuple((p.name, p.value, p.unit, p.about, p.source) for p in robot.parameters),
+        ),
+    )
+
+
+def film_section(path: Path) -> Section:
+    """The film."""
+    return Section(
+        "The film",
+        "In colour: the twin, its cables coloured by tension. Translucent: the pose that the"
+        " measured angles imply for cables that do not stretch.",
+        video=path,
+    )

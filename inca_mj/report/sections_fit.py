@@ -1,0 +1,51 @@
+"""What reports say of an identification."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from identification.estimation.fit import Fit
+from identification.estimation.profiles import Profile
+from identification.report.fit_verdict import verdict
+from identification.report.page import Section, Table
+from identification.report.profile_figure import profile_figure
+from inca_mj.report.identification_json import (
+    identification_verdict,
+    profile_sentence,
+    rows,
+)
+from inca_mj.workflows.identification import Identification
+
+
+def fit_section(result: Identification, fit: Fit, title: str) -> Section:
+    """Parameters with uncertainty, and the fit's verdict."""
+    said = identification_verdict(result) if fit is result.fit else verdict(fit)
+    return Section(
+        title,
+        "\n\n".join(said),
+        table=Table(
+            ("parameter", "value", "std", "unit", "start", "note"),
+            tuple(
+                (
+                    name,
+                    value,
+                    std if np.isfinite(std) else "unknown",
+                    unit,
+                    first,
+                    "at bound" if bound else "",
+                )
+                for name, value, std, unit, first, bound in rows(result, fit)
+            ),
+        ),
+    )
+
+
+def profile_section(fit: Fit, known: Profile) -> Section:
+    """How well the other parameters can make up for one."""
+    unit = fit.estimate.predictor.plant.parameters[known.name].unit
+    return Section(
+        f"Profile of {known.name}",
+        f"{profile_sentence(known)}.\n\nThe others are fitted anew at each value. Between the"
+        " crossings with the line lies the 95 % interval, however curved the profile is.",
+        figures=((f"Profile of {known.name}", profile_figure(known, unit)),),
+    )

@@ -1,0 +1,192 @@
+"""What commands say of an experiment's information: sentences, JSON, report sections."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from identification.estimation.identifiability import in_words
+from identification.estimation.information import Information, determinable
+from identification.report.page import Section, Table
+from inca_mj.report.figures_information import std_figure
+from inca_mj.workflows.bench import Tried
+from inca_mj.workflows.excitation import Design
+
+WEAK = 0.5  # relative std beyond which a value says little
+
+
+def finite(x: float) -> float | None:
+    """A number for JSON: what is not finite is null."""
+    return float(x) if np.isfinite(x) else None
+
+
+def information_verdict(found: Information) -> list[str]:
+    """What can be determined, what cannot, in sentences."""
+    kept, held = determinable(found)
+    if held:
+        unknown = [n for n, u in zip(found.found.names, found.found.undetermined, strict=True) if u]
+        lost = "; ".join(in_words(v, found.found.names) for v in found.found.blind)
+        known = ", ".join(map(str, found.combinations))
+        said = [
+            f"{' and '.join(unknown)} trade off along ({lost}) without any output feeling it"
+            + (f"; only {known} can be known" if known else "")
+            + f": hold {' and '.join(held)} fixed."
+        ]
+        if not kept:
+            return said
+        found = found.about(kept)
+    else:
+        said = [f"All {found.asked} parameters can be told apart."]
+    std = found.std
+    worst = int(std.argmax())
+    said.append(
+        f"{found.names[worst]} is known worst, to {_amount(found, worst)};"
+        f" {found.ranking[0]} best, to {_amount(found, int(std.argmin()))}."
+    )
+    said.append(
+        f"The worst direction is ({found.found.weakest()}); the condition number is"
+        f" {found.condition:.3g}."
+    )
+    logarithmic = found.logarithmic[: found.asked]
+    if weak := [
+        n for n, s, r in zip(found.names, std, logarithmic, strict=False) if r and s > WEAK
+    ]:
+        said.append(f"Too weakly for this noise: {', '.join(weak)}; excite them more, or longer.")
+    return said
+
+
+def _amount(found: Information, i: int) -> str:
+    return f"{100 * found.std[i]:.2g} %" if found.logarithmic[i] else f"{found.std[i]:.2g} SI units"
+
+
+def information_json(found: Information) -> dict[str, Any]:
+    """The numbers as plain values."""
+    return {
+        "parameters": {
+            name: {
+                "std": finite(std),
+                "conditional_std": finite(alone),
+                "relative": bool(relative),
+            }
+            for name, std, alone, relative in zip(
+                found.names, found.std, found.conditional, found.logarithmic, strict=False
+            )
+        },
+        "ranking": list(found.ranking),
+        "strengths": found.found.strengths.tolist(),
+        "worst_direction": found.found.weakest(),
+        "condition": finite(found.condition),
+        "E": found.e_value,
+        "D": finite(found.d_value),
+        "A": finite(found.a_value),
+        "combinations": [str(c) for c in found.combinations],
+        "verdict": information_verdict(found),
+    }
+
+
+def information_section(found: Information, about: str) -> Section:
+    """Least std of every parameter, with the others unknown and known, best determined first."""
+    order = [found.names.index(name) for name in found.ranking]
+    std, alone = found.std, found.conditional
+    return Section(
+        "What the experiment can say",
+        f"{about}\n\nLeast std of any unbiased estimate (Cramér-Rao), relative to the value, or in"
+        " SI units for poses; 'others known' is how well it would be known alone: the ratio is the"
+        " price of the company.",
+        figures=(("Least std by parameter", std_figure(
+            found.ranking, {"others unknown": std[order], "others known": alone[order]})),),
+        table=Table(
+            ("parameter", "others unknown", "others known", "ratio"),
+            tuple(
+                (found.names[i], float(std[i]) if np.isfinite(std[i]) else "unknown",
+                 float(alone[i]), float(std[i] / alone[i]) if np.isfinite(std[i]) else "–")
+                for i in order
+            ),
+        ),
+    )  # fmt: skip
+
+
+def design_verdict(result: Design) -> list[str]:
+    """By how much the design beats the thesis' PRBS, honestly."""
+    worst, gain = result.worst_gain, result.gain
+    names = result.best.found.names
+    best, least = int(gain.argmax()), int(gain.argmin())
+    said = [
+        f"The worst determined direction is known {worst:.2f} times better than with the thesis'"
+        f" PRBS of the same length and noise; {names[best]} gains most ({gain[best]:.2f} times),"
+        f" {names[least]} least ({gain[least]:.2f} times).",
+        f"The least tension is {result.best.extent.tension:.2f} N, the platform moves"
+        f" {result.best.extent.reach:.3f} m and turns {np.degrees(result.best.extent.turn):.0f} deg"
+        " at most.",
+    ]
+    if not result.settings:
+        said.append(f"The search found nothing better than {result.best.name}; raise the budget.")
+    elif worst < 1.2:
+        said.append("That gain is small: a longer record does as much.")
+    if lost := [n for n, g in zip(names, gain, strict=False) if g < 1]:
+        said.append(f"Known worse than with the PRBS: {', '.join(lost)}; the worst one counts.")
+    if result.held:
+        said.append(f"Held fixed, as the PRBS cannot tell them apart: {', '.join(result.held)}.")
+    if not result.prbs.allowed:
+        said.append("The thesis' PRBS itself breaks these limits.")
+    return said
+
+
+def design_json(result: Design) -> dict[str, Any]:
+    """The numbers as plain values."""
+    far = result.best.extent
+    rows = zip(
+        result.best.found.names, result.prbs.found.std, result.best.found.std,
+        result.gain, result.best.found.logarithmic, strict=False,
+    )  # fmt: skip
+    return {
+        "parameters": {
+            name: {"std_prbs": float(a), "std_designed": float(b), "gain": float(g),
+                   "relative": bool(r)}
+            for name, a, b, g, r in rows
+        },
+        "worst_gain": result.worst_gain,
+        "E_prbs": result.prbs.found.e_value,
+        "E_designed": result.best.found.e_value,
+        "input": {"name": result.best.name, **result.settings},
+        "tension_min": far.tension, "reach": far.reach, "turn": far.turn,
+        "current_min": far.low, "current_max": far.high,
+        "held": list(result.held),
+        "evaluations": result.evaluations,
+        "inputs": [
+            {"name": t.name, "E": t.found.e_value, "allowed": t.allowed,
+             "tension_min": t.extent.tension}
+            for t in (*result.standard, result.best)
+        ],
+        "verdict": design_verdict(result),
+    }  # fmt: skip
+
+
+def _row(tried: Tried) -> tuple[object, ...]:
+    found = tried.found
+    return (
+        tried.name, "yes" if tried.allowed else "no", float(tried.extent.tension),
+        float(tried.extent.reach), *(100 * float(s) for s in found.std),
+        float(np.log10(found.e_value)) if found.e_value > 0 else "blind",
+    )  # fmt: skip
+
+
+def design_section(result: Design) -> Section:
+    """The designed input against the thesis' PRBS, and a table of standard inputs."""
+    names = result.best.found.names[: result.best.found.asked]
+    stds = {"thesis' PRBS": result.prbs.found.std, "designed": result.best.found.std}
+    recipe = ", ".join(f"{k} {v:.3g}" for k, v in result.settings.items())
+    return Section(
+        "The effect of the input",
+        f"Chosen: {result.best.name}" + (f" ({recipe})" if recipe else "") + ".\n\n"
+        "Least std of every parameter (Cramér-Rao), start pose unknown, same length and noise."
+        " E is the smallest eigenvalue of the Fisher information. Where cables go slack the"
+        " motion is chaotic and the numbers mean nothing: those inputs are not allowed.",
+        figures=(("Std under the PRBS and the designed input", std_figure(names, stds)),),
+        table=Table(
+            ("input", "allowed", "least tension [N]", "reach [m]",
+             *(f"std {n} [%]" for n in names), "log10 E"),
+            tuple(_row(t) for t in (*result.standard, result.best)),
+        ),
+    )  # fmt: skip

@@ -1,0 +1,1 @@
+"""The MuJoCo side of the robot: model, native law, start, runs."""

@@ -1,0 +1,125 @@
+"""How the robot looks: floor, frame, drums, handle, light, cameras; none weighs or touches."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from inca_mj.robot.geometry import Geometry
+
+ALUMINIUM = [0.60, 0.62, 0.66, 1.0]
+STEEL = [0.30, 0.32, 0.36, 1.0]
+MOTOR = [0.12, 0.12, 0.13, 1.0]
+HANDLE = [0.93, 0.45, 0.13, 1.0]
+
+# The handle is 15 cm in a frame of 3 m: its camera stays with it, at a fixed direction [m].
+HANDLE_EYE, HANDLE_TARGET = [0.18, -0.50, 0.12], [0.0, 0.0, -0.035]
+
+_BOX, _CYLINDER = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CYLINDER
+_CAPSULE, _SPHERE = mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_SPHERE
+
+
+def _add(body: Any, kind: Any, rgba: list[float], **how: Any) -> None:
+    body.add_geom(type=kind, rgba=rgba, contype=0, conaffinity=0, mass=0, **how)
+
+
+def dress_world(spec: mujoco.MjSpec, geometry: Geometry) -> None:
+    """Floor, aluminium frame around the exit points, one light, cameras, frame size of films."""
+    spec.visual.global_.offwidth, spec.visual.global_.offheight = 1920, 1080
+    spec.visual.quality.shadowsize = 0  # shadows cost a CPU renderer most of its frame rate
+    spec.visual.headlight.ambient = [0.55, 0.55, 0.55]
+    spec.visual.headlight.diffuse = [0.35, 0.35, 0.35]
+    spec.visual.rgba.haze = [0.925, 0.945, 0.965, 1.0]
+    spec.visual.headlight.specular = [0.1, 0.1, 0.1]
+    spec.stat.center, spec.stat.extent = [0, 0, 1.5], 3.0
+    spec.add_texture(
+        name="sky",
+        type=mujoco.mjtTexture.mjTEXTURE_SKYBOX,
+        builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT,
+        rgb1=[0.97, 0.98, 0.99],
+        rgb2=[0.88, 0.91, 0.94],
+        width=256,
+        height=1536,
+    )
+    spec.add_texture(
+        name="floor",
+        type=mujoco.mjtTexture.mjTEXTURE_2D,
+        builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
+        rgb1=[0.93, 0.94, 0.95],
+        rgb2=[0.895, 0.905, 0.915],
+        width=256,
+        height=256,
+    )
+    floor = spec.add_material(name="floor", texrepeat=[1, 1], texuniform=True, reflectance=0.0)
+    floor.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "floor"
+
+    world = spec.worldbody
+    world.add_light(
+        type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
+        dir=[0.3, 0.5, -1],
+        diffuse=[0.35, 0.35, 0.35],
+        castshadow=False,
+    )
+    world.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 0.1], material="floor",
+        contype=0, conaffinity=0,
+    )  # fmt: skip
+    _frame(world, geometry)
+    cameras = {
+        "front": ([1.2, -6.7, 2.3], [0.0, 0.0, 1.5]),
+        "side": ([6.4, -2.4, 2.3], [0.0, 0.0, 1.5]),
+    }
+    for name, (eye, target) in cameras.items():
+        world.add_camera(name=name, pos=eye, xyaxes=_look(eye, target), fovy=38)
+
+
+def _frame(world: Any, geometry: Geometry) -> None:
+    """Bars along the box that the exit points span, 8 cm outside of it."""
+    low, high = geometry.A.min(0) - [0.12, 0.12, 0.1], geometry.A.max(0) + [0.12, 0.12, 0.06]
+    corners = np.array([[(low, high)[i][0], (low, high)[j][1]] for i, j in np.ndindex(2, 2)])
+    for x, y in corners:
+        _add(world, _BOX, ALUMINIUM, pos=[x, y, high[2] / 2], size=[0.022, 0.022, high[2] / 2])
+    centre, half = (low + high) / 2, (high - low) / 2
+    for z in (0.022, high[2]):
+        for y in (low[1], high[1]):
+            _add(world, _BOX, ALUMINIUM, pos=[centre[0], y, z], size=[half[0], 0.022, 0.022])
+        for x in (low[0], high[0]):
+            _add(world, _BOX, ALUMINIUM, pos=[x, centre[1], z], size=[0.022, half[1], 0.022])
+
+
+def dress_drum(drum: Any, axis: list[float]) -> None:
+    """A roller, a motor behind it, and a mark on the rim that shows the turn."""
+    along = np.array(axis)
+    ends = np.concatenate([-0.02 * along, 0.02 * along])
+    _add(drum, _CYLINDER, STEEL, fromto=ends, size=[0.045, 0, 0])
+    behind = np.concatenate([0.02 * along, 0.10 * along])
+    _add(drum, _CYLINDER, MOTOR, fromto=behind, size=[0.028, 0, 0])
+    mark = np.concatenate([[0, 0, 0.01], [0, 0, 0.045]]) - np.tile(0.022 * along, 2)
+    _add(drum, _CAPSULE, HANDLE, fromto=mark, size=[0.006, 0, 0])
+
+
+def dress_platform(platform: Any, geometry: Geometry) -> None:
+    """A hub, an arm to each connector, the handle, and a camera that travels with it."""
+    platform.add_camera(
+        name="handle",
+        pos=HANDLE_EYE,
+        xyaxes=_look(HANDLE_EYE, HANDLE_TARGET),
+        fovy=38,
+        mode=mujoco.mjtCamLight.mjCAMLIGHT_TRACK,
+    )
+    _add(platform, _SPHERE, STEEL, pos=[0, 0, 0], size=[0.014, 0, 0])
+    for connector in np.unique(geometry.B, axis=0):
+        _add(platform, _CAPSULE, ALUMINIUM, fromto=[0, 0, 0, *connector], size=[0.005, 0, 0])
+        _add(platform, _SPHERE, STEEL, pos=connector, size=[0.009, 0, 0])
+    _add(platform, _CAPSULE, HANDLE, fromto=[0, 0, -0.02, 0, 0, -0.11], size=[0.015, 0, 0])
+    _add(platform, _SPHERE, HANDLE, pos=[0, 0, -0.115], size=[0.019, 0, 0])
+
+
+def _look(eye: list[float], target: list[float]) -> list[float]:
+    """x and y axes of a camera at `eye` that looks at `target`, z up."""
+    back = np.subtract(eye, target)
+    x = np.cross([0, 0, 1], back)
+    y = np.cross(back, x)
+    return [*(x / np.linalg.norm(x)), *(y / np.linalg.norm(y))]

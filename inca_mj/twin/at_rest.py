@@ -1,0 +1,123 @@
+"""What candidate effects change of the start: the ways of the cables, the load, the elasticity.
+
+The start is that of the nominal model, at the true lengths of the cables: T(0) holds the nominal
+robot, the drum springs balance it, d₀(0) = λ d/(λ + T(0)). The effects act from there on, as on a
+robot that was held until then. A `settled` robot has stood for a while with its effects: T(0)
+balances what they do to the cables' ways and to the platform's load, the drum springs balance
+T(0) on the roller as it is, and d₀(0) follows from the cable's own law:
+
+    T(0) = λ ε + ΔT(ε)        solved for ε by secant steps
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from inca_mj.effects.hooks import Drive, DriveEffect, Platform
+from inca_mj.effects.layout import Layout
+from inca_mj.effects.values import drive_values, present
+from inca_mj.robot.geometry import DRIVES, Geometry
+from inca_mj.robot.kinematics import rotation
+
+SECANTS = 12  # more than enough: each adds half as many digits again
+UNKNOWN = dict.fromkeys(Drive._fields, np.nan)
+
+
+@dataclass(frozen=True)
+class Change:
+    """What the effects that are there change at rest.
+
+    Attributes:
+        longer: Δd of each cable, shape (8,) [m].
+        turned: ∂Δd/∂r of each cable, in O, shape (8, 3).
+        load: added to the wrench to carry, in O, about the platform's frame, shape (6,) [N, N m].
+        wider: ΔR of each roller, shape (8,) [m].
+        d: length of each cable, shape (8,) [m].
+        values: of all parameters, in SI units.
+        stiffening: effects that add to the tension.
+    """
+
+    longer: np.ndarray
+    turned: np.ndarray
+    load: np.ndarray
+    wider: np.ndarray
+    d: np.ndarray
+    values: Mapping[str, float]
+    stiffening: tuple[DriveEffect, ...]
+
+    def strain(self, T: np.ndarray) -> np.ndarray:
+        """ε(0) at tensions T, shape (8,)."""
+        lambda_ = self.values["lambda"]
+        one = np.ones(DRIVES)
+        strain, last, error = T / lambda_, 0 * one, -T
+        for _ in range(SECANTS if self.stiffening else 0):
+            wrong = lambda_ * strain + self._added(strain) - T
+            moved = (strain != last) & (wrong != error)
+            slope = np.divide(wrong - error, strain - last, where=moved, out=lambda_ * one)
+            last, error, strain = strain, wrong, strain - wrong / slope
+        return strain
+
+    def _added(self, strain: np.ndarray) -> np.ndarray:
+        out = np.zeros(DRIVES)
+        for effect in self.stiffening:
+            p = drive_values(effect, self.values)
+            for k in range(DRIVES):
+                s = _drive(strain=strain[k], strain_rate=0.0, x=strain[k], d=self.d[k],
+                           R=self.values["R"], lambda_=self.values["lambda"])  # fmt: skip
+                if effect.tension is not None:
+                    out[k] += effect.tension(s, tuple(p[:, k]))
+        return out
+
+
+def change_at_rest(
+    values: Mapping[str, float], pose: np.ndarray, geometry: Geometry, layout: Layout
+) -> Change | None:
+    """What the effects present in `values` change at a pose; None when nothing does.
+
+    Args:
+        values: of all parameters, in SI units.
+        pose: of the centre of mass.
+        geometry: with connectors as seen from there.
+        layout: the effects, and whether the start is settled.
+    """
+    there = [e for e in layout.effects if _touches(e, layout.settled) and present(e, values)]
+    if not there:
+        return None
+    R = rotation(*pose[3:])
+    r = pose[:3] + geometry.B @ R.T - geometry.A
+    way, load, wider = np.zeros((DRIVES, 4)), np.zeros(6), np.zeros(DRIVES)
+    for effect in there:
+        p = drive_values(effect, values)
+        for k in range(DRIVES):
+            s = _drive(rx=r[k, 0], ry=r[k, 1], rz=r[k, 2], d=float(np.linalg.norm(r[k])),
+                       phi=0.0, omega=0.0, x=0.0, R=values["R"])  # fmt: skip
+            if effect.path is not None:
+                way[k] += effect.path(s, tuple(p[:, k]))
+            if effect.force is not None:
+                F = np.array(effect.force(s, tuple(p[:, k])))
+                load -= np.concatenate([F, np.cross(geometry.B[k] @ R.T, F)])
+            if effect.radius is not None:
+                wider[k] += effect.radius(s, tuple(p[:, k]))
+        if effect.wrench is not None:
+            still = Platform(0.0, *pose[:3], *np.zeros(6))
+            load -= np.array(effect.wrench(still, tuple(p[:, 0])))
+    d = np.linalg.norm(r, axis=1) + way[:, 0]
+    if not layout.settled:
+        nothing = np.zeros(DRIVES)
+        return Change(way[:, 0], 0 * way[:, 1:], 0 * load, nothing, d, values, ())
+    stiffening = tuple(e for e in there if e.tension is not None)
+    return Change(way[:, 0], way[:, 1:], load, wider, d, values, stiffening)
+
+
+def _drive(**known: float) -> Any:
+    return Drive(**{**UNKNOWN, **known})
+
+
+def _touches(effect: DriveEffect, settled: bool) -> bool:
+    """Whether an effect can change anything at rest."""
+    more = (effect.force, effect.tension, effect.wrench, effect.radius)
+    return effect.path is not None or (settled and any(more))

@@ -1,0 +1,83 @@
+"""Logs of the INCA 6D: eight currents in, eight motor angles out, at 100 Hz in the thesis."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from identification import InputError, Log, read_log
+from inca_mj.robot.geometry import DRIVES
+from inca_mj.twin.run import Run
+
+
+def _each(name: str) -> tuple[str, ...]:
+    return tuple(f"{name}_{k}" for k in range(1, DRIVES + 1))
+
+
+CURRENTS, ANGLES = _each("current"), _each("angle")
+POSE = ("x", "y", "z", "roll", "pitch", "yaw")
+VELOCITY = ("vx", "vy", "vz", "wx", "wy", "wz")  # v in O, body rates
+OPTIONAL = (*POSE, *_each("tension"), *VELOCITY, *_each("rate"), *_each("no_load_length"))
+
+UNITS = {
+    "current": "A", "angle": "rad", "rate": "rad/s", "tension": "N", "no_load_length": "m",
+    **dict.fromkeys(("x", "y", "z"), "m"), **dict.fromkeys(("roll", "pitch", "yaw"), "rad"),
+    **dict.fromkeys(("vx", "vy", "vz"), "m/s"), **dict.fromkeys(("wx", "wy", "wz"), "rad/s"),
+}  # fmt: skip
+
+# Beyond these a number is in another unit: 20 A is ten times what the motors stand; 400 rad winds
+# 7 m of cable into a 3 m frame; at 300 rad/s a cable runs 5 m/s, more than a hand can.
+LIMITS = {"current": 20.0, "angle": 400.0, "x": 3.0, "y": 3.0, "z": 4.0, "tension": 1000.0}
+RATES = {"angle": 300.0}
+
+SLOWEST = 0.5  # sampling time above which a log's time is in milliseconds [s]
+
+ZERO = 0.05  # a log begins at φ = 0; 0.05 rad is 0.9 mm of cable, 30 counts of an encoder [rad]
+
+
+def read_inca_log(path: str | Path) -> Log:
+    """Read a log of the robot: CSV with a TOML beside it, or MATLAB (`u`, `y`, `Ts`).
+
+    Raises:
+        InputError: the file cannot be what it says (see `identification.read_log`), or does not
+            begin at zero angles.
+    """
+    log = read_log(path, CURRENTS, ANGLES, OPTIONAL, units=UNITS, limits=LIMITS, rates=RATES)
+    if log.sampling_time > SLOWEST:
+        raise InputError(
+            f"{path} has a sample every {log.sampling_time:g} s, too few for a robot that moves;"
+            " time must be in seconds: is it in milliseconds?"
+        )
+    if not np.ptp(log.outputs, axis=0).any():
+        raise InputError(f"nothing moves in {path}: all eight angles are constant")
+    worst = int(np.abs(log.outputs[0]).argmax())
+    if abs(log.outputs[0, worst]) > ZERO:
+        raise InputError(
+            f"{path} begins at {ANGLES[worst]} = {log.outputs[0, worst]:.3g} rad, but a log begins"
+            " at rest with all angles zero; cut it where the robot rests and subtract its angles"
+        )
+    return log
+
+
+def pose_of(log: Log) -> np.ndarray | None:
+    """The measured pose x, y, z [m], roll, pitch, yaw [rad], shape (N, 6), where it was logged."""
+    if not all(name in log.extras for name in POSE):
+        return None
+    return np.stack([log.extras[name] for name in POSE], axis=1)
+
+
+def run_to_log(run: Run, name: str = "run", notes: str = "") -> Log:
+    """A run as a log, with pose, velocities, tensions and no-load lengths as optional columns."""
+    extras = {
+        **dict(zip(POSE, np.hstack([run.position, run.angles]).T, strict=True)),
+        **dict(zip(_each("tension"), run.tension.T, strict=True)),
+        **dict(zip(VELOCITY, run.qvel[:, :6].T, strict=True)),
+        **dict(zip(_each("rate"), run.motor_rate.T, strict=True)),
+        **dict(zip(_each("no_load_length"), run.act.T, strict=True)),
+    }
+    columns = (*CURRENTS, *ANGLES, *extras)
+    units = {column: UNITS[column.rstrip("_12345678")] for column in columns}
+    return Log(
+        run.time, run.currents, run.motor_angle, CURRENTS, ANGLES, extras, units, name, notes
+    )

@@ -1,0 +1,207 @@
+"""The MJCF of the INCA 6D, built from parameters and geometry.
+
+Bodies `platform` (free) and `drum_1..8` (hinge `motor_i`), tendons `cable_1..8` from the exit
+points to the platform, actuators `current_1..8`, sensors, a keyframe `start`. MuJoCo does the
+rigid bodies, K_t i (gear), b_v (joint damping), J (armature) and the cable lengths; the tension,
+the no-load length, the drum spring and the Coulomb friction are `inca_mj.robot.law`'s, whose
+numbers the builder puts into `actuator_user` and `tendon_user`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError
+from identification.model.parameter import ParameterSet
+from inca_mj.effects.layout import KEY, Layout
+from inca_mj.effects.values import about_centre, drive_values
+from inca_mj.robot import law
+from inca_mj.robot.geometry import DRIVES, Geometry
+from inca_mj.robot.kinematics import quaternion
+from inca_mj.robot.parameters import GRAVITY
+from inca_mj.twin.appearance import dress_drum, dress_platform, dress_world
+from inca_mj.twin.statics import activations, start
+
+TIMESTEP = 1e-3  # [s]; RK4 at 1 ms follows the reference to a few microradians
+ROTOR = 2e-15  # inertia MuJoCo demands of the drum's body beside the armature [kg m^2]
+
+
+def build(
+    parameters: ParameterSet, geometry: Geometry, layout: Layout | None = None
+) -> mujoco.MjSpec:
+    """The robot at its pretensioned start, as an editable `MjSpec`.
+
+    Args:
+        parameters: the values, those of the effects included.
+        geometry: anchors of the cables.
+        layout: the candidate effects; none when None.
+
+    Raises:
+        InputError: the start pose admits no pretension (see `inca_mj.twin.statics.pretension`).
+    """
+    spec = mujoco.MjSpec()
+    spec.modelname = "inca6d"
+    spec.comment = (
+        f"INCA 6D, parameter set {parameters.name}; geometry: {geometry.source}."
+        " Needs the law of inca_mj (inca_mj.twin.native.install) for its cables to pull."
+    )
+    layout = layout or Layout()
+    _settings(spec, layout)
+    dress_world(spec, geometry)
+    _platform(spec, parameters, geometry, layout)
+    for k in range(1, DRIVES + 1):
+        _drive(spec, k, parameters, geometry, layout)
+    _sensors(spec)
+    _keyframe(spec, parameters, geometry, layout)
+    return spec
+
+
+def _settings(spec: mujoco.MjSpec, layout: Layout) -> None:
+    spec.compiler.degree = False
+    spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
+    spec.option.timestep = TIMESTEP
+    spec.option.gravity = [0, 0, -GRAVITY]
+    # Every other integrator adds inertia to custom forces or drops part of them.
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    spec.option.disableflags = (
+        mujoco.mjtDisableBit.mjDSBL_CONTACT
+        | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+        | mujoco.mjtDisableBit.mjDSBL_AUTORESET  # a divergence must be seen, not restarted
+    )
+    spec.nuser_actuator = layout.actuator_columns
+    spec.nuser_body = layout.body_columns
+    spec.nuser_tendon = law.TENDON_COLUMNS
+    spec.nuser_sensor = 1
+
+
+def _platform(
+    spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry, layout: Layout
+) -> None:
+    p = parameters.values()
+    check_inertia(p)
+    body = spec.worldbody.add_body(name="platform", pos=[p["x"], p["y"], p["z"]])
+    body.quat = quaternion(p["roll"], p["pitch"], p["yaw"])
+    body.add_freejoint(name="platform")
+    _weigh(body, p["m"], [p["I_x"], p["I_y"], p["I_z"]])
+    body.add_site(name="platform", pos=[0, 0, 0], size=[0.004, 0.004, 0.004])
+    for k, connector in enumerate(about_centre(geometry, layout.effects, p).connectors, 1):
+        body.add_site(name=f"connector_{k}", pos=connector, size=[0.006, 0.006, 0.006])
+    dress_platform(body, geometry)
+    body.userdata = np.concatenate(
+        [np.zeros(0), *(drive_values(e.effect, p)[:, 0] for e in layout if e.on_platform)]
+    )
+
+
+def check_inertia(values: Mapping[str, float]) -> None:
+    """Refuse principal inertias that no body has: one exceeds the sum of the other two.
+
+    Raises:
+        InputError: it does.
+    """
+    I = {name: values[name] for name in ("I_x", "I_y", "I_z")}
+    largest = max(I, key=I.__getitem__)
+    rest = sum(I.values()) - I[largest]
+    if I[largest] > rest:
+        raise InputError(
+            f"no body has {largest} = {I[largest]:g} kg m^2, more than the {rest:g} kg m^2 of the"
+            " other two inertias together; make it smaller, or them larger"
+        )
+
+
+def _weigh(body: Any, mass: float, inertia: list[float]) -> None:
+    """Mass [kg] and principal inertia [kg m^2] about the body's own frame."""
+    body.explicitinertial = True
+    body.mass, body.inertia, body.ipos = mass, inertia, [0, 0, 0]
+
+
+def _drive(
+    spec: mujoco.MjSpec, k: int, parameters: ParameterSet, geometry: Geometry, layout: Layout
+) -> None:
+    """Drum, motor, cable and current actuator of drive k."""
+    p = parameters.values()
+    exit_point = np.array(geometry.exits[k - 1])
+    spec.worldbody.add_site(name=f"exit_{k}", pos=exit_point, size=[0.012, 0.012, 0.012])
+
+    # The roller turns beside the exit point: its place is for the eye, its inertia is J.
+    outward = np.array([exit_point[0], exit_point[1], 0.0])
+    outward = outward / np.linalg.norm(outward) if outward.any() else np.array([1.0, 0.0, 0.0])
+    drum = spec.worldbody.add_body(name=f"drum_{k}", pos=exit_point + 0.08 * outward)
+    _weigh(drum, ROTOR, [ROTOR, ROTOR, ROTOR])
+    axis = [-outward[1], outward[0], 0.0]
+    drum.add_joint(
+        name=f"motor_{k}",
+        type=mujoco.mjtJoint.mjJNT_HINGE,
+        axis=axis,
+        armature=p["J"],
+        damping=p["b_v"],
+    )
+    dress_drum(drum, axis)
+
+    cable = spec.add_tendon(name=f"cable_{k}", width=0.0025, rgba=[0.2, 0.2, 0.22, 1])
+    cable.wrap_site(f"exit_{k}")
+    cable.wrap_site(f"connector_{k}")
+    cable_row = np.zeros(law.TENDON_COLUMNS)
+    cable_row[[law.TENDON_TAG, law.LAMBDA, law.B]] = law.TAG, p["lambda"], p["b"]
+    cable.userdata = cable_row
+
+    row = np.zeros(layout.actuator_columns)
+    row[KEY:][:1] = layout.key
+    for place in layout:
+        if place.on_drives:
+            values = drive_values(place.effect, p)[:, k - 1]
+            row[place.column : place.column + len(values)] = values
+    row[law.ACTUATOR_TAG], row[law.CABLE] = law.TAG, k - 1
+    row[[law.R, law.R_S, law.K_S]] = p["R"], p["R_s"], p["k_s"]
+    row[[law.B_C, law.BETA]] = p["b_c"], p["beta"]
+    row[law.T_0] = start(parameters, geometry, layout).balance[k - 1]
+    spec.add_actuator(
+        name=f"current_{k}",
+        target=f"motor_{k}",
+        trntype=mujoco.mjtTrn.mjTRN_JOINT,
+        gear=[p["K_t"], 0, 0, 0, 0, 0],
+        dyntype=mujoco.mjtDyn.mjDYN_USER,  # activation: the no-load length d₀
+        actdim=layout.states,
+        gaintype=mujoco.mjtGain.mjGAIN_FIXED,
+        gainprm=[0.0] * 10,
+        biastype=mujoco.mjtBias.mjBIAS_USER,  # force: the current
+        userdata=row,
+    )
+
+
+def _sensors(spec: mujoco.MjSpec) -> None:
+    sensor, of = mujoco.mjtSensor, mujoco.mjtObj
+    per_drive = (
+        ("angle", sensor.mjSENS_JOINTPOS, of.mjOBJ_JOINT, "motor", None),
+        ("rate", sensor.mjSENS_JOINTVEL, of.mjOBJ_JOINT, "motor", None),
+        ("length", sensor.mjSENS_TENDONPOS, of.mjOBJ_TENDON, "cable", None),
+        ("tension", sensor.mjSENS_USER, of.mjOBJ_ACTUATOR, "current", law.TENSION),
+        ("no_load_length", sensor.mjSENS_USER, of.mjOBJ_ACTUATOR, "current", law.NO_LOAD_LENGTH),
+    )
+    for name, kind, object_type, target, shown in per_drive:
+        for k in range(1, DRIVES + 1):
+            added = spec.add_sensor(
+                name=f"{name}_{k}", type=kind, objtype=object_type, objname=f"{target}_{k}"
+            )
+            if shown is not None:
+                added.dim, added.userdata = 1, [shown]
+                added.needstage = mujoco.mjtStage.mjSTAGE_VEL
+                added.datatype = mujoco.mjtDataType.mjDATATYPE_REAL
+    for name, kind in (
+        ("position", sensor.mjSENS_FRAMEPOS),
+        ("orientation", sensor.mjSENS_FRAMEQUAT),
+        ("velocity", sensor.mjSENS_FRAMELINVEL),
+        ("angular_velocity", sensor.mjSENS_FRAMEANGVEL),
+    ):
+        spec.add_sensor(name=name, type=kind, objtype=of.mjOBJ_SITE, objname="platform")
+
+
+def _keyframe(
+    spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry, layout: Layout
+) -> None:
+    at = start(parameters, geometry, layout)
+    qpos = np.concatenate([at.pose[:3], quaternion(*at.pose[3:]), np.zeros(DRIVES)])
+    spec.add_key(name="start", qpos=qpos, act=activations(at, layout))

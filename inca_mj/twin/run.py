@@ -1,0 +1,178 @@
+"""A run: what the twin did under some currents; it can be saved and replayed."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco.batch import Batch
+
+from identification.errors import InputError
+from identification.files import whole_file
+from identification.model.rollout import State, rollout
+from inca_mj.robot.geometry import DRIVES, Geometry
+from inca_mj.robot.kinematics import euler
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.twin.twin import Twin, build_twin
+
+_STAGE = mujoco.mjtStage.mjSTAGE_VEL
+_ARRAYS = ("time", "currents", "qpos", "qvel", "act", "tension", "length")
+
+
+@dataclass(frozen=True)
+class Run:
+    """N samples of a simulation.
+
+    Attributes:
+        twin: the twin that ran.
+        time: sample times, shape (N,) [s].
+        currents: inputs, sample k held until k+1, shape (N, 8) [A].
+        qpos: MuJoCo positions, shape (N, 15) [m, -, rad].
+        qvel: MuJoCo velocities, shape (N, 14) [m/s, rad/s].
+        act: no-load lengths d₀, shape (N, 8) [m].
+        tension: cable tensions T, shape (N, 8) [N].
+        length: cable lengths d, shape (N, 8) [m].
+    """
+
+    twin: Twin
+    time: np.ndarray
+    currents: np.ndarray
+    qpos: np.ndarray
+    qvel: np.ndarray
+    act: np.ndarray
+    tension: np.ndarray
+    length: np.ndarray
+
+    @property
+    def position(self) -> np.ndarray:
+        """Platform position in O, shape (N, 3) [m]."""
+        return self.qpos[:, :3]
+
+    @property
+    def angles(self) -> np.ndarray:
+        """Roll, pitch, yaw of the platform, shape (N, 3) [rad]."""
+        return euler(self.qpos[:, 3:7])
+
+    @property
+    def motor_angle(self) -> np.ndarray:
+        """Motor angles φ, positive winds in, shape (N, 8) [rad]."""
+        return self.qpos[:, 7:]
+
+    @property
+    def motor_rate(self) -> np.ndarray:
+        """Motor rates ω, shape (N, 8) [rad/s]."""
+        return self.qvel[:, 6:]
+
+    def until(self, end: float) -> Run:
+        """The samples up to `end` [s].
+
+        Raises:
+            InputError: fewer than two samples are left.
+        """
+        n = int(np.searchsorted(self.time, end, side="right"))
+        if n < 2:
+            raise InputError(f"{end:g} s holds less than two samples; give a longer time")
+        return replace(self, **{name: getattr(self, name)[:n] for name in _ARRAYS})
+
+
+def simulate(
+    robot: Twin,
+    currents: np.ndarray,
+    sampling_time: float = 0.01,
+    *,
+    start: State | None = None,
+    hold_kind: str = "zoh",
+) -> Run:
+    """Run the twin from its start (or another state) under sampled currents.
+
+    Args:
+        robot: the twin.
+        currents: shape (N, 8) [A], sample k held until sample k+1.
+        sampling_time: between samples, a whole number of the model's steps [s].
+        start: initial state; the twin's pretensioned start when None.
+        hold_kind: "zoh" or "foh".
+
+    Raises:
+        InputError: the currents have another shape, or the step does not divide.
+        DivergenceError: the simulation left the finite numbers.
+    """
+    currents = np.asarray(currents, float)
+    states = rollout(
+        robot.model,
+        start or robot.state(),
+        currents,
+        sampling_time,
+        record=("qpos", "qvel", "act"),
+        hold_kind=hold_kind,
+        before=lambda held: robot.inputs((), np.empty((1, 0)), held, robot.model.opt.timestep),
+    )
+    at = State(*(states[name][0] for name in ("qpos", "qvel", "act")))
+    tension, length = readings(robot, at)
+    time = np.arange(len(currents)) * sampling_time
+    no_load = at.act[:, :: robot.layout.states]
+    return Run(robot, time, currents, at.qpos, at.qvel, no_load, tension, length)
+
+
+def readings(robot: Twin, at: State) -> tuple[np.ndarray, np.ndarray]:
+    """Tensions [N] and cable lengths [m] in given states, each of shape (N, 8)."""
+    batch = Batch(robot.model, len(at.qpos), 1)
+    for name in ("qpos", "qvel", "act"):
+        batch.bind(name)[:] = getattr(at, name)
+    sensors = batch.bind("sensordata")
+    batch.forward(stage=_STAGE)
+    model = robot.model
+    first = {name: model.sensor(f"{name}_1").adr[0] for name in ("tension", "length")}
+    return tuple(np.array(sensors[:, a : a + DRIVES]) for a in first.values())  # type: ignore[return-value]
+
+
+def save_run(run: Run, path: str | Path) -> Path:
+    """Write a run to one .npz file: arrays, and the robot's values and geometry as JSON."""
+    header = {
+        "values": run.twin.parameters.values(),
+        "set": run.twin.parameters.name,
+        "geometry": asdict(run.twin.geometry),
+        "timestep": run.twin.model.opt.timestep,
+    }
+    with whole_file(path) as draft, draft.open("wb") as stream:
+        arrays = {name: getattr(run, name) for name in _ARRAYS}
+        np.savez_compressed(stream, header=json.dumps(header), **arrays)
+    return Path(path)
+
+
+def load_run(path: str | Path) -> Run:
+    """Read a run written by `save_run`.
+
+    Raises:
+        InputError: the file is missing or is not a run.
+    """
+    try:
+        with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            header: dict[str, Any] = json.loads(str(file["header"]))
+            arrays = {name: file[name] for name in _ARRAYS}
+        return Run(twin=_robot(header), **arrays)
+    except FileNotFoundError:
+        raise InputError(f"no run {path}; inca simulate --out DIR writes one") from None
+    except InputError:
+        raise
+    except Exception as error:  # zip, JSON and numpy each have errors of their own
+        raise InputError(
+            f"{path} is not a run of inca simulate, or is damaged ({type(error).__name__});"
+            " write it again"
+        ) from error
+
+
+def _robot(header: dict[str, Any]) -> Twin:
+    """The robot that a saved run's header tells."""
+    names = {f.name for f in fields(Geometry)}
+    geometry = {k: v for k, v in header["geometry"].items() if k in names}
+    for name in ("exits", "connectors"):
+        geometry[name] = tuple(tuple(row) for row in geometry[name])
+    return build_twin(
+        parameter_set(header["set"], header["values"]),
+        Geometry(**geometry),
+        timestep=header["timestep"],
+    )

@@ -1,0 +1,168 @@
+"""A twin with effects as files: model.xml, and effects.json with what MJCF cannot say.
+
+The law of an effect is code: a model reloads where the effects of its names are at hand. Those of
+the catalogue always are; a user's own is passed by the user.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError
+from identification.files import write_text
+from identification.model.parameter import Parameter, ParameterSet
+from inca_mj.effects.catalogue import CATALOGUE
+from inca_mj.effects.hooks import DriveEffect
+from inca_mj.effects.values import records
+from inca_mj.robot.geometry import Geometry
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.twin.twin import Twin, build_twin
+
+_ARRAYS = (
+    "actuator_user", "actuator_gear", "tendon_user", "body_user", "body_mass", "body_inertia",
+    "dof_damping", "dof_armature", "site_pos", "qpos0", "key_qpos", "key_act",
+)  # fmt: skip
+
+
+def save_twin(robot: Twin, folder: str | Path) -> tuple[Path, Path]:
+    """Write model.xml and effects.json into a folder; returns their paths.
+
+    Raises:
+        InputError: the folder does not exist or cannot be written to.
+    """
+    folder = Path(folder)
+    values = robot.parameters.values()
+    record = {
+        "model": "model.xml",
+        "set": robot.parameters.name,
+        "values": {p.name: p.value for p in robot.parameters if p.where != "effect"},
+        "geometry": asdict(robot.geometry),
+        "timestep": robot.model.opt.timestep,
+        "settled": robot.settled,
+        "effects": [_effect(effect, values) for effect in robot.effects],
+    }
+    text = json.dumps(record, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    return robot.save(folder / "model.xml"), write_text(folder / "effects.json", text)
+
+
+def load_twin(path: str | Path, effects: Sequence[DriveEffect] = CATALOGUE) -> Twin:
+    """Read a twin written by `save_twin`: the same to the last bit.
+
+    Args:
+        path: the folder, or either of the two files.
+        effects: those that the twin may have, by name.
+
+    Raises:
+        InputError: a file is missing or damaged, an effect is not among `effects` or has another
+            law there, or the two files do not belong together.
+    """
+    own_file = Path(path).suffix in (".xml", ".json")
+    folder = Path(path).parent if own_file else Path(path)
+    record = _read(folder / "effects.json")
+    try:
+        geometry = _geometry(record["geometry"])
+        wanted: list[dict[str, Any]] = record["effects"]
+        own = _known(wanted, effects, folder)
+        values = {**record["values"], **{n: v for e in wanted for n, v in e["values"].items()}}
+        robot = build_twin(
+            _parameters(record["set"], values, own),
+            geometry,
+            timestep=record["timestep"],
+            effects=own,
+            settled=record["settled"],
+        )
+    except (KeyError, TypeError, AttributeError) as error:
+        raise InputError(
+            f"{folder / 'effects.json'} is damaged ({type(error).__name__}: {error}); save the"
+            " twin again"
+        ) from error
+    _same(robot.model, folder / record["model"])
+    return robot
+
+
+def _effect(effect: DriveEffect, values: dict[str, float]) -> dict[str, Any]:
+    names = [p.name for p in records([effect]) if p.name in values]
+    there = [
+        where for where, suffix in effect.effect.places.items()
+        if any(values.get(f"{effect.name}.{s.name}{suffix}", 0.0) for s in effect.effect.sizes)
+    ]  # fmt: skip
+    return {
+        "name": effect.name,
+        "where": there,
+        "law": effect.effect.law,
+        "reference": effect.effect.reference,
+        "values": {name: values[name] for name in names},
+    }
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        record = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError(f"no {path}; inca discover --out DIR writes one") from None
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+        raise InputError(f"{path} cannot be read as JSON ({error}); save the twin again") from None
+    if not isinstance(record, dict):
+        raise InputError(f"{path} holds no object; save the twin again")
+    return record
+
+
+def _known(
+    wanted: Sequence[dict[str, Any]], effects: Sequence[DriveEffect], folder: Path
+) -> tuple[DriveEffect, ...]:
+    """The effects of these names, with these laws."""
+    at_hand = {e.name: e for e in effects}
+    missing = [e["name"] for e in wanted if e["name"] not in at_hand]
+    if missing:
+        raise InputError(
+            f"the twin in {folder} has effects of which the law is not at hand:"
+            f" {', '.join(missing)}; pass them, as load_twin(path, effects=(*CATALOGUE, yours))"
+        )
+    changed = [e["name"] for e in wanted if at_hand[e["name"]].effect.law != e["law"]]
+    if changed:
+        raise InputError(
+            f"the twin in {folder} was saved with another law of {', '.join(changed)}; pass the"
+            " effect as it was then"
+        )
+    return tuple(at_hand[e["name"]] for e in wanted)
+
+
+def _parameters(
+    name: str, values: dict[str, float], effects: Sequence[DriveEffect]
+) -> ParameterSet:
+    base = parameter_set(name)
+    known: tuple[Parameter, ...] = (*base.records, *records(effects))
+    return replace(base, records=known).with_values(values)
+
+
+def _geometry(record: dict[str, Any]) -> Geometry:
+    rows = {name: tuple(map(tuple, record[name])) for name in ("exits", "connectors")}
+    return Geometry(**{**record, **rows})
+
+
+def _same(model: mujoco.MjModel, path: Path) -> None:
+    """Refuse a model.xml that was edited after it was saved, or is of another twin.
+
+    Raises:
+        InputError: it is, or it cannot be read.
+    """
+    if not path.is_file():
+        raise InputError(f"no {path}; save the twin again")
+    try:
+        other = mujoco.MjModel.from_xml_path(str(path))
+    except ValueError as error:
+        raise InputError(f"{path} is not a model MuJoCo can read: {error}") from None
+    for name in _ARRAYS:
+        a, b = getattr(model, name), getattr(other, name)
+        if a.shape != b.shape or not np.array_equal(a, b):
+            raise InputError(
+                f"{path} is not the model of its effects.json: {name} differs; change values with"
+                " Twin.with_values, or save the twin again"
+            )

@@ -1,0 +1,122 @@
+"""The pretensioned start: tensions that hold the platform at rest, and the no-load lengths.
+
+    W T = w,   W = [-s_i ; -(R b_i × s_i)]        wrench of the cables on the platform, 6 × 8
+    T(0) = t₀ + W⁺ (w - W t₀)                     nearest (least squares) to t₀ = 4 N each
+    d₀(0) = λ d/(λ + T(0))                        (thesis 2.24, 2.25 at rest)
+
+w = (0, 0, m g, 0, 0, 0) is the weight to carry. What candidate effects change of it: see
+`inca_mj.twin.at_rest`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.model.parameter import ParameterSet
+from inca_mj.effects.layout import Layout
+from inca_mj.effects.values import about_centre
+from inca_mj.robot.geometry import Geometry
+from inca_mj.robot.kinematics import cables, length_jacobian, rotation
+from inca_mj.robot.parameters import GRAVITY, PRETENSION
+from inca_mj.twin.at_rest import Change, change_at_rest
+
+NO_EFFECTS = Layout()
+
+
+@dataclass(frozen=True)
+class Start:
+    """A robot at rest, all angles zero: where a log begins.
+
+    Attributes:
+        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
+        tension: T(0), shape (8,) [N].
+        no_load_length: d₀(0), shape (8,) [m].
+        strain: ε(0) of each cable, shape (8,).
+        balance: what the drum springs balance, at the roller of the model, shape (8,) [N].
+    """
+
+    pose: np.ndarray
+    tension: np.ndarray
+    no_load_length: np.ndarray
+    strain: np.ndarray
+    balance: np.ndarray
+
+
+def pretension(
+    pose: np.ndarray, geometry: Geometry, m: float, change: Change | None = None
+) -> np.ndarray:
+    """Tensions T(0), shape (8,) [N], nearest to 4 N each that hold a platform of mass m [kg].
+
+    Args:
+        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
+        geometry: anchors of the cables.
+        m: mass of the platform [kg].
+        change: what candidate effects change of the cables' ways and of the load.
+
+    Raises:
+        InputError: some cable would have to push, or the cables cannot hold the platform.
+    """
+    R = rotation(*pose[3:])
+    d = np.linalg.norm(pose[:3] + geometry.B @ R.T - geometry.A, axis=1)
+    if d.min() < 1e-3:
+        raise InputError(
+            f"cable {d.argmin() + 1} has no length at pose {np.round(pose, 4).tolist()}; move its"
+            " exit point or the start pose"
+        )
+    W = -length_jacobian(pose[:3], R, geometry).T
+    w = np.array([0, 0, m * GRAVITY, 0, 0, 0])
+    if change is not None:
+        W = W - np.hstack([change.turned, np.cross(geometry.B @ R.T, change.turned)]).T
+        w = w + change.load
+    t_0 = np.full(len(geometry.exits), PRETENSION)
+    T = t_0 + np.linalg.pinv(W) @ (w - W @ t_0)
+    if np.abs(W @ T - w).max() > 1e-9 * max(1.0, m * GRAVITY):
+        raise InputError(
+            f"the cables cannot hold the platform at pose {np.round(pose, 4).tolist()}:"
+            f" their wrench matrix has rank {np.linalg.matrix_rank(W)} of 6;"
+            " move the start pose or the connectors"
+        )
+    if T.min() <= 0:
+        raise InputError(
+            f"cable {T.argmin() + 1} would have to push ({T.min():.3g} N) to hold the platform at"
+            f" pose {np.round(pose, 4).tolist()}; move the start towards the middle, or lower m"
+        )
+    return T
+
+
+def start(parameters: ParameterSet, geometry: Geometry, layout: Layout = NO_EFFECTS) -> Start:
+    """The start that parameters and geometry imply: T(0) and d₀(0) follow from pose, m and λ.
+
+    Raises:
+        InputError: as `pretension`.
+    """
+    return start_from(parameters.values(), geometry, layout)
+
+
+def start_from(
+    values: Mapping[str, float], geometry: Geometry, layout: Layout = NO_EFFECTS
+) -> Start:
+    """`start` from plain values by name, in SI units; what candidate effects change included."""
+    pose = np.array([values[name] for name in ("x", "y", "z", "roll", "pitch", "yaw")])
+    moved = about_centre(geometry, layout.effects, values)
+    change = change_at_rest(values, pose, moved, layout)
+    T = pretension(pose, moved if layout.settled else geometry, values["m"], change)
+    d, _ = cables(pose[:3], rotation(*pose[3:]), moved)
+    if change is None:
+        d_0 = values["lambda"] * d / (values["lambda"] + T)
+        return Start(pose, T, d_0, T / values["lambda"], T)
+    strain = change.strain(T)
+    return Start(
+        pose, T, (d + change.longer) / (1 + strain), strain, T * (1 + change.wider / values["R"])
+    )
+
+
+def activations(begin: Start, layout: Layout) -> np.ndarray:
+    """The twin's activations at a start: d₀ of each drive, then its effects' own states."""
+    own = [p.effect.rest for p in layout if p.state]
+    rest = {"zero": np.zeros_like(begin.strain), "strain": begin.strain}
+    return np.column_stack([begin.no_load_length, *(rest[name] for name in own)]).ravel()

@@ -1,0 +1,187 @@
+"""The twin: a compiled MuJoCo model of the robot together with the values that made it."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from identification.model.export import write_xml
+from identification.model.parameter import ParameterSet
+from identification.model.paths import Slot, resolve, write
+from identification.model.predictor import Numbers
+from identification.model.rollout import State
+from inca_mj.effects.hooks import DriveEffect
+from inca_mj.effects.layout import Layout
+from inca_mj.effects.values import inputs as effect_inputs
+from inca_mj.effects.values import numbers as effect_numbers
+from inca_mj.effects.values import with_effects
+from inca_mj.robot import law
+from inca_mj.robot.geometry import INCA, Geometry
+from inca_mj.robot.kinematics import quaternion
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.twin import native
+from inca_mj.twin.mjcf import TIMESTEP, build, check_inertia
+from inca_mj.twin.statics import Start, activations, start, start_from
+
+
+@dataclass(frozen=True)
+class Twin:
+    """A robot that can be simulated; `build_twin()` makes one.
+
+    Attributes:
+        parameters: every number of the robot, with unit and source.
+        geometry: where its cables begin and end.
+        model: the compiled model; treat it as read-only.
+        effects: candidate effects that are compiled into its law, absent while their sizes are 0.
+        settled: see `Layout`.
+    """
+
+    parameters: ParameterSet
+    geometry: Geometry
+    model: mujoco.MjModel
+    effects: tuple[DriveEffect, ...] = ()
+    settled: bool = False
+
+    @property
+    def layout(self) -> Layout:
+        """Where the parameters of its effects are in the model."""
+        return Layout(self.effects, self.settled)
+
+    @property
+    def start(self) -> Start:
+        """The pretensioned start that the parameters imply."""
+        return start(self.parameters, self.geometry, self.layout)
+
+    def state(self) -> State:
+        """The start as a MuJoCo state."""
+        native.install(self.layout)
+        return start_state(self.start, self.layout)
+
+    def with_values(self, values: Mapping[str, float]) -> Twin:
+        """The twin with other values, without compiling again.
+
+        Raises:
+            InputError: a name is unknown, a value out of bounds, or the start has no pretension.
+        """
+        parameters = self.parameters.with_values(values)
+        check_inertia(parameters.values())
+        model = copy.copy(self.model)
+        write_values(model, parameters, self.geometry, self.layout)
+        begin = start(parameters, self.geometry, self.layout)
+        model.actuator_user[:, law.T_0] = begin.balance
+        state = start_state(begin, self.layout)
+        model.qpos0[:] = model.key("start").qpos[:] = state.qpos
+        model.key("start").act[:] = state.act
+        mujoco.mj_setConst(model, mujoco.MjData(model))
+        return replace(self, parameters=parameters, model=model)
+
+    def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:
+        """Initial states and model numbers of n value sets, for `identification.Predictor`.
+
+        The start closes the loop that the thesis could not: T(0) follows from pose and m, d₀(0)
+        from T(0), pose and λ.
+
+        Args:
+            names: parameters that differ from the twin's own.
+            values: their values, shape (n, p), in their units.
+
+        Raises:
+            InputError: a start has no pretension.
+        """
+        native.install(self.layout)
+        own = self.parameters.values()
+        starts = [
+            start_from({**own, **dict(zip(names, row, strict=True))}, self.geometry, self.layout)
+            for row in values
+        ]
+        balance = np.array([begin.balance for begin in starts])
+        numbers = [
+            (resolve(self.model, self.parameters[name].where), column)
+            for name, column in zip(names, values.T, strict=True)
+            if self.parameters[name].where not in ("start", "effect")
+        ]
+        numbers += effect_numbers(self.layout, names, own, values, self.model, self.geometry)
+        numbers += [
+            (Slot("actuator_user", (i,), law.T_0), column) for i, column in enumerate(balance.T)
+        ]
+        states = [start_state(begin, self.layout) for begin in starts]
+        rows = (np.array([getattr(s, field) for s in states]) for field in ("qpos", "qvel", "act"))
+        return State(*rows), numbers
+
+    def inputs(
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
+    ) -> np.ndarray:
+        """Currents that reach the motors, where an effect acts on their way; see `Plant`.
+
+        Args:
+            names: parameters that differ from the twin's own.
+            values: their values, shape (n, p).
+            held: logged currents at the steps of the simulation, shape (steps, 8) [A].
+            timestep: of the simulation [s].
+        """
+        return effect_inputs(self.effects, names, self.parameters.values(), values, held, timestep)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the model as MJCF, exact to the last bit; returns the path."""
+        spec = build(self.parameters, self.geometry, self.layout)
+        spec.option.timestep = self.model.opt.timestep
+        return write_xml(spec, path)
+
+
+def build_twin(
+    parameters: ParameterSet | None = None,
+    geometry: Geometry = INCA,
+    *,
+    timestep: float = TIMESTEP,
+    effects: Sequence[DriveEffect] = (),
+    settled: bool = False,
+    visual: bool = True,
+) -> Twin:
+    """Build and compile the robot, and install the law of its cables in this process.
+
+    Args:
+        parameters: the values; the thesis' Table 3.2 when None.
+        geometry: anchors of the cables; assumed ones by default.
+        timestep: of the RK4 integrator [s].
+        effects: candidate effects to compile into the law; their sizes become parameters.
+        settled: see `Layout`.
+        visual: whether it can be drawn; without its shapes it moves the same, and sooner.
+
+    Raises:
+        InputError: the start has no pretension, two effects have one name, or another library
+            holds MuJoCo's callbacks.
+    """
+    layout = Layout(tuple(effects), settled)
+    parameters = with_effects(parameters or parameter_set(), layout.effects)
+    native.install(layout)
+    spec = build(parameters, geometry, layout)
+    spec.option.timestep = timestep
+    spec.compiler.discardvisual = not visual
+    model = spec.compile()
+    write_values(model, parameters, geometry, layout)
+    return Twin(parameters, geometry, model, layout.effects, settled)
+
+
+def write_values(
+    model: mujoco.MjModel, parameters: ParameterSet, geometry: Geometry, layout: Layout
+) -> None:
+    """Write all model parameters into mjModel, in place; the start's follow in `Twin`."""
+    for parameter in parameters:
+        if parameter.where not in ("start", "effect"):
+            write(model, resolve(model, parameter.where), parameter.value)
+    own = parameters.values()
+    for slot, column in effect_numbers(layout, tuple(own), own, np.array([[*own.values()]]),
+                                       model, geometry):  # fmt: skip
+        write(model, slot, float(column[0]))
+
+
+def start_state(begin: Start, layout: Layout) -> State:
+    """A start as a MuJoCo state: qpos (15,), qvel (14,), act (8 (1 + own states),)."""
+    drives = len(begin.tension)
+    qpos = np.concatenate([begin.pose[:3], quaternion(*begin.pose[3:]), np.zeros(drives)])
+    return State(qpos, np.zeros(6 + drives), activations(begin, layout))

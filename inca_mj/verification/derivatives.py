@@ -1,0 +1,168 @@
+"""Accelerations, no-load rates and tensions of the two models at random states.
+
+An error is relative to the sum of the magnitudes of the terms that make up the quantity, since
+cancellation of terms limits what floating point can give:
+
+    platform, linear     Σ T_i/m + g
+    platform, angular    Σ |b_i| T_i/I + |ω × I ω|/I       (per axis, of that axis' inertia)
+    motor                (K_t |i| + R T + R_s F_s + b_v |ω_m| + b_c)/J
+    no-load rate         |ḋ₀| itself, a product
+    tension              T
+
+with the pretension of 4 N for T where T is less: a cable of 2 m that is stretched by 10⁻¹² m
+pulls with 10⁻⁸ N, which is equal to none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+import mujoco
+import numpy as np
+from mujoco.batch import Batch
+
+from identification.model.parameter import ParameterSet
+from identification.model.rollout import threads
+from inca_mj.reference import layout as at
+from inca_mj.reference import outputs, pack
+from inca_mj.robot.geometry import DRIVES, INCA, Geometry
+from inca_mj.robot.parameters import GRAVITY, PRETENSION, SETS, parameter_set
+from inca_mj.twin.twin import Twin, build_twin
+from inca_mj.verification.states import random_states, to_mujoco
+
+RANDOM_SETS = 6  # parameter sets of random values, beside the two of the thesis
+_SPREAD = 1.5  # random values lie within this factor of the nominal ones
+# All but the start pose, which is a state and no law.
+_VARIED = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t", "m",
+           "I_x", "I_y", "I_z")  # fmt: skip
+
+
+@dataclass(frozen=True)
+class DerivativeErrors:
+    """Largest relative errors over all states; what they are relative to, see the module.
+
+    Attributes:
+        linear: of the platform's linear acceleration.
+        angular: of its angular acceleration.
+        motor: of the motors' accelerations. MuJoCo demands an inertia of the drum's body beside
+            the armature J; that share of J (7e-11 of the thesis') is seen here.
+        no_load: of the rates of the no-load lengths.
+        tension: of the tensions.
+        states: number of states.
+        slack: share of slack cables in them.
+    """
+
+    linear: float
+    angular: float
+    motor: float
+    no_load: float
+    tension: float
+    states: int
+    slack: float
+
+    @property
+    def largest(self) -> float:
+        """The largest of the errors; NaN when one is."""
+        return float(np.max([self.linear, self.angular, self.motor, self.no_load, self.tension]))
+
+    def to_json(self) -> dict[str, float]:
+        """The errors by name."""
+        return asdict(self)
+
+
+def compare_derivatives(
+    n: int = 10_000,
+    seed: int = 0,
+    base: ParameterSet | None = None,
+    geometry: Geometry = INCA,
+) -> DerivativeErrors:
+    """Compare the two models at random states, under both parameter sets and random values.
+
+    Args:
+        n: number of states, shared out over the parameter sets.
+        seed: of the states and the values.
+        base: a further parameter set to compare under, and the one that random values vary.
+        geometry: anchors of the cables.
+    """
+    rng = np.random.default_rng(seed)
+    base = base or parameter_set()
+    robots = [build_twin(parameter_set(name), geometry) for name in SETS] + [
+        build_twin(base, geometry)
+    ]
+    robots += [robots[-1].with_values(_random_values(base, rng)) for _ in range(RANDOM_SETS)]
+    # One state at least under each set, so that a small n leaves none unseen.
+    counts = [len(part) for part in np.array_split(np.arange(max(n, len(robots))), len(robots))]
+    errors, slack = zip(
+        *(_compare(robot, count, rng) for robot, count in zip(robots, counts, strict=True)),
+        strict=True,
+    )
+    linear, angular, motor, no_load, tension = np.max(errors, axis=0).tolist()
+    share = float(np.average(slack, weights=counts))
+    return DerivativeErrors(linear, angular, motor, no_load, tension, sum(counts), share)
+
+
+def _random_values(base: ParameterSet, rng: np.random.Generator) -> dict[str, float]:
+    factor = np.exp(rng.uniform(-np.log(_SPREAD), np.log(_SPREAD), len(_VARIED)))
+    values = {name: base[name].value * f for name, f in zip(_VARIED, factor, strict=True)}
+    inertias = [name for name in values if name.startswith("I_")]
+    while inertias and max(values[n] for n in inertias) > 0.5 * sum(values[n] for n in inertias):
+        values |= {n: base[n].value * _SPREAD ** rng.uniform(-1, 1) for n in inertias}
+    return {k: float(np.clip(v, base[k].lower, base[k].upper)) for k, v in values.items()}
+
+
+def _compare(robot: Twin, n: int, rng: np.random.Generator) -> tuple[list[float], float]:
+    """Largest relative errors (linear, angular, motor, no-load rate, tension), share of slack."""
+    x = random_states(n, robot.geometry, rng)
+    i = rng.normal(0, 2, (n, DRIVES))
+    q = pack(robot.parameters, robot.geometry)
+    exact = [outputs(*row, q) for row in zip(x, i, strict=True)]
+    linear, angular, motor, no_load, tension = (
+        np.array([getattr(one, name) for one in exact])
+        for name in (
+            "acceleration",
+            "angular_acceleration",
+            "motor_acceleration",
+            "no_load_rate",
+            "tension",
+        )
+    )
+    qacc, act_dot, pulls = _twin_outputs(robot, x, i)
+    of_linear, of_angular, of_motor = _magnitudes(robot, x, i, tension)
+    errors = [
+        (qacc[:, :3] - linear) / of_linear[:, None],
+        (qacc[:, 3:6] - angular) / of_angular,
+        (qacc[:, 6:] - motor) / of_motor,
+        (act_dot - no_load) / np.abs(no_load),
+        (pulls - tension) / np.maximum(tension, PRETENSION),
+    ]
+    return [float(np.abs(e).max()) for e in errors], float(np.mean(tension == 0))
+
+
+def _twin_outputs(robot: Twin, x: np.ndarray, i: np.ndarray) -> tuple[np.ndarray, ...]:
+    """qacc (n, 14), act_dot (n, 8) and tensions (n, 8) of the twin."""
+    batch = Batch(robot.model, len(x), min(threads(), len(x)))
+    state = to_mujoco(x)
+    batch.bind("qpos")[:], batch.bind("qvel")[:] = state.qpos, state.qvel
+    batch.bind("act")[:], batch.bind("ctrl")[:] = state.act, i
+    found = [batch.bind(field) for field in ("qacc", "act_dot", "sensordata")]
+    batch.forward(stage=mujoco.mjtStage.mjSTAGE_ACC)
+    qacc, act_dot, sensors = map(np.array, found)
+    first = robot.model.sensor("tension_1").adr[0]
+    return qacc, act_dot, sensors[:, first : first + DRIVES]
+
+
+def _magnitudes(
+    robot: Twin, x: np.ndarray, i: np.ndarray, tension: np.ndarray
+) -> tuple[np.ndarray, ...]:
+    """Of the terms summed in the accelerations: linear (n,), angular (n, 3), motor (n, 8)."""
+    p = robot.parameters.values()
+    T = np.maximum(tension, PRETENSION)
+    I_P = np.array([p["I_x"], p["I_y"], p["I_z"]])
+    ω, φ, ω_m = x[:, at.RATES], x[:, at.ANGLES], x[:, at.SPEEDS]
+    linear = T.sum(axis=1) / p["m"] + GRAVITY
+    moments = T @ np.linalg.norm(robot.geometry.B, axis=1)
+    angular = (moments[:, None] + np.abs(np.cross(ω, I_P * ω))) / I_P
+    spring = np.abs(p["R"] * robot.start.tension - p["k_s"] * p["R_s"] ** 2 * φ)
+    driven = p["K_t"] * np.abs(i) + p["R"] * T + spring
+    motor = (driven + p["b_v"] * np.abs(ω_m) + p["b_c"]) / p["J"]
+    return linear, angular, motor

@@ -1,0 +1,92 @@
+"""Where inputs are tried: run on the twin, held against the limits, and weighed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from identification.errors import DivergenceError
+from identification.estimation.experiment import Experiment, information
+from identification.estimation.information import Information
+from inca_mj.robot.inputs import multisine, prbs, step
+from inca_mj.twin.logs import ANGLES
+from inca_mj.twin.run import Run, simulate
+from inca_mj.twin.twin import Twin
+from inca_mj.workflows.identification import POSE
+from inca_mj.workflows.limits import Extent, Limits, extent
+from inca_mj.workflows.recipes import Recipe
+
+SAMPLING = 0.01  # of the robot [s]
+SCALES = (1.0, 0.7, 0.5, 0.35, 0.2)  # of a swing that breaks a limit
+
+
+@dataclass(frozen=True)
+class Tried:
+    """An input and what it is worth.
+
+    Attributes:
+        name: in words.
+        run: the simulated run.
+        extent: how far it went.
+        found: information on the parameters, the start pose being unknown.
+        allowed: whether it keeps the limits.
+    """
+
+    name: str
+    run: Run
+    extent: Extent
+    found: Information
+    allowed: bool
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Where inputs are tried.
+
+    Attributes:
+        robot: the twin at its nominal values.
+        sigma: std of the noise on each angle [rad].
+        names: parameters that are asked for; the start pose is unknown too.
+        limits: what an input may do.
+    """
+
+    robot: Twin
+    sigma: float
+    names: tuple[str, ...]
+    limits: Limits
+
+    def attempt(self, name: str, run: Run) -> Tried:
+        """What a run is worth, from 2 p simulations."""
+        pose = [n for n in POSE if n not in self.names]
+        sampling = float(run.time[1] - run.time[0])
+        trial = Experiment(self.robot, run.currents, sampling, ANGLES, self.sigma)
+        far = extent(run)
+        return Tried(name, run, far, information(trial, self.names, pose), far.within(self.limits))
+
+    def fitted(self, recipe: Recipe, n: int) -> tuple[Recipe, Run] | None:
+        """The recipe with as much swing as the limits let it have, and its run."""
+        for scale in SCALES:
+            smaller = replace(recipe, scale=scale)
+            try:
+                run = simulate(self.robot, smaller.currents(n, SAMPLING, self.limits), SAMPLING)
+            except DivergenceError:
+                continue
+            if extent(run).within(self.limits):
+                return smaller, run
+        return None
+
+
+def standard_inputs(n: int) -> list[tuple[str, np.ndarray]]:
+    """Inputs that people try, the thesis' PRBS first: names and currents, shape (n, 8) [A]."""
+    levels = [(0.5, 1.0, 0.25), (0.5, 1.0, 0.1), (0.5, 1.0, 0.05), (0.25, 1.25, 0.1), (0, 2, 0.1)]
+    return [
+        *(
+            (f"PRBS {a:g}-{b:g} A, {bit:g} s", prbs(n, SAMPLING, low=a, high=b, bit_time=bit))
+            for a, b, bit in levels
+        ),
+        ("multisine 0.5-1 A, to 5 Hz", multisine(n, SAMPLING)),
+        ("multisine 0-2 A, 0.1-40 Hz",
+         multisine(n, SAMPLING, mean=1.0, amplitude=1.0, band=(0.1, 40.0))),
+        ("step 2 A in motor 1", step(n)),
+    ]  # fmt: skip

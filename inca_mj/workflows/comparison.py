@@ -1,0 +1,92 @@
+"""A log against the twin's prediction of it: fit % and rms per motor angle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+from typing import Any
+
+import numpy as np
+
+from identification import InputError, Log, fit_percent, rms
+from identification.model.parameter import ParameterSet
+from inca_mj.robot.geometry import INCA, Geometry
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.twin.logs import POSE, pose_of
+from inca_mj.twin.mjcf import TIMESTEP
+from inca_mj.twin.run import Run, simulate
+from inca_mj.twin.twin import build_twin
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What was measured, and what the twin makes of the same currents.
+
+    Attributes:
+        log: the measured log.
+        run: the twin's run under the log's currents, on the same samples.
+        fit_percent: 100 (1 - ‖ŷ - y‖/‖y - ȳ‖) per angle (thesis 3.4), shape (8,) [%].
+        rms: of the difference per angle, shape (8,) [rad].
+    """
+
+    log: Log
+    run: Run
+    fit_percent: np.ndarray
+    rms: np.ndarray
+
+    def to_json(self) -> dict[str, Any]:
+        """The numbers as plain values."""
+        return {
+            "fit_percent": [float(f) if np.isfinite(f) else None for f in self.fit_percent],
+            "rms": self.rms.tolist(),
+            "samples": len(self.log),
+            "seconds_simulated": self.log.duration,
+        }
+
+
+def compare(
+    log: Log,
+    parameters: ParameterSet | None = None,
+    geometry: Geometry = INCA,
+    *,
+    timestep: float = TIMESTEP,
+) -> Comparison:
+    """Predict a log's angles from its currents alone, from its measured pose or the twin's start.
+
+    Args:
+        log: what was measured.
+        parameters: the twin's values; the thesis' Table 3.2 when None.
+        geometry: anchors of the cables.
+        timestep: largest step of the integrator [s].
+
+    Raises:
+        InputError: the start has no pretension.
+        DivergenceError: the simulation left the finite numbers.
+    """
+    parameters = start_of(log, parameters or parameter_set())
+    robot = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
+    run = simulate(robot, log.inputs, log.sampling_time, hold_kind=log.hold)
+    predicted = run.motor_angle
+    return Comparison(
+        log, run, fit_percent(log.outputs, predicted), rms(log.outputs - predicted)
+    )  # fmt: skip
+
+
+def start_of(log: Log, parameters: ParameterSet) -> ParameterSet:
+    """The parameters, begun at the log's own pose where it has one and they name no other."""
+    pose = pose_of(log)
+    nominal = parameter_set().values()
+    if pose is None or any(parameters[name].value != nominal[name] for name in POSE):
+        return parameters
+    return parameters.with_values(dict(zip(POSE, pose[0].tolist(), strict=True)))
+
+
+def timestep_for(sampling_time: float, largest: float = TIMESTEP) -> float:
+    """The largest step that divides the sampling time and is no more than `largest` [s].
+
+    Raises:
+        InputError: `largest` is no sensible step.
+    """
+    if not 1e-6 <= largest <= 0.1:
+        raise InputError(f"a step of {largest:g} s is not between 1e-6 and 0.1 s; try {TIMESTEP:g}")
+    return sampling_time / ceil(sampling_time / largest - 1e-9)

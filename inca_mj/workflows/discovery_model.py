@@ -1,0 +1,45 @@
+"""The twin that a discovery ends with: the final fit, and in its law the named effects only."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from identification.discovery.final import final_values
+from identification.discovery.result import Discovery
+from identification.errors import InputError
+from identification.logs.log import Log
+from inca_mj.effects.values import with_effects
+from inca_mj.twin.run import Run, simulate
+from inca_mj.twin.twin import Twin, build_twin
+
+
+def named_twin(found: Discovery) -> Twin:
+    """The robot at the values of the final fit, with the named effects and no other candidates.
+
+    Raises:
+        InputError: the discovery was not made with a twin of this robot.
+    """
+    plant = found.final.at.predictor.plant
+    if not isinstance(plant, Twin):
+        raise InputError(
+            f"the discovery is of a {type(plant).__name__}, not of a twin;"
+            " inca_mj.workflows.discovery makes one of a twin"
+        )
+    names = {named.candidate.effect.name for named in found.named}
+    effects = tuple(e for e in plant.effects if e.name in names)
+    base = tuple(p for p in plant.parameters if p.where != "effect")
+    known = with_effects(replace(plant.parameters, records=base), effects)
+    at = {name: value for name, value in final_values(found).items() if name in known.values()}
+    free = {name: at[name] for name in found.final.at.space.names if name in at}
+    return build_twin(
+        known.with_values(at).with_values(free, "fitted to the log"),
+        plant.geometry,
+        timestep=plant.model.opt.timestep,
+        effects=effects,
+        settled=plant.settled,
+    )
+
+
+def rerun(robot: Twin, log: Log) -> Run:
+    """The robot under the currents of a log."""
+    return simulate(robot, log.inputs, log.sampling_time, hold_kind=log.hold)

@@ -1,0 +1,101 @@
+"""Identification of a disturbed robot: over windows that each begin anywhere, or by innovations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from identification import Log
+from identification.errors import InputError
+from identification.estimation.estimation import estimate
+from identification.estimation.fit import assess
+from identification.estimation.window_estimate import estimate_windows
+from identification.kalman.estimate import estimate_innovations
+from identification.model.parameter import ParameterSet
+from inca_mj.robot.geometry import INCA, Geometry
+from inca_mj.twin.mjcf import TIMESTEP
+from inca_mj.twin.twin import build_twin
+from inca_mj.twin.wiring import refuse_miswired
+from inca_mj.workflows.comparison import timestep_for
+from inca_mj.workflows.identification import MECHANICS, POSE, UNKNOWN, Identification
+
+FIRST = 4  # windows that a free run explains first, to start the search over all of them near
+
+
+def identify_windows(
+    log: Log,
+    parameters: ParameterSet,
+    length: float,
+    geometry: Geometry = INCA,
+    free: Sequence[str] = (),
+    progress: Callable[[str], None] | None = None,
+    timestep: float = TIMESTEP,
+) -> Identification:
+    """Identify the robot over windows of the estimation part, then confirm it in a free run.
+
+    The search starts where a free run over the first few windows ends. A window begins anywhere:
+    pose, rates and the eight no-load lengths, of which the angles measure none, are fitted for each
+    (see `identification.estimation.windows`). The start pose is free all the same, for the springs
+    remember the pretension that it implies. A free run then fits that pose alone, and says with the
+    parameters of the windows how far they carry.
+
+    Args:
+        log: what was measured; its split `estimation`, or its first half, is fitted.
+        parameters: nominal values, where the search begins.
+        length: of a window [s].
+        geometry: anchors of the cables.
+        free: parameters to estimate; those of drives, cables and platform mass when empty.
+        progress: is told one line per accepted step.
+        timestep: largest step of the integrator [s].
+
+    Raises:
+        InputError: the windows do not fit the log, or as `identify`.
+        DivergenceError: the nominal values, or the free run, cannot be simulated.
+    """
+    if not length > 0:
+        raise InputError(f"windows of {length:g} s hold nothing; give a length above 0")
+    if free and not set(free) - set(POSE):
+        raise InputError(
+            f"windows cannot find {', '.join(free)} alone: each has a start of its own; name a"
+            f" parameter of the robot too, such as {', '.join(UNKNOWN)}"
+        )
+    timestep = timestep_for(log.sampling_time, timestep)
+    plant = build_twin(parameters, geometry, timestep=timestep, visual=False)
+    refuse_miswired(log, plant)
+    fitted = log.part("estimation")
+    names = tuple(dict.fromkeys((*(free or MECHANICS), *POSE)))
+    time, end = fitted.time, float(fitted.time[0]) + FIRST * length
+    early = fitted.between(float(time[0]), end) if end < time[-1] else fitted
+    near = estimate(plant, early, names, progress=progress).values
+    found = estimate_windows(plant, fitted, names, length, near, progress=progress)
+    fit = assess(estimate(plant, fitted, POSE, found.values, progress=progress), log)
+    return Identification(log, (fit,), 0, windows=found)
+
+
+def identify_innovations(
+    log: Log,
+    parameters: ParameterSet,
+    geometry: Geometry = INCA,
+    free: Sequence[str] = (),
+    progress: Callable[[str], None] | None = None,
+    timestep: float = TIMESTEP,
+) -> Identification:
+    """Identify the robot by its innovations: the currents may err by more than the log says.
+
+    Args:
+        log: what was measured; its split `estimation`, or its first half, is fitted.
+        parameters: nominal values, where the search begins.
+        geometry: anchors of the cables.
+        free: parameters to estimate; all and the pose when empty.
+        progress: is told one line per accepted step.
+        timestep: largest step of the integrator [s].
+
+    Raises:
+        InputError: as `identify`.
+        DivergenceError: the nominal values cannot be simulated.
+    """
+    timestep = timestep_for(log.sampling_time, timestep)
+    plant = build_twin(parameters, geometry, timestep=timestep, visual=False)
+    refuse_miswired(log, plant)
+    names = tuple(free) or (*MECHANICS, *POSE)
+    found = estimate_innovations(plant, log, names, progress=progress)
+    return Identification(log, (found.fit,), 0, innovations=found)

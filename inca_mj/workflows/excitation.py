@@ -1,0 +1,159 @@
+"""An input that shows the worst determined parameter best, inside what the robot may do.
+
+    u* = argmax_u  λ_min F(u)      (E-optimal)      so that the simulated run keeps the limits
+
+D-optimality (det F) is won by making the well determined directions better still; E-optimality asks
+for the worst one. The search is seeded: random recipes first, then neighbours of the best. A recipe
+that breaks a limit swings less until it keeps it. Information is local: it holds for a robot near
+the values that it was computed at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.estimation.information import determinable
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import Twin
+from inca_mj.workflows.bench import SAMPLING, Bench, Tried, standard_inputs
+from inca_mj.workflows.identification import UNKNOWN
+from inca_mj.workflows.limits import Limits
+from inca_mj.workflows.recipes import Recipe, changed, draw
+
+MOVES = ((0.3, 0.1), (0.1, 0.1), (0.1, 0.3), (0.03, 0.5))  # size, and share of the numbers
+TRIES = 20  # cheap runs that a search may spend per evaluation of the information
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Design:
+    """A designed input beside the thesis' PRBS and other standard inputs.
+
+    Attributes:
+        best: the designed input.
+        prbs: the thesis' PRBS of the same length.
+        standard: inputs that people try, the thesis' PRBS first.
+        held: parameters left out because the PRBS cannot tell them from others.
+        limits: what was allowed.
+        settings: of the designed input; empty when a standard one could not be beaten.
+        evaluations: how often the information was computed.
+    """
+
+    best: Tried
+    prbs: Tried
+    standard: tuple[Tried, ...]
+    held: tuple[str, ...]
+    limits: Limits
+    settings: dict[str, float]
+    evaluations: int
+
+    @property
+    def gain(self) -> np.ndarray:
+        """Std under the PRBS over std under the design, by parameter, shape (p,)."""
+        return self.prbs.found.std / self.best.found.std
+
+    @property
+    def worst_gain(self) -> float:
+        """The same of the worst determined direction of each, √(E/E)."""
+        return float(np.sqrt(self.best.found.e_value / self.prbs.found.e_value))
+
+
+def design(
+    robot: Twin,
+    duration: float = 5.0,
+    sigma: float = 6.7e-4,
+    names: Sequence[str] = UNKNOWN,
+    limits: Limits | None = None,
+    budget: int = 60,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Design:
+    """Design an input.
+
+    Args:
+        robot: the twin, at the values known before the experiment.
+        duration: of the experiment [s].
+        sigma: std of the noise on each angle [rad].
+        names: parameters to determine.
+        limits: what the input may do.
+        budget: evaluations of the information by the search, 2 p simulations each.
+        seed: of the search.
+        progress: is told of each improvement.
+
+    Raises:
+        InputError: a name, the noise, the duration or a limit is bad, or nothing that was tried
+            keeps the limits.
+    """
+    limits = limits or Limits()
+    n = _samples(duration)
+    if budget < 1:
+        raise InputError(f"a budget of {budget} evaluations finds nothing; give at least 1")
+    _refuse_start(robot, limits)
+    bench = Bench(robot, sigma, tuple(names), limits)
+    first, *rest = standard_inputs(n)
+    baseline = bench.attempt(first[0], simulate(robot, first[1], SAMPLING))
+    kept, held = determinable(baseline.found)
+    if not kept:
+        raise InputError("none of these parameters shows in the angles; free others")
+    bench = replace(bench, names=kept)
+    thesis = replace(baseline, found=baseline.found.about(kept))
+    others = [bench.attempt(name, simulate(robot, u, SAMPLING)) for name, u in rest]
+    tried = (thesis, *others)
+    best = max((t for t in tried if t.allowed), key=lambda t: t.found.e_value, default=None)
+    settings: dict[str, float] = {}
+    for count, (recipe, candidate) in enumerate(_search(bench, n, budget, seed), 1):
+        if best is None or candidate.found.e_value > best.found.e_value:
+            best, settings = candidate, recipe.settings(limits)
+            if progress is not None:
+                gain = np.sqrt(best.found.e_value / thesis.found.e_value)
+                progress(f"{count} of {budget}: {recipe.kind}, worst direction {gain:.2f} times"
+                         " better known than by the thesis' PRBS")  # fmt: skip
+    if best is None:
+        raise InputError(
+            "no input that was tried keeps the limits; allow a smaller tension margin, more"
+            " workspace or more current"
+        )
+    return Design(best, thesis, tried, held, limits, settings, budget)
+
+
+def _search(bench: Bench, n: int, budget: int, seed: int) -> Iterator[tuple[Recipe, Tried]]:
+    """Recipes that keep the limits, with their worth: half at random, half near the best."""
+    rng = np.random.default_rng(seed)
+    best: tuple[Recipe, float] | None = None
+    count = 0
+    for attempt in range(TRIES * budget):
+        if count == budget:
+            return
+        if attempt == 0:
+            recipe = draw("multisine", rng, guess=True)
+        elif best is None or count < budget // 2:
+            recipe = draw("multisine" if rng.random() < 0.5 else "prbs", rng)
+        else:
+            recipe = changed(best[0], rng, *rng.choice(MOVES))
+        if (fit := bench.fitted(recipe, n)) is None:
+            continue
+        candidate = bench.attempt(f"designed {recipe.kind}", fit[1])
+        count += 1
+        yield fit[0], candidate
+        if best is None or best[1] < candidate.found.e_value:
+            best = fit[0], candidate.found.e_value
+
+
+def _samples(duration: float) -> int:
+    if not 0.2 <= duration <= 120.0:
+        raise InputError(f"an experiment of {duration:g} s cannot be designed; give 0.2 s to 120 s")
+    return round(duration / SAMPLING) + 1
+
+
+def _refuse_start(robot: Twin, limits: Limits) -> None:
+    least = float(robot.start.tension.min())
+    if least <= limits.margin:
+        raise InputError(
+            f"the robot rests with {least:.2f} N in a cable, below the margin of"
+            f" {limits.margin:g} N; give a smaller margin"
+        )

@@ -1,0 +1,134 @@
+"""The thesis' two-step procedure on a log, with the step that predicts unseen data best kept.
+
+Step 1 estimates every parameter and the start; step 2 only what no data sheet says, with the others
+fixed at their nominal values and the search begun at step 1's (thesis section 3.3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from identification import Log
+from identification.estimation.estimation import Options, estimate
+from identification.estimation.fit import Fit, assess
+from identification.estimation.multistart import estimate_from
+from identification.estimation.window_estimate import WindowEstimate
+from identification.kalman.estimate import InnovationsFit
+from identification.model.parameter import ParameterSet
+from inca_mj.robot.geometry import INCA, Geometry
+from inca_mj.twin.mjcf import TIMESTEP
+from inca_mj.twin.twin import build_twin
+from inca_mj.twin.wiring import refuse_miswired
+from inca_mj.workflows.comparison import timestep_for
+
+MECHANICS = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t", "m")
+POSE = ("x", "y", "z", "roll", "pitch", "yaw")
+UNKNOWN = ("lambda", "b", "J", "b_v", "b_c", "beta")  # "arbitrary" or re-estimated in the thesis
+
+
+@dataclass(frozen=True)
+class Identification:
+    """Fits of a log, and which of them to believe.
+
+    Attributes:
+        log: the whole log.
+        fits: one, or the two steps.
+        best: index of the fit with the smaller error on unseen data.
+        starts: rms of every start of each fit, where more than one was allowed.
+        windows: what the windows found; the fit is then a free run with it, its pose free.
+        innovations: where the fit is one of innovations.
+    """
+
+    log: Log
+    fits: tuple[Fit, ...]
+    best: int
+    starts: tuple[np.ndarray, ...] = field(default=())
+    windows: WindowEstimate | None = None
+    innovations: InnovationsFit | None = None
+
+    @property
+    def fit(self) -> Fit:
+        """The fit to believe."""
+        return self.fits[self.best]
+
+    @property
+    def stopped(self) -> bool:
+        """Whether a search was cut short; its best values are kept."""
+        return any(fit.estimate.status == "stopped" for fit in self.fits)
+
+    @property
+    def seconds(self) -> float:
+        """Wall time of all searches."""
+        searches = sum(fit.estimate.seconds for fit in self.fits)
+        return searches + (self.windows.seconds if self.windows else 0.0)
+
+    def fit_of(self, name: str) -> Fit:
+        """The fit to believe, or where that holds a parameter fixed one that estimates it."""
+        has = (f for f in (self.fit, *self.fits) if name in f.estimate.space.names)
+        return next(has, self.fit)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """What was found, by name: of the windows where there are any, and of the fit."""
+        return {**(self.windows.values if self.windows else {}), **self.fit.estimate.values}
+
+
+def identify(
+    log: Log,
+    parameters: ParameterSet,
+    geometry: Geometry = INCA,
+    free: Sequence[str] = (),
+    options: Options | None = None,
+    progress: Callable[[str], None] | None = None,
+    timestep: float = TIMESTEP,
+    starts: int = 1,
+    seed: int = 0,
+) -> Identification:
+    """Identify the robot from a log: fitted on its estimation part, confirmed on all of it.
+
+    Args:
+        log: what was measured; its split `estimation`, or its first half, is fitted.
+        parameters: nominal values, where the search begins.
+        geometry: anchors of the cables.
+        free: parameters to estimate in one step; the two-step procedure when empty.
+        options: how to search.
+        progress: is told one line per accepted step.
+        timestep: largest step of the integrator [s].
+        starts: how many starts each search may try, until one ends near the noise floor.
+        seed: of the starts after the first.
+
+    Raises:
+        InputError: a name is unknown or has no effect, a start has no pretension, or fewer than
+            one start is asked for.
+        DivergenceError: the nominal values cannot be simulated.
+    """
+    timestep = timestep_for(log.sampling_time, timestep)
+    plant = build_twin(parameters, geometry, timestep=timestep, visual=False)
+    refuse_miswired(log, plant)
+    fitted = log.part("estimation")
+
+    tried: list[np.ndarray] = []
+
+    def step(names: Sequence[str], start: dict[str, float]) -> Fit:
+        if starts == 1:
+            return assess(estimate(plant, fitted, names, start, options, progress), log)
+        found = estimate_from(
+            plant, fitted, names, starts, seed, start, options=options, progress=progress
+        )
+        tried.append(found.rms)
+        return assess(found.best, log)
+
+    if free:
+        return Identification(log, (step(tuple(free), {}),), 0, tuple(tried))
+    all_of_it = step((*MECHANICS, *POSE), {})
+    if all_of_it.estimate.status == "stopped":
+        return Identification(log, (all_of_it,), 0, tuple(tried))
+    found = all_of_it.estimate.values
+    unknown = (*UNKNOWN, *POSE)
+    second = step(unknown, {name: found[name] for name in unknown})
+    fits = (all_of_it, second)
+    errors = [fit.rms if fit.validation_rms is None else fit.validation_rms for fit in fits]
+    return Identification(log, fits, errors.index(min(errors)), tuple(tried))

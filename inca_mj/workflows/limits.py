@@ -1,0 +1,98 @@
+"""What an input may do to the robot: currents, tensions and workspace, seen in a simulation.
+
+    low ≤ i_k ≤ high;    T_k > margin;    |p - p(0)| ≤ reach in x, y, z;    angle(R(0)ᵀ R) ≤ turn
+
+A cable that goes slack slaps when it tightens: from there on the motion is chaotic, and a local
+sensitivity grows without meaning. So the margin of tension is also what makes a Fisher information
+believable.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.errors import InputError
+from inca_mj.twin.run import Run
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of an experiment.
+
+    Attributes:
+        low: smallest current [A].
+        high: largest current [A].
+        margin: every tension stays above it at every sample [N].
+        reach: the platform stays so near its start in each of x, y, z [m].
+        turn: and turns no further from its start [rad].
+
+    Raises:
+        InputError: a limit leaves no room.
+    """
+
+    low: float = 0.0
+    high: float = 2.0
+    margin: float = 0.2
+    reach: float = 0.35
+    turn: float = float(np.radians(60.0))
+
+    def __post_init__(self) -> None:
+        if not -np.inf < self.low < self.high < np.inf:
+            raise InputError(
+                f"currents from {self.low:g} A to {self.high:g} A leave nothing to choose;"
+                " give a largest current above the smallest"
+            )
+        if not 0 <= self.margin < np.inf:
+            raise InputError(
+                f"a tension margin of {self.margin:g} N is no margin; cables only pull, so give"
+                " zero or more"
+            )
+        if not self.reach > 0 or not self.turn > 0:
+            raise InputError(
+                f"a workspace of ±{self.reach:g} m and {np.degrees(self.turn):g} deg holds no"
+                " motion; give positive numbers"
+            )
+
+
+@dataclass(frozen=True)
+class Extent:
+    """How far a run went.
+
+    Attributes:
+        low: smallest current [A].
+        high: largest current [A].
+        tension: least tension [N].
+        reach: largest move of the platform along x, y or z from its start [m].
+        turn: largest rotation from its start [rad].
+    """
+
+    low: float
+    high: float
+    tension: float
+    reach: float
+    turn: float
+
+    def within(self, limits: Limits) -> bool:
+        """Whether a run kept the limits."""
+        slack = 1e-12  # of rounding
+        return (
+            self.low >= limits.low - slack
+            and self.high <= limits.high + slack
+            and self.tension > limits.margin
+            and self.reach <= limits.reach
+            and self.turn <= limits.turn
+        )
+
+
+def extent(run: Run) -> Extent:
+    """How far a run went; between quaternions c₀ and c the angle is 2 arccos |c₀ᵀ c|."""
+    turns = np.abs(run.qpos[:, 3:7] @ run.qpos[0, 3:7])
+    return Extent(
+        float(run.currents.min()),
+        float(run.currents.max()),
+        float(run.tension.min()),
+        float(np.abs(run.position - run.position[0]).max()),
+        float(2 * np.arccos(np.minimum(turns, 1.0)).max()),
+    )

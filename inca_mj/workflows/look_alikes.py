@@ -1,0 +1,101 @@
+"""Which input would tell two look-alikes apart.
+
+    d(u) = ‖(I - P) ∂ŷ/∂η η‖/σ,    P: onto what base parameters and the rival imitate
+
+d is how many std of the noise a record under the input u would lie from all that the rival can do.
+It is computed for the log's own input and for those that people try, over the fitted duration.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from identification.discovery.columns import columns
+from identification.discovery.result import Discovery, Named
+from identification.effects.effect import Candidate
+from identification.errors import DivergenceError
+from identification.kalman.point import Point, point
+from identification.logs.log import Log
+from identification.model.predictor import Predictor
+from inca_mj.workflows.bench import standard_inputs
+
+TELLS = 5.0  # std between two look-alikes at which a record decides
+
+
+@dataclass(frozen=True)
+class Contrast:
+    """An input and how far apart it puts two look-alikes.
+
+    Attributes:
+        name: of the input, in words.
+        distance: d [std of the noise].
+        own: the same under the log's own input.
+    """
+
+    name: str
+    distance: float
+    own: float
+
+
+def tell_apart(found: Discovery, named: Named) -> Contrast | None:
+    """The input that tells a named effect best from its first rival; None where none can be run."""
+    fit, rival = found.final, named.rivals[0].candidate
+    own = _distance(fit.at, fit.at.log, named.candidate, rival, fit.level.sigma)
+    tried = {}
+    for name, currents in standard_inputs(len(fit.at.log)):
+        log = replace(fit.at.log, inputs=currents, extras={})
+        try:
+            tried[name] = _distance(fit.at, log, named.candidate, rival, fit.level.sigma)
+        except DivergenceError:  # a cable falls slack under it
+            continue
+    if not tried:
+        return None
+    best = max(tried, key=tried.__getitem__)
+    return Contrast(best, tried[best], own)
+
+
+def told(found: Discovery) -> Discovery:
+    """A discovery whose look-alikes have the input that would tell them apart."""
+    named = tuple(
+        replace(n, advice=sentence(contrast))
+        if n.one_of and n.rivals and (contrast := tell_apart(found, n)) is not None
+        else n
+        for n in found.named
+    )
+    return replace(found, named=named)
+
+
+def sentence(contrast: Contrast) -> str:
+    """What to do next."""
+    if contrast.distance < max(TELLS, 1.5 * contrast.own):
+        return (
+            "No input that was tried would tell them apart better"
+            f" ({contrast.distance:.1f} std against {contrast.own:.1f} here): measure tension or"
+            " pose too."
+        )
+    return (
+        f"A record under {contrast.name} would tell them apart: they would lie"
+        f" {contrast.distance:.0f} std of the noise from each other, here {contrast.own:.1f}."
+    )
+
+
+def _distance(at: Point, log: Log, named: Candidate, rival: Candidate, sigma: float) -> float:
+    """d under the inputs of a log, of two effects linearised where neither is."""
+    values = at.values
+    gone = dict.fromkeys(named.sizes, 0.0)
+    keep = [i for i, n in enumerate(at.space.names) if not n.startswith(f"{named.effect.name}.")]
+    names, q = tuple(at.space.names[i] for i in keep), at.q[keep]
+    fixed = {n: v for n, v in {**values, **gone}.items() if n not in names}
+    space = replace(
+        at.space, names=names, logarithmic=at.space.logarithmic[keep], lower=at.space.lower[keep],
+        upper=at.space.upper[keep], scale=at.space.scale[keep],
+    )  # fmt: skip
+    here = point(Predictor(at.predictor.plant, log, names, fixed), space, q, at.linear)
+    mine, *theirs = (c.S for c in columns(here, [named, rival]))
+    size = np.array([values.get(n, 0.0) or named.whole.get(n, 0.0) for n in named.sizes])
+    S = np.concatenate([here.J, *theirs], axis=2).reshape(log.outputs.size, -1)
+    Q = np.linalg.qr(S / (np.linalg.norm(S, axis=0) + 1e-300))[0]
+    shown = (mine @ size).ravel()
+    return float(np.linalg.norm(shown - Q @ (Q.T @ shown)) / sigma)

@@ -1,0 +1,109 @@
+"""Inputs made from numbers in [0, 1], so that a search can draw, compare and change them.
+
+    multisine   i_d(t) = mean + amplitude Σ_j f_j^tilt sin(2π f_j t + θ_dj)/peak_d
+    prbs        i_d(t) = low or high, for a bit time each, drive d at its own phase
+
+The band of a multisine and the bit time of a PRBS decide how much of fast motion (cables, inertia)
+and slow motion (friction) a record shows; levels decide how far both go.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from inca_mj.robot.geometry import DRIVES
+from inca_mj.robot.inputs import prbs
+from inca_mj.workflows.limits import Limits
+
+TONES = 16
+# Of a multisine's band the lowest tone is below the corner and the highest above it [Hz].
+SLOWEST, CORNER, FASTEST = 0.2, 3.0, 45.0
+BIT = (0.02, 0.5)  # shortest and longest bit [s]
+BITS = (4, 7)
+_OWN = {"multisine": 5, "prbs": 4}  # numbers before the phases
+_GUESS = {"multisine": (0.5, 1.0, 0.3, 0.95, 0.5), "prbs": (0.1, 0.5, 0.4, 1.0)}
+_PHASES = {"multisine": DRIVES * TONES, "prbs": DRIVES}
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """An input in a few numbers.
+
+    Attributes:
+        kind: "multisine" or "prbs".
+        numbers: in [0, 1], levels first, phases last.
+        scale: of the swing about the mean, at most 1.
+    """
+
+    kind: Literal["multisine", "prbs"]
+    numbers: np.ndarray
+    scale: float = 1.0
+
+    def settings(self, limits: Limits) -> dict[str, float]:
+        """What the numbers mean, in units; without the phases."""
+        own = self.numbers[: _OWN[self.kind]]
+        width = limits.high - limits.low
+        if self.kind == "prbs":
+            a, b = sorted(limits.low + width * own[:2])
+            middle, half = (a + b) / 2, self.scale * (b - a) / 2
+            return {
+                "low [A]": float(middle - half),
+                "high [A]": float(middle + half),
+                "bit time [s]": float(BIT[0] * (BIT[1] / BIT[0]) ** own[2]),
+                "bits": float(BITS[0] + round((BITS[1] - BITS[0]) * own[3])),
+            }
+        room = min(own[0], 1 - own[0]) * width
+        return {
+            "mean [A]": float(limits.low + width * own[0]),
+            "amplitude [A]": float(self.scale * room * own[1]),
+            "lowest tone [Hz]": float(SLOWEST * (CORNER / SLOWEST) ** own[2]),
+            "highest tone [Hz]": float(CORNER * (FASTEST / CORNER) ** own[3]),
+            "tilt": float(2 * own[4] - 1),
+        }
+
+    def currents(self, n: int, sampling_time: float, limits: Limits) -> np.ndarray:
+        """The input [A], shape (n, 8)."""
+        s = self.settings(limits)
+        phases = self.numbers[_OWN[self.kind] :]
+        if self.kind == "prbs":
+            bits = int(s["bits"])
+            shift = np.floor(phases * (2**bits - 1)).astype(int)
+            bit = max(1, round(s["bit time [s]"] / sampling_time)) * sampling_time
+            return prbs(
+                n, sampling_time, bits=bits, bit_time=bit,
+                low=s["low [A]"], high=s["high [A]"], phases=shift,
+            )  # fmt: skip
+        fastest = min(s["highest tone [Hz]"], 0.45 / sampling_time)
+        f = np.geomspace(s["lowest tone [Hz]"], fastest, TONES)
+        angle = (
+            2
+            * np.pi
+            * (f * np.arange(n)[:, None, None] * sampling_time + phases.reshape(DRIVES, TONES))
+        )
+        waves = (f ** s["tilt"] * np.sin(angle)).sum(axis=-1)
+        return s["mean [A]"] + s["amplitude [A]"] * waves / np.abs(waves).max(axis=0)
+
+
+def draw(
+    kind: Literal["multisine", "prbs"], rng: np.random.Generator, *, guess: bool = False
+) -> Recipe:
+    """A recipe at random; as a guess only its phases are, the rest is broad and strong."""
+    numbers = rng.random(_OWN[kind] + _PHASES[kind])
+    if guess:
+        numbers[: _OWN[kind]] = _GUESS[kind]
+    return Recipe(kind, numbers)
+
+
+def changed(recipe: Recipe, rng: np.random.Generator, size: float, share: float = 0.3) -> Recipe:
+    """A neighbour: about a share of the numbers moved by `size`; phases go round, levels stop."""
+    moves = (
+        size * rng.standard_normal(len(recipe.numbers)) * (rng.random(len(recipe.numbers)) < share)
+    )
+    numbers = recipe.numbers + moves
+    own = _OWN[recipe.kind]
+    numbers[:own] = numbers[:own].clip(0.0, 1.0)
+    numbers[own:] %= 1.0
+    return replace(recipe, numbers=numbers, scale=1.0)

@@ -1,0 +1,144 @@
+"""Random linear plants with their dense covariance, and a slider with effects to find."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import mujoco
+import numpy as np
+
+from identification import Log, Parameter, ParameterSet
+from identification.discovery.columns import Column
+from identification.discovery.extend import Base
+from identification.discovery.score import score
+from identification.effects.effect import Candidate, Effect, Size
+from identification.kalman.linear import LinearPlant
+from identification.kalman.point import Point
+from identification.kalman.refit import Refit
+from identification.model.coordinates import Coordinates
+from identification.model.plant import ModelPlant
+from identification.model.predictor import Predictor
+
+STEP = 0.02  # between samples [s]
+
+
+def linear_plant(rng, samples=40, nx=3, nu=2, ny=2):
+    """A random time-varying plant whose errors grow and fade."""
+    A = 0.9 * np.eye(nx) + 0.15 * rng.standard_normal((samples - 1, nx, nx))
+    return LinearPlant(A, rng.standard_normal((samples - 1, nx, nu)), rng.standard_normal((ny, nx)))
+
+
+def response(plant):
+    """Outputs of all samples from inputs of all samples, shape (N ny, N nu)."""
+    n, _, nu = plant.B.shape
+    ny = len(plant.C)
+    out = np.zeros((n + 1, ny, n + 1, nu))
+    for j in range(n):
+        x = plant.B[j]
+        for k in range(j + 1, n + 1):
+            out[k, :, j] = plant.C @ x
+            if k < n:
+                x = plant.A[k] @ x
+    return out.reshape((n + 1) * ny, (n + 1) * nu)
+
+
+def coloured(samples, nu, noise, sampling_time=STEP):
+    """Covariance of the inputs' error over σ², shape (N nu, N nu)."""
+    lag = np.abs(np.subtract.outer(np.arange(samples), np.arange(samples)))
+    return noise.ratio**2 * np.kron(np.exp(-lag * sampling_time / noise.time), np.eye(nu))
+
+
+def covariance(plant, noise):
+    """Of the stacked residual over σ², the slow and obvious way."""
+    T = response(plant)
+    n, nu = len(plant.B) + 1, plant.B.shape[2]
+    return np.eye(len(T)) + T @ coloured(n, nu, noise) @ T.T
+
+
+def effect(sign=0, m=1, largest=10.0):
+    names = "abcdefgh"[:m]
+    sizes = tuple(Size(n, "N", largest, 1e-3, sign) for n in names)
+    return Effect("push", "f", sizes, places={"joint": ""})
+
+
+def column(S, sign=0, name="push"):
+    of = effect(sign, S.shape[2])
+    return Column(Candidate(Effect(name, "f", of.sizes, places=of.places), "joint", {}), S)
+
+
+def point_of(plant, e, J):
+    """A point without a simulator behind it."""
+    p = J.shape[2]
+    names = tuple(f"p{j}" for j in range(p))
+    wide = np.full(p, np.inf)
+    space = Coordinates(names, np.zeros(p, bool), -wide, wide, np.ones(p))
+    log = SimpleNamespace(sampling_time=STEP)
+    return Point(SimpleNamespace(log=log), space, np.zeros(p), e, J, plant)
+
+
+def scored(at, level, prior, columns, mean=None):
+    """Scores at a point, as if a fit with these priors had ended there."""
+    mean = np.zeros(len(prior)) if mean is None else mean
+    return score(Refit(at, level, np.ones(len(prior)), mean, prior, 0), columns)
+
+
+SLIDER = """<mujoco>
+  <option timestep="0.01" gravity="0 0 0" integrator="RK4"/>
+  <worldbody><body name="cart"><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>
+    <joint name="slide" type="slide" axis="1 0 0" damping="3"/></body></worldbody>
+  <actuator><general name="force" joint="slide" gear="1" gainprm="5" biastype="affine"/></actuator>
+  <sensor><jointpos name="position" joint="slide"/></sensor>
+</mujoco>"""
+
+RECORDS = (
+    Parameter("mass", 2.0, "kg", "body/cart.mass", lower=0.0, upper=100.0),
+    Parameter("damping", 3.0, "N s/m", "joint/slide.damping", lower=0.0, upper=100.0),
+    Parameter("x0", 0.0, "m", "qpos[0]"),
+    Parameter("v0", 0.0, "m/s", "qvel[0]"),
+    Parameter("spring.k", 0.0, "N/m", "joint/slide.stiffness", lower=0.0, upper=1e3, symbol="k"),
+    Parameter("offset.f", 0.0, "N", "actuator/force.biasprm[0]", symbol="f"),
+    Parameter("rubbing.c", 0.0, "N", "joint/slide.frictionloss", lower=0.0, upper=1e3, symbol="c"),
+)
+EFFECTS = (
+    Effect("spring", "-k x", (Size("k", "N/m", 30.0, 1e-2, 1),), places={"joint": ""}),
+    Effect("offset", "f", (Size("f", "N", 3.0, 1e-2),), places={"joint": ""}),
+    Effect("rubbing", "-c sgn v", (Size("c", "N", 2.0, 1e-2, 1),), places={"joint": ""}),
+)
+FREE = ("mass", "damping", "x0", "v0")
+KNOWN = np.array([0.3, 0.3, 0.05, 0.05])
+SENSOR = 1e-3  # std of the position sensor [m]
+
+
+def slider(**values):
+    model = mujoco.MjModel.from_xml_string(SLIDER)
+    return ModelPlant(model, ParameterSet("slider", RECORDS).with_values(values))
+
+
+def base(**values):
+    return Base(slider(**values), FREE, KNOWN)
+
+
+def steps(samples, seed=1, hold=10):
+    """A random input of levels ±1 that lasts `hold` samples each, shape (N, 1)."""
+    levels = np.random.default_rng(seed).choice([-1.0, 1.0], samples // hold + 1)
+    return np.repeat(levels, hold)[:samples, None]
+
+
+def record(plant, samples=500, seed=0, error=None, noise=SENSOR):
+    """What the position sensor says when the input has an error that the log does not know."""
+    u = steps(samples)
+    time = STEP * np.arange(samples)
+    names = ("force",), ("position",)
+    fed = Log(time, u if error is None else u + error, np.zeros_like(u), *names)
+    y = Predictor(plant, fed, ()).predict(np.empty((1, 0)))[0]
+    y = y + noise * np.random.default_rng(seed).standard_normal(y.shape)
+    return Log(time, u, y, *names, units={"force": "N", "position": "m"})
+
+
+def wander(samples, rms, time, seed):
+    """A low-passed error of the input, shape (N, 1)."""
+    rng, a = np.random.default_rng(seed), np.exp(-STEP / time)
+    w = rms * rng.standard_normal((samples, 1))
+    for k in range(1, samples):
+        w[k] = a * w[k - 1] + np.sqrt(1 - a**2) * w[k]
+    return w

@@ -1,0 +1,68 @@
+"""A slider and an arm with every effect compiled in, and a slow obvious way to simulate them."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from identification.effects.joint_plant import JointPlant, joint_plant
+from identification.logs.log import Log
+from identification.model.parameter import Parameter
+from identification.model.predictor import Predictor
+
+STEP = 0.01  # between samples [s]
+SLIDER = """<mujoco model="slider">
+  <option timestep="0.002" gravity="0 0 0" integrator="RK4"/>
+  <worldbody><body name="cart"><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>
+    <joint name="slide" type="slide" axis="1 0 0" damping="3"/></body></worldbody>
+  <actuator><general name="force" joint="slide" gear="5" ctrlrange="-3 3" ctrllimited="true"/>
+  </actuator>
+  <sensor><jointpos name="position" joint="slide"/></sensor>
+</mujoco>"""
+ARM = """<mujoco model="arm">
+  <option timestep="0.001" integrator="RK4"/>
+  <worldbody><body name="upper"><joint name="shoulder" axis="0 1 0" damping="0.2"/>
+    <inertial pos="0 0 -0.2" mass="1" diaginertia="0.02 0.02 0.01"/>
+    <body name="lower" pos="0 0 -0.4"><joint name="elbow" axis="0 1 0" damping="0.1"/>
+      <inertial pos="0 0 -0.1" mass="0.5" diaginertia="0.01 0.01 0.005"/></body></body></worldbody>
+  <actuator><general name="up" joint="shoulder" gear="2" biastype="affine"
+      biasprm="0.1 -0.3 -0.05"/>
+    <general name="low" joint="elbow" gear="0.5" forcerange="-0.4 0.4" forcelimited="true"/>
+  </actuator>
+  <sensor><jointpos name="a" joint="shoulder"/><jointpos name="b" joint="elbow"/></sensor>
+</mujoco>"""
+MASS = Parameter("mass", 2.0, "kg", "body/cart.mass", lower=0.0, upper=100.0)
+DAMPING = Parameter("damping", 3.0, "N s/m", "joint/slide.damping", lower=0.0, upper=100.0)
+
+
+def steps(samples, nu=1, seed=1, hold=20):
+    """A random input of levels ±1 that lasts `hold` samples each, shape (N, nu)."""
+    levels = np.random.default_rng(seed).choice([-1.0, 1.0], (samples // hold + 1, nu))
+    return np.repeat(levels, hold, axis=0)[:samples]
+
+
+def slider_log(u, y=None):
+    moved = 0.3 * np.sin(np.arange(len(u)) * STEP)[:, None] if y is None else y
+    return Log(np.arange(len(u)) * STEP, u, moved, ("force",), ("position",), units={"force": "V"})
+
+
+def arm_log(u):
+    t = np.arange(len(u)) * STEP
+    return Log(t, u, np.stack([np.sin(2 * t), np.cos(3 * t)], axis=1), ("up", "low"), ("a", "b"))
+
+
+@cache
+def slider() -> JointPlant:
+    return joint_plant(SLIDER, (MASS, DAMPING), slider_log(steps(400)))
+
+
+@cache
+def arm() -> JointPlant:
+    return joint_plant(ARM, (), arm_log(steps(100, 2)))
+
+
+def run(plant, log, **values):
+    """Outputs of one value set, shape (N, ny)."""
+    names = tuple(values)
+    return Predictor(plant, log, names).predict(np.array([[values[n] for n in names]]))[0]

@@ -1,0 +1,46 @@
+"""A slider told in TOML, records of it, and the commands on them."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+from joint_cases import DAMPING, MASS, SLIDER, slider_log, steps
+
+from identification import Predictor
+from identification.__main__ import main
+from identification.effects.joint_plant import joint_plant
+
+TRUTH = {"damping": 3.6, "mass": 1.8, "stribeck_friction.f_s": 0.0}
+HIDDEN = {"asymmetric_viscous_friction.d_a@slide": 0.9}
+NAMES = ("mass", "joint/slide.damping", "qpos[0]", "qvel[0]")
+TOML = """
+model = "slider.xml"
+free = ["mass", "joint/slide.damping", "qpos[0]", "qvel[0]"]
+[columns]
+position = "x"
+[parameters.mass]
+path = "body/cart.mass"
+unit = "kg"
+"""
+
+
+def simulated(values, samples=1200, seed=1, start=0.0):
+    """A record of the slider with other values, half a millimetre of noise on it."""
+    u = steps(samples, seed=seed)
+    log = slider_log(u)
+    plant = joint_plant(SLIDER, (MASS, DAMPING), log)
+    y = Predictor(plant, log, (), values).predict(np.empty((1, 0)))[0]
+    noise = 5e-4 * np.random.default_rng(seed).standard_normal(y.shape)
+    return replace(slider_log(u, y + start + noise), output_names=("x",), units={})
+
+
+def run(capsys, *arguments):
+    assert main([*map(str, arguments), "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def refused(capsys, *arguments):
+    assert main([*map(str, arguments)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    return error

@@ -1,0 +1,41 @@
+"""What all tests share: patience, files of logs, and the sentence that refuses one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+from identification import InputError
+
+# A busy machine is not a failure.
+settings.register_profile("patient", deadline=None)
+settings.load_profile("patient")
+
+
+@pytest.fixture
+def csv(tmp_path) -> Callable[[str | bytes], Path]:
+    """Puts text or bytes into `log.csv`."""
+
+    def put(content: str | bytes) -> Path:
+        path = tmp_path / "log.csv"
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+        return path
+
+    return put
+
+
+@pytest.fixture
+def refusal() -> Callable[..., str]:
+    """The one sentence with which a call is refused."""
+
+    def sentence(call: Callable, *args, **kwargs) -> str:
+        with pytest.raises(InputError) as caught:
+            call(*args, **kwargs)
+        text = str(caught.value)
+        assert len(text.splitlines()) == 1
+        return text
+
+    return sentence

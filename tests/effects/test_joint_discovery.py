@@ -1,0 +1,74 @@
+"""A hidden effect of a slider is named, where INCA cannot be imported."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+from joint_cases import DAMPING, MASS, SLIDER, run, slider_log, steps
+
+from identification import Parameter
+from identification.discovery.extend import Base
+from identification.discovery.search import discover
+from identification.effects.axes import Axis
+from identification.effects.joint_plant import candidates, joint_plant
+
+ROOT = Path(__file__).parents[2]
+NOISE = 1e-3  # std of the sensor [m]
+COULOMB = Parameter("coulomb_friction.f_c@slide", 0.5, "N", "effect", lower=0.0, upper=10.0)
+AXIS = Axis("slide", "slide", force=5.0, speed=1.5, travel=3.0)
+FREE = ("mass", "damping", COULOMB.name)
+
+
+def plant(log):
+    return joint_plant(SLIDER, (MASS, DAMPING, COULOMB), log, joints=(AXIS,))
+
+
+def hidden(samples=600, **values):
+    """A log of a slider that has some effects, and inputs with a small error of their own."""
+    u = steps(samples, hold=15)
+    rng, error = np.random.default_rng(8), np.zeros_like(u)
+    for k in range(1, samples):  # of std 0.03, forgotten in 0.1 s
+        error[k] = 0.905 * error[k - 1] + 0.03 * 0.426 * rng.standard_normal()
+    true = {"mass": 2.1, "damping": 2.8, COULOMB.name: 0.6, **values}
+    y = run(plant(slider_log(u)), slider_log(u + error), **true)
+    return slider_log(u, y + NOISE * np.random.default_rng(4).standard_normal(y.shape))
+
+
+def found(log):
+    robot = plant(log)
+    return discover(Base(robot, FREE, np.array([0.3, 0.3, 0.5])), log, candidates(robot, FREE))
+
+
+def test_a_hidden_effect_is_named_with_its_size_where_inca_cannot_be_imported():
+    code = """
+import sys
+sys.modules["inca_mj"] = None
+from test_joint_discovery import found, hidden
+answer = found(hidden(**{"asymmetric_viscous_friction.d_a@slide": 0.8}))
+(named,) = answer.named
+value, std, unit = named.parameters["d_a"]
+print(answer.verdict, named.candidate.effect.name, named.candidate.where, value, std, unit)
+wrong = (
+    answer.verdict != "named" or named.candidate.effect.name != "asymmetric_viscous_friction"
+    or abs(value - 0.8) > 4 * std or std > 0.2 or unit != "N s/m" or named.proof.share < 0.8
+)
+sys.exit(wrong)
+"""
+    subprocess.run(
+        [sys.executable, "-c", code], check=True, cwd=ROOT / "tests" / "cases",
+        env={"PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+
+
+def test_an_effect_of_the_input_is_named():
+    answer = found(hidden(**{"delay.tau@force": 0.012}))
+    assert answer.verdict == "named"
+    assert answer.named[0].candidate.effect.name in ("delay", "lag")
+    assert answer.after.rms < 0.5 * answer.before.rms
+
+
+def test_where_nothing_is_missing_nothing_is_named():
+    answer = found(hidden())
+    assert answer.verdict == "nothing missing"
+    assert not answer.named

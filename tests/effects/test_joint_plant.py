@@ -1,0 +1,198 @@
+"""The plant: names, places, what it refuses, and company in one process."""
+
+import numpy as np
+import pytest
+from joint_cases import (
+    DAMPING,
+    MASS,
+    SLIDER,
+    STEP,
+    arm,
+    arm_log,
+    run,
+    slider,
+    slider_log,
+    steps,
+)
+
+from identification import InputError, Parameter
+from identification.effects.axes import SMOOTH, Axis, axes
+from identification.effects.inputs import clipped, delayed, drifting, lagged
+from identification.effects.joint_catalogue import joint_effects
+from identification.effects.joint_plant import candidates, joint_plant
+from identification.estimation.window_error import window_error
+from identification.estimation.window_estimate import estimate_windows
+
+
+def test_a_single_joint_has_one_place_and_two_have_a_common_one():
+    (effect,) = [e for e in slider().effects if e.name == "stiffness"]
+    assert effect.effect.places == {"joint slide": "@slide"}
+    (effect,) = [e for e in arm().effects if e.name == "stiffness"]
+    assert list(effect.effect.places.values()) == ["", "@shoulder", "@elbow"]
+    assert all(p.value == 0 for p in arm().parameters if "." in p.name and p.lower <= 0)
+
+
+def test_common_and_single_sizes_add_up():
+    log = arm_log(steps(80, 2))
+    both = run(arm(), log, **{"stiffness.k": 0.5, "stiffness.k@elbow": 0.25})
+    each = run(arm(), log, **{"stiffness.k@shoulder": 0.5, "stiffness.k@elbow": 0.75})
+    np.testing.assert_array_equal(both, each)
+
+
+def test_what_is_known_is_a_parameter_and_no_candidate():
+    level = Parameter("coulomb_friction.f_c@slide", 0.4, "N", "effect", lower=0.0)
+    plant = joint_plant(SLIDER, (MASS, DAMPING, level), slider_log(steps(400)))
+    names = {e.name for e in candidates(plant, ("mass", "coulomb_friction.f_c@slide"))}
+    assert "coulomb_friction" not in names
+    assert "offset" in names
+    log = slider_log(steps(100))
+    np.testing.assert_array_equal(
+        run(plant, log), run(slider(), log, **{"coulomb_friction.f_c@slide": 0.4})
+    )
+
+
+def test_axes_are_read_off_the_log_and_hinges_apart_from_slides():
+    u = 0.5 * np.ones((200, 1))
+    t = np.arange(200) * STEP
+    plant = joint_plant(SLIDER, (), slider_log(u, 0.2 * np.sin(3 * t)[:, None]))
+    smooth = plant.model.jnt_user[0, 1]
+    assert smooth == pytest.approx(SMOOTH * 0.6, rel=1e-3)
+    (size,) = next(e for e in plant.effects if e.name == "offset").effect.sizes
+    assert size.largest == pytest.approx(0.2 * 2.5)
+    assert size.unit == "N"
+    mixed = joint_effects((Axis("h", "hinge", 1, 1, 1), Axis("s", "slide", 1, 1, 1, plain=False)))
+    names = {e.name: e for e in mixed}
+    assert len(names) == len(mixed)
+    assert names["slide_offset"].effect.sizes[0].unit == "N"
+    assert names["offset"].effect.sizes[0].unit == "N m"
+    assert "slide_load_dependent_friction" not in names
+
+
+def test_the_noise_of_a_sensor_does_not_make_a_top_speed():
+    y = 0.2 * np.sin(3 * STEP * np.arange(600))[:, None]
+    noise = 3e-3 * np.random.default_rng(0).standard_normal(y.shape)
+    (axis,) = axes(slider().model, slider_log(np.ones((600, 1)), y + noise))
+    assert np.abs(np.diff(y + noise, axis=0)).max() / STEP > 1.0
+    assert axis.speed == pytest.approx(0.6, rel=0.15)
+
+
+def test_what_cannot_be_is_refused():
+    with pytest.raises(InputError, match="in which it moves"):
+        joint_plant(SLIDER, (), slider_log(steps(50), np.zeros((50, 1))))
+    with pytest.raises(InputError, match="hinge or slide joint"):
+        joint_plant(SLIDER, (), slider_log(steps(50)), joints=(Axis("x", "slide", 1, 1, 1),))
+    with pytest.raises(InputError, match="cannot be read"):
+        joint_plant("no/such/file.xml", (), slider_log(steps(50)))
+    with pytest.raises(InputError, match="unknown parameter"):
+        run(slider(), slider_log(steps(50)), **{"coulomb.f": 1.0})
+
+
+def test_inputs_come_late_lag_clip_and_drift():
+    u, h = np.sin(np.arange(500) * 0.02), 0.001
+    np.testing.assert_array_equal(delayed(u, h, 0.004), np.concatenate([np.zeros(4), u[:-4]]))
+    np.testing.assert_allclose(delayed(u, h, 0.0025)[9:], (u[7:-2] + u[6:-3]) / 2)
+    fine = np.repeat(u, 1000)  # the slow obvious way: Euler, a thousand steps a step
+    x, means = 0.0, []
+    for block in fine.reshape(-1, 1000):
+        total = 0.0
+        for value in block:
+            total += x
+            x += h / 1000 * (value - x) / 0.02
+        means.append(total / 1000)
+    np.testing.assert_allclose(lagged(u, h, 0.02), means, atol=1e-4)
+    np.testing.assert_array_equal(clipped(u, h, 1.0, 0.5), np.clip(u, -0.5, 0.5))
+    np.testing.assert_allclose(drifting(u, h, 0.1), u * (1 - 0.1 * (np.arange(500) + 0.5) * h))
+    for change in (delayed, lagged, drifting):
+        np.testing.assert_array_equal(change(u, h, 0.0), u)
+
+
+def test_an_effect_of_an_input_is_that_input_changed():
+    u = steps(100)
+    late = np.vstack([np.zeros((3, 1)), u[:-3]])
+    log = slider_log(u)
+    np.testing.assert_array_equal(
+        run(slider(), log, **{"delay.tau@force": 3 * STEP}), run(slider(), slider_log(late))
+    )
+    sets = np.array([[0.0], [0.02]])
+    held = slider().inputs(("delay.tau@force",), sets, np.repeat(u, 5, axis=0), 0.002)
+    assert held.shape == (2, 500, 1)
+    np.testing.assert_array_equal(held[0], np.repeat(u, 5, axis=0))
+
+
+def test_joints_and_cables_live_in_one_process():
+    from inca_mj import build_twin, make_input, simulate
+    from inca_mj.twin import native
+
+    log = slider_log(steps(60))
+    before = run(slider(), log, **{"offset.f_0@slide": 0.2})
+    cables = simulate(build_twin(), make_input("prbs", 0.2)).angles
+    np.testing.assert_array_equal(before, run(slider(), log, **{"offset.f_0@slide": 0.2}))
+    native.uninstall()
+    np.testing.assert_array_equal(before, run(slider(), log, **{"offset.f_0@slide": 0.2}))
+    native.install()
+    np.testing.assert_array_equal(cables, simulate(build_twin(), make_input("prbs", 0.2)).angles)
+
+
+def test_windows_see_what_the_plant_makes_of_its_inputs():
+    u = steps(200, hold=7)
+    delay = {"delay.tau@force": 0.017}
+    log = slider_log(u, run(slider(), slider_log(u), **delay))
+    late = window_error(slider(), log, 0.25, delay)
+    assert np.abs(late).max() < 1e-9 < 1e-4 < np.abs(window_error(slider(), log, 0.25)).max()
+    fit = estimate_windows(slider(), log, ("mass", "damping"), 0.25, {"mass": 2.3, **delay})
+    assert fit.values["mass"] == pytest.approx(2.0, rel=1e-5)
+
+
+def test_the_periods_of_a_motor_that_is_known_are_tried_on_hinges_only():
+    hinge, slide = Axis("h", "hinge", 1.0, 1.0, 1.0), Axis("s", "slide", 1.0, 1.0, 1.0)
+
+    def grids(*given):
+        return {e.name: e.effect.shapes[0].grid for e in joint_effects((hinge, slide), *given)
+                if e.name.endswith("cogging")}  # fmt: skip
+
+    assert grids((7.0, 84.0))["cogging"] == (7.0, 84.0)
+    assert grids((7.0, 84.0))["slide_cogging"] == grids()["slide_cogging"]
+
+
+def test_what_repeats_on_a_slide_is_seen_to_repeat():
+    """A wave longer than the travel is a spring or an offset by another name."""
+    travel = 0.3
+    effects = {e.name: e for e in joint_effects((Axis("s", "slide", 1.0, 1.0, travel),))}
+    for name in ("cogging", "periodic_friction"):
+        (shape,) = effects[name].effect.shapes
+        assert shape.lower == shape.grid[0] == pytest.approx(2 * np.pi / travel)
+        assert np.array(shape.grid) == pytest.approx(shape.grid[0] * np.array([1, 2, 4, 8, 16]))
+        assert shape.grid[-1] < shape.upper
+
+
+def test_a_window_is_explained_as_well_among_others_where_the_joint_sticks_as_by_itself():
+    """Stiff friction forgets the first rate at once; an undamped step from there goes anywhere."""
+    u = np.where(np.arange(400)[:, None] % 100 < 50, steps(400, hold=10), 0.3)
+    clean = run(slider(), slider_log(u), **{"coulomb_friction.f_c@slide": 4.0})
+    log = slider_log(u, clean + 1e-4 * np.random.default_rng(5).standard_normal(clean.shape))
+    more = {"coulomb_friction.f_c@slide": 4.6}
+    among = window_error(slider(), log, 0.2, more)
+    for k, error in enumerate(among):
+        rows = slice(20 * k, 20 * k + 20)
+        alone = window_error(slider(), slider_log(u[rows], log.outputs[rows]), 0.2, more)
+        assert np.sum(error**2) < 1.01 * np.sum(alone**2), k
+
+
+def test_a_friction_that_the_data_do_not_want_goes_to_nothing_and_no_search_fails():
+    u = steps(200, hold=10)
+    log = slider_log(u, run(slider(), slider_log(u)))
+    unwanted = Parameter("coulomb_friction.f_c@slide", 0.1, "N", "effect", lower=0.0)
+    plant = joint_plant(SLIDER, (MASS, DAMPING, unwanted), log)
+    too_much = {"damping": 4.0}  # so that the rest should push
+    fit = estimate_windows(plant, log, ("mass", unwanted.name), 0.2, too_much)
+    assert fit.values[unwanted.name] < 1e-9
+    assert fit.std[1] == np.inf
+
+
+def test_what_grows_along_the_way_may_take_its_share_of_the_drive_at_the_end_of_a_swing():
+    axis = Axis("s", "slide", 16.7, 1.0, 0.55)
+    effects = {e.name: e.effect for e in joint_effects((axis,))}
+    A, share = axis.travel / 2, 0.3 * axis.force
+    (k,), (k_3,) = effects["stiffness"].sizes, effects["hardening"].sizes
+    assert k.largest * A == pytest.approx(share)
+    assert k_3.largest * A**3 == pytest.approx(share)

@@ -1,0 +1,68 @@
+"""A search simulates nothing twice and nothing that it does not use, and ends where it should."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from identification import Log
+from identification.estimation.estimation import Options, estimate
+from identification.model.coordinates import coordinates
+from identification.model.predictor import Predictor
+from identification.model.sensitivity import forward_sensitivity, sensitivity
+from inca_mj.robot.inputs import make_input
+from inca_mj.twin.logs import run_to_log
+from inca_mj.twin.run import simulate
+from inca_mj.twin.twin import Twin, build_twin
+
+NAMES = ("J", "b_c", "K_t", "x")
+START = {"J": 1e-4, "b_c": 0.004, "K_t": 0.09, "x": 0.01}
+
+
+@pytest.fixture(scope="module")
+def robot() -> Twin:
+    return build_twin()
+
+
+@pytest.fixture(scope="module")
+def log(robot) -> Log:
+    return run_to_log(simulate(robot, make_input("prbs", 1.0)))
+
+
+@pytest.fixture(scope="module")
+def noisy(log) -> Log:
+    error = np.random.default_rng(0).normal(0, 6.7e-4, log.outputs.shape)
+    return replace(log, outputs=log.outputs + error)
+
+
+def test_forward_sensitivities_are_the_central_ones(robot, log):
+    q = np.array(list(START.values()))
+    space = coordinates(robot.parameters, NAMES, q)
+    predictor, q = Predictor(robot, log, NAMES), space.encode(q)
+    predicted = predictor.predict(space.decode(q))[0]
+    central = sensitivity(predictor, space, q)
+    forward = forward_sensitivity(predictor, space, q, predicted)
+    scale = np.abs(central).max(axis=(0, 1))
+    assert (np.abs(forward - central).max(axis=(0, 1)) < 1e-4 * scale).all()
+
+
+@pytest.mark.parametrize("method", ["trf", "lm", "dogbox"])
+def test_exact_data_give_exact_values_with_every_method(robot, log, method):
+    found = estimate(robot, log, NAMES, START, Options(method=method))
+    true = robot.parameters.values()
+    assert found.status == "converged"
+    for name, value in found.values.items():
+        assert value == pytest.approx(true[name], rel=1e-7, abs=1e-9)
+
+
+def test_rough_horizons_do_not_move_the_end(robot, noisy):
+    grown = estimate(robot, noisy, NAMES, START)
+    begun = estimate(robot, noisy, NAMES, grown.values, Options(horizons=(1.0,), tolerance=1e-12))
+    np.testing.assert_allclose(grown.q, begun.q, rtol=0, atol=1e-6)
+
+
+def test_no_sensitivities_are_taken_where_a_horizon_ends(robot, noisy):
+    found = estimate(robot, noisy, NAMES, START, Options(horizons=(1.0,)))
+    assert found.jacobians < found.evaluations

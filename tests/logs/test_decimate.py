@@ -1,0 +1,53 @@
+"""Fewer samples of the same experiment: the inputs keep their work."""
+
+import numpy as np
+import pytest
+
+from identification import InputError, Log
+from identification.logs.decimation import decimate
+
+T = 0.001
+U = np.sin(np.arange(1001) * 0.01)[:, None] * [1.0, 2.0]
+LOG = Log(np.arange(1001) * T, U, np.cumsum(U, axis=0), ("a", "b"), ("x", "y"))
+
+
+def test_outputs_are_every_nth_and_means_are_kept():
+    few = decimate(LOG, 10, "zoh")
+    assert len(few) == 101
+    assert few.sampling_time == pytest.approx(0.01)
+    np.testing.assert_array_equal(few.outputs, LOG.outputs[::10])
+    np.testing.assert_allclose(few.inputs[:-1], U[:-1].reshape(100, 10, 2).mean(axis=1))
+
+
+def test_straight_lines_are_kept_and_are_the_nearest_ones():
+    few = decimate(LOG, 10)
+    assert few.hold == "foh"
+    weight = (np.arange(10) + 0.5) / 10
+    fine = (1 - weight)[:, None] * few.inputs[:-1, None] + weight[:, None] * few.inputs[1:, None]
+    error = U[:-1].reshape(100, 10, 2) - fine
+    # nearest: what is left is at right angles to every hat
+    hats = (
+        np.einsum("i,kiu->ku", 1 - weight, error)[1:] + np.einsum("i,kiu->ku", weight, error)[:-1]
+    )
+    np.testing.assert_allclose(hats, 0, atol=0.01 * np.abs(U).max())
+    assert np.abs(error).max() < 0.01
+
+
+def test_both_moments_of_a_pulse_between_samples_are_kept():
+    pulse = np.zeros((401, 1))
+    pulse[203:207] = 1.0
+    log = Log(np.arange(401) * T, pulse, pulse, ("u",), ("y",))
+    few = decimate(log, 10)
+    weight = (np.arange(2000) + 0.5) / 2000
+    u = (1 - weight) * few.inputs[:-1] + weight * few.inputs[1:]
+    t = (np.arange(40)[:, None] + weight) * 0.01
+    assert u.mean() * 0.4 == pytest.approx(0.004, rel=1e-6)
+    assert (u * t).mean() * 0.4 / 0.004 == pytest.approx(0.205, abs=1e-6)
+
+
+def test_what_makes_no_log_is_refused():
+    for every in (0, 600):
+        with pytest.raises(InputError, match="makes no log"):
+            decimate(LOG, every)
+    with pytest.raises(InputError, match="hold 'foh'"):
+        decimate(decimate(LOG, 2), 2)

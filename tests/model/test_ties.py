@@ -1,0 +1,51 @@
+"""A tie makes one parameter of two numbers of a model, in a fixed ratio."""
+
+import mujoco
+import numpy as np
+import pytest
+from estimation_plants import PENDULUM, positive, record
+
+from identification import InputError, Parameter, ParameterSet
+from identification.estimation.estimation import estimate
+from identification.model.plant import ModelPlant
+
+DAMPING = Parameter(
+    "damping", 0.1, "N m s/rad", "joint/shoulder.damping", 0.0,
+    ties=(("joint/elbow.damping", 2.0),),
+)  # fmt: skip
+
+
+def plant(*records):
+    return ModelPlant(mujoco.MjModel.from_xml_string(PENDULUM), ParameterSet("tied", records))
+
+
+def test_a_tie_is_the_model_whose_two_numbers_are_written_one_by_one():
+    tied = plant(DAMPING)
+    apart = plant(
+        positive("a", 0.1, "", "joint/shoulder.damping"),
+        positive("b", 0.2, "", "joint/elbow.damping"),
+    )
+    np.testing.assert_array_equal(tied.model.dof_damping, apart.model.dof_damping)
+    _, numbers = tied.settings(("damping",), np.array([[0.3], [0.4]]))
+    written = {slot.rows: values.tolist() for slot, values in numbers}
+    assert written == {(0,): [0.3, 0.4], (1,): [0.6, 0.8]}
+
+
+def test_a_tied_parameter_is_recovered_and_both_joints_follow():
+    log = record(plant(DAMPING), ("q1", "q2"))
+    found = estimate(plant(DAMPING), log, ("damping",), {"damping": 0.14})
+    assert found.values["damping"] == pytest.approx(0.1, rel=1e-6)
+
+
+def test_the_start_can_be_tied_too():
+    angle = Parameter("angle", 0.2, "rad", "qpos[0]", ties=(("qpos[1]", -1.0),))
+    state, _ = plant(angle).settings(("angle",), np.array([[0.5]]))
+    np.testing.assert_array_equal(state.qpos, [[0.5, -0.5]])
+
+
+def test_two_parameters_may_not_write_one_place():
+    other = positive("other", 0.3, "", "joint/elbow.damping")
+    with pytest.raises(InputError, match="damping and other all go to"):
+        plant(DAMPING, other)
+    with pytest.raises(InputError, match="factor 0"):
+        Parameter("p", 1.0, "", "qpos[0]", ties=(("qpos[1]", 0.0),))

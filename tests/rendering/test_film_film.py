@@ -1,0 +1,148 @@
+from dataclasses import replace
+
+import imageio_ffmpeg
+import numpy as np
+import pytest
+from PIL import Image
+
+from identification.errors import InputError
+from identification.report.style import MEASURED
+from inca_mj.rendering.colours import tension_scale
+from inca_mj.rendering.film import film, stills
+from inca_mj.rendering.view import view
+
+pytestmark = pytest.mark.usefixtures("opengl")
+SMALL = (320, 180)
+
+
+def pixels(path):
+    with Image.open(path) as picture:
+        return np.asarray(picture, int)
+
+
+def between(run, start, end):
+    rows = slice(round(start * 100), round(end * 100) + 1)
+    names = ("time", "currents", "qpos", "qvel", "act", "tension", "length")
+    return replace(run, **{name: getattr(run, name)[rows] for name in names})
+
+
+@pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # imageio-ffmpeg's reader
+@pytest.mark.parametrize(("fps", "speed", "frames"), [(30, 1.0, 10), (20, 0.5, 13)])
+def test_a_film_has_its_frames_its_size_and_its_rate(tmp_path, short_run, fps, speed, frames):
+    seen = []
+    path = film(
+        between(short_run, 0.2, 0.5), tmp_path / "run.mp4", size=SMALL, fps=fps, speed=speed,
+        progress=lambda done, total: seen.append((done, total)),
+    )  # fmt: skip
+    reader = imageio_ffmpeg.read_frames(path)
+    about = next(reader)
+    assert about["size"] == SMALL
+    assert about["fps"] == fps
+    assert sum(1 for _ in reader) == frames
+    assert seen == [(k, frames) for k in range(1, frames + 1)]
+    assert [p.name for p in tmp_path.iterdir()] == ["run.mp4"]
+
+
+def test_pictures_change_where_the_platform_moves(tmp_path, pulled_run):
+    first, later = (
+        pixels(p) for p in stills(pulled_run, tmp_path, [0.0, 0.6], size=(640, 360), plots=False)
+    )
+    moved = np.abs(later - first).max(axis=2) > 40
+    moved[204:, 436:] = False  # the close-up travels along
+    moved[:60, :160] = False  # the clock runs
+    rows, columns = np.nonzero(moved)
+    assert len(rows) > 50
+    # Nothing else does: all of it is inside the frame of the robot.
+    assert columns.min() > 120
+    assert columns.max() < 480
+    still = np.abs(later - first)[100:200, :120]
+    assert still.max() == 0
+
+
+@pytest.mark.parametrize("camera", ["front", "side", "handle"])
+@pytest.mark.parametrize("plots", [True, False])
+def test_every_camera_gives_a_picture_of_the_size(tmp_path, short_run, camera, plots):
+    [path] = stills(short_run, tmp_path, [0.5], camera=camera, size=SMALL, plots=plots)
+    assert pixels(path).shape == (*SMALL[::-1], 3)
+
+
+def test_cables_have_the_colour_of_their_tension(pulled_run):
+    scale = tension_scale(pulled_run.tension)
+    tension = pulled_run.tension[40].copy()
+    tension[3] = 0.0
+    colours = scale(tension)
+    with view(pulled_run.twin.model, "front", 64, 48, cable=0.006) as seen:
+        seen.draw(pulled_run.qpos[40], colours, pulled_run.qpos[0])
+        geoms = seen.draws.scene.geoms[: seen.draws.scene.ngeom]
+        cables = [g for g in geoms if g.objtype == 18]
+        assert len(cables) == 16
+        drawn = np.array([g.rgba for g in cables])
+        np.testing.assert_allclose(drawn[:8], colours, atol=1e-6)
+        assert (drawn[8:, 3] < 0.5).all()
+
+
+def test_the_ghost_is_translucent_and_draws_no_frame_twice(short_run):
+    with view(short_run.twin.model, "front", 64, 48, cable=0.006) as seen:
+        colours = np.ones((8, 4))
+        seen.draw(short_run.qpos[0], colours, None)
+        alone = seen.draws.scene.ngeom
+        seen.draw(short_run.qpos[0], colours, short_run.qpos[50])
+        ghost = seen.draws.scene.geoms[alone : seen.draws.scene.ngeom]
+        blue = [int(MEASURED[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+        assert 0 < len(ghost) < alone
+        for geom in ghost:
+            np.testing.assert_allclose(geom.rgba[:3], blue, atol=1e-6)
+            assert geom.rgba[3] < 0.5
+
+
+def test_drawing_leaves_the_twin_as_it_was(tmp_path, short_run):
+    model = short_run.twin.model
+    before = model.tendon_rgba.copy(), model.tendon_width.copy(), model.vis.global_.offwidth
+    stills(short_run, tmp_path, [0.1], size=SMALL)
+    np.testing.assert_array_equal(model.tendon_rgba, before[0])
+    np.testing.assert_array_equal(model.tendon_width, before[1])
+    assert model.vis.global_.offwidth == before[2]
+
+
+def test_a_film_that_fails_leaves_nothing(tmp_path, short_run):
+    def stop(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        film(short_run, tmp_path / "run.mp4", size=SMALL, progress=stop)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # imageio-ffmpeg's pipes
+@pytest.mark.parametrize("program", ["/bin/false", "/no/such/ffmpeg"])
+def test_an_ffmpeg_that_does_not_work_is_one_sentence(tmp_path, short_run, monkeypatch, program):
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", program)
+    with pytest.raises(InputError, match=r"ffmpeg cannot write the film.*IMAGEIO_FFMPEG_EXE"):
+        film(short_run, tmp_path / "run.mp4", size=SMALL)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("how", "says"),
+    [
+        ({"path": "run.avi"}, "mp4"),
+        ({"path": "nowhere/run.mp4"}, "no such folder"),
+        ({"camera": "frunt"}, "did you mean 'front'"),
+        ({"size": (321, 180)}, "even numbers"),
+        ({"size": (32, 18)}, "even numbers"),
+        ({"fps": 0}, "positive"),
+        ({"speed": float("nan")}, "positive"),
+        ({"measured": np.zeros((3, 8))}, "3 measured samples for 101"),
+        ({"measured_pose": np.zeros((101, 6))}, "motor angles beside"),
+    ],
+)
+def test_a_film_that_makes_no_sense_is_refused(tmp_path, short_run, how, says):
+    how = {"size": SMALL, **how}
+    with pytest.raises(InputError, match=says):
+        film(short_run, tmp_path / how.pop("path", "run.mp4"), **how)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_picture_outside_the_run_is_refused(tmp_path, short_run):
+    with pytest.raises(InputError, match="no picture at 2 s"):
+        stills(short_run, tmp_path, [2.0], size=SMALL)

@@ -1,0 +1,40 @@
+"""A forgotten hold is told as such, and the right one is not doubted."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from joint_cases import DAMPING, MASS, SLIDER, run, slider_log
+from scipy.signal import lfilter
+
+from identification.discovery.extend import Base
+from identification.discovery.held import held_otherwise
+from identification.discovery.steps import fitted
+from identification.effects.joint_plant import joint_plant
+
+NOISE = 2e-5  # std of the sensor [m]
+
+
+def moving(hold, samples=800):
+    """A slider under a smooth random input that is held so."""
+    white = np.random.default_rng(3).standard_normal(samples)
+    u = lfilter([0.15], [1, -0.85], white)[:, None]
+    log = replace(slider_log(u), hold=hold)
+    y = run(joint_plant(SLIDER, (MASS, DAMPING), log), log, mass=2.1, damping=2.8)
+    return replace(log, outputs=y + NOISE * np.random.default_rng(4).standard_normal(y.shape))
+
+
+def said(log):
+    plant = joint_plant(SLIDER, (MASS, DAMPING), log)
+    return held_otherwise(
+        fitted(Base(plant, ("mass", "damping"), np.array([0.3, 0.3])), log, (), {})
+    )
+
+
+@pytest.mark.parametrize(("true", "other"), [("foh", "zoh"), ("zoh", "foh")])
+def test_the_other_hold_is_told_where_it_is_the_right_one(true, other):
+    log = moving(true)
+    assert said(log) == ()
+    (sentence,) = said(replace(log, hold=other))
+    assert f'hold = "{true}"' in sentence
+    assert "mV rms" in sentence

@@ -1,0 +1,86 @@
+"""A robot told in TOML: the same fit and discovery as by hand."""
+
+import json
+
+import pytest
+from robot_cases import NAMES, TOML, run
+
+from identification.robot.file import read_robot
+from identification.robot.robot import read_robot_log, robot_of
+from identification.robot.write import write_robot
+
+
+def test_what_the_file_leaves_out_comes_from_the_model_and_the_log(folder):
+    file = read_robot(folder / "robot.toml")
+    log = read_robot_log(file, str(folder / "other.csv"))
+    robot = robot_of(file, log)
+    at = robot.plant.parameters
+    assert log.output_names == ("position",)
+    assert log.units["position"] == "m"
+    assert at["joint/slide.damping"].value == 3.0
+    assert at["joint/slide.damping"].lower == 0.0
+    assert at["mass"].value == 2.0
+    assert at["qpos[0]"].value == log.outputs[0, 0]
+    units = [at[n].unit for n in NAMES]
+    assert units == ["kg", "N s/m", "m", "m/s"]
+    assert robot.starts == ("qpos[0]", "qvel[0]")
+    assert robot.base.names == NAMES
+    assert {"stribeck_friction", "delay"} <= {e.name for e in robot.candidates}
+
+
+@pytest.mark.parametrize("horizon", ["", "horizon = 0.5\n"])
+def test_a_fit_recovers_the_truth_and_confirms_it_elsewhere(folder, tmp_path, capsys, horizon):
+    path = folder / f"fit{len(horizon)}.toml"
+    path.write_text(horizon + TOML)
+    out = tmp_path / "out"
+    found = run(capsys, "fit", path, folder / "plain.csv", "--confirm", folder / "other.csv",
+                "--out", out)  # fmt: skip
+    for name, true in (("mass", 1.8), ("joint/slide.damping", 3.6)):
+        p = found["parameters"][name]
+        assert abs(p["value"] - true) < 4 * p["std"]
+        assert p["value"] == pytest.approx(true, rel=0.02)
+    assert found["confirm"][0]["after"] == pytest.approx(5e-4, rel=0.15)
+    assert found["confirm"][0]["before"] > 2 * found["confirm"][0]["after"]
+    assert json.loads((out / "result.json").read_text())["parameters"] == found["parameters"]
+
+
+def test_a_discovery_names_what_is_hidden_and_writes_a_report(folder, tmp_path, capsys):
+    out = tmp_path / "out"
+    only = folder / "only.toml"
+    only.write_text(
+        TOML + '[effects]\nonly = ["asymmetric_viscous_friction", "stribeck_friction", "cogging"]\n'
+    )
+    found = run(capsys, "discover", only, folder / "hidden.csv", "--out", out)
+    assert found["verdict"] == "named"
+    (effect,) = found["effects"]
+    assert effect["name"] == "asymmetric_viscous_friction"
+    assert effect["parameters"]["d_a"]["value"] == pytest.approx(0.9, rel=0.1)
+    assert "Missing from the model" in (out / "report.html").read_text()
+    again = read_robot(out / "robot.toml")
+    robot = robot_of(again, read_robot_log(again, str(folder / "hidden.csv")))
+    name = "asymmetric_viscous_friction.d_a@slide"
+    assert again.free == (*NAMES, name)
+    assert robot.plant.parameters[name].value == effect["parameters"]["d_a"]["value"]
+    assert robot.plant.parameters["mass"].value == pytest.approx(1.8, rel=0.02)
+
+
+def test_a_robot_with_an_effect_reads_back_to_the_bit(folder, tmp_path):
+    file = read_robot(folder / "robot.toml")
+    robot = robot_of(file, read_robot_log(file, str(folder / "hidden.csv")))
+    values = {"mass": 1.8123456789012345, "stribeck_friction.f_s@slide": 0.1 / 3,
+              "stribeck_friction.v_s": 0.07 / 3}  # fmt: skip
+    again = read_robot(write_robot(robot, values, tmp_path / "r.toml", tmp_path))
+    back = robot_of(again, robot.log).plant.parameters
+    assert {n: back[n].value for n in values} == values
+    assert again.fixed == {"stribeck_friction.v_s": 0.07 / 3}
+    assert again.records["mass"]["path"] == "body/cart.mass"
+
+
+def test_where_nothing_is_missing_the_fitted_model_is_confirmed(folder, capsys):
+    path = folder / "nothing.toml"
+    path.write_text(TOML + '[effects]\nonly = ["stiffness"]\n')
+    found = run(capsys, "discover", path, folder / "plain.csv", "--confirm", folder / "other.csv")
+    assert found["verdict"] == "nothing missing"
+    (there,) = found["confirm"]
+    assert there["after"] == pytest.approx(5e-4, rel=0.15)
+    assert there["before"] > there["after"]

@@ -1,0 +1,150 @@
+"""A log that another unit, sign or order of columns explains far better is refused."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+from joint_cases import ARM, SLIDER, arm, run, slider, slider_log, steps
+
+from identification import Log, write_log
+from identification.__main__ import main
+from identification.errors import InputError
+from identification.logs.units import UNITS
+from identification.robot.file import read_robot
+from identification.robot.robot import read_robot_log, robot_of
+from identification.robot.wiring import refuse_miswired
+
+RNG = np.random.default_rng(5)
+
+
+CRANE = """<mujoco model="crane"><option timestep="0.0025" integrator="RK4"/>
+<worldbody><body name="cart">
+<joint name="x" type="slide" axis="1 0 0" damping="2.5" stiffness="60"/>
+<inertial pos="0 0 0" mass="3" diaginertia="0.01 0.01 0.01"/>
+<body name="bob"><joint name="swing" axis="0 1 0" damping="0.02"/>
+<inertial pos="0 0 {z}" mass="0.8" diaginertia="0.002 0.002 0.001"/></body></body></worldbody>
+<actuator><motor name="push" joint="x"/></actuator>
+<sensor><jointpos name="pos" joint="x"/><jointpos name="ang" joint="swing"/></sensor></mujoco>"""
+
+
+def robot(folder, model, log, free, horizon=""):
+    """A robot whose file gives its true values, and a log as it is read for it."""
+    (folder / "robot.xml").write_text(model)
+    (folder / "robot.toml").write_text(f'{horizon}\nmodel = "robot.xml"\nfree = ["{free}"]\n')
+    write_log(log, folder / "log.csv")
+    file = read_robot(folder / "robot.toml")
+    read = read_robot_log(file, folder / "log.csv")
+    return robot_of(file, read), read
+
+
+@pytest.fixture(scope="module")
+def cart(tmp_path_factory):
+    log = slider_log(steps(800))
+    y = run(slider(), log)
+    log = replace(log, outputs=y + 1e-3 * RNG.standard_normal(y.shape), units={})
+    return robot(tmp_path_factory.mktemp("cart"), SLIDER, log, "joint/slide.damping")
+
+
+@pytest.fixture(scope="module")
+def two_joints(tmp_path_factory):
+    u = steps(800, 2, hold=30)
+    t = np.arange(len(u)) * 0.01
+    log = Log(t, u, np.stack([np.sin(2 * t), np.cos(3 * t)], axis=1), ("up", "low"), ("a", "b"))
+    y = run(arm(), log)
+    log = replace(log, outputs=y + 1e-3 * RNG.standard_normal(y.shape))
+    return robot(tmp_path_factory.mktemp("arm"), ARM, log, "joint/elbow.damping")
+
+
+def crane(z, feedback, samples=600):
+    """A log of a pendulum on a cart, hanging or balanced by feedback [pos, ang, and rates]."""
+    model = mujoco.MjModel.from_xml_string(CRANE.format(z=z))
+    data = mujoco.MjData(model)
+    data.qpos[1] = 0.1
+    u, y = np.zeros((samples, 1)), np.zeros((samples, 2))
+    push = 20 * steps(samples, hold=25)[:, 0] * (1 if z < 0 else 0.1)
+    for k in range(samples):
+        y[k] = data.qpos
+        u[k] = data.ctrl[0] = push[k] + np.dot(feedback, [*data.qpos, *data.qvel])
+        mujoco.mj_step(model, data, 4)
+    y += 3e-4 * RNG.standard_normal(y.shape)
+    return Log(np.arange(samples) * 0.01, u, y, ("push",), ("pos", "ang"))
+
+
+@pytest.fixture(scope="module")
+def hanging(tmp_path_factory):
+    return robot(tmp_path_factory.mktemp("crane"), CRANE.format(z=-0.3),
+                 crane(-0.3, np.zeros(4)), "joint/x.damping")  # fmt: skip
+
+
+def refused(robot, log):
+    with pytest.raises(InputError) as caught:
+        refuse_miswired(robot, log)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("values", [{}, {"mass": 0.6}, {"mass": 6.0}, {"damping": 12.0}])
+def test_a_log_as_the_model_reads_it_passes_even_where_its_values_are_threefold_off(cart, values):
+    own, log = cart
+    y = run(slider(), log, **values) if values else log.outputs
+    refuse_miswired(own, replace(log, outputs=y))
+
+
+@pytest.mark.parametrize("word", [w for w, (si, factor) in UNITS.items() if si == "m" != w])
+def test_another_unit_is_named(cart, word):
+    own, log = cart
+    said = refused(own, replace(log, outputs=log.outputs / UNITS[word][1]))
+    assert f'position = "{word}"' in said
+    assert "robot.toml" in said
+
+
+def test_a_turned_sign_is_named(cart, two_joints):
+    own, log = cart
+    assert "turn the sign of position" in refused(own, replace(log, outputs=-log.outputs))
+    own, log = two_joints
+    refuse_miswired(own, log)
+    assert "turn the sign of b" in refused(own, replace(log, outputs=log.outputs * [1, -1]))
+
+
+def test_exchanged_columns_are_named(two_joints):
+    own, log = two_joints
+    said = refused(own, replace(log, outputs=log.outputs[:, ::-1]))
+    assert "exchange a and b under [columns]" in said
+
+
+def test_two_units_at_once_and_one_of_two_are_named(hanging, two_joints):
+    own, log = hanging
+    refuse_miswired(own, log)
+    said = refused(own, replace(log, outputs=log.outputs * [1e3, 180 / np.pi]))
+    assert 'pos = "mm", ang = "deg"' in said
+    own, log = two_joints
+    said = refused(own, replace(log, outputs=log.outputs * [1.0, 180 / np.pi]))
+    assert 'write b = "deg" under' in said
+
+
+def test_inputs_that_are_turned_or_exchanged_are_told(hanging, two_joints):
+    own, log = hanging
+    said = refused(own, replace(log, inputs=-log.inputs))
+    assert "turn the sign of pos, ang, or of push" in said  # which of them, none can tell
+    own, log = two_joints
+    said = refused(own, replace(log, inputs=log.inputs[:, ::-1]))
+    assert "exchange up and low under [columns]" in said
+    assert "turn the sign of up" in refused(own, replace(log, inputs=log.inputs * [-1, 1]))
+
+
+@pytest.mark.parametrize("horizon", ["", "horizon = 0.3"])
+def test_a_pendulum_that_feedback_balances_is_not_refused(tmp_path, horizon):
+    log = crane(0.3, np.array([40.0, 250.0, 30.0, 50.0]))
+    assert np.abs(log.outputs[:, 1]).max() < 0.5
+    refuse_miswired(*robot(tmp_path, CRANE.format(z=0.3), log, "joint/x.damping", horizon))
+
+
+@pytest.mark.parametrize("command", ["fit", "discover"])
+def test_the_commands_refuse_it_for_the_log_and_for_its_records(cart, tmp_path, capsys, command):
+    own, log = cart
+    wrong = tmp_path / "mm.csv"
+    write_log(replace(log, outputs=1e3 * log.outputs, units={}), wrong)
+    right = own.file.path.with_name("log.csv")
+    for logs in ([wrong], [right, "--confirm", wrong]):
+        assert main([command, str(own.file.path), *map(str, logs)]) == 2
+        assert "log 'mm'" in capsys.readouterr().err

@@ -1,0 +1,97 @@
+"""The real motor example: its loader and model against what is known, then its records."""
+
+import json
+import sys
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+from identification import Log, Predictor
+from identification.estimation.window_estimate import estimate_windows
+
+PATH = Path(__file__).parents[2] / "examples" / "xl330.py"
+RAW = Path(__file__).parents[3] / "shared" / "data" / "xl330" / "raw"
+sys.path.insert(0, str(PATH.parent))  # the example imports its own reader
+import xl330  # noqa: E402
+import xl330_log  # noqa: E402
+
+sys.path.pop(0)
+
+
+def made_up(n=300, seed=2):
+    """A log of a voltage that reverses often, and positions that mean nothing yet."""
+    levels = np.random.default_rng(seed).uniform(-5, 5, n // 10 + 1)
+    u = np.repeat(levels, 10)[:n, None]
+    time = xl330_log.STEP * np.arange(n)
+    return Log(time, u, np.sin(3 * time)[:, None], ("motor",), ("angle",), hold="foh")
+
+
+def test_a_record_is_read_on_an_even_grid_with_signs_and_without_what_the_motor_left_alone(
+    tmp_path,
+):
+    time = 100 + np.cumsum(np.random.default_rng(1).uniform(0.003, 0.007, 200))
+    entries = [
+        {"timestamp": t, "position": 0.5 * (t - time[0]), "load": 2**16 - 442.5,
+         "input_volts": 7.0, "torque_enable": True}
+        for t in time
+    ]  # fmt: skip
+    fall = [{**entries[-1], "timestamp": time[-1] + 0.2, "load": 0, "torque_enable": False}]
+    record = {"kp": 100, "trajectory": "ramp", "entries": entries + fall}
+    (tmp_path / "a.json").write_text(json.dumps(record))
+    log = xl330_log.read_xl330(tmp_path / "a.json")
+    np.testing.assert_allclose(log.inputs, -3.5, rtol=1e-12)
+    np.testing.assert_allclose(log.outputs[:, 0], 0.5 * log.time, atol=1e-9)
+    assert log.sampling_time == xl330_log.STEP
+    assert time[-1] - time[0] - xl330_log.STEP < log.duration <= time[-1] - time[0]
+    assert [one.name for one in xl330_log.read_all(tmp_path, (100,))] == ["ramp, k_p 100"]
+    assert xl330_log.read_all(tmp_path, (200,)) == []
+
+
+def test_left_alone_it_swings_with_the_period_of_its_mass_and_armature():
+    model = mujoco.MjModel.from_xml_path(str(xl330.MODEL))
+    model.dof_damping[0] = 0
+    data = mujoco.MjData(model)
+    data.qpos[0] = 0.01
+    angles = []
+    while data.time < 3:
+        mujoco.mj_step(model, data)
+        angles.append(data.qpos[0])
+    a = np.array(angles)
+    k = np.flatnonzero(a[1:] * a[:-1] < 0)
+    crossings = (k + a[k] / (a[k] - a[k + 1])) * model.opt.timestep
+    inertia = 0.49 * 0.1**2 + 1e-7 + model.dof_armature[0]
+    period = 2 * np.pi * np.sqrt(inertia / (0.49 * 9.80665 * 0.1))
+    assert 2 * np.mean(np.diff(crossings)) == pytest.approx(period, rel=1e-4)
+
+
+def test_known_values_are_recovered_from_the_noisy_angle_of_the_model():
+    empty = made_up()
+    plant = xl330.xl330_plant(empty)
+    truth = {"g": 0.12, "D": 0.03, "J_a": 0.003, xl330.F_C: 0.03, xl330.F_0: 0.005}
+    y = Predictor(plant, empty, (), truth).predict(np.empty((1, 0)))[0]
+    noisy = y + 5e-4 * np.random.default_rng(4).standard_normal(y.shape)
+    log = Log(empty.time, empty.inputs, noisy, ("motor",), ("angle",), hold="foh")
+    fit = estimate_windows(plant, log, xl330.NAMES, xl330.HORIZON, tolerance=1e-4)
+    for (name, value), std in zip(fit.values.items(), fit.std, strict=True):
+        assert abs(value - truth[name]) < 4 * std, name
+        assert std < 0.05 * truth[name] + 5e-4, name
+    assert fit.rms == pytest.approx(5e-4, rel=0.1)
+
+
+@pytest.mark.skipif(
+    not RAW.exists(), reason="no records of the XL330 in ../shared/data; see github.com/Rhoban/bam"
+)
+def test_what_one_gain_shows_predicts_another_and_friction_under_load_predicts_it_better():
+    (log,) = (x for x in xl330_log.read_all(RAW, (400,)) if x.name.startswith("sin_time_square"))
+    (other,) = (x for x in xl330_log.read_all(RAW, (200,)) if x.name.startswith("sin_time_square"))
+    plant, mu = xl330.xl330_plant(log), "load_dependent_friction.mu@hinge"
+    fit = estimate_windows(plant, log, xl330.NAMES, xl330.HORIZON, tolerance=1e-2)
+    names, start = (*xl330.NAMES, mu), {**fit.values, mu: 0.1}
+    more = estimate_windows(plant, log, names, xl330.HORIZON, start, tolerance=1e-2)
+    begun, found, better = (
+        xl330.rms(xl330.errors(plant, [other], e)) for e in ({}, fit.values, more.values)
+    )  # fmt: skip
+    assert found < 0.5 * begun
+    assert better < 0.9 * found
