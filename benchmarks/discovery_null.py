@@ -19,10 +19,10 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     import numpy as np
     from threadpoolctl import threadpool_limits
 
-    from identification.discovery.columns import columns, common, single
-    from identification.discovery.extend import Base, fit_with
-    from identification.discovery.score import score
-    from identification.discovery.significant import significant
+    from identification.discovery.nominal_model import NominalModel, fit_with_effects
+    from identification.discovery.scoring.scores import score
+    from identification.discovery.scoring.sensitivities import columns, common, single
+    from identification.discovery.scoring.significance import significant
     from identification.kalman.noise_fit import fit_noise
     from inca_mj.effects.catalogue import CATALOGUE
     from inca_mj.twin.twin import build_twin
@@ -33,22 +33,22 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     begin = time.perf_counter()
     whole = world(seed, setting=Setting(duration=duration)).log
     plant = build_twin(timestep=timestep_for(whole.sampling_time, TIMESTEP), effects=CATALOGUE)
-    base = Base(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
-    fit = fit_with(base, whole.part("estimation"), (), {})
-    at, prior = fit.at, fit.prior
+    base = NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
+    fit = fit_with_effects(base, whole.part("estimation"), (), {})
+    point, prior = fit.point, fit.prior
     effects = [e.effect for e in CATALOGUE]
-    sensed = columns(at, common(effects))
+    sensed = columns(point, common(effects))
     best: dict[str, Any] = {}
     for s in score(fit, sensed):
         best.setdefault(s.candidate.effect.name, s.candidate)
-    sensed += columns(at, single([*best.values()]))
+    sensed += columns(point, single([*best.values()]))
     rng = np.random.default_rng([seed, 9])
     rows = []
-    for k, e in enumerate(residuals(at, draws, coloured, rng)):
-        point = type(at)(at.predictor, at.space, at.q, e, at.J, at.linear)
+    for k, e in enumerate(residuals(point, draws, coloured, rng)):
+        evaluated = type(point)(point.predictor, point.space, point.q, e, point.J, point.linear)
         with threadpool_limits(1, "blas"):
-            level = fit_noise(at.linear, e, at.J, prior, at.log.sampling_time)
-            scores = score(replace(fit, at=point, level=level, mean=at.q), sensed)
+            level = fit_noise(point.linear, e, point.J, prior, point.log.sampling_time)
+            scores = score(replace(fit, point=evaluated, level=level, mean=point.q), sensed)
         false = [f"{s.candidate.effect.name}, {s.candidate.where}" for s in significant(scores)]
         smallest = [min(getattr(s, n) for s in scores) for n in ("p_value", "block_p_value")]
         rows.append({
@@ -63,7 +63,7 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     return rows
 
 
-def residuals(at: Any, draws: int, coloured: bool, rng: Any) -> Any:
+def residuals(point: Any, draws: int, coloured: bool, rng: Any) -> Any:
     """Measured less predicted of a model that lacks nothing, shape (draws, N, ny)."""
     import numpy as np
 
@@ -71,12 +71,12 @@ def residuals(at: Any, draws: int, coloured: bool, rng: Any) -> Any:
     from identification.model.rollout import rollout
     from inca_mj.worlds.measure import coloured as wander
 
-    y, inputs, log = at.log.outputs - at.e, at.log.inputs, at.log
+    y, inputs, log = point.log.outputs - point.e, point.log.inputs, point.log
     clean = np.broadcast_to(y, (draws, *y.shape))
     if coloured:
-        model = at.predictor.plant.model
-        values = np.tile(at.space.decode(at.q), (draws, 1))
-        start, numbers = at.predictor.settings(values)
+        model = point.predictor.plant.model
+        values = np.tile(point.space.decode(point.q), (draws, 1))
+        start, numbers = point.predictor.settings(values)
         errors = [wander(inputs.shape, log.sampling_time, 5e-4, 0.05, rng) for _ in range(draws)]
         run = rollout(model, start, inputs + np.array(errors), log.sampling_time, numbers=numbers,
                       record=("qpos",), hold_kind=log.hold)["qpos"]  # fmt: skip

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.io import loadmat
 
 from identification import Log, Parameter, Predictor
-from identification.discovery.extend import Base
+from identification.discovery.nominal_model import NominalModel
 from identification.discovery.search import discover
 from identification.effects.joint_plant import candidates, joint_plant
 from identification.estimation.estimation import estimate
@@ -63,13 +63,13 @@ def main(folder, figure=None):
               f" ({100 * (value / PUBLISHED[name] - 1):+.1f} %)")  # fmt: skip
 
     free = tuple(p.name for p in RECORDS)
-    found = discover(Base(plant, free, KNOWN, HORIZON), log, candidates(plant, free), print)
+    found = discover(NominalModel(plant, free, KNOWN, HORIZON), log, candidates(plant, free), print)
     print(found.verdict, "| unexplained:", found.unexplained)
     for named in found.named:
         print(named.candidate.effect.name, named.parameters, f"confidence {named.confidence:.2f}")
     print(*not_believed(found))
 
-    more = {n: v for n, v in found.final.at.values.items() if n not in free}  # its sizes
+    more = {n: v for n, v in found.final.point.values.items() if n not in free}  # its sizes
     best = estimate_windows(plant, log, (*START, *more), HORIZON, {**fit.values, **more})
     print({name: round(value, 2) for name, value in best.values.items()})
     for name, record in (("DATA_EMPS", log), ("PULSES, to which nothing was fitted", pulses)):

@@ -28,7 +28,7 @@ from winch_strokes import (
 )  # fmt: skip
 
 from identification import Log, Parameter
-from identification.discovery.extend import Base
+from identification.discovery.nominal_model import NominalModel
 from identification.discovery.search import discover
 from identification.effects.axes import axes
 from identification.effects.input_effects import drives, input_effects
@@ -93,7 +93,7 @@ def explain(log, mass):
         print(f"  {part.name}: f_c {f_c}, f_0 {f_0}, rms {fit.rms:.2f} rad")
     free = tuple(p.name for p in records(mass))
     known = np.array([0.5, 1.0, 0.5, 0.2, 0.1, 1.0])  # J, d, f_c relative; N m, rad, rad/s
-    base = Base(plant.with_values(fit.values), free, known, HORIZON)
+    base = NominalModel(plant.with_values(fit.values), free, known, HORIZON)
     found = discover(base, log, candidates(plant, free))
     best = found.scores[0]
     print(f"  {found.verdict}; first score: {best.candidate.effect.name}, {best.gain:.0f}")

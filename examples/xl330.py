@@ -16,7 +16,7 @@ import numpy as np
 from xl330_log import read_all
 
 from identification import Log, Parameter
-from identification.discovery.extend import Base
+from identification.discovery.nominal_model import NominalModel
 from identification.discovery.search import discover
 from identification.effects.axes import axes
 from identification.effects.joint_plant import JointPlant, candidates, joint_plant
@@ -65,7 +65,7 @@ def main(folder: Path, figure: Path | None) -> None:
     free = tuple(p.name for p in RECORDS)
     for log in fitted:
         if len(log) > LONG:
-            base = Base(plant.with_values(fit.values), free, KNOWN, HORIZON)
+            base = NominalModel(plant.with_values(fit.values), free, KNOWN, HORIZON)
             found = discover(base, log, candidates(plant, free))
             named = [n.candidate.effect.name for n in found.named]
             first = [f"{s.candidate.effect.name} {s.gain:.0f}" for s in found.scores[:3]]

@@ -27,7 +27,7 @@ class Discover(OnRobot):
 
     def run(self) -> int:
         """Discover, confirm, say, keep."""
-        from identification.discovery.final import final_values
+        from identification.discovery.final_values import final_values
         from identification.discovery.search import discover
         from identification.files import whole_folder
         from identification.report.discovery_json import discovery_to_json
@@ -41,7 +41,7 @@ class Discover(OnRobot):
         refuse_search_horizon(robot.file, robot.log)
         refuse_start(robot.file, robot.plant.model, robot.log)
         found = discover(robot.base, robot.log, robot.candidates, note)
-        before, after = found.nominal.at.values, final_values(found)
+        before, after = found.nominal.point.values, final_values(found)
         # with nothing named, the fitted model beside the one that the file describes
         compared = (before, after, WITHOUT) if found.named else ({}, after)
         pairs = [confirmed(robot, log, *compared) for log in records]

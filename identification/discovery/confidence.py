@@ -16,24 +16,24 @@ from dataclasses import replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.columns import Column
-from identification.discovery.extend import Base
+from identification.discovery.fitted_model import AcceptedEffect, FittedModel, collect_parameters
+from identification.discovery.nominal_model import NominalModel
 from identification.discovery.result import Named, Rival
-from identification.discovery.retuned import retuned
-from identification.discovery.steps import Accepted, Step, parameters_of
+from identification.discovery.retuning import retuned
+from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.effects.effect import Candidate
-from identification.kalman.noise_model import whitener
+from identification.kalman.noise_model import build_whitener
 
 TEMPERATURE = 10.0
 CAP = 0.95
 LIKELY = 0.2  # a rival as likely as this makes a set
 
 
-def named_of(
-    base: Base,
-    accepted: Sequence[Accepted],
-    final: Step,
-    columns: Sequence[Column],
+def name_effects(
+    base: NominalModel,
+    accepted: Sequence[AcceptedEffect],
+    final: FittedModel,
+    columns: Sequence[Sensitivity],
     explained: float,
 ) -> tuple[Named, ...]:
     """The accepted effects with their final values and their rivals.
@@ -45,15 +45,15 @@ def named_of(
         columns: sensitivities of all candidates.
         explained: share of what should be explained that they explain together, 0 to 1.
     """
-    at = final.refit.at
-    values = at.values
+    point = final.refit.point
+    values = point.values
     out = []
     named = {_key(a.step) for a in accepted}
     for new in accepted:
         mine = new.step.candidates[-1]
         others = [s for s in new.others if _key(s) not in named]  # one that is there is no rival
         loss, other = retuned(final.refit, base.names, mine)
-        spared = len(mine.free) * np.log(len(at.log))
+        spared = len(mine.free) * np.log(len(point.log))
         near = [new.step, *others]
         worth = np.array([s.criterion for s in near] + [new.step.criterion - loss + spared])
         weights = np.exp((worth - worth.max()) / (2 * TEMPERATURE))
@@ -65,7 +65,7 @@ def named_of(
         out.append(
             Named(
                 replace(mine, shape=shape),
-                parameters_of(base, final, mine),
+                collect_parameters(base, final, mine),
                 float(min(CAP, probability[0]) * min(1.0, max(0.0, explained))),
                 tuple(
                     Rival(r, float(p), a)
@@ -80,33 +80,37 @@ def named_of(
     return tuple(out)
 
 
-def _key(step: Step) -> tuple[str, str]:
+def _key(step: FittedModel) -> tuple[str, str]:
     """The effect that a model added last, and where."""
     return step.candidates[-1].effect.name, step.candidates[-1].where
 
 
-def _nearest(candidate: Candidate, columns: Sequence[Column]) -> np.ndarray:
+def _nearest(candidate: Candidate, columns: Sequence[Sensitivity]) -> np.ndarray:
     """The sensitivity whose shapes are nearest to a candidate's."""
 
-    def far(c: Column) -> float:
+    def far(c: Sensitivity) -> float:
         return sum(abs(c.candidate.shape[n] - v) for n, v in candidate.shape.items())
 
     return min(columns, key=far).S
 
 
 def _alike(
-    base: Base, final: Step, mine: Candidate, rivals: Sequence[Candidate], columns: Sequence[Column]
+    base: NominalModel,
+    final: FittedModel,
+    mine: Candidate,
+    rivals: Sequence[Candidate],
+    columns: Sequence[Sensitivity],
 ) -> list[float]:
     """Cosines between the sensitivity of an effect and those of its rivals, whitened."""
-    known: dict[tuple[str, str], list[Column]] = {}
+    known: dict[tuple[str, str], list[Sensitivity]] = {}
     for c in columns:
         known.setdefault((c.candidate.effect.name, c.candidate.where), []).append(c)
     wanted = [_nearest(c, known[c.effect.name, c.where]) for c in (mine, *rivals)]
-    at, level = final.refit.at, final.refit.level
-    keep = [i for i, name in enumerate(at.space.names) if name in base.names]
+    point, level = final.refit.point, final.refit.level
+    keep = [i for i, name in enumerate(point.space.names) if name in base.names]
     with threadpool_limits(1, "blas"):
-        filter_ = whitener(at.linear, level.noise, at.log.sampling_time)
-        W = filter_(np.concatenate([at.J[..., keep], *wanted], axis=2)).reshape(at.e.size, -1)
+        filter_ = build_whitener(point.linear, level.noise, point.log.sampling_time)
+        W = filter_(np.concatenate([point.J[..., keep], *wanted], axis=2)).reshape(point.e.size, -1)
     F, S = W[:, : len(keep)], W[:, len(keep) :]
     ridge = np.diag((final.refit.prior[keep] * level.sigma) ** 2)
     S = S - F @ np.linalg.solve(F.T @ F + ridge, F.T @ S)

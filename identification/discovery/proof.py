@@ -18,14 +18,14 @@ from dataclasses import dataclass
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.disturbed import disturbed, disturbed_windows
+from identification.discovery.disturbance import propagate_input_error, propagate_over_windows
 from identification.discovery.result import Gap, Proof
 from identification.errors import InputError
 from identification.estimation.metrics import fit_percent
 from identification.estimation.window_error import window_error
 from identification.estimation.windows import windows
-from identification.kalman.noise_model import Whitener, whitener
-from identification.kalman.point import beyond
+from identification.kalman.noise_model import Whitener, build_whitener
+from identification.kalman.point import extend_point
 from identification.kalman.refit import Refit
 from identification.logs.log import Log
 
@@ -33,7 +33,7 @@ BLOCKS = 20
 
 
 @dataclass(frozen=True)
-class Unseen:
+class Validation:
     """A fit on the whole log, of which it has seen the beginning.
 
     Attributes:
@@ -69,7 +69,7 @@ class Unseen:
         return Gap(self.rms, fit_percent(self.measured, self.measured - self.judged))
 
 
-def unseen(fit: Refit, whole: Log, horizon: float | None = None) -> Unseen:
+def validate(fit: Refit, whole: Log, horizon: float | None = None) -> Validation:
     """A fit, predicted over the whole log.
 
     Args:
@@ -77,29 +77,29 @@ def unseen(fit: Refit, whole: Log, horizon: float | None = None) -> Unseen:
         whole: the log.
         horizon: of the errors that are judged [s]; those of the free run when None.
     """
-    at = beyond(fit.at, whole)
-    first = len(fit.at.log)
+    point = extend_point(fit.point, whole)
+    first = len(fit.point.log)
     with threadpool_limits(1, "blas"):
-        filter_ = whitener(at.linear, fit.level.noise, whole.sampling_time)
-        E = filter_(at.e) / fit.level.sigma
-        nu, ratio = at.linear.B.shape[2], fit.level.noise.ratio
-        measured, judged = whole.outputs[first:], at.e[first:]
+        filter_ = build_whitener(point.linear, fit.level.noise, whole.sampling_time)
+        E = filter_(point.e) / fit.level.sigma
+        nu, ratio = point.linear.B.shape[2], fit.level.noise.ratio
+        measured, judged = whole.outputs[first:], point.e[first:]
         if horizon is None:
-            moved = disturbed(filter_.A, filter_.C, ratio, nu)[first:]
+            moved = propagate_input_error(filter_.A, filter_.C, ratio, nu)[first:]
         else:
-            errors = window_error(at.predictor.plant, whole, horizon, at.values)
+            errors = window_error(point.predictor.plant, whole, horizon, point.values)
             starts = windows(whole, horizon).starts
             late, L = starts >= first, errors.shape[1]
             if not late.any():
                 raise InputError(f"no window of {horizon:g} s begins in the unseen samples")
             judged = errors[late].reshape(-1, errors.shape[2])
             measured = windows(whole, horizon).outputs[late].reshape(judged.shape)
-            moved = disturbed_windows(filter_, ratio, nu, starts[late], L)
+            moved = propagate_over_windows(filter_, ratio, nu, starts[late], L)
     disturbance = fit.level.sigma * np.sqrt(moved.mean()) if moved.size else 0.0
-    return Unseen(fit, whole, at.e, E, filter_, first, float(disturbance), measured, judged)
+    return Validation(fit, whole, point.e, E, filter_, first, float(disturbance), measured, judged)
 
 
-def prove(without: Unseen, with_it: Unseen) -> Proof:
+def prove(without: Validation, with_it: Validation) -> Proof:
     """What the second of two fits does for the unseen samples."""
     with threadpool_limits(1, "blas"):
         E = without.filter(with_it.e) / without.refit.level.sigma

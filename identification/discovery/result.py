@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from identification.discovery.missing import MissingForce
-from identification.discovery.score import Score
+from identification.discovery.missing_forces import MissingForce
+from identification.discovery.scoring.scores import Score
 from identification.effects.effect import Candidate
 from identification.kalman.refit import Refit
 from identification.logs.log import Log

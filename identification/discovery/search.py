@@ -11,23 +11,34 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from identification.discovery.along import goes_along
-from identification.discovery.both import both
-from identification.discovery.changed import changed
-from identification.discovery.columns import Column, columns, common, single
-from identification.discovery.confidence import named_of
-from identification.discovery.detectable import detectable
-from identification.discovery.extend import Base
-from identification.discovery.forward import add
-from identification.discovery.held import held_otherwise
-from identification.discovery.locate import believed, in_doubt, input_error, left_over, located
-from identification.discovery.missing import missing_forces
-from identification.discovery.passes import backward, swap
+from identification.discovery.confidence import name_effects
+from identification.discovery.findings.input_error import find_input_error
+from identification.discovery.findings.input_hold import find_input_hold
+from identification.discovery.findings.location import (
+    believed,
+    find_doubtful_effect,
+    find_structure,
+    input_error,
+    located,
+)
+from identification.discovery.findings.robot_change import find_robot_change
+from identification.discovery.fitted_model import (
+    AcceptedEffect,
+    FittedModel,
+    fit_model,
+    score_candidates,
+)
+from identification.discovery.missing_forces import estimate_missing_forces
+from identification.discovery.nominal_model import NominalModel
 from identification.discovery.proof import prove
 from identification.discovery.result import Discovery, Tried, Verdict
-from identification.discovery.score import Score
-from identification.discovery.significant import too_large
-from identification.discovery.steps import Accepted, Step, fitted, scores_of
+from identification.discovery.scoring.detectability import detectable
+from identification.discovery.scoring.scores import Score
+from identification.discovery.scoring.sensitivities import Sensitivity, columns, common, single
+from identification.discovery.scoring.significance import find_oversized
+from identification.discovery.selection.forward_selection import select_effect
+from identification.discovery.selection.pairs import find_pair
+from identification.discovery.selection.pruning import backward, swap
 from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.kalman.noise_fit import ALLOWED
@@ -41,7 +52,7 @@ SHORTEST = 200  # samples to fit, and as many to confirm: blocks of 5 and 10 sam
 
 
 def discover(
-    base: Base,
+    base: NominalModel,
     log: Log,
     effects: Sequence[Effect],
     progress: Callable[[str], None] | None = None,
@@ -62,42 +73,49 @@ def discover(
     refuse_unfit(log)
     say = progress or (lambda line: None)
     clock = _Clock()
-    nominal = fitted(base, log, (), {})
-    refuse_without_effect(nominal.refit.at.J, base.names, log)
+    nominal = fit_model(base, log, (), {})
+    refuse_without_effect(nominal.refit.point.J, base.names, log)
     clock("nominal fit")
-    say(f"nominal fit: {1e3 * nominal.unseen.rms:.3g}e-3 on unseen data")
+    say(f"nominal fit: {1e3 * nominal.validation.rms:.3g}e-3 on unseen data")
     sensed = _sensitivities(base, nominal, effects)
     clock("sensitivities")
-    first = ranked = scores_of(nominal, sensed)
+    first = ranked = score_candidates(nominal, sensed)
     clock("scores")
     say(f"{len(ranked)} candidates scored, {ranked[0].candidate.effect.name} first")
-    accepted: list[Accepted] = []
+    accepted: list[AcceptedEffect] = []
     rejected: tuple[Tried, ...] = ()
     step = nominal
     while len(accepted) < MOST:
-        new, rejected, hopeful = add(base, log, step, ranked, say)
-        more: tuple[Accepted, ...] = () if new is None else (new,)
+        new, rejected, hopeful = select_effect(base, log, step, ranked, say)
+        more: tuple[AcceptedEffect, ...] = () if new is None else (new,)
         if hopeful is not None and len(accepted) + 2 <= MOST:
-            more = both(base, log, step, hopeful, sensed, say)
+            more = find_pair(base, log, step, hopeful, sensed, say)
         clock("refits")
         if not more:
             break
         accepted += more
         step, rejected = accepted[-1].step, ()
-        ranked = scores_of(step, sensed)
+        ranked = score_candidates(step, sensed)
         clock("scores")
     kept, step = backward(base, log, accepted, step)
     kept, step = swap(base, log, nominal, kept, step, sensed)
     if len(accepted) > 1:
-        ranked = scores_of(step, sensed)
+        ranked = score_candidates(step, sensed)
     clock("refits")
-    along = goes_along(step)
-    left = (*left_over(step), *changed(step), *along, *(() if accepted else in_doubt(rejected)))
-    if (other := too_large(first, [a.step.candidates[-1].effect.name for a in kept])) is not None:
+    along = find_input_error(step)
+    left = (
+        *find_structure(step),
+        *find_robot_change(step),
+        *along,
+        *(() if accepted else find_doubtful_effect(rejected)),
+    )
+    if (
+        other := find_oversized(first, [a.step.candidates[-1].effect.name for a in kept])
+    ) is not None:
         left += (beyond(other),)
     explained = _explained(nominal, step, random=not along)
-    left = (*(held_otherwise(nominal) if left else ()), *left)
-    named = named_of(base, kept, step, sensed, explained if left else 1.0)
+    left = (*(find_input_hold(nominal) if left else ()), *left)
+    named = name_effects(base, kept, step, sensed, explained if left else 1.0)
     verdict: Verdict = "nothing missing"
     if named and (not left or (explained > EXPLAINED and believed(step) and other is None)):
         verdict = "named"
@@ -105,34 +123,36 @@ def discover(
         verdict = "unknown effect"
         rejected = (*(Tried(n.candidate, n.parameters, n.gain, n.proof) for n in named), *rejected)
         named, step, ranked = (), nominal, first
-    missing = missing_forces(nominal.refit) if verdict != "nothing missing" else ()
+    missing = estimate_missing_forces(nominal.refit) if verdict != "nothing missing" else ()
     where = located(nominal, missing) if verdict != "nothing missing" else ()
     return Discovery(
         log, verdict, named, bool(left), step.refit.level.sigma,
-        0.0 if along else step.unseen.disturbance,
-        nominal.unseen.gap, step.unseen.gap, nominal.refit, step.refit,
-        log.outputs - nominal.unseen.e, log.outputs - step.unseen.e, first, ranked,
+        0.0 if along else step.validation.disturbance,
+        nominal.validation.gap, step.validation.gap, nominal.refit, step.refit,
+        log.outputs - nominal.validation.e, log.outputs - step.validation.e, first, ranked,
         detectable(ranked), where, left, missing, clock.seconds, base.horizon, rejected,
     )  # fmt: skip
 
 
-def _explained(nominal: Step, step: Step, random: bool) -> float:
+def _explained(nominal: FittedModel, step: FittedModel, random: bool) -> float:
     """Share of the gap on unseen data that effects close.
 
     The gap ends at what sensors and input errors make, if these can be believed: as small as noise
     is, and random.
     """
-    proof = prove(nominal.unseen, step.unseen)
+    proof = prove(nominal.validation, step.validation)
     return proof.share if random and input_error(step.refit) <= ALLOWED else proof.above
 
 
-def _sensitivities(base: Base, nominal: Step, effects: Sequence[Effect]) -> tuple[Column, ...]:
+def _sensitivities(
+    base: NominalModel, nominal: FittedModel, effects: Sequence[Effect]
+) -> tuple[Sensitivity, ...]:
     """Of every effect everywhere, then of the best shape of each at its single places."""
-    everywhere = columns(nominal.refit.at, common(effects))
+    everywhere = columns(nominal.refit.point, common(effects))
     best: dict[str, Score] = {}
-    for s in scores_of(nominal, everywhere):
+    for s in score_candidates(nominal, everywhere):
         best.setdefault(s.candidate.effect.name, s)
-    return everywhere + columns(nominal.refit.at, single([s.candidate for s in best.values()]))
+    return everywhere + columns(nominal.refit.point, single([s.candidate for s in best.values()]))
 
 
 def refuse_unfit(log: Log) -> None:

@@ -23,10 +23,10 @@ from identification.estimation.information import root_of
 from identification.estimation.options import Options, Progress, Status, prior_weight
 from identification.estimation.residuals import residual_tests
 from identification.kalman.linear import linearise
-from identification.kalman.noise_fit import Level
-from identification.kalman.noise_model import Noise, whitener
-from identification.kalman.point import Point, point
-from identification.kalman.refit import Refit, descent, finished
+from identification.kalman.noise_fit import NoiseLevel
+from identification.kalman.noise_model import Noise, build_whitener
+from identification.kalman.point import Point, evaluate_point
+from identification.kalman.refit import Refit, conclude, descend
 from identification.logs.log import Log
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Plant, Predictor
@@ -49,7 +49,7 @@ class InnovationsFit:
     """
 
     fit: Fit
-    level: Level
+    level: NoiseLevel
     innovations: np.ndarray
     first: int
 
@@ -106,15 +106,15 @@ def estimate_innovations(
     predictor = Predictor(plant, part, tuple(names), dict(start or {}))
     mean = space.encode(first)
     prior = np.maximum(prior_weight(options, names), HOLD)
-    begun = point(predictor, space, mean)
+    begun = evaluate_point(predictor, space, mean)
     if without_effect(begun.J, part.outputs).any():
         refuse_without_effect(begun.J, space.names, part)
-    seen = [(begun, Level(Noise(0.0, 1.0), 1.0, 0.0))]
-    status = _search(descent(begun, mean, prior, steps=steps), seen, progress)
+    seen = [(begun, NoiseLevel(Noise(0.0, 1.0), 1.0, 0.0))]
+    status = _search(descend(begun, mean, prior, steps=steps), seen, progress)
     taken = max(0, len(seen) - 2)
-    end = finished(*seen[-1], mean, prior, taken)
+    end = conclude(*seen[-1], mean, prior, taken)
     ends = Estimate(
-        predictor, space, first, end.at.q, np.eye(part.outputs.shape[1]) / end.level.sigma,
+        predictor, space, first, end.point.q, np.eye(part.outputs.shape[1]) / end.level.sigma,
         np.ones_like(part.outputs), options, taken + 1, taken + 1, status, 0.0,
     )  # fmt: skip
     fit = _of_innovations(end, assess(ends, log))
@@ -124,15 +124,15 @@ def estimate_innovations(
 
 
 def _search(
-    points: Generator[tuple[Point, Level], None, bool],
-    seen: list[tuple[Point, Level]],
+    points: Generator[tuple[Point, NoiseLevel], None, bool],
+    seen: list[tuple[Point, NoiseLevel]],
     progress: Progress | None,
 ) -> Status:
     """Follow a search until it ends, adding its points to `seen`."""
     try:
         while True:
-            at, level = next(points)
-            seen.append((at, level))
+            point, level = next(points)
+            seen.append((point, level))
             if progress is not None:
                 sizes = f"sensors {level.sigma:.4g}, inputs {level.input_std:.3g} rms"
                 progress(f"step {len(seen) - 2}: {sizes}")
@@ -144,28 +144,28 @@ def _search(
 
 def innovations(end: Refit, whole: Log) -> np.ndarray:
     """Innovations over a log of which a fit has seen the beginning, shape (N, ny)."""
-    at = end.at
-    predictor = replace(at.predictor, log=whole)
-    values = at.space.decode(at.q)
+    point = end.point
+    predictor = replace(point.predictor, log=whole)
+    values = point.space.decode(point.q)
     with threadpool_limits(1, "blas"):
-        filter_ = whitener(linearise(predictor, values), end.level.noise, whole.sampling_time)
+        filter_ = build_whitener(linearise(predictor, values), end.level.noise, whole.sampling_time)
         return filter_(whole.outputs - predictor.predict(values)[0])
 
 
 def _of_innovations(end: Refit, fit: Fit) -> Fit:
     """A fit with the uncertainty and the tests of its innovations."""
-    at, σ = end.at, end.level.sigma
+    point, σ = end.point, end.level.sigma
     with threadpool_limits(1, "blas"):
-        filter_ = whitener(at.linear, end.level.noise, at.log.sampling_time)
-        E, S = filter_(at.e), filter_(at.J).reshape(at.e.size, -1) / σ
+        filter_ = build_whitener(point.linear, end.level.noise, point.log.sampling_time)
+        E, S = filter_(point.e), filter_(point.J).reshape(point.e.size, -1) / σ
     found = fit.found  # of the free run, whose blind directions are exact
     covariance = np.linalg.pinv(S.T @ S + np.diag(end.prior**2), hermitian=True)
     std = np.sqrt(np.diag(covariance))
     return replace(
         fit,
-        std=np.where(found.undetermined, np.inf, std) * at.space.slope(at.q),
+        std=np.where(found.undetermined, np.inf, std) * point.space.slope(point.q),
         correlation=covariance / np.outer(std, std),
         combinations=combinations_of(found, fit.estimate, covariance),
         information=replace(fit.information, root=root_of(S)),
-        tests=residual_tests(E, at.log.inputs),
+        tests=residual_tests(E, point.log.inputs),
     )

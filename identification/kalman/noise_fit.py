@@ -16,7 +16,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from identification.kalman.linear import LinearPlant
-from identification.kalman.noise_model import Noise, Whitener, whitener
+from identification.kalman.noise_model import Noise, Whitener, build_whitener
 
 TIME = 0.03  # correlation time of the inputs' error at which a search begins [s]
 LONGEST = (
@@ -30,7 +30,7 @@ LEVELS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # ρ/ρ₀ t
 
 
 @dataclass(frozen=True)
-class Level:
+class NoiseLevel:
     """A noise and how likely it makes a residual.
 
     Attributes:
@@ -49,7 +49,7 @@ class Level:
         return self.noise.ratio * self.sigma
 
 
-def unit_ratio(plant: LinearPlant, sampling_time: float, time: float) -> float:
+def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) -> float:
     """ρ₀ at a correlation time: where input errors move the outputs by σ (rms over the log)."""
     n, nx, nu = plant.B.shape
     a = np.exp(-sampling_time / time)
@@ -64,9 +64,9 @@ def unit_ratio(plant: LinearPlant, sampling_time: float, time: float) -> float:
     return 1 / np.sqrt(moved / (n * len(plant.C)))
 
 
-def likelihood(
+def evaluate_noise(
     filter_: Whitener, noise: Noise, e: np.ndarray, J: np.ndarray, prior: np.ndarray
-) -> Level:
+) -> NoiseLevel:
     """How likely a noise makes a residual once the parameters have been adjusted.
 
     Args:
@@ -82,7 +82,7 @@ def likelihood(
         H = F.T @ F + np.diag((prior * sigma) ** 2)
         c = np.linalg.solve(H, F.T @ E)
         sigma = np.sqrt(np.sum((E - F @ c) ** 2) / E.size)
-    return Level(
+    return NoiseLevel(
         noise, float(sigma), float(-0.5 * (2 * E.size * np.log(sigma) + filter_.log_determinant))
     )
 
@@ -93,11 +93,11 @@ def fit_noise(
     J: np.ndarray,
     prior: np.ndarray,
     sampling_time: float,
-    near: Level | None = None,
+    near: NoiseLevel | None = None,
     fine: bool = True,
     levels: Sequence[float] = LEVELS,
     largest: float = np.inf,
-) -> Level:
+) -> NoiseLevel:
     """The most likely noise of a residual.
 
     Args:
@@ -113,25 +113,25 @@ def fit_noise(
     """
     with threadpool_limits(1, "blas"):  # the matrices are small; threads only wait for each other
 
-        def at(noise: Noise) -> Level:
-            return likelihood(whitener(plant, noise, sampling_time), noise, e, J, prior)
+        def at(noise: Noise) -> NoiseLevel:
+            return evaluate_noise(build_whitener(plant, noise, sampling_time), noise, e, J, prior)
 
-        def believed(noise: Noise, factors: Sequence[float]) -> list[Level]:
+        def believed(noise: Noise, factors: Sequence[float]) -> list[NoiseLevel]:
             tried = [at(noise.scaled(f)) for f in factors]
             return [level for level in tried if level.input_std <= largest]
 
-        found: list[Level] = []
+        found: list[NoiseLevel] = []
         if near is not None and near.noise.ratio:
             found = believed(near.noise, AROUND)
         if len(found) < 2:  # nothing is near, or none of it but silence is believed
-            unit = Noise(unit_ratio(plant, sampling_time, TIME), TIME)
+            unit = Noise(compute_unit_ratio(plant, sampling_time, TIME), TIME)
             silent = near is not None and not near.noise.ratio
             found = believed(unit, ROUGH if silent and not fine else levels)
         best = _best(found)
         return sharpen(best, at, sampling_time / 3) if fine and best.noise.ratio else best
 
 
-def sharpen(best: Level, at: Callable[[Noise], Level], shortest: float) -> Level:
+def sharpen(best: NoiseLevel, at: Callable[[Noise], NoiseLevel], shortest: float) -> NoiseLevel:
     """The most likely noise near a level: a pattern search over ln ρ√τ and ln τ.
 
     What a slow plant feels is ρ²τ: the two directions are nearly independent.
@@ -158,5 +158,5 @@ def _moved(noise: Noise, felt: float, time: float, shortest: float) -> Noise:
     return noise.lasting(other).scaled(felt)
 
 
-def _best(levels: list[Level]) -> Level:
+def _best(levels: list[NoiseLevel]) -> NoiseLevel:
     return max(levels, key=lambda level: level.log_likelihood)

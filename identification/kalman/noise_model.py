@@ -72,7 +72,7 @@ class Whitener:
         return out.reshape(e.shape)
 
 
-def augmented(
+def augment(
     plant: LinearPlant, noise: Noise, sampling_time: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """A (N-1, nz, nz), C (ny, nz), P at the first sample and Q, both over σ², of z = (x, w)."""
@@ -87,12 +87,12 @@ def augmented(
     return A, C, P, (1 - a**2) * P
 
 
-def whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
+def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
     """The whitening filter for a level of noise; the start is known (its errors are parameters)."""
     n, ny = len(plant.B), len(plant.C)
     if noise.ratio == 0:
         return Whitener(np.empty((0, 0, 0)), plant.C, np.empty(0), np.empty(0), 0.0)
-    A, C, P, Q = augmented(plant, noise, sampling_time)
+    A, C, P, Q = augment(plant, noise, sampling_time)
     K, L, log_determinant = np.empty((n + 1, len(P), ny)), np.empty((n + 1, ny, ny)), 0.0
     for k in range(n + 1):
         PC = P @ C.T

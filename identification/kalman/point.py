@@ -54,7 +54,7 @@ class Point:
         return {**self.predictor.fixed, **free}
 
 
-def point(
+def evaluate_point(
     predictor: Predictor, space: Coordinates, q: np.ndarray, linear: LinearPlant | None = None
 ) -> Point:
     """Simulate a plant and its sensitivities at q, all in one batch.
@@ -75,9 +75,9 @@ def point(
     return Point(predictor, space, inside, predictor.log.outputs - predicted, J, linear)
 
 
-def sensitivities(at: Point, whole: Log) -> np.ndarray:
+def evaluate_sensitivities(point: Point, whole: Log) -> np.ndarray:
     """J of the same values on a longer log, shape (N, ny, p)."""
-    return _sensitivities(replace(at.predictor, log=whole), at.space, at.q)[1]
+    return _sensitivities(replace(point.predictor, log=whole), point.space, point.q)[1]
 
 
 def _sensitivities(
@@ -89,9 +89,9 @@ def _sensitivities(
     return predicted[0], np.moveaxis((predicted[1:] - predicted[0]) / moves[:, None, None], 0, -1)
 
 
-def beyond(at: Point, whole: Log) -> Point:
+def extend_point(point: Point, whole: Log) -> Point:
     """The same values on a longer log, whose first samples are the point's own."""
-    predictor = replace(at.predictor, log=whole)
-    values = at.space.decode(at.q)
+    predictor = replace(point.predictor, log=whole)
+    values = point.space.decode(point.q)
     e = whole.outputs - predictor.predict(values)[0]
-    return Point(predictor, at.space, at.q, e, at.J[:0], linearise(predictor, values))
+    return Point(predictor, point.space, point.q, e, point.J[:0], linearise(predictor, values))

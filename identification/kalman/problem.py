@@ -17,8 +17,8 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from identification.errors import DivergenceError, InputError
-from identification.kalman.noise_fit import Level
-from identification.kalman.noise_model import Whitener, whitener
+from identification.kalman.noise_fit import NoiseLevel
+from identification.kalman.noise_model import Whitener, build_whitener
 from identification.kalman.point import Point
 
 LARGEST = 0.5  # step of a logarithm: parameters change by at most 65 % at a time
@@ -29,8 +29,8 @@ ALONG = 0.1  # h, of the step
 class Problem:
     """The criterion about a point: rows of the innovations and of the priors, in units of σ."""
 
-    at: Point
-    level: Level
+    point: Point
+    level: NoiseLevel
     mean: np.ndarray
     prior: np.ndarray
     filter: Whitener
@@ -51,16 +51,16 @@ class Problem:
     def left(self) -> np.ndarray:
         """Innovations that the best small change of the parameters would leave, shape (N, ny)."""
         left = self.target - self.rows @ self.step(0.0)[0]
-        return left[: self.at.e.size].reshape(self.at.e.shape)
+        return left[: self.point.e.size].reshape(self.point.e.shape)
 
     def step(self, μ: float) -> tuple[np.ndarray, float]:
         """The step of Levenberg and Marquardt, and how far the criterion would fall."""
-        move = self._least(self.target, μ, np.zeros_like(self.at.q))
+        move = self._least(self.target, μ, np.zeros_like(self.point.q))
         return move, self.cost_here - float(np.sum((self.target - self.rows @ move) ** 2))
 
     def bent(self, move: np.ndarray, μ: float) -> np.ndarray:
         """A step that follows the residual's curve; the step itself where that leads nowhere."""
-        ahead = self.residual(self.at.q + ALONG * move)
+        ahead = self.residual(self.point.q + ALONG * move)
         if ahead is None:
             return move
         curve = 2 / ALONG**2 * (ahead - self.target + ALONG * self.rows @ move)
@@ -68,9 +68,9 @@ class Problem:
 
     def _least(self, target: np.ndarray, μ: float, begun: np.ndarray) -> np.ndarray:
         """The damped move that leaves the least of a target, where one has begun to move."""
-        at, size = self.at, np.where(self.at.space.logarithmic, LARGEST, np.inf)
-        lower = np.minimum(np.maximum(at.space.lower - at.q, -size) - begun, 0.0)
-        upper = np.maximum(np.minimum(at.space.upper - at.q, size) - begun, 0.0)
+        point, size = self.point, np.where(self.point.space.logarithmic, LARGEST, np.inf)
+        lower = np.minimum(np.maximum(point.space.lower - point.q, -size) - begun, 0.0)
+        upper = np.maximum(np.minimum(point.space.upper - point.q, size) - begun, 0.0)
         scale = np.linalg.norm(self.rows, axis=0) + 1e-300
         Q, R = np.linalg.qr(self.rows / scale)
         square = np.vstack([R, np.sqrt(μ) * np.eye(len(scale))])
@@ -80,12 +80,12 @@ class Problem:
 
     def residual(self, q: np.ndarray) -> np.ndarray | None:
         """Rows of the residual elsewhere, by the same filter; None where it cannot be simulated."""
-        at = self.at
+        point = self.point
         try:
-            predicted = at.predictor.predict(at.space.decode(at.space.inside(q)))[0]
+            predicted = point.predictor.predict(point.space.decode(point.space.inside(q)))[0]
         except (DivergenceError, InputError):  # or a start that cannot stand
             return None
-        E = self.filter(at.log.outputs - predicted) / self.level.sigma
+        E = self.filter(point.log.outputs - predicted) / self.level.sigma
         return np.concatenate([E.ravel(), self.prior * (self.mean - q)])
 
     def cost(self, q: np.ndarray) -> float:
@@ -99,9 +99,14 @@ class Problem:
         return np.sqrt(np.diag(covariance))
 
 
-def linearised(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray) -> Problem:
+def linearise_criterion(
+    point: Point, level: NoiseLevel, mean: np.ndarray, prior: np.ndarray
+) -> Problem:
     """The criterion about a point."""
-    filter_ = whitener(at.linear, level.noise, at.log.sampling_time)
-    E, F = filter_(at.e).ravel() / level.sigma, filter_(at.J).reshape(at.e.size, -1) / level.sigma
-    rows, target = np.vstack([F, np.diag(prior)]), np.concatenate([E, prior * (mean - at.q)])
-    return Problem(at, level, mean, prior, filter_, rows, target)
+    filter_ = build_whitener(point.linear, level.noise, point.log.sampling_time)
+    E, F = (
+        filter_(point.e).ravel() / level.sigma,
+        filter_(point.J).reshape(point.e.size, -1) / level.sigma,
+    )
+    rows, target = np.vstack([F, np.diag(prior)]), np.concatenate([E, prior * (mean - point.q)])
+    return Problem(point, level, mean, prior, filter_, rows, target)

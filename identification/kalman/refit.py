@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.kalman.innovations import whiteness
-from identification.kalman.noise_fit import ALLOWED, Level, fit_noise
-from identification.kalman.point import Point, point
-from identification.kalman.problem import Problem, linearised
+from identification.kalman.noise_fit import ALLOWED, NoiseLevel, fit_noise
+from identification.kalman.point import Point, evaluate_point
+from identification.kalman.problem import Problem, linearise_criterion
 
 NEAR = 0.02  # relative change of the parameters after which the linearisation still holds
 ENDED = 0.1  # expected fall of the criterion, in units of the noise, that ends the search
@@ -34,7 +34,7 @@ class Refit:
     """Where the search ended.
 
     Attributes:
-        at: the plant at the estimate.
+        point: the plant at the estimate.
         level: the noise.
         std: of q, by the likelihood's curvature, shape (p,).
         mean: q̄ of the priors, shape (p,).
@@ -42,8 +42,8 @@ class Refit:
         steps: taken to it.
     """
 
-    at: Point
-    level: Level
+    point: Point
+    level: NoiseLevel
     std: np.ndarray
     mean: np.ndarray
     prior: np.ndarray
@@ -52,34 +52,38 @@ class Refit:
     @property
     def log_posterior(self) -> float:
         """Log likelihood less what the priors hold against the estimate."""
-        against = float(np.sum(((self.at.q - self.mean) * self.prior) ** 2))
+        against = float(np.sum(((self.point.q - self.mean) * self.prior) ** 2))
         return self.level.log_likelihood - against / 2
 
 
 def refit(
-    at: Point,
+    point: Point,
     mean: np.ndarray,
     prior: np.ndarray,
     steps: int = 20,
-    near: Level | None = None,
+    near: NoiseLevel | None = None,
 ) -> Refit:
     """Estimate the free parameters of a point, from where it is.
 
     Args:
-        at: where to begin.
+        point: where to begin.
         mean: q̄ of the priors, shape (p,).
         prior: 1/std of each prior, zero where there is none, shape (p,).
         steps: at most as many.
         near: a noise to begin at, where one is known.
     """
-    seen = deque(enumerate(descent(at, mean, prior, near, steps)), maxlen=1)
+    seen = deque(enumerate(descend(point, mean, prior, near, steps)), maxlen=1)
     taken, (end, level) = seen[0]
-    return finished(end, level, mean, prior, taken)
+    return conclude(end, level, mean, prior, taken)
 
 
-def descent(
-    at: Point, mean: np.ndarray, prior: np.ndarray, near: Level | None = None, steps: int = 20
-) -> Generator[tuple[Point, Level], None, bool]:
+def descend(
+    point: Point,
+    mean: np.ndarray,
+    prior: np.ndarray,
+    near: NoiseLevel | None = None,
+    steps: int = 20,
+) -> Generator[tuple[Point, NoiseLevel], None, bool]:
     """The points of a search, each with its noise, from the first to the likeliest.
 
     First the model approaches the data, in likelihood or in its free run, under a noise that is
@@ -87,7 +91,7 @@ def descent(
     alone counts, unless it is blind.
 
     Args:
-        at: where to begin.
+        point: where to begin.
         mean: q̄ of the priors, shape (p,).
         prior: 1/std of each prior, zero where there is none, shape (p,).
         near: a noise to begin at, where one is known.
@@ -96,51 +100,53 @@ def descent(
     Returns:
         Whether it ended before the steps did.
     """
-    believed = ALLOWED * at.motion
-    level = noise_at(at, prior, near, largest=believed)
-    yield at, level
+    believed = ALLOWED * point.motion
+    level = estimate_noise(point, prior, near, largest=believed)
+    yield point, level
     for fine in (False, True):
         if fine:
-            level = noise_at(at, prior, level, fine)
-            yield at, level
-        last = at
-        problem = linearised(at, level, mean, prior)
-        best, most, least = (at, level), problem.log_posterior, _rms(at)
+            level = estimate_noise(point, prior, level, fine)
+            yield point, level
+        last = point
+        problem = linearise_criterion(point, level, mean, prior)
+        best, most, least = (point, level), problem.log_posterior, _rms(point)
         μ, idle = 0.0, 0
         while steps and idle < PATIENCE and not (fine and _blind(problem)):
             move, μ = _move(problem, μ)
             if move is None:
                 break
             steps -= 1
-            moved = np.abs(move[at.space.logarithmic]).max(initial=0.0)
-            at = point(at.predictor, at.space, at.q + move, at.linear if moved < NEAR else None)
-            level = noise_at(at, prior, level, largest=np.inf if fine else believed)
-            yield at, level
-            last = at
+            moved = np.abs(move[point.space.logarithmic]).max(initial=0.0)
+            point = evaluate_point(
+                point.predictor, point.space, point.q + move, point.linear if moved < NEAR else None
+            )
+            level = estimate_noise(point, prior, level, largest=np.inf if fine else believed)
+            yield point, level
+            last = point
             # Each point has a linearisation and a noise of its own, so that likelihood may fall.
-            problem = linearised(at, level, mean, prior)
-            likely, off = problem.log_posterior, _rms(at)
-            gain = ENDED if fine else -at.e.size * float(np.log(CLOSER))
+            problem = linearise_criterion(point, level, mean, prior)
+            likely, off = problem.log_posterior, _rms(point)
+            gain = ENDED if fine else -point.e.size * float(np.log(CLOSER))
             better = likely > most + gain or (not fine and off < CLOSER * least)
             if better or likely > most:
-                best = at, level
+                best = point, level
             most, least, idle = max(likely, most), min(off, least), 0 if better else idle + 1
-        at, level = best
-    if at is not last:
-        yield at, level
+        point, level = best
+    if point is not last:
+        yield point, level
     return steps > 0
 
 
 def _blind(problem: Problem) -> bool:
     """Whether the noise explains what it is not: inputs that err too much, and not by chance."""
-    at = problem.at
-    large = problem.level.input_std > ALLOWED * at.motion
-    return large and whiteness(problem.left, at.log.sampling_time).correlated
+    point = problem.point
+    large = problem.level.input_std > ALLOWED * point.motion
+    return large and whiteness(problem.left, point.log.sampling_time).correlated
 
 
-def _rms(at: Point) -> float:
+def _rms(point: Point) -> float:
     """Of the residual of the free run."""
-    return float(np.sqrt(np.mean(at.e**2)))
+    return float(np.sqrt(np.mean(point.e**2)))
 
 
 def _move(problem: Problem, μ: float) -> tuple[np.ndarray | None, float]:
@@ -149,10 +155,10 @@ def _move(problem: Problem, μ: float) -> tuple[np.ndarray | None, float]:
         return None, μ
     for _ in range(TRIES):
         move, fall = problem.step(μ)
-        cost = problem.cost(problem.at.q + move)
+        cost = problem.cost(problem.point.q + move)
         if problem.cost_here - cost < SHORT * fall:
             bent = problem.bent(move, μ)
-            if (other := problem.cost(problem.at.q + bent)) < cost:
+            if (other := problem.cost(problem.point.q + bent)) < cost:
                 move, cost = bent, other
         if cost < problem.cost_here:
             return move, μ / 10 if μ > DAMPED else 0.0
@@ -160,18 +166,22 @@ def _move(problem: Problem, μ: float) -> tuple[np.ndarray | None, float]:
     return None, μ
 
 
-def finished(at: Point, level: Level, mean: np.ndarray, prior: np.ndarray, taken: int) -> Refit:
+def conclude(
+    point: Point, level: NoiseLevel, mean: np.ndarray, prior: np.ndarray, taken: int
+) -> Refit:
     """The end of a search."""
-    return Refit(at, level, linearised(at, level, mean, prior).std(), mean, prior, taken)
+    return Refit(
+        point, level, linearise_criterion(point, level, mean, prior).std(), mean, prior, taken
+    )
 
 
-def noise_at(
-    at: Point,
+def estimate_noise(
+    point: Point,
     prior: np.ndarray,
-    near: Level | None,
+    near: NoiseLevel | None,
     fine: bool = False,
     largest: float = np.inf,
-) -> Level:
+) -> NoiseLevel:
     """The most likely noise of a point's residual."""
-    Ts = at.log.sampling_time
-    return fit_noise(at.linear, at.e, at.J, prior, Ts, near, fine, largest=largest)
+    Ts = point.log.sampling_time
+    return fit_noise(point.linear, point.e, point.J, prior, Ts, near, fine, largest=largest)

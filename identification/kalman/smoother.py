@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from identification.kalman.linear import LinearPlant
-from identification.kalman.noise_model import Noise, augmented
+from identification.kalman.noise_model import Noise, augment
 
 
 def smooth(
@@ -30,7 +30,7 @@ def smooth(
     n, nu = len(e), plant.B.shape[2]
     if noise.ratio == 0:
         return np.zeros((n, nu)), np.zeros_like(e)
-    A, C, P, Q = augmented(plant, noise, sampling_time)
+    A, C, P, Q = augment(plant, noise, sampling_time)
     z = np.zeros(len(P))
     seen, later = [], []  # (z, P) given the sample, and given those before it
     for k in range(n):

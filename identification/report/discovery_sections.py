@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from identification.discovery.result import Discovery
-from identification.discovery.score import Score
+from identification.discovery.scoring.scores import Score
 from identification.logs.log import halves
 from identification.report.discovery_figures import (
     force_figure,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from identification.discovery.final import final_values, std_of
+from identification.discovery.final_values import final_values, std_of
 from identification.discovery.result import Detectable, Discovery
 from identification.quantities import quantity
 from identification.report.discovery_verdict import split_detectable
@@ -31,9 +31,9 @@ def diff_section(found: Discovery, files: str = "") -> Section:
 
 def parameters_section(found: Discovery) -> Section:
     """Nominal values beside those of the first fit and of the last."""
-    plant = found.final.at.predictor.plant
+    plant = found.final.point.predictor.plant
     first, last = std_of(found.nominal), std_of(found.final)
-    nominal, values = found.nominal.at.values, final_values(found)
+    nominal, values = found.nominal.point.values, final_values(found)
     rows, held = [], []
     for p in plant.parameters:
         if p.name not in last and p.name not in first:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from math import hypot, isfinite
 
-from identification.discovery.locate import input_error
+from identification.discovery.findings.location import input_error
 from identification.discovery.result import Detectable, Discovery, Named
 from identification.kalman.noise_fit import ALLOWED
 from identification.quantities import alike, quantity

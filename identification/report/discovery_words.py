@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from identification.discovery.result import Discovery, Named, Tried
-from identification.discovery.score import Score
-from identification.discovery.significant import ALPHA, chance
+from identification.discovery.scoring.scores import Score
+from identification.discovery.scoring.significance import ALPHA, chance
 from identification.effects.effect import Candidate
 from identification.quantities import quantity
 

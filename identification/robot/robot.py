@@ -8,7 +8,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from identification.discovery.extend import Base
+from identification.discovery.nominal_model import NominalModel
 from identification.effects.axes import axes
 from identification.effects.effect import Effect
 from identification.effects.input_effects import drives, input_effects
@@ -49,9 +49,9 @@ class Robot:
     std: np.ndarray
 
     @property
-    def base(self) -> Base:
+    def base(self) -> NominalModel:
         """What a discovery begins with."""
-        return Base(self.plant, self.file.free, self.std, self.file.horizon)
+        return NominalModel(self.plant, self.file.free, self.std, self.file.horizon)
 
     @property
     def candidates(self) -> tuple[Effect, ...]:

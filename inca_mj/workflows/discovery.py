@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from identification import Log
-from identification.discovery.extend import Base
+from identification.discovery.nominal_model import NominalModel
 from identification.discovery.result import Discovery
 from identification.discovery.search import discover as search
 from identification.discovery.search import refuse_unfit
@@ -64,5 +64,5 @@ def discover(
     plant = build_twin(
         parameters, geometry, timestep=step, effects=effects, settled=settled, visual=False
     )
-    base = Base(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
+    base = NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
     return told(search(base, log, [e.effect for e in effects], progress))

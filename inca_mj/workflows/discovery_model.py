@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from identification.discovery.final import final_values
+from identification.discovery.final_values import final_values
 from identification.discovery.result import Discovery
 from identification.errors import InputError
 from identification.logs.log import Log
@@ -19,7 +19,7 @@ def named_twin(found: Discovery) -> Twin:
     Raises:
         InputError: the discovery was not made with a twin of this robot.
     """
-    plant = found.final.at.predictor.plant
+    plant = found.final.point.predictor.plant
     if not isinstance(plant, Twin):
         raise InputError(
             f"the discovery is of a {type(plant).__name__}, not of a twin;"
@@ -30,7 +30,7 @@ def named_twin(found: Discovery) -> Twin:
     base = tuple(p for p in plant.parameters if p.where != "effect")
     known = with_effects(replace(plant.parameters, records=base), effects)
     at = {name: value for name, value in final_values(found).items() if name in known.values()}
-    free = {name: at[name] for name in found.final.at.space.names if name in at}
+    free = {name: at[name] for name in found.final.point.space.names if name in at}
     return build_twin(
         known.with_values(at).with_values(free, "fitted to the log"),
         plant.geometry,

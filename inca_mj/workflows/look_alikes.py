@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.discovery.columns import columns
 from identification.discovery.result import Discovery, Named
+from identification.discovery.scoring.sensitivities import columns
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError
-from identification.kalman.point import Point, point
+from identification.kalman.point import Point, evaluate_point
 from identification.logs.log import Log
 from identification.model.predictor import Predictor
 from inca_mj.workflows.bench import standard_inputs
@@ -42,12 +42,12 @@ class Contrast:
 def tell_apart(found: Discovery, named: Named) -> Contrast | None:
     """The input that tells a named effect best from its first rival; None where none can be run."""
     fit, rival = found.final, named.rivals[0].candidate
-    own = _distance(fit.at, fit.at.log, named.candidate, rival, fit.level.sigma)
+    own = _distance(fit.point, fit.point.log, named.candidate, rival, fit.level.sigma)
     tried = {}
-    for name, currents in standard_inputs(len(fit.at.log)):
-        log = replace(fit.at.log, inputs=currents, extras={})
+    for name, currents in standard_inputs(len(fit.point.log)):
+        log = replace(fit.point.log, inputs=currents, extras={})
         try:
-            tried[name] = _distance(fit.at, log, named.candidate, rival, fit.level.sigma)
+            tried[name] = _distance(fit.point, log, named.candidate, rival, fit.level.sigma)
         except DivergenceError:  # a cable falls slack under it
             continue
     if not tried:
@@ -81,18 +81,21 @@ def sentence(contrast: Contrast) -> str:
     )
 
 
-def _distance(at: Point, log: Log, named: Candidate, rival: Candidate, sigma: float) -> float:
+def _distance(point: Point, log: Log, named: Candidate, rival: Candidate, sigma: float) -> float:
     """d under the inputs of a log, of two effects linearised where neither is."""
-    values = at.values
+    values = point.values
     gone = dict.fromkeys(named.sizes, 0.0)
-    keep = [i for i, n in enumerate(at.space.names) if not n.startswith(f"{named.effect.name}.")]
-    names, q = tuple(at.space.names[i] for i in keep), at.q[keep]
+    keep = [i for i, n in enumerate(point.space.names) if not n.startswith(f"{named.effect.name}.")]
+    names, q = tuple(point.space.names[i] for i in keep), point.q[keep]
     fixed = {n: v for n, v in {**values, **gone}.items() if n not in names}
     space = replace(
-        at.space, names=names, logarithmic=at.space.logarithmic[keep], lower=at.space.lower[keep],
-        upper=at.space.upper[keep], scale=at.space.scale[keep],
+        point.space, names=names, logarithmic=point.space.logarithmic[keep],
+        lower=point.space.lower[keep], upper=point.space.upper[keep],
+        scale=point.space.scale[keep],
     )  # fmt: skip
-    here = point(Predictor(at.predictor.plant, log, names, fixed), space, q, at.linear)
+    here = evaluate_point(
+        Predictor(point.predictor.plant, log, names, fixed), space, q, point.linear
+    )
     mine, *theirs = (c.S for c in columns(here, [named, rival]))
     size = np.array([values.get(n, 0.0) or named.whole.get(n, 0.0) for n in named.sizes])
     S = np.concatenate([here.J, *theirs], axis=2).reshape(log.outputs.size, -1)

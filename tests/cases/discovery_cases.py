@@ -8,9 +8,9 @@ import mujoco
 import numpy as np
 
 from identification import Log, Parameter, ParameterSet
-from identification.discovery.columns import Column
-from identification.discovery.extend import Base
-from identification.discovery.score import score
+from identification.discovery.nominal_model import NominalModel
+from identification.discovery.scoring.scores import score
+from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.effects.effect import Candidate, Effect, Size
 from identification.kalman.linear import LinearPlant
 from identification.kalman.point import Point
@@ -63,7 +63,7 @@ def effect(sign=0, m=1, largest=10.0):
 
 def column(S, sign=0, name="push"):
     of = effect(sign, S.shape[2])
-    return Column(Candidate(Effect(name, "f", of.sizes, places=of.places), "joint", {}), S)
+    return Sensitivity(Candidate(Effect(name, "f", of.sizes, places=of.places), "joint", {}), S)
 
 
 def point_of(plant, e, J):
@@ -115,7 +115,7 @@ def slider(**values):
 
 
 def base(**values):
-    return Base(slider(**values), FREE, KNOWN)
+    return NominalModel(slider(**values), FREE, KNOWN)
 
 
 def steps(samples, seed=1, hold=10):

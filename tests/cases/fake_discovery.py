@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from identification import Predictor, fit_percent
-from identification.discovery.missing import MissingForce
+from identification.discovery.missing_forces import MissingForce
 from identification.discovery.result import (
     Detectable,
     Discovery,
@@ -17,9 +17,9 @@ from identification.discovery.result import (
     Rival,
     Tried,
 )
-from identification.discovery.score import Score
+from identification.discovery.scoring.scores import Score
 from identification.effects.effect import Candidate
-from identification.kalman.noise_fit import Level
+from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 from identification.kalman.point import Point
 from identification.kalman.refit import Refit
@@ -83,7 +83,9 @@ def found(verdict="named", *, one_of=False, unexplained=False, several=False) ->
         named += (
             Named(MISMATCH, {"delta": (0.2, 0.03, "")}, 0.8, (), False, 31.0, _proof(), RETUNED),
         )
-    before, after = (f.at.predictor.predict(f.at.space.decode(f.at.q))[0] for f in (nominal, final))
+    before, after = (
+        f.point.predictor.predict(f.point.space.decode(f.point.q))[0] for f in (nominal, final)
+    )
     scores = tuple(
         Score(c, np.array([s]), np.array([s / 9]), g, 1e-9, 1e-6, 0.5, _level())
         for c, s, g in ((STRIBECK, 0.004, 900.0), (MISMATCH, 0.2, 70.0), (LATE, 3e-4, -1.0))
@@ -127,8 +129,8 @@ def _proof() -> Proof:
     return Proof(450.0, 12.0, 0.98, 0.97, 0.98)
 
 
-def _level() -> Level:
-    return Level(Noise(0.0, 0.1), NOISE, 0.0)
+def _level() -> NoiseLevel:
+    return NoiseLevel(Noise(0.0, 0.1), NOISE, 0.0)
 
 
 def _gap(predicted: np.ndarray) -> Gap:

@@ -5,10 +5,10 @@ import pytest
 from discovery_cases import column, linear_plant, point_of, scored
 from scipy.stats import f, ncf
 
-from identification.discovery.detectable import NONCENTRALITY, detectable
-from identification.discovery.score import BLOCKS, Score
+from identification.discovery.scoring.detectability import NONCENTRALITY, detectable
+from identification.discovery.scoring.scores import BLOCKS, Score
 from identification.effects.effect import Candidate, Effect, Size
-from identification.kalman.noise_fit import Level
+from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 
 PLACES = {"all": "", "drive 1": "@1", "drive 2": "@2"}
@@ -18,7 +18,7 @@ def score_of(where, std, places=PLACES, largest=10.0):
     of = Effect("push", "f", (Size("a", "N", largest, 1e-3),), places=places)
     return Score(
         Candidate(of, where, {}), np.zeros(1), np.array([std]), 0.0, 1.0, 1.0, 1.0,
-        Level(Noise(0.0, 0.1), 1.0, 0.0),
+        NoiseLevel(Noise(0.0, 0.1), 1.0, 0.0),
     )  # fmt: skip
 
 
@@ -49,7 +49,7 @@ def test_everywhere_counts_before_single_places_and_the_worst_of_those():
 
 def test_an_effect_of_that_size_is_found_in_nine_of_ten_logs():
     rng = np.random.default_rng(1)
-    plant, level = linear_plant(rng, 80), Level(Noise(0.0, 0.1), 1.0, 0.0)
+    plant, level = linear_plant(rng, 80), NoiseLevel(Noise(0.0, 0.1), 1.0, 0.0)
     J, S = rng.standard_normal((80, 2, 3)), rng.standard_normal((80, 2, 1))
     (clean,) = scored(
         point_of(plant, rng.standard_normal((80, 2)), J), level, np.zeros(3), [column(S)]

@@ -5,20 +5,20 @@ import pytest
 from discovery_cases import STEP, coloured, linear_plant, record, response, slider, wander
 
 from identification import InputError
-from identification.discovery.disturbed import disturbed_windows
-from identification.discovery.extend import Base, fit_with
-from identification.discovery.proof import unseen
+from identification.discovery.disturbance import propagate_over_windows
+from identification.discovery.nominal_model import NominalModel, fit_with_effects
+from identification.discovery.proof import validate
 from identification.kalman.linear import LinearPlant
-from identification.kalman.noise_model import Noise, whitener
+from identification.kalman.noise_model import Noise, build_whitener
 
 FREE, KNOWN = ("mass", "damping"), np.array([0.3, 0.3])
 
 
 def test_what_input_errors_do_in_a_window_is_what_the_dense_covariance_says():
     plant, noise, L = linear_plant(np.random.default_rng(5), nx=3), Noise(0.4, 0.05), 12
-    filter_ = whitener(plant, noise, STEP)
+    filter_ = build_whitener(plant, noise, STEP)
     starts = np.array([0, 12, 24])
-    found = disturbed_windows(filter_, noise.ratio, 2, starts, L)
+    found = propagate_over_windows(filter_, noise.ratio, 2, starts, L)
     for k, value in zip(starts, found, strict=True):
         part = LinearPlant(plant.A[k : k + L - 1], plant.B[k : k + L - 1], plant.C)
         x, X = np.eye(3), [plant.C]
@@ -34,12 +34,14 @@ def test_what_input_errors_do_in_a_window_is_what_the_dense_covariance_says():
 @pytest.fixture(scope="module")
 def fitted():
     log = record(slider(mass=2.2), 500, seed=2, error=wander(500, 0.1, 0.1, seed=3))
-    return fit_with(Base(slider(), FREE, KNOWN), log.part("estimation"), (), {}), log
+    return fit_with_effects(
+        NominalModel(slider(), FREE, KNOWN), log.part("estimation"), (), {}
+    ), log
 
 
 def test_errors_over_a_horizon_are_less_than_those_of_a_free_run_that_drifts(fitted):
     fit, log = fitted
-    free, near = unseen(fit, log), unseen(fit, log, 0.4)
+    free, near = validate(fit, log), validate(fit, log, 0.4)
     assert near.judged.shape == near.measured.shape == (240, 1)
     assert near.rms < 0.5 * free.rms
     assert near.disturbance < 0.5 * free.disturbance
@@ -50,4 +52,4 @@ def test_errors_over_a_horizon_are_less_than_those_of_a_free_run_that_drifts(fit
 
 def test_a_horizon_longer_than_what_is_unseen_is_refused(fitted):
     with pytest.raises(InputError, match="begins in the unseen"):
-        unseen(*fitted, 6.0)
+        validate(*fitted, 6.0)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from discovery_cases import EFFECTS, SENSOR, STEP, base, record, slider, wander
 
+from identification.discovery.fitted_model import fit_model
 from identification.discovery.proof import prove
-from identification.discovery.steps import fitted
 from identification.effects.effect import Candidate
 
 SPRING = Candidate(EFFECTS[0], "joint", {})
@@ -16,19 +16,19 @@ def sprung():
     """A log of a slider with a spring, its model without and with one."""
     error = wander(400, 0.02, 0.1, seed=5)
     log = record(slider(**{"spring.k": 6.0}), 400, seed=4, error=error)
-    return log, fitted(base(), log, (), {}), fitted(base(), log, (SPRING,), {"spring.k": 2.0})
+    return log, fit_model(base(), log, (), {}), fit_model(base(), log, (SPRING,), {"spring.k": 2.0})
 
 
 def test_a_model_proves_nothing_against_itself(sprung):
     _, without, _ = sprung
-    proof = prove(without.unseen, without.unseen)
+    proof = prove(without.validation, without.validation)
     assert (proof.gain, proof.t, proof.share) == (0, 0, 0)
 
 
 def test_what_is_there_is_proved_and_what_is_proved_can_be_disproved(sprung):
     _, without, with_it = sprung
     proof, back = (prove(*pair) for pair in (
-        (without.unseen, with_it.unseen), (with_it.unseen, without.unseen)
+        (without.validation, with_it.validation), (with_it.validation, without.validation)
     ))  # fmt: skip
     assert proof.t > 2
     assert proof.gain > 0
@@ -40,17 +40,17 @@ def test_what_is_there_is_proved_and_what_is_proved_can_be_disproved(sprung):
 
 def test_the_unseen_samples_are_those_after_the_fitted_ones(sprung):
     log, without, _ = sprung
-    seen = without.unseen
+    seen = without.validation
     assert seen.first == len(log.part("estimation"))
     fit = without.refit
-    np.testing.assert_allclose(seen.e[: seen.first], fit.at.e, atol=1e-12)
+    np.testing.assert_allclose(seen.e[: seen.first], fit.point.e, atol=1e-12)
     assert seen.rms == pytest.approx(np.sqrt(np.mean(seen.e[seen.first :] ** 2)))
     assert seen.gap.rms == seen.rms
 
 
 def test_both_are_seen_through_the_filter_of_the_first(sprung):
     _, without, with_it = sprung
-    first, second = without.unseen, with_it.unseen
+    first, second = without.validation, with_it.validation
     E = first.filter(second.e) / without.refit.level.sigma
     fewer = 0.5 * np.sum(first.innovations**2 - E**2, axis=1)[first.first :]
     assert prove(first, second).gain == pytest.approx(fewer.sum())
@@ -58,7 +58,7 @@ def test_both_are_seen_through_the_filter_of_the_first(sprung):
 
 def test_with_the_truth_the_free_run_errs_by_sensors_and_inputs(sprung):
     _, _, with_it = sprung
-    seen = with_it.unseen
+    seen = with_it.validation
     assert with_it.refit.level.sigma == pytest.approx(SENSOR, rel=0.15)
     floor = np.hypot(with_it.refit.level.sigma, seen.disturbance)
     assert 0.3 * floor < seen.rms < 3 * floor
@@ -68,7 +68,10 @@ def test_with_the_truth_the_free_run_errs_by_sensors_and_inputs(sprung):
 def test_what_closes_the_gap_is_proved_where_the_inputs_have_no_noise():
     """The wrong model's predictor follows the data; the right one's free run errs by its std."""
     log = record(slider(mass=2.2, damping=2.7, x0=0.01, v0=0.02, **{"spring.k": 5.0}), seed=7)
-    without, with_it = fitted(base(), log, (), {}), fitted(base(), log, (SPRING,), {"spring.k": 5})
-    proof = prove(without.unseen, with_it.unseen)
+    without, with_it = (
+        fit_model(base(), log, (), {}),
+        fit_model(base(), log, (SPRING,), {"spring.k": 5}),
+    )
+    proof = prove(without.validation, with_it.validation)
     assert proof.share > 0.99
     assert proof.t > 2

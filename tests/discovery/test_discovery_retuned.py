@@ -15,10 +15,10 @@ from discovery_cases import (
 )
 
 from identification import Parameter, ParameterSet
-from identification.discovery.extend import Base, fit_with
-from identification.discovery.retuned import WIDER, retuned
+from identification.discovery.nominal_model import NominalModel, fit_with_effects
+from identification.discovery.retuning import WIDER, retuned
 from identification.effects.effect import Candidate, Effect, Size
-from identification.kalman.noise_fit import Level
+from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 from identification.kalman.refit import Refit
 from identification.model.plant import ModelPlant
@@ -32,7 +32,7 @@ def _fit(J, q):
     plant = linear_plant(np.random.default_rng(0))
     at = point_of(plant, np.zeros(J.shape[:2]), J)
     at = replace(at, space=replace(at.space, names=("p0", *CANDIDATE.free)), q=np.array(q))
-    level = Level(Noise(0.0, 0.1), SIGMA, 0.0)
+    level = NoiseLevel(Noise(0.0, 0.1), SIGMA, 0.0)
     return Refit(at, level, np.ones(2), np.zeros(2), np.array([1 / PRIOR, 0.0]), 1)
 
 
@@ -75,9 +75,11 @@ def test_a_brake_is_no_more_than_damping_that_nobody_expected():
         for b in (0.0, -3.0)
     )
     log = record(braked, 500, seed=11)
-    known = Base(plant, FREE, np.array([0.3, 0.06, 0.05, 0.05]))  # damping to 6 %: it looks doubled
+    known = NominalModel(
+        plant, FREE, np.array([0.3, 0.06, 0.05, 0.05])
+    )  # damping to 6 %: it looks doubled
     candidate = Candidate(brake, "joint", {})
-    fit = fit_with(known, log, (candidate,), {"brake.b": -2.0})
+    fit = fit_with_effects(known, log, (candidate,), {"brake.b": -2.0})
     loss, other = retuned(fit, FREE, candidate)
     assert other.parameter == "damping"
     assert other.distance == pytest.approx(1 / 0.06, rel=0.05)  # linearised: Δd = d

@@ -7,18 +7,18 @@ import pytest
 from discovery_cases import EFFECTS, base, record, slider, wander
 
 from identification import InputError, Parameter
-from identification.discovery.score import Score
+from identification.discovery.scoring.scores import Score
+from identification.discovery.scoring.significance import find_oversized, significant
 from identification.discovery.search import discover
-from identification.discovery.significant import significant, too_large
 from identification.effects.effect import Candidate, Effect, Size
-from identification.kalman.noise_fit import Level
+from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 from identification.report.discovery_words import beyond
 
 
 def scored(name, size, gain, p=1e-9, sign=0, largest=1.0):
     effect = Effect(name, "f", (Size("f", "N", largest, 1e-3, sign),), places={"joint": ""})
-    level = Level(Noise(0.0, 0.1), 1.0, 0.0)
+    level = NoiseLevel(Noise(0.0, 0.1), 1.0, 0.0)
     return Score(Candidate(effect, "joint", {}), np.array([size]), np.ones(1), gain, p, p, 1.0,
                  level)  # fmt: skip
 
@@ -38,10 +38,10 @@ MILD = scored("mild", 0.5, 100.0)
 )
 def test_a_name_must_not_hide_what_explains_more_at_a_size_beyond_belief(other, hides):
     scores = (other, MILD)
-    found = too_large(scores, ["mild"])
+    found = find_oversized(scores, ["mild"])
     assert found is (other if hides else None)
-    assert too_large(scores, []) is None
-    assert too_large(scores, ["mild", "stiff"]) is None
+    assert find_oversized(scores, []) is None
+    assert find_oversized(scores, ["mild", "stiff"]) is None
     if hides:
         assert [s.candidate.effect.name for s in significant(scores)] == ["mild"]
         assert "f = 6 N where 5 N is thought to be the most" in beyond(other)
@@ -50,7 +50,7 @@ def test_a_name_must_not_hide_what_explains_more_at_a_size_beyond_belief(other, 
 @pytest.mark.parametrize(("gain", "heard"), [(250.0, True), (150.0, False)])
 def test_an_effect_of_another_shape_that_was_refitted_does_not_hide(gain, heard):
     beyond_belief, believed = scored("stiff", 6.0, 200.0), scored("stiff", 4.0, gain)
-    found = too_large((beyond_belief, believed, MILD), ["mild"])
+    found = find_oversized((beyond_belief, believed, MILD), ["mild"])
     assert found is (None if heard else beyond_belief)
 
 

@@ -10,11 +10,11 @@ import pytest
 from discovery_cases import EFFECTS, STEP, base, record, slider, wander
 
 from identification import InputError
-from identification.discovery.confidence import named_of
-from identification.discovery.forward import add
-from identification.discovery.passes import swap
+from identification.discovery.confidence import name_effects
+from identification.discovery.fitted_model import fit_model
 from identification.discovery.search import SHORTEST, _explained, discover
-from identification.discovery.steps import fitted
+from identification.discovery.selection.forward_selection import select_effect
+from identification.discovery.selection.pruning import swap
 
 ROOT = Path(__file__).parents[2]
 ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02}
@@ -90,12 +90,12 @@ def test_where_nothing_is_missing_it_says_so_and_what_it_would_have_seen():
 
 
 def test_of_two_effects_neither_is_the_others_rival(monkeypatch):
-    seen = spied(monkeypatch, named_of)
+    seen = spied(monkeypatch, name_effects)
     answer = found(**{"offset.f": -0.8, "rubbing.c": 1.0})
     assert {n.candidate.effect.name for n in answer.named} == {"offset", "rubbing"}
     ((base_, (first, second), *rest),) = seen
     there = replace(first.step, candidates=second.step.candidates[-1:])
-    again = named_of(base_, (replace(first, others=(there,)), second), *rest)
+    again = name_effects(base_, (replace(first, others=(there,)), second), *rest)
     assert not again[0].rivals
     assert again[0].confidence > 0.5
 
@@ -106,7 +106,7 @@ def test_an_effect_gives_way_to_one_that_was_never_refitted_but_explains_more(mo
     ((base_, log, nominal, kept, step, columns),) = seen
     right = {c.effect.name: c for c in step.candidates}
     spring = next(c.candidate for c in columns if c.candidate.effect.name == "spring")
-    wrong = fitted(base_, log, (right["rubbing"], spring), step.refit.at.values)
+    wrong = fit_model(base_, log, (right["rubbing"], spring), step.refit.point.values)
     alone = replace(kept[0].step, candidates=(spring,))
     first = replace(kept[0], step=alone, others=(), gain=10.0)
     second = next(a for a in kept if a.step.candidates[-1].effect.name == "rubbing")
@@ -118,7 +118,7 @@ def test_an_effect_gives_way_to_one_that_was_never_refitted_but_explains_more(mo
 def test_what_fitted_samples_want_and_unseen_ones_do_not_prove_is_neither_named_nor_nothing(
     monkeypatch,
 ):
-    monkeypatch.setattr("identification.discovery.steps.T", 1e9)
+    monkeypatch.setattr("identification.discovery.fitted_model.T", 1e9)
     answer = found(**{"offset.f": -0.8})
     assert answer.verdict == "unknown effect"
     assert not answer.named
@@ -134,7 +134,9 @@ def test_what_fitted_samples_want_and_unseen_ones_do_not_prove_is_neither_named_
 def test_an_effect_that_hides_as_an_error_of_the_inputs_is_refitted_although_its_score_is_luck(
     monkeypatch, sizes
 ):
-    monkeypatch.setattr("identification.discovery.forward.significant", lambda ranked: [])
+    monkeypatch.setattr(
+        "identification.discovery.selection.forward_selection.significant", lambda ranked: []
+    )
     answer = found(**sizes)
     assert {f"{n.candidate.effect.name}.k" for n in answer.named} == set(sizes)
     assert answer.verdict == ("named" if sizes else "nothing missing")
@@ -143,10 +145,10 @@ def test_an_effect_that_hides_as_an_error_of_the_inputs_is_refitted_although_its
 def test_what_was_refitted_beside_a_name_and_not_believed_is_kept(monkeypatch):
     def spy(*arguments):
         if arguments[2].candidates:  # beside a first name nothing is proven
-            monkeypatch.setattr("identification.discovery.steps.T", 1e9)
-        return add(*arguments)
+            monkeypatch.setattr("identification.discovery.fitted_model.T", 1e9)
+        return select_effect(*arguments)
 
-    monkeypatch.setattr("identification.discovery.search.add", spy)
+    monkeypatch.setattr("identification.discovery.search.select_effect", spy)
     answer = found(**{"offset.f": -0.8, "rubbing.c": 1.0})
     rejected = {t.candidate.effect.name: t for t in answer.rejected}
     assert "rubbing" in rejected
@@ -159,7 +161,7 @@ def test_what_was_refitted_beside_a_name_and_not_believed_is_kept(monkeypatch):
 def test_what_is_proven_and_too_small_to_matter_is_named_where_nothing_else_is_left(
     monkeypatch, vibration
 ):
-    monkeypatch.setattr("identification.discovery.steps.FALL", 1.0)  # nothing matters
+    monkeypatch.setattr("identification.discovery.fitted_model.FALL", 1.0)  # nothing matters
     t = STEP * np.arange(500)[:, None]
     answer = found(error=vibration * np.sin(2 * np.pi * 2.3 * t), **{"offset.f": -0.3})
     assert {n.candidate.effect.name for n in answer.named} == (set() if vibration else {"offset"})
@@ -171,12 +173,12 @@ def test_a_gap_ends_at_the_sensors_where_input_errors_cannot_be_believed(monkeyp
     ((_, _, nominal, _, step, _),) = seen
     level = step.refit.level
     loud = replace(level, noise=level.noise.scaled(100.0))
-    more = replace(step.unseen, disturbance=10 * nominal.unseen.rms)
+    more = replace(step.validation, disturbance=10 * nominal.validation.rms)
     calm = replace(step, unseen=more)
     wild = replace(calm, refit=replace(step.refit, level=loud))
     assert _explained(nominal, calm, random=True) == pytest.approx(1.0)
     assert _explained(nominal, calm, random=False) == _explained(nominal, wild, random=True)
-    fall = 1 - (step.unseen.rms / nominal.unseen.rms) ** 2
+    fall = 1 - (step.validation.rms / nominal.validation.rms) ** 2
     assert _explained(nominal, wild, random=True) == pytest.approx(fall, abs=1e-3)
     assert _explained(nominal, wild, random=True) < _explained(nominal, calm, random=True)
 

@@ -14,8 +14,8 @@ from discovery_cases import (
     slider,
 )
 
-from identification.discovery.extend import Base, fit_with
-from identification.discovery.missing import missing_forces
+from identification.discovery.missing_forces import estimate_missing_forces
+from identification.discovery.nominal_model import NominalModel, fit_with_effects
 from identification.kalman.noise_model import Noise
 from identification.kalman.smoother import smooth
 
@@ -46,8 +46,8 @@ def test_a_force_that_the_model_lacks_is_seen_in_newtons():
     n = 500
     push = 0.4 * np.sin(2 * np.pi * 0.7 * STEP * np.arange(n))[:, None]  # of 5 N per unit
     log = record(slider(), n, error=push)
-    fit = fit_with(Base(slider(), FREE, KNOWN / 100), log, (), {})
-    (missing,) = missing_forces(fit)
+    fit = fit_with_effects(NominalModel(slider(), FREE, KNOWN / 100), log, (), {})
+    (missing,) = estimate_missing_forces(fit)
     assert missing.where == "the actuated joints"
     assert missing.names == ("slide",)
     assert missing.units == ("N",)

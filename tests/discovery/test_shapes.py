@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from identification.discovery import shapes
-from identification.discovery.shapes import BARE, improved
+from identification.discovery.selection import shapes
+from identification.discovery.selection.shapes import BARE, improved
 from identification.effects.effect import Candidate, Effect, Shape, Size
 from inca_mj.effects.current_saturation import CURRENT_SATURATION
 from inca_mj.workflows.discovery import discover

@@ -8,7 +8,7 @@ import numpy as np
 from joint_cases import DAMPING, MASS, SLIDER, run, slider_log, steps
 
 from identification import Parameter
-from identification.discovery.extend import Base
+from identification.discovery.nominal_model import NominalModel
 from identification.discovery.search import discover
 from identification.effects.axes import Axis
 from identification.effects.joint_plant import candidates, joint_plant
@@ -37,7 +37,9 @@ def hidden(samples=600, **values):
 
 def found(log):
     robot = plant(log)
-    return discover(Base(robot, FREE, np.array([0.3, 0.3, 0.5])), log, candidates(robot, FREE))
+    return discover(
+        NominalModel(robot, FREE, np.array([0.3, 0.3, 0.5])), log, candidates(robot, FREE)
+    )
 
 
 def test_a_hidden_effect_is_named_with_its_size_where_inca_cannot_be_imported():

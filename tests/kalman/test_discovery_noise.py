@@ -5,8 +5,14 @@ import pytest
 from discovery_cases import STEP, covariance, linear_plant
 
 from identification.kalman.linear import LinearPlant
-from identification.kalman.noise_fit import LEVELS, TIME, fit_noise, likelihood, unit_ratio
-from identification.kalman.noise_model import Noise, whitener
+from identification.kalman.noise_fit import (
+    LEVELS,
+    TIME,
+    compute_unit_ratio,
+    evaluate_noise,
+    fit_noise,
+)
+from identification.kalman.noise_model import Noise, build_whitener
 
 SIGMA = 2e-3
 
@@ -47,13 +53,13 @@ def test_the_correlation_time_is_told_from_others():
         true, prior = Noise(400.0, time), np.zeros(0)
         found = fit_noise(plant, e, J, prior, STEP)
         assert time / 5 < found.noise.time < 5 * time
-        at_truth = likelihood(whitener(plant, true, STEP), true, e, J, prior)
+        at_truth = evaluate_noise(build_whitener(plant, true, STEP), true, e, J, prior)
         assert found.log_likelihood > at_truth.log_likelihood - 0.5  # as likely as the truth
 
 
 def test_where_there_is_none_it_finds_none_or_what_no_output_notices():
     rng, plant = np.random.default_rng(3), cart()
-    unit = unit_ratio(plant, STEP, 0.03)
+    unit = compute_unit_ratio(plant, STEP, 0.03)
     J = rng.standard_normal((150, 1, 2))
     found = [
         fit_noise(plant, SIGMA * rng.standard_normal((150, 1)), J, np.zeros(2), STEP)
@@ -69,8 +75,8 @@ def test_no_more_error_of_the_inputs_is_taken_for_granted_than_is_believed(share
     J, prior, e = np.zeros((150, 1, 0)), np.zeros(0), drawn(plant, truth, rng, 1)[0]
     free = fit_noise(plant, e, J, prior, STEP, fine=False)
     held = fit_noise(plant, e, J, prior, STEP, fine=False, largest=share * free.input_std)
-    unit = Noise(unit_ratio(plant, STEP, TIME), TIME)
-    tried = [likelihood(whitener(plant, n, STEP), n, e, J, prior)
+    unit = Noise(compute_unit_ratio(plant, STEP, TIME), TIME)
+    tried = [evaluate_noise(build_whitener(plant, n, STEP), n, e, J, prior)
              for n in map(unit.scaled, LEVELS)]  # fmt: skip
     believed = [t.log_likelihood for t in tried if t.input_std <= share * free.input_std]
     assert held.input_std <= share * free.input_std
@@ -84,7 +90,7 @@ def test_a_slow_plant_feels_as_much_of_a_noise_that_lasts_longer():
     long = short.lasting(0.04)
     assert long.ratio**2 * long.time == pytest.approx(short.ratio**2 * short.time)
     assert long.lasting(0.01) == short
-    felt = [1 / unit_ratio(cart(600), STEP / 20, n.time) * n.ratio for n in (short, long)]
+    felt = [1 / compute_unit_ratio(cart(600), STEP / 20, n.time) * n.ratio for n in (short, long)]
     assert felt[0] == pytest.approx(felt[1], rel=0.15)
 
 
@@ -93,7 +99,7 @@ def test_its_level_is_no_less_likely_than_the_truth():
     J = rng.standard_normal((150, 1, 2))
     for e in drawn(plant, truth, rng, 5):
         found = fit_noise(plant, e, J, np.zeros(2), STEP)
-        true = likelihood(whitener(plant, truth, STEP), truth, e, J, np.zeros(2))
+        true = evaluate_noise(build_whitener(plant, truth, STEP), truth, e, J, np.zeros(2))
         assert found.log_likelihood > true.log_likelihood - 1.5
 
 
@@ -105,7 +111,7 @@ def test_the_likelihood_is_the_dense_gaussian_with_the_parameters_at_their_best(
     iV = np.linalg.inv(V)
     rest = e.ravel() - F @ np.linalg.solve(F.T @ iV @ F, F.T @ iV @ e.ravel())
     squares = rest @ iV @ rest
-    found = likelihood(whitener(plant, noise, STEP), noise, e, J, np.zeros(3))
+    found = evaluate_noise(build_whitener(plant, noise, STEP), noise, e, J, np.zeros(3))
     assert found.sigma == pytest.approx(np.sqrt(squares / 80), rel=1e-9)
     dense = -0.5 * (80 * np.log(squares / 80) + np.linalg.slogdet(V)[1])
     assert found.log_likelihood == pytest.approx(dense, rel=1e-9)
@@ -113,6 +119,6 @@ def test_the_likelihood_is_the_dense_gaussian_with_the_parameters_at_their_best(
 
 def test_at_the_unit_ratio_input_errors_move_the_outputs_by_sigma():
     plant = linear_plant(np.random.default_rng(6))
-    unit = unit_ratio(plant, STEP, 0.1)
+    unit = compute_unit_ratio(plant, STEP, 0.1)
     moved = np.diag(covariance(plant, Noise(unit, 0.1))) - 1
     assert moved.reshape(40, 2)[1:].mean() == pytest.approx(1, rel=1e-9)

@@ -5,18 +5,18 @@ import pytest
 from discovery_cases import EFFECTS, FREE, base, record, slider, wander
 
 from identification import Parameter
-from identification.discovery.extend import _inside, fit_with
+from identification.discovery.nominal_model import _inside, fit_with_effects
 from identification.effects.effect import Candidate
-from identification.kalman.noise_fit import ALLOWED, Level
+from identification.kalman.noise_fit import ALLOWED, NoiseLevel
 from identification.kalman.noise_model import Noise
-from identification.kalman.problem import linearised
-from identification.kalman.refit import descent, noise_at
+from identification.kalman.problem import linearise_criterion
+from identification.kalman.refit import descend, estimate_noise
 
 TRUE = {"mass": 2.4, "damping": 2.6, "x0": 0.02, "v0": -0.03}
 
 
 def fitted(log, start, candidates=()):
-    return fit_with(base(), log, candidates, start)
+    return fit_with_effects(base(), log, candidates, start)
 
 
 @pytest.mark.parametrize("factors", [(2.0, 0.5), (0.5, 2.0), (2.5, 2.5)])
@@ -26,15 +26,15 @@ def test_it_finds_the_truth_from_far_starts_under_coloured_input_noise(factors):
     mass, damping = factors
     far = fitted(log, {"mass": 2.0 * mass, "damping": 3.0 * damping, "x0": 0.1, "v0": 0.1})
     # A search ends where the criterion would fall by less than the noise lets it.
-    assert np.abs((far.at.q - near.at.q) / near.std).max() < 1
-    assert far.at.values["mass"] == pytest.approx(2.4, rel=0.15)
+    assert np.abs((far.point.q - near.point.q) / near.std).max() < 1
+    assert far.point.values["mass"] == pytest.approx(2.4, rel=0.15)
 
 
 def test_without_noise_it_finds_the_truth_as_it_is():
     log = record(slider(**TRUE), 200, noise=1e-7)
     found = fitted(log, {})
     for name in FREE:
-        assert found.at.values[name] == pytest.approx(TRUE[name], rel=1e-3, abs=1e-5), name
+        assert found.point.values[name] == pytest.approx(TRUE[name], rel=1e-3, abs=1e-5), name
 
 
 def test_the_std_covers_under_coloured_input_noise():
@@ -42,8 +42,8 @@ def test_the_std_covers_under_coloured_input_noise():
     for seed in range(10):
         log = record(slider(**TRUE), 200, seed=seed, error=wander(200, 0.1, 0.1, seed=100 + seed))
         found = fitted(log, TRUE)
-        q = found.at.space.encode(np.array([TRUE[name] for name in FREE]))
-        z.append((found.at.q - q) / found.std)
+        q = found.point.space.encode(np.array([TRUE[name] for name in FREE]))
+        z.append((found.point.q - q) / found.std)
     z = np.array(z)
     # The mean square of 40 numbers of unit variance has a std of 0.22, of 10 one of 0.45.
     assert 0.5 < np.mean(z**2) < 2.0
@@ -55,7 +55,7 @@ def test_an_effect_is_fitted_along_and_its_size_may_be_zero():
     for k in (0.0, 8.0):
         log = record(slider(**TRUE, **{"spring.k": k}), 200, seed=3)
         spring = Candidate(EFFECTS[0], "joint", {})
-        found[k] = fitted(log, {"spring.k": 4.0}, (spring,)).at.values["spring.k"]
+        found[k] = fitted(log, {"spring.k": 4.0}, (spring,)).point.values["spring.k"]
     assert found[8.0] == pytest.approx(8.0, rel=0.05)
     assert 0 <= found[0.0] < 0.3
 
@@ -67,23 +67,23 @@ def test_a_start_is_kept_where_a_parameter_has_no_upper_bound():
 
 def test_base_parameters_stay_within_a_factor_of_their_nominal_values():
     log = record(slider(mass=0.3), 200)
-    assert fitted(log, {}).at.values["mass"] >= 2.0 / 3 - 1e-9
+    assert fitted(log, {}).point.values["mass"] >= 2.0 / 3 - 1e-9
 
 
 @pytest.mark.parametrize("steps", [0, 1, 3, 20])
 def test_a_search_ends_at_the_likeliest_point_since_its_noise_was_sharpened(monkeypatch, steps):
     t = 0.02 * np.arange(300)[:, None]  # a vibration, which no noise of the inputs is like
     log = record(slider(**TRUE), 300, seed=1, error=3.0 * np.sin(2 * np.pi * 4.1 * t))
-    begun = fit_with(base(), log, (), {}, steps=0)
+    begun = fit_with_effects(base(), log, (), {}, steps=0)
     sharpened = []
 
     def spy(at, prior, near, fine=False, largest=np.inf):
         sharpened.append(fine)
-        return noise_at(at, prior, near, fine, largest)
+        return estimate_noise(at, prior, near, fine, largest)
 
-    monkeypatch.setattr("identification.kalman.refit.noise_at", spy)
-    points = [*descent(begun.at, begun.mean, begun.prior, steps=steps)]
-    likely = [linearised(*p, begun.mean, begun.prior).log_posterior for p in points]
+    monkeypatch.setattr("identification.kalman.refit.estimate_noise", spy)
+    points = [*descend(begun.point, begun.mean, begun.prior, steps=steps)]
+    likely = [linearise_criterion(*p, begun.mean, begun.prior).log_posterior for p in points]
     assert sharpened.count(True) == 1
     assert sharpened.count(False) <= 1 + steps
     assert likely[-1] == max(likely[sharpened.index(True) :])
@@ -92,8 +92,8 @@ def test_a_search_ends_at_the_likeliest_point_since_its_noise_was_sharpened(monk
 def test_likelihood_does_not_lead_where_inputs_err_beyond_belief_and_not_by_chance():
     t = 0.02 * np.arange(300)[:, None]
     log = record(slider(**TRUE), 300, seed=1, error=3.0 * np.sin(2 * np.pi * 4.1 * t))
-    begun = fit_with(base(), log, (), {}, steps=0)
-    points = [*descent(begun.at, begun.mean, begun.prior)]
+    begun = fit_with_effects(base(), log, (), {}, steps=0)
+    points = [*descend(begun.point, begun.mean, begun.prior)]
     (end, level), levels = points[-1], [lv for _, lv in points]
     assert level.input_std > ALLOWED * end.motion  # which the vibration needs
     sharpened = levels.index(level)
@@ -103,21 +103,23 @@ def test_likelihood_does_not_lead_where_inputs_err_beyond_belief_and_not_by_chan
 
 def test_likelihood_does_lead_where_inputs_err_much_but_by_chance():
     log = record(slider(**TRUE), 300, seed=1, error=wander(300, 0.3, 0.1, seed=1))
-    begun = fit_with(base(), log, (), {"mass": 4.0}, steps=0)
-    points = [*descent(begun.at, begun.mean, begun.prior)]
-    likely = [linearised(*p, begun.mean, begun.prior).log_posterior for p in points]
+    begun = fit_with_effects(base(), log, (), {"mass": 4.0}, steps=0)
+    points = [*descend(begun.point, begun.mean, begun.prior)]
+    likely = [linearise_criterion(*p, begun.mean, begun.prior).log_posterior for p in points]
     sharpened = next(
-        k for k, (_, lv) in enumerate(points) if lv.input_std > ALLOWED * begun.at.motion
+        k for k, (_, lv) in enumerate(points) if lv.input_std > ALLOWED * begun.point.motion
     )
     assert likely[-1] > likely[sharpened]
 
 
 def test_a_bent_step_follows_the_curve_of_the_residual_to_one_order_more():
-    log, white = record(slider(**TRUE), 200, noise=1e-9), Level(Noise(0.0, 0.1), 1.0, 0.0)
+    log, white = record(slider(**TRUE), 200, noise=1e-9), NoiseLevel(Noise(0.0, 0.1), 1.0, 0.0)
     left = {}
     for away in (0.2, 0.1):  # of the logarithm of the mass
-        far = fit_with(base(), log, (), {**TRUE, "mass": TRUE["mass"] * np.exp(away)}, steps=0).at
-        problem = linearised(far, white, far.q, np.zeros(4))
+        far = fit_with_effects(
+            base(), log, (), {**TRUE, "mass": TRUE["mass"] * np.exp(away)}, steps=0
+        ).point
+        problem = linearise_criterion(far, white, far.q, np.zeros(4))
         move, _ = problem.step(0.0)
         left[away] = [problem.cost(far.q + m) ** 0.5 for m in (move, problem.bent(move, 0.0))]
     (straight, bent), (straight_half, bent_half) = left[0.2], left[0.1]

@@ -51,7 +51,7 @@ def test_the_named_twin_is_the_final_fit() -> None:
 
 
 def test_only_what_was_free_has_the_log_as_its_source() -> None:
-    fit = found().final.at.space.names
+    fit = found().final.point.space.names
     for p in named_twin(found()).parameters:
         assert (p.source == "fitted to the log") == (p.name in fit), p.name
 

@@ -11,7 +11,7 @@ from inca_mj.workflows.look_alikes import Contrast, _distance, sentence, tell_ap
 
 @pytest.fixture(scope="module")
 def at():
-    return found(one_of=True).final.at
+    return found(one_of=True).final.point
 
 
 def test_an_effect_imitates_itself(at) -> None:

@@ -6,7 +6,7 @@ from math import hypot
 import pytest
 from fake_discovery import NOISE, found
 
-from identification.kalman.noise_fit import Level
+from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_tables import parameters_section
@@ -33,7 +33,7 @@ def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
 )  # fmt: skip
 def test_input_errors_that_cannot_be_believed_are_no_noise(verdict, input_error, counts) -> None:
     disturbed = replace(found(verdict), disturbance_rms=0.05)
-    level = Level(Noise(input_error / NOISE, 0.1), NOISE, 0.0)  # an std of `input_error` [A]
+    level = NoiseLevel(Noise(input_error / NOISE, 0.1), NOISE, 0.0)  # an std of `input_error` [A]
     disturbed = replace(disturbed, final=replace(disturbed.final, level=level))
     assert floor_rms(disturbed) == pytest.approx(hypot(NOISE, 0.05) if counts else NOISE)
 

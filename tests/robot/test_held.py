@@ -7,9 +7,9 @@ import pytest
 from joint_cases import DAMPING, MASS, SLIDER, run, slider_log
 from scipy.signal import lfilter
 
-from identification.discovery.extend import Base
-from identification.discovery.held import held_otherwise
-from identification.discovery.steps import fitted
+from identification.discovery.findings.input_hold import find_input_hold
+from identification.discovery.fitted_model import fit_model
+from identification.discovery.nominal_model import NominalModel
 from identification.effects.joint_plant import joint_plant
 
 NOISE = 2e-5  # std of the sensor [m]
@@ -26,8 +26,8 @@ def moving(hold, samples=800):
 
 def said(log):
     plant = joint_plant(SLIDER, (MASS, DAMPING), log)
-    return held_otherwise(
-        fitted(Base(plant, ("mass", "damping"), np.array([0.3, 0.3])), log, (), {})
+    return find_input_hold(
+        fit_model(NominalModel(plant, ("mass", "damping"), np.array([0.3, 0.3])), log, (), {})
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from identification.kalman.noise_model import Whitener
 
 
-def disturbed(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -> np.ndarray:
+def propagate_input_error(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -> np.ndarray:
     """Variance that input errors put on the outputs of a free run, mean over them, shape (N,)."""
     if not A.size:
         return np.zeros(0)
@@ -26,7 +26,7 @@ def disturbed(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -> np.ndarray
     return np.array(out)
 
 
-def disturbed_windows(
+def propagate_over_windows(
     filter_: Whitener, ratio: float, nu: int, starts: np.ndarray, length: int
 ) -> np.ndarray:
     """The same over windows whose start is the best one, mean over each, shape (W,).

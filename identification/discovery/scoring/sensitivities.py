@@ -20,7 +20,7 @@ BATCH = 48  # simulations at a time: bounds the memory of their trajectories
 
 
 @dataclass(frozen=True)
-class Column:
+class Sensitivity:
     """Sensitivities of one candidate.
 
     Attributes:
@@ -63,22 +63,22 @@ def shapes(effect: Effect) -> Iterator[dict[str, float]]:
         yield dict(zip((shape.name for shape in effect.shapes), values, strict=True))
 
 
-def columns(at: Point, candidates: Sequence[Candidate]) -> tuple[Column, ...]:
+def columns(point: Point, candidates: Sequence[Candidate]) -> tuple[Sensitivity, ...]:
     """Sensitivities of candidates at a point; one whose simulation diverges is left out.
 
     Args:
-        at: where; the candidates' own sizes are zero there.
+        point: where; the candidates' own sizes are zero there.
         candidates: which.
     """
-    predicted = at.log.outputs - at.e
-    out: list[Column] = []
+    predicted = point.log.outputs - point.e
+    out: list[Sensitivity] = []
     for group in _groups(candidates):
         try:
-            out += _batch(at, group, predicted)
+            out += _batch(point, group, predicted)
         except (DivergenceError, InputError):
             for candidate in group:
                 try:
-                    out += _batch(at, [candidate], predicted)
+                    out += _batch(point, [candidate], predicted)
                 except (DivergenceError, InputError):
                     continue
     return tuple(out)
@@ -95,10 +95,10 @@ def _groups(candidates: Sequence[Candidate]) -> Iterator[list[Candidate]]:
         yield group
 
 
-def _batch(at: Point, group: list[Candidate], predicted: np.ndarray) -> list[Column]:
-    own = at.values
+def _batch(point: Point, group: list[Candidate], predicted: np.ndarray) -> list[Sensitivity]:
+    own = point.values
     names = list(dict.fromkeys([*own, *(n for c in group for n in (*c.sizes, *c.fixed))]))
-    parameters = at.predictor.plant.parameters
+    parameters = point.predictor.plant.parameters
     nominal = [own.get(name, parameters[name].value) for name in names]
     rows, probes = [], []
     for c in group:
@@ -107,10 +107,10 @@ def _batch(at: Point, group: list[Candidate], predicted: np.ndarray) -> list[Col
             probe = (-size.probe if size.sign < 0 else size.probe) * c.probe
             rows.append([*{**row, **c.fixed, name: row[name] + probe}.values()])
             probes.append(probe)
-    moved = Predictor(at.predictor.plant, at.log, tuple(names)).predict(np.array(rows))
+    moved = Predictor(point.predictor.plant, point.log, tuple(names)).predict(np.array(rows))
     S = (moved - predicted) / np.array(probes)[:, None, None]
     ends = np.cumsum([len(c.sizes) for c in group])
     return [
-        Column(c, np.moveaxis(S[end - len(c.sizes) : end], 0, -1))
+        Sensitivity(c, np.moveaxis(S[end - len(c.sizes) : end], 0, -1))
         for c, end in zip(group, ends, strict=True)
     ]

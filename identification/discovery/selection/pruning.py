@@ -10,18 +10,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from identification.discovery.columns import Column
-from identification.discovery.extend import Base
-from identification.discovery.forward import CONTENDERS
-from identification.discovery.proof import prove
-from identification.discovery.significant import LIKE, significant
-from identification.discovery.steps import (
-    Accepted,
-    Step,
-    fitted_if_any,
-    holds,
-    scores_of,
+from identification.discovery.fitted_model import (
+    AcceptedEffect,
+    FittedModel,
+    is_confirmed,
+    score_candidates,
+    try_fit,
 )
+from identification.discovery.nominal_model import NominalModel
+from identification.discovery.proof import prove
+from identification.discovery.scoring.sensitivities import Sensitivity
+from identification.discovery.scoring.significance import LIKE, significant
+from identification.discovery.selection.forward_selection import CONTENDERS
 from identification.effects.effect import Candidate
 from identification.logs.log import Log
 
@@ -29,27 +29,27 @@ HOPELESS = 0.5  # share of an effect's gain that a rival must have had to be tri
 
 
 def backward(
-    base: Base, log: Log, accepted: Sequence[Accepted], step: Step
-) -> tuple[list[Accepted], Step]:
+    base: NominalModel, log: Log, accepted: Sequence[AcceptedEffect], step: FittedModel
+) -> tuple[list[AcceptedEffect], FittedModel]:
     """Drop effects that those found later have made needless; the last one was just proved."""
     kept = list(accepted)
     for old in accepted[:-1]:
         mine = old.step.candidates[-1]
         rest = tuple(c for c in step.candidates if c is not mine)
-        without = fitted_if_any(base, log, rest, step.refit.at.values, step)
+        without = try_fit(base, log, rest, step.refit.point.values, step)
         if without is not None and without.criterion > step.criterion:
             kept, step = [a for a in kept if a is not old], without
     return kept, step
 
 
 def swap(
-    base: Base,
+    base: NominalModel,
     log: Log,
-    nominal: Step,
-    accepted: Sequence[Accepted],
-    step: Step,
-    columns: Sequence[Column],
-) -> tuple[list[Accepted], Step]:
+    nominal: FittedModel,
+    accepted: Sequence[AcceptedEffect],
+    step: FittedModel,
+    columns: Sequence[Sensitivity],
+) -> tuple[list[AcceptedEffect], FittedModel]:
     """Let the near rivals of each effect try its place among the others."""
     kept = list(accepted) if len(accepted) > 1 else []
     for i, old in enumerate(kept):
@@ -58,36 +58,36 @@ def swap(
         for theirs, start in _rivals(base, log, old, rest, step, columns):
             if any(theirs.effect.name == c.effect.name for c in rest):
                 continue
-            new = fitted_if_any(base, log, (*rest, theirs), {**step.refit.at.values, **start}, step)
+            new = try_fit(base, log, (*rest, theirs), {**step.refit.point.values, **start}, step)
             if new is None:
                 continue
-            proof = prove(nominal.unseen, new.unseen)
-            if new.criterion > step.criterion and holds(proof):
+            proof = prove(nominal.validation, new.validation)
+            if new.criterion > step.criterion and is_confirmed(proof):
                 others = (replace(step, candidates=(*rest, mine)),)
                 gain = old.gain + new.criterion - step.criterion
-                kept[i] = Accepted(new, old.proof, gain, others)
+                kept[i] = AcceptedEffect(new, old.proof, gain, others)
                 step = new
                 break
     return kept or list(accepted), step
 
 
 def _rivals(
-    base: Base,
+    base: NominalModel,
     log: Log,
-    old: Accepted,
+    old: AcceptedEffect,
     rest: tuple[Candidate, ...],
-    step: Step,
-    columns: Sequence[Column],
+    step: FittedModel,
+    columns: Sequence[Sensitivity],
 ) -> list[tuple[Candidate, Mapping[str, float]]]:
     """What may stand in an effect's place, each with values to begin at."""
     mine = old.step.candidates[-1]
     out: dict[tuple[str, str], tuple[Candidate, Mapping[str, float]]] = {
-        _key(r.candidates[-1]): (r.candidates[-1], r.refit.at.values)
+        _key(r.candidates[-1]): (r.candidates[-1], r.refit.point.values)
         for r in old.others
         if old.step.criterion - r.criterion <= HOPELESS * old.gain
     }
-    without = fitted_if_any(base, log, rest, step.refit.at.values, step)
-    scores = [] if without is None else significant(scores_of(without, columns))
+    without = try_fit(base, log, rest, step.refit.point.values, step)
+    scores = [] if without is None else significant(score_candidates(without, columns))
     own = next((s.gain for s in scores if _key(s.candidate) == _key(mine)), 0.0)
     for s in scores:
         if s.gain > LIKE * own and _key(s.candidate) != _key(mine):

@@ -16,7 +16,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from identification.kalman.linear import LinearPlant, linearise
-from identification.kalman.noise_fit import TIME, fit_noise, unit_ratio
+from identification.kalman.noise_fit import TIME, compute_unit_ratio, fit_noise
 from identification.kalman.refit import Refit
 from identification.kalman.smoother import smooth
 
@@ -45,7 +45,7 @@ class MissingForce:
     share: float
 
 
-def missing_forces(fit: Refit) -> tuple[MissingForce, ...]:
+def estimate_missing_forces(fit: Refit) -> tuple[MissingForce, ...]:
     """The missing force of every group of degrees of freedom, by where they act.
 
     Args:
@@ -54,28 +54,28 @@ def missing_forces(fit: Refit) -> tuple[MissingForce, ...]:
     Raises:
         DivergenceError: the model cannot be simulated.
     """
-    at = fit.at
-    groups = _groups(at.predictor.plant.model)
+    point = fit.point
+    groups = _groups(point.predictor.plant.model)
     dofs = [d for _, of, _, _ in groups for d in of]
-    plant = linearise(at.predictor, at.space.decode(at.q), forces=dofs)
-    Ts, out, done = at.log.sampling_time, [], 0
+    plant = linearise(point.predictor, point.space.decode(point.q), forces=dofs)
+    Ts, out, done = point.log.sampling_time, [], 0
     with threadpool_limits(1, "blas"):
         for where, of, names, units in groups:
             B = plant.B[:, :, done : done + len(of)]
             done += len(of)
             if not B.any():
                 continue
-            each = [unit_ratio(LinearPlant(plant.A, b[:, :, None], plant.C), Ts, TIME)
+            each = [compute_unit_ratio(LinearPlant(plant.A, b[:, :, None], plant.C), Ts, TIME)
                     for b in np.moveaxis(B, 2, 0)]  # fmt: skip
             mine = LinearPlant(plant.A, B * each, plant.C)
-            level = fit_noise(mine, at.e, at.J, fit.prior, Ts, fine=False)
-            none = fit_noise(mine, at.e, at.J, fit.prior, Ts, levels=(0.0,), fine=False)
-            force, part = smooth(mine, level.noise, at.e, Ts)
+            level = fit_noise(mine, point.e, point.J, fit.prior, Ts, fine=False)
+            none = fit_noise(mine, point.e, point.J, fit.prior, Ts, levels=(0.0,), fine=False)
+            force, part = smooth(mine, level.noise, point.e, Ts)
             out.append(
                 MissingForce(
                     where, names, units, force * each,
                     2 * (level.log_likelihood - none.log_likelihood),
-                    1 - float(np.mean((at.e - part) ** 2) / np.mean(at.e**2)),
+                    1 - float(np.mean((point.e - part) ** 2) / np.mean(point.e**2)),
                 )
             )  # fmt: skip
     return tuple(out)

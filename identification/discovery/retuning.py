@@ -15,7 +15,7 @@ from scipy.optimize import lsq_linear
 
 from identification.discovery.result import Retuned
 from identification.effects.effect import Candidate
-from identification.kalman.problem import linearised
+from identification.kalman.problem import linearise_criterion
 from identification.kalman.refit import Refit
 
 WIDER = 3.0  # times what was known of the base parameters
@@ -34,13 +34,13 @@ def retuned(fit: Refit, base: Sequence[str], candidate: Candidate) -> tuple[floa
         its confidence is left at zero. A limit has no size that could go to zero: its loss is
         infinite.
     """
-    space, q = fit.at.space, fit.at.q
+    space, q = fit.point.space, fit.point.q
     names = np.array(space.names)
     own, mine = np.isin(names, base), np.isin(names, candidate.free)
     if not mine.any():
         return np.inf, Retuned(base[0], 0.0, 0.0)
     prior = np.where(own, fit.prior / WIDER, fit.prior)
-    problem = linearised(fit.at, fit.level, fit.mean, prior)
+    problem = linearise_criterion(fit.point, fit.level, fit.mean, prior)
     lower, upper = space.lower - q, space.upper - q
     _, with_it = _least(problem.rows, problem.target, lower, upper)
     rest = ~mine  # sizes are linear coordinates, zero in the nominal model

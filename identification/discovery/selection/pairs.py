@@ -9,22 +9,28 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from identification.discovery.columns import Column
-from identification.discovery.extend import Base
-from identification.discovery.forward import add
+from identification.discovery.fitted_model import (
+    AcceptedEffect,
+    FittedModel,
+    is_confirmed,
+    score_candidates,
+    try_fit,
+)
+from identification.discovery.nominal_model import NominalModel
 from identification.discovery.proof import prove
-from identification.discovery.steps import Accepted, Step, fitted_if_any, holds, scores_of
+from identification.discovery.scoring.sensitivities import Sensitivity
+from identification.discovery.selection.forward_selection import select_effect
 from identification.logs.log import Log
 
 
-def both(
-    base: Base,
+def find_pair(
+    base: NominalModel,
     whole: Log,
-    step: Step,
-    first: Step,
-    columns: Sequence[Column],
+    step: FittedModel,
+    first: FittedModel,
+    columns: Sequence[Sensitivity],
     say: Callable[[str], None],
-) -> tuple[Accepted, ...]:
+) -> tuple[AcceptedEffect, ...]:
     """An effect that is not proven alone, and the one beside which it is; none where there is none.
 
     Args:
@@ -35,16 +41,16 @@ def both(
         columns: sensitivities of all candidates.
         say: is told a line per refit.
     """
-    second, *_ = add(base, whole, first, scores_of(first, columns), say)
+    second, *_ = select_effect(base, whole, first, score_candidates(first, columns), say)
     if second is None:
         return ()
     pair = second.step
     other = pair.candidates[-1]
     rest = (*step.candidates, other)
-    alone = fitted_if_any(base, whole, rest, pair.refit.at.values, pair)
+    alone = try_fit(base, whole, rest, pair.refit.point.values, pair)
     if alone is None:
         return ()
-    proof = prove(alone.unseen, pair.unseen)
-    if not (holds(proof) and holds(prove(step.unseen, pair.unseen))):
+    proof = prove(alone.validation, pair.validation)
+    if not (is_confirmed(proof) and is_confirmed(prove(step.validation, pair.validation))):
         return ()
-    return Accepted(first, proof, first.criterion - step.criterion, ()), second
+    return AcceptedEffect(first, proof, first.criterion - step.criterion, ()), second

@@ -9,9 +9,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from identification.discovery.missing import MissingForce
+from identification.discovery.fitted_model import FittedModel, is_relevant
+from identification.discovery.missing_forces import MissingForce
 from identification.discovery.result import Tried
-from identification.discovery.steps import Step, matters
 from identification.kalman.innovations import SURE, whiteness
 from identification.kalman.noise_fit import ALLOWED
 from identification.kalman.refit import Refit
@@ -24,8 +24,8 @@ BELIEVED = 1.0  # the same, above which the log's inputs are not what moved the 
 
 def regressors(fit: Refit) -> dict[str, np.ndarray]:
     """What a missing force may go along with, by name: shape (N, ny) each, or (N, 1)."""
-    log = fit.at.log
-    y = log.outputs - fit.at.e
+    log = fit.point.log
+    y = log.outputs - fit.point.e
     rate = np.gradient(y, log.sampling_time, axis=0)
     u = log.inputs
     same = u.shape[1] == y.shape[1]
@@ -57,10 +57,10 @@ def shares(fit: Refit, force: np.ndarray) -> Mapping[str, float]:
     return out
 
 
-def located(nominal: Step, missing: Sequence[MissingForce]) -> tuple[str, ...]:
+def located(nominal: FittedModel, missing: Sequence[MissingForce]) -> tuple[str, ...]:
     """Where the nominal model fails on the fitted samples, in sentences."""
     fit = nominal.refit
-    log, e = fit.at.log, fit.at.e
+    log, e = fit.point.log, fit.point.e
     out = []
     rms = np.sqrt(np.mean(e**2, axis=0))
     worst = int(rms.argmax())
@@ -105,9 +105,9 @@ def _acting(fit: Refit, missing: MissingForce) -> str:
     return said
 
 
-def left_over(step: Step) -> tuple[str, ...]:
+def find_structure(step: FittedModel) -> tuple[str, ...]:
     """What the final model does not explain, in sentences; empty when it explains all."""
-    log = step.refit.at.log
+    log = step.refit.point.log
     white = whiteness(step.innovations, log.sampling_time)
     out = []
     if white.p_line < SURE:
@@ -141,9 +141,9 @@ def left_over(step: Step) -> tuple[str, ...]:
     return tuple(out)
 
 
-def in_doubt(rejected: Sequence[Tried]) -> tuple[str, ...]:
+def find_doubtful_effect(rejected: Sequence[Tried]) -> tuple[str, ...]:
     """The likeliest effect that fitted samples want and that would matter, but is not proven."""
-    wanted = [t for t in rejected if t.gain > 0 and matters(t.proof)]
+    wanted = [t for t in rejected if t.gain > 0 and is_relevant(t.proof)]
     return tuple(
         f"{phrase(t.candidate)}, {sizes(t)}, which explains the fitted samples beyond chance and"
         f" {100 * t.proof.fall:.0f} % of the error on unseen data, but not surely there"
@@ -152,12 +152,12 @@ def in_doubt(rejected: Sequence[Tried]) -> tuple[str, ...]:
     )
 
 
-def believed(step: Step) -> bool:
+def believed(step: FittedModel) -> bool:
     """Whether a model may be named that leaves something: inputs and base parameters as given."""
     return input_error(step.refit) < BELIEVED and not step.stretched
 
 
 def input_error(fit: Refit) -> float:
     """Error of the inputs that the noise model takes for granted, as a share of their motion."""
-    moved = fit.at.motion
+    moved = fit.point.motion
     return fit.level.input_std / moved if moved > 0 else 0.0

@@ -9,7 +9,7 @@ import numpy as np
 
 from identification.effects.effect import Candidate
 from identification.kalman.noise_fit import TIME
-from identification.kalman.point import point
+from identification.kalman.point import evaluate_point
 from identification.kalman.refit import Refit, refit
 from identification.logs.log import Log
 from identification.model.coordinates import Coordinates, coordinates
@@ -22,7 +22,7 @@ SMALL = 1e-3  # of a probe: where the search for a size begins that must not be 
 
 
 @dataclass(frozen=True)
-class Base:
+class NominalModel:
     """The nominal model's free parameters and what is known of them.
 
     Attributes:
@@ -39,8 +39,8 @@ class Base:
     horizon: float | None = None
 
 
-def fit_with(
-    base: Base,
+def fit_with_effects(
+    base: NominalModel,
     log: Log,
     candidates: Sequence[Candidate],
     start: Mapping[str, float],
@@ -81,11 +81,13 @@ def fit_with(
     weight = np.concatenate(
         [1 / base.std, np.zeros(len(sizes)), np.full(len(shapes), 1 / SHAPE_STD)]
     )
-    linear, level = (None, None) if near is None else (near.at.linear, near.level)
-    at = point(Predictor(base.plant, log, names, fixed), space, space.encode(first), linear)
+    linear, level = (None, None) if near is None else (near.point.linear, near.level)
+    point = evaluate_point(
+        Predictor(base.plant, log, names, fixed), space, space.encode(first), linear
+    )
     if level is not None:  # what its inputs' error lasted may have been the effect
         level = replace(level, noise=level.noise.lasting(TIME))
-    return refit(at, mean, weight, steps, level)
+    return refit(point, mean, weight, steps, level)
 
 
 def _plausible(space: Coordinates, parameters: ParameterSet, names: Sequence[str]) -> Coordinates:

@@ -12,20 +12,20 @@ import numpy as np
 from scipy.stats import ttest_ind
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.proof import BLOCKS, Unseen
-from identification.discovery.steps import Step
+from identification.discovery.fitted_model import FittedModel
+from identification.discovery.proof import BLOCKS, Validation
 from identification.errors import DivergenceError
 from identification.kalman.innovations import MATTERS, SURE
-from identification.kalman.point import sensitivities
+from identification.kalman.point import evaluate_sensitivities
 
 
-def changed(step: Step) -> tuple[str, ...]:
+def find_robot_change(step: FittedModel) -> tuple[str, ...]:
     """A sentence where the unseen samples are farther off than the fitted ones, beyond chance.
 
     Args:
         step: a fitted model, seen on the whole log.
     """
-    seen, first = step.unseen, step.unseen.first
+    seen, first = step.validation, step.validation.first
     fitted, E = seen.innovations[:first], seen.innovations
     if not _louder(fitted, E[first:]):
         return ()
@@ -35,7 +35,7 @@ def changed(step: Step) -> tuple[str, ...]:
         left = E
     if not _louder(fitted, left[first:]):
         return ()
-    log, ratio = seen.refit.at.log, _power(left[first:]).mean() / _power(fitted).mean()
+    log, ratio = seen.refit.point.log, _power(left[first:]).mean() / _power(fitted).mean()
     at = log.time[-1] + log.sampling_time * (1 + _onset(_power(fitted), _power(left[first:])))
     return (
         f"samples that were not fitted, which a predictor of the next sample misses by"
@@ -73,14 +73,14 @@ def _louder(fitted: np.ndarray, unseen: np.ndarray) -> bool:
     return bool(p < SURE and b.mean() > (1 + MATTERS) * a.mean())
 
 
-def _taken(seen: Unseen) -> np.ndarray:
+def _taken(seen: Validation) -> np.ndarray:
     """What a small change of the parameters takes from the innovations of all samples, (N, ny)."""
     fit = seen.refit
     with threadpool_limits(1, "blas"):
-        J = sensitivities(fit.at, seen.whole)
+        J = evaluate_sensitivities(fit.point, seen.whole)
         F = seen.filter(J).reshape(seen.e.size, -1) / fit.level.sigma
         rows = np.vstack([F, np.diag(fit.prior)])
-        target = np.concatenate([seen.innovations.ravel(), fit.prior * (fit.mean - fit.at.q)])
+        target = np.concatenate([seen.innovations.ravel(), fit.prior * (fit.mean - fit.point.q)])
         scale = np.linalg.norm(rows, axis=0) + 1e-300
         move = np.linalg.lstsq(rows / scale, target, rcond=1e-12)[0] / scale
     return (F @ move).reshape(seen.e.shape)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from identification.discovery.score import Score
+from identification.discovery.scoring.scores import Score
 from identification.effects.effect import Candidate
 
 ALPHA = 0.01  # family-wise chance of a name where nothing is missing, before the proof
@@ -49,7 +49,7 @@ def larger(candidate: Candidate, size: np.ndarray) -> bool:
     return any(abs(v) > s.farthest for v, s in zip(size, candidate.effect.sizes, strict=True))
 
 
-def too_large(scores: Sequence[Score], named: Sequence[str]) -> Score | None:
+def find_oversized(scores: Sequence[Score], named: Sequence[str]) -> Score | None:
     """What explains more than all that is named, beyond chance, but at a size beyond belief.
 
     An effect that explains as much with another shape, at a size that is believed, had its trial.

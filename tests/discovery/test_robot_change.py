@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from discovery_cases import EFFECTS, SENSOR, SLIDER, STEP, base, record, slider, wander
 
-from identification.discovery.changed import _onset, changed
+from identification.discovery.findings.robot_change import _onset, find_robot_change
+from identification.discovery.fitted_model import fit_model
 from identification.discovery.search import discover
-from identification.discovery.steps import fitted
 from identification.errors import DivergenceError
 
 N = 800
@@ -41,8 +41,8 @@ def far(said):
 def test_a_robot_that_stays_as_it_is_has_not_changed(seed):
     error = wander(N, 0.03 * (seed % 2), 0.1, seed=seed)
     log = record(slider(mass=2.2, damping=2.7), N, seed=seed, error=error)
-    assert changed(fitted(base(), log, (), {})) == ()
-    assert changed(fitted(base(), changing(2.7, seed), (), {})) == ()
+    assert find_robot_change(fit_model(base(), log, (), {})) == ()
+    assert find_robot_change(fit_model(base(), changing(2.7, seed), (), {})) == ()
 
 
 @pytest.mark.parametrize("first", [0, 100, 260])
@@ -54,20 +54,22 @@ def test_the_change_is_dated(first):
 
 
 def test_a_robot_that_a_small_change_of_a_parameter_loses_is_judged_without_it(monkeypatch):
-    step = fitted(base(), changing(4.0), (), {})
-    (said,) = changed(step)
+    step = fit_model(base(), changing(4.0), (), {})
+    (said,) = find_robot_change(step)
 
     def lost(*_):
         raise DivergenceError("lost")
 
-    monkeypatch.setattr("identification.discovery.changed.sensitivities", lost)
-    (other,) = changed(step)
+    monkeypatch.setattr(
+        "identification.discovery.findings.robot_change.evaluate_sensitivities", lost
+    )
+    (other,) = find_robot_change(step)
     assert far(other) > far(said) > 2
 
 
 def test_a_change_after_the_fitted_samples_is_never_called_nothing_missing():
     log = changing(4.0)
-    (said,) = changed(fitted(base(), log, (), {}))
+    (said,) = find_robot_change(fit_model(base(), log, (), {}))
     assert "times as much as those that were" in said
     answer = discover(base(), log, EFFECTS)
     assert answer.verdict == "unknown effect"

@@ -26,10 +26,10 @@ from scipy.stats import chi2
 from scipy.stats import f as f_distribution
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.columns import Column
+from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.effects.effect import Candidate
-from identification.kalman.noise_fit import Level
-from identification.kalman.noise_model import Noise, whitener
+from identification.kalman.noise_fit import NoiseLevel
+from identification.kalman.noise_model import Noise, build_whitener
 from identification.kalman.refit import Refit
 
 BLOCKS = 40
@@ -58,18 +58,18 @@ class Score:
     p_value: float
     block_p_value: float
     identifiable: float
-    level: Level
+    level: NoiseLevel
 
 
-def score(fit: Refit, columns: Sequence[Column]) -> tuple[Score, ...]:
+def score(fit: Refit, columns: Sequence[Sensitivity]) -> tuple[Score, ...]:
     """Score candidates on a fitted model, the best first.
 
     Args:
         fit: the model.
         columns: sensitivities of the candidates.
     """
-    at, noise = fit.at, fit.level.noise
-    stacked = np.concatenate([at.e[..., None], at.J, *(c.S for c in columns)], axis=2)
+    point, noise = fit.point, fit.level.noise
+    stacked = np.concatenate([point.e[..., None], point.J, *(c.S for c in columns)], axis=2)
     with threadpool_limits(1, "blas"):
         seen = [
             _Projected(fit, noise.scaled(share), stacked, columns)
@@ -84,27 +84,31 @@ class _Projected:
     """Residual and columns under one noise, with the base parameters projected out."""
 
     def __init__(
-        self, fit: Refit, noise: Noise, stacked: np.ndarray, columns: Sequence[Column]
+        self, fit: Refit, noise: Noise, stacked: np.ndarray, columns: Sequence[Sensitivity]
     ) -> None:
-        at = fit.at
-        filter_ = whitener(at.linear, noise, at.log.sampling_time)
+        point = fit.point
+        filter_ = build_whitener(point.linear, noise, point.log.sampling_time)
         W = filter_(stacked)
-        p = at.J.shape[2]
-        self.noise, self.samples, self.log_determinant = noise, at.e.size, filter_.log_determinant
+        p = point.J.shape[2]
+        self.noise, self.samples, self.log_determinant = (
+            noise,
+            point.e.size,
+            filter_.log_determinant,
+        )
         rest = np.delete(W, np.s_[1 : 1 + p], axis=2)
-        flat = rest.reshape(at.e.size, -1)
+        flat = rest.reshape(point.e.size, -1)
         self.raw = np.einsum("ij,ij->j", flat, flat)[1:]
         # The priors are measurements like others: rows below the samples, in units of σ.
         ridge = fit.prior * fit.level.sigma
         F = np.vstack([W[..., 1 : 1 + p].reshape(-1, p), np.diag(ridge)])
         below = np.zeros((p, flat.shape[1]))
-        below[:, 0] = ridge * (fit.mean - at.q)
+        below[:, 0] = ridge * (fit.mean - point.q)
         flat = np.vstack([flat, below])
         C = np.linalg.lstsq(F.T @ F, F.T @ flat, rcond=1e-14)[0]
         flat = flat - F @ C
         self.gram = flat.T @ flat
         self.rest = float(self.gram[0, 0])
-        self.perpendicular = flat[: at.e.size].reshape(*rest.shape)
+        self.perpendicular = flat[: point.e.size].reshape(*rest.shape)
         ends = 1 + np.cumsum([c.S.shape[2] for c in columns])
         self.slices = [slice(e - c.S.shape[2], e) for c, e in zip(columns, ends, strict=True)]
 
@@ -122,7 +126,7 @@ class _Projected:
         return size, H, max(self.rest - float(b @ size), 1e-12 * self.rest)
 
 
-def _score(j: int, column: Column, seen: Sequence[_Projected], nominal: float) -> Score:
+def _score(j: int, column: Sensitivity, seen: Sequence[_Projected], nominal: float) -> Score:
     signs = [s.sign for s in column.candidate.effect.sizes]
     solved = [(p, *p.solve(j, signs)) for p in seen]
     best = max(solved, key=lambda s: s[0].log_likelihood(s[3]))
@@ -144,7 +148,7 @@ def _score(j: int, column: Column, seen: Sequence[_Projected], nominal: float) -
         float(chi2.sf(statistic, m)) * (0.5 if one_sided else 1.0),
         _by_blocks(both[..., 0], both[..., s], size, H, signs),
         float(own / max(null[0].raw[s.start - 1 : s.stop - 1].sum(), 1e-300)),
-        Level(with_it.noise, float(sigma), with_it.log_likelihood(squares)),
+        NoiseLevel(with_it.noise, float(sigma), with_it.log_likelihood(squares)),
     )
 
 

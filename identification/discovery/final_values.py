@@ -8,7 +8,7 @@ from identification.kalman.refit import Refit
 
 def final_values(found: Discovery) -> dict[str, float]:
     """Values of all parameters of the final fit, those of the named effects included."""
-    at = found.final.at
+    at = found.final.point
     out = {**at.predictor.plant.parameters.values(), **at.values}
     for named in found.named:
         effect, where = named.candidate.effect, named.candidate.where
@@ -22,6 +22,6 @@ def final_values(found: Discovery) -> dict[str, float]:
 
 def std_of(fit: Refit) -> dict[str, float]:
     """Std of the values of a fit's free parameters, in their units."""
-    space = fit.at.space
-    std = fit.std * space.slope(fit.at.q)
+    space = fit.point.space
+    std = fit.std * space.slope(fit.point.q)
     return dict(zip(space.names, std.tolist(), strict=True))

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from identification.discovery.along import goes_along
-from identification.discovery.extend import Base
-from identification.discovery.score import Score
-from identification.discovery.steps import Step, fitted_if_any
+from identification.discovery.findings.input_error import find_input_error
+from identification.discovery.fitted_model import FittedModel, try_fit
+from identification.discovery.nominal_model import NominalModel
+from identification.discovery.scoring.scores import Score
 from identification.effects.effect import Candidate
 from identification.kalman.innovations import whiteness
 from identification.logs.log import Log
@@ -19,7 +19,9 @@ from identification.logs.log import Log
 BARE = 2.0  # of BIC, below which a difference is hardly worth a mention (Kass, Raftery 1995)
 
 
-def improved(base: Base, whole: Log, step: Step, best: Step, ranked: Sequence[Score]) -> Step:
+def improved(
+    base: NominalModel, whole: Log, step: FittedModel, best: FittedModel, ranked: Sequence[Score]
+) -> FittedModel:
     """The best refit of the last candidate, or a better one of the same effect.
 
     Args:
@@ -37,24 +39,28 @@ def improved(base: Base, whole: Log, step: Step, best: Step, ranked: Sequence[Sc
     return _as_usual(base, whole, step, best, ranked)
 
 
-def structured(step: Step) -> bool:
+def structured(step: FittedModel) -> bool:
     """Whether innovations are not white, or what the noise model takes for chance is none."""
-    white = whiteness(step.innovations, step.refit.at.log.sampling_time)
-    return white.correlated or bool(goes_along(step))
+    white = whiteness(step.innovations, step.refit.point.log.sampling_time)
+    return white.correlated or bool(find_input_error(step))
 
 
-def _from_nominal(base: Base, whole: Log, step: Step, best: Step) -> Step:
+def _from_nominal(
+    base: NominalModel, whole: Log, step: FittedModel, best: FittedModel
+) -> FittedModel:
     """The better of a fit and of one that begins at the nominal values.
 
     A wrong model may have led the base parameters astray, too far to come back.
     """
-    old = {n: step.refit.at.values[n] for c in step.candidates for n in c.free}
-    new = {n: best.refit.at.values[n] for n in best.candidates[-1].free}
-    again = fitted_if_any(base, whole, best.candidates, {**old, **new})
+    old = {n: step.refit.point.values[n] for c in step.candidates for n in c.free}
+    new = {n: best.refit.point.values[n] for n in best.candidates[-1].free}
+    again = try_fit(base, whole, best.candidates, {**old, **new})
     return max(best, again or best, key=_criterion)
 
 
-def _other_shape(base: Base, whole: Log, step: Step, best: Step, ranked: Sequence[Score]) -> Step:
+def _other_shape(
+    base: NominalModel, whole: Log, step: FittedModel, best: FittedModel, ranked: Sequence[Score]
+) -> FittedModel:
     """The better of a fit and of one whose fixed shapes (a power, a kind) are the next likely."""
     mine = best.candidates[-1]
     fixed = [shape.name for shape in mine.effect.shapes if not shape.free]
@@ -64,7 +70,9 @@ def _other_shape(base: Base, whole: Log, step: Step, best: Step, ranked: Sequenc
     return best
 
 
-def _as_usual(base: Base, whole: Log, step: Step, best: Step, ranked: Sequence[Score]) -> Step:
+def _as_usual(
+    base: NominalModel, whole: Log, step: FittedModel, best: FittedModel, ranked: Sequence[Score]
+) -> FittedModel:
     """A fit whose kinds are the usual ones, where the data hardly tell it from the best."""
     mine = best.candidates[-1]
     usual = {s.name: s.usual for s in mine.effect.shapes if not s.free and s.usual is not None}
@@ -84,12 +92,12 @@ def _same(mine: Candidate, ranked: Sequence[Score]) -> Iterator[Score]:
             yield s
 
 
-def _shaped(base: Base, whole: Log, step: Step, s: Score) -> Step | None:
+def _shaped(base: NominalModel, whole: Log, step: FittedModel, s: Score) -> FittedModel | None:
     """A model with a candidate fitted; None where that cannot be simulated."""
     sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
     more = (*step.candidates, s.candidate)
-    return fitted_if_any(base, whole, more, {**step.refit.at.values, **sizes}, step)
+    return try_fit(base, whole, more, {**step.refit.point.values, **sizes}, step)
 
 
-def _criterion(step: Step) -> float:
+def _criterion(step: FittedModel) -> float:
     return step.criterion

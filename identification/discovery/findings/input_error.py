@@ -18,12 +18,12 @@ import numpy as np
 from scipy.stats import ttest_1samp
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.proof import BLOCKS, Unseen
-from identification.discovery.steps import Step
+from identification.discovery.fitted_model import FittedModel
+from identification.discovery.proof import BLOCKS, Validation
 from identification.errors import DivergenceError
 from identification.kalman.innovations import MATTERS, SURE
 from identification.kalman.noise_model import Whitener
-from identification.kalman.point import sensitivities
+from identification.kalman.point import evaluate_sensitivities
 from identification.quantities import quantity
 
 KNOTS = 12  # of a curve
@@ -61,17 +61,17 @@ class Followed:
     error: np.ndarray
 
 
-def goes_along(step: Step) -> tuple[str, ...]:
+def find_input_error(step: FittedModel) -> tuple[str, ...]:
     """A sentence on what the inputs' error goes along with; none where it is random.
 
     Args:
         step: a fitted model, seen on the whole log.
     """
-    tried = followed(step.unseen)  # each a test of its own, as the others of what is left
+    tried = followed(step.validation)  # each a test of its own, as the others of what is left
     found = [f for f in tried if f.chance < SURE and max(f.share, f.fall) > MATTERS]
     if not found:
         return ()
-    best, log = max(found, key=lambda f: f.share), step.unseen.whole
+    best, log = max(found, key=lambda f: f.share), step.validation.whole
     rms, worst = float(np.sqrt(np.mean(best.error**2))), log.input_names[best.error.argmax()]
     size = quantity(rms, unit=log.units.get(worst, ""))
     return (
@@ -81,13 +81,13 @@ def goes_along(step: Step) -> tuple[str, ...]:
     )
 
 
-def followed(seen: Unseen) -> tuple[Followed, ...]:
+def followed(seen: Validation) -> tuple[Followed, ...]:
     """How well each family predicts; none where no error of the inputs is taken for granted."""
     if not seen.filter.A.size:
         return ()
     fit = seen.refit
     try:
-        J = sensitivities(fit.at, seen.whole)
+        J = evaluate_sensitivities(fit.point, seen.whole)
     except DivergenceError:  # where a parameter that is moved a little loses the robot
         return ()
     with threadpool_limits(1, "blas"):
@@ -96,7 +96,7 @@ def followed(seen: Unseen) -> tuple[Followed, ...]:
     return tuple(each)
 
 
-def families(seen: Unseen) -> Iterator[Family]:
+def families(seen: Validation) -> Iterator[Family]:
     """What errors of the inputs are tried; as many outputs as inputs are taken for theirs."""
     u, y = seen.whole.inputs, seen.whole.outputs - seen.e
     nu = u.shape[1]
@@ -148,13 +148,13 @@ def response(filter_: Whitener, r: np.ndarray) -> np.ndarray:
     return np.array(out)
 
 
-def _followed(seen: Unseen, J: np.ndarray, F: np.ndarray, family: Family) -> Followed:
+def _followed(seen: Validation, J: np.ndarray, F: np.ndarray, family: Family) -> Followed:
     fit, E, first, p = seen.refit, seen.innovations, seen.first, J.shape[2]
     r = fit.level.input_std * family.r
     moved = response(seen.filter, r)
     X = np.concatenate([F, seen.filter(moved) / fit.level.sigma], axis=2)
     held = np.concatenate([fit.prior, np.ones(r.shape[2])])
-    off = np.concatenate([fit.mean - fit.at.q, np.zeros(r.shape[2])])
+    off = np.concatenate([fit.mean - fit.point.q, np.zeros(r.shape[2])])
     rows = np.vstack([X[:first].reshape(-1, X.shape[2]), np.diag(held)])
     target = np.concatenate([E[:first].ravel(), held * off])
     scale = 1 / (np.linalg.norm(rows, axis=0) + 1e-300)

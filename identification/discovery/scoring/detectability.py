@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from identification.discovery.result import Detectable
-from identification.discovery.score import Score
+from identification.discovery.scoring.scores import Score
 
 NONCENTRALITY = 35.0  # (4.6 + 1.3)²
 

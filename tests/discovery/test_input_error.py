@@ -7,15 +7,22 @@ from discovery_cases import SENSOR, STEP, base, linear_plant, record, slider, st
 from discovery_cases import response as dense
 
 from identification import Log, Parameter, ParameterSet
-from identification.discovery.along import _apart, _curves, families, followed, goes_along, response
-from identification.discovery.extend import Base
+from identification.discovery.findings.input_error import (
+    _apart,
+    _curves,
+    families,
+    find_input_error,
+    followed,
+    response,
+)
+from identification.discovery.fitted_model import fit_model
+from identification.discovery.nominal_model import NominalModel
 from identification.discovery.search import discover
-from identification.discovery.shapes import structured
-from identification.discovery.steps import fitted
+from identification.discovery.selection.shapes import structured
 from identification.effects.effect import Effect, Size
 from identification.errors import DivergenceError
 from identification.kalman.innovations import whiteness
-from identification.kalman.noise_model import Noise, whitener
+from identification.kalman.noise_model import Noise, build_whitener
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor
 
@@ -55,7 +62,7 @@ def carts(crosstalk, seed):
     y += SENSOR * np.random.default_rng(seed).standard_normal(y.shape)
     log = Log(time, u, y, *names, units=dict.fromkeys("fg", "N") | dict.fromkeys("xy", "m"))
     free = tuple(p.name for p in records)
-    return Base(plant, free, np.full(len(free), 0.3)), log
+    return NominalModel(plant, free, np.full(len(free), 0.3)), log
 
 
 def test_the_response_is_that_of_the_dense_plant():
@@ -64,7 +71,7 @@ def test_the_response_is_that_of_the_dense_plant():
     n, _, nu = plant.B.shape
     r = rng.standard_normal((n + 1, nu, 4))
     expected = (dense(plant) @ r.reshape(-1, 4)).reshape(n + 1, -1, 4)
-    found = response(whitener(plant, Noise(0.3, 0.1), STEP), r)
+    found = response(build_whitener(plant, Noise(0.3, 0.1), STEP), r)
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9)
 
 
@@ -81,25 +88,25 @@ def test_curves_sum_to_one_and_each_is_of_one_input():
 @pytest.mark.parametrize("seed", range(4))
 def test_a_random_error_goes_along_with_nothing(seed):
     error = wander(N, 0.05, 0.1, seed=seed)
-    step = fitted(base(), record(slider(mass=2.2, damping=2.7), N, seed, error), (), {})
+    step = fit_model(base(), record(slider(mass=2.2, damping=2.7), N, seed, error), (), {})
     assert step.refit.level.input_std > 0
-    assert len(followed(step.unseen)) == 3
-    assert goes_along(step) == ()
-    assert goes_along(fitted(*carts(0.0, seed), (), {})) == ()
+    assert len(followed(step.validation)) == 3
+    assert find_input_error(step) == ()
+    assert find_input_error(fit_model(*carts(0.0, seed), (), {})) == ()
     assert not structured(step)
 
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_crosstalk_is_told_with_its_size_and_the_input_that_feels_it(seed):
-    step = fitted(*carts(0.1, seed), (), {})
-    (said,) = goes_along(step)
+    step = fit_model(*carts(0.1, seed), (), {})
+    (said,) = find_input_error(step)
     assert "the other inputs" in said
     assert "most of all on g" in said
-    best = max(followed(step.unseen), key=lambda f: f.share)
-    felt = 0.1 * np.std(step.unseen.whole.inputs[:, 0])
+    best = max(followed(step.validation), key=lambda f: f.share)
+    felt = 0.1 * np.std(step.validation.whole.inputs[:, 0])
     assert best.error[1] == pytest.approx(felt, rel=0.2)
     assert best.error[0] < 0.5 * best.error[1]
-    others = next(iter(families(step.unseen))).r.reshape(-1, 2, 2, 2)
+    others = next(iter(families(step.validation))).r.reshape(-1, 2, 2, 2)
     assert not np.einsum("niii->ni", others).any()  # its own input is not among them
     assert others[:, 0, 0, 1].any()
 
@@ -121,18 +128,20 @@ def test_an_error_along_the_rate_is_told_as_that():
     for _ in range(30):  # the force follows from the motion that it makes
         y = record(robot, n, 2, error, noise=0.0).outputs
         error = (error + random + 0.15 * np.sin(5 * np.gradient(y, STEP, axis=0))) / 2
-    step = fitted(base(), record(robot, n, 2, error), (), {})
-    (said,) = goes_along(step)
+    step = fit_model(base(), record(robot, n, 2, error), (), {})
+    (said,) = find_input_error(step)
     assert "the rate of its output" in said
     assert not whiteness(step.innovations, STEP).correlated
     assert structured(step)
 
 
 def test_a_robot_that_a_small_change_of_a_parameter_loses_is_not_asked(monkeypatch):
-    step = fitted(*carts(0.1, 2), (), {})
+    step = fit_model(*carts(0.1, 2), (), {})
 
     def lost(*_):
         raise DivergenceError("lost")
 
-    monkeypatch.setattr("identification.discovery.along.sensitivities", lost)
-    assert goes_along(step) == ()
+    monkeypatch.setattr(
+        "identification.discovery.findings.input_error.evaluate_sensitivities", lost
+    )
+    assert find_input_error(step) == ()

@@ -7,33 +7,33 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from identification.discovery.steps import Step
+from identification.discovery.fitted_model import FittedModel
 from identification.errors import DivergenceError
-from identification.kalman.point import point
-from identification.kalman.refit import noise_at
+from identification.kalman.point import evaluate_point
+from identification.kalman.refit import estimate_noise
 from identification.quantities import alike
 
 LEFT = 0.5  # of the inputs' error, below which the other hold is the likelier one
 IN_WORDS = {"foh": "run in straight lines between their samples", "zoh": "hold until the next"}
 
 
-def held_otherwise(nominal: Step) -> tuple[str, ...]:
+def find_input_hold(nominal: FittedModel) -> tuple[str, ...]:
     """A sentence where inputs held otherwise would have to err far less.
 
     Args:
         nominal: the fitted model without effects.
     """
-    fit, at = nominal.refit, nominal.refit.at
-    (other,) = {*IN_WORDS} - {at.log.hold}
-    predictor = replace(at.predictor, log=replace(at.log, hold=other))
+    fit, point = nominal.refit, nominal.refit.point
+    (other,) = {*IN_WORDS} - {point.log.hold}
+    predictor = replace(point.predictor, log=replace(point.log, hold=other))
     try:
-        there = point(predictor, at.space, at.q, at.linear)
+        there = evaluate_point(predictor, point.space, point.q, point.linear)
     except DivergenceError:
         return ()
-    level = noise_at(there, fit.prior, fit.level)
+    level = estimate_noise(there, fit.prior, fit.level)
     if level.input_std >= LEFT * fit.level.input_std:
         return ()
-    unit = at.log.units.get(at.log.input_names[0], "")
+    unit = point.log.units.get(point.log.input_names[0], "")
     then, now = alike([level.input_std, fit.level.input_std], unit)
     return (
         f"if its inputs {IN_WORDS[other]}, they would have to err by {then} rms and not by {now}:"

@@ -12,22 +12,22 @@ from collections.abc import Callable, Sequence
 
 from scipy.stats import chi2
 
-from identification.discovery.along import goes_along
-from identification.discovery.extend import Base
-from identification.discovery.locate import left_over
+from identification.discovery.findings.input_error import find_input_error
+from identification.discovery.findings.location import find_structure
+from identification.discovery.fitted_model import (
+    AcceptedEffect,
+    FittedModel,
+    collect_parameters,
+    fit_model,
+    is_confirmed,
+    is_proven,
+)
+from identification.discovery.nominal_model import NominalModel
 from identification.discovery.proof import prove
 from identification.discovery.result import Tried
-from identification.discovery.score import Score
-from identification.discovery.shapes import improved
-from identification.discovery.significant import ALPHA, plausible, significant
-from identification.discovery.steps import (
-    Accepted,
-    Step,
-    fitted,
-    holds,
-    parameters_of,
-    proven,
-)
+from identification.discovery.scoring.scores import Score
+from identification.discovery.scoring.significance import ALPHA, plausible, significant
+from identification.discovery.selection.shapes import improved
 from identification.errors import DivergenceError, InputError
 from identification.logs.log import Log
 
@@ -36,23 +36,27 @@ CLOSE = 0.3  # share of the best gain that makes a contender
 ELSEWHERE = 0.7  # share of an effect's best gain that makes another place a contender
 
 
-def add(
-    base: Base, whole: Log, step: Step, ranked: Sequence[Score], say: Callable[[str], None]
-) -> tuple[Accepted | None, tuple[Tried, ...], Step | None]:
+def select_effect(
+    base: NominalModel,
+    whole: Log,
+    step: FittedModel,
+    ranked: Sequence[Score],
+    say: Callable[[str], None],
+) -> tuple[AcceptedEffect | None, tuple[Tried, ...], FittedModel | None]:
     """The best effect to add to a model, if any is worth it; else those that were not.
 
     Returns:
         the effect; what was tried; and of that the likeliest model that foretells unseen samples,
         though its free run is no nearer.
     """
-    tried: list[Step] = []
+    tried: list[FittedModel] = []
     contenders = _contenders(significant(ranked))
     hidden = not contenders and not step.candidates and bool(step.refit.level.noise.ratio)
     for s in _likeliest(ranked) if hidden else contenders:
         sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
         more = (*step.candidates, s.candidate)
         try:
-            new = fitted(base, whole, more, {**step.refit.at.values, **sizes}, step)
+            new = fit_model(base, whole, more, {**step.refit.point.values, **sizes}, step)
         except (DivergenceError, InputError) as error:
             say(f"{s.candidate.effect.name}, {s.candidate.where}: left out, {error}")
             continue
@@ -64,17 +68,19 @@ def add(
     if tried:
         tried[0] = improved(base, whole, step, tried[0], ranked)
     rejected: list[Tried] = []
-    hopeful: Step | None = None
-    clean = not step.candidates and not left_over(step)
+    hopeful: FittedModel | None = None
+    clean = not step.candidates and not find_structure(step)
     for k, new in enumerate(tried):
-        proof = prove(step.unseen, new.unseen)
+        proof = prove(step.validation, new.validation)
         gain = new.criterion - step.criterion
-        if gain > 0 and (holds(proof) or (clean and proven(proof) and not goes_along(new))):
-            return Accepted(new, proof, gain, tuple(tried[:k] + tried[k + 1 :])), (), None
-        if gain > 0 and proven(proof) and hopeful is None:
+        if gain > 0 and (
+            is_confirmed(proof) or (clean and is_proven(proof) and not find_input_error(new))
+        ):
+            return AcceptedEffect(new, proof, gain, tuple(tried[:k] + tried[k + 1 :])), (), None
+        if gain > 0 and is_proven(proof) and hopeful is None:
             hopeful = new
         mine = new.candidates[-1]
-        rejected.append(Tried(mine, parameters_of(base, new, mine), gain, proof))
+        rejected.append(Tried(mine, collect_parameters(base, new, mine), gain, proof))
     return None, tuple(rejected), hopeful
 
 
@@ -90,9 +96,9 @@ def _likeliest(ranked: Sequence[Score]) -> list[Score]:
     return [*best.values()][:CONTENDERS]
 
 
-def _beyond_chance(new: Step, step: Step, n: int) -> bool:
+def _beyond_chance(new: FittedModel, step: FittedModel, n: int) -> bool:
     """Whether a refit gains more than the best of n candidates does by luck."""
-    more = len(new.refit.at.q) - len(step.refit.at.q)
+    more = len(new.refit.point.q) - len(step.refit.point.q)
     gain = 2 * (new.refit.log_posterior - step.refit.log_posterior)
     return bool(chi2.sf(gain, more) * n < ALPHA)
 

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.discovery.columns import Column
-from identification.discovery.extend import Base, fit_with
-from identification.discovery.proof import Unseen, unseen
+from identification.discovery.nominal_model import NominalModel, fit_with_effects
+from identification.discovery.proof import Validation, validate
 from identification.discovery.result import Proof
-from identification.discovery.score import Score, score
+from identification.discovery.scoring.scores import Score, score
+from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
 from identification.kalman.innovations import MATTERS
@@ -27,24 +27,24 @@ FALL, SHARE = MATTERS, 0.1  # of the free run's mean square, and of what is abov
 
 
 @dataclass(frozen=True)
-class Step:
+class FittedModel:
     """A model with some effects, fitted and seen on the whole log.
 
     Attributes:
         candidates: its effects.
         refit: the fit on the fitted samples.
-        unseen: the same over the whole log.
+        validation: the same over the whole log.
     """
 
     candidates: tuple[Candidate, ...]
     refit: Refit
-    unseen: Unseen
+    validation: Validation
 
     @property
     def criterion(self) -> float:
         """BIC, negated and in units of twice the log likelihood."""
-        free = len(self.refit.at.q)
-        return 2 * self.refit.log_posterior - free * float(np.log(len(self.refit.at.log)))
+        free = len(self.refit.point.q)
+        return 2 * self.refit.log_posterior - free * float(np.log(len(self.refit.point.log)))
 
     @property
     def innovations(self) -> np.ndarray:
@@ -52,25 +52,25 @@ class Step:
 
         On others an error of the parameters, however small, would look like a line.
         """
-        return self.unseen.innovations[: len(self.refit.at.log)]
+        return self.validation.innovations[: len(self.refit.point.log)]
 
     @property
     def stretched(self) -> tuple[str, ...]:
         """Base parameters that end where they stop to be plausible."""
-        at = self.refit.at
-        room = np.minimum(at.q - at.space.lower, at.space.upper - at.q)
+        point = self.refit.point
+        room = np.minimum(point.q - point.space.lower, point.space.upper - point.q)
         own = {n for c in self.candidates for n in c.sizes}
         own |= {
             c.effect.parameter(shape.name, c.where)
             for c in self.candidates
             for shape in c.effect.shapes
         }
-        ends = at.space.logarithmic & (room < END)
-        return tuple(n for n, e in zip(at.space.names, ends, strict=True) if e and n not in own)
+        ends = point.space.logarithmic & (room < END)
+        return tuple(n for n, e in zip(point.space.names, ends, strict=True) if e and n not in own)
 
 
 @dataclass(frozen=True)
-class Accepted:
+class AcceptedEffect:
     """An effect that was added.
 
     Attributes:
@@ -80,34 +80,34 @@ class Accepted:
         others: what else was refitted in its place.
     """
 
-    step: Step
+    step: FittedModel
     proof: Proof
     gain: float
-    others: tuple[Step, ...]
+    others: tuple[FittedModel, ...]
 
 
-def parameters_of(
-    base: Base, step: Step, candidate: Candidate
+def collect_parameters(
+    base: NominalModel, step: FittedModel, candidate: Candidate
 ) -> dict[str, tuple[float, float, str]]:
     """Sizes of an effect in a fitted model by their symbols: value, std, unit."""
-    at = step.refit.at
-    std = dict(zip(at.space.names, step.refit.std * at.space.slope(at.q), strict=True))
+    point = step.refit.point
+    std = dict(zip(point.space.names, step.refit.std * point.space.slope(point.q), strict=True))
     out = {}
     for name in (*candidate.sizes, *candidate.fixed):
         record = base.plant.parameters[name]
         out[record.symbol or record.name] = (
-            at.values[name], float(std.get(name, 0.0)), record.unit,
+            point.values[name], float(std.get(name, 0.0)), record.unit,
         )  # fmt: skip
     return out
 
 
-def fitted(
-    base: Base,
+def fit_model(
+    base: NominalModel,
     whole: Log,
     candidates: tuple[Candidate, ...],
     start: Mapping[str, float],
-    near: Step | None = None,
-) -> Step:
+    near: FittedModel | None = None,
+) -> FittedModel:
     """A model with some effects, fitted on the estimation part of a log.
 
     Args:
@@ -118,25 +118,25 @@ def fitted(
         near: a model whose linearisation and noise are good enough to begin with.
     """
     nearby = None if near is None else near.refit
-    fit = fit_with(base, whole.part("estimation"), candidates, start, near=nearby)
-    return Step(candidates, fit, unseen(fit, whole, base.horizon))
+    fit = fit_with_effects(base, whole.part("estimation"), candidates, start, near=nearby)
+    return FittedModel(candidates, fit, validate(fit, whole, base.horizon))
 
 
-def fitted_if_any(
-    base: Base,
+def try_fit(
+    base: NominalModel,
     whole: Log,
     candidates: tuple[Candidate, ...],
     start: Mapping[str, float],
-    near: Step | None = None,
-) -> Step | None:
+    near: FittedModel | None = None,
+) -> FittedModel | None:
     """As `fitted`; None where the model cannot be simulated or cannot stand at its start."""
     try:
-        return fitted(base, whole, candidates, start, near)
+        return fit_model(base, whole, candidates, start, near)
     except (DivergenceError, InputError):
         return None
 
 
-def scores_of(step: Step, columns: Sequence[Column]) -> tuple[Score, ...]:
+def score_candidates(step: FittedModel, columns: Sequence[Sensitivity]) -> tuple[Score, ...]:
     """Scores of all candidates that a model does not have yet."""
     has = {(c.effect.name, c.where) for c in step.candidates}
     effects = {c.effect.name for c in step.candidates if not c.effect.places[c.where]}
@@ -148,16 +148,16 @@ def scores_of(step: Step, columns: Sequence[Column]) -> tuple[Score, ...]:
     return score(step.refit, others)
 
 
-def matters(proof: Proof) -> bool:
+def is_relevant(proof: Proof) -> bool:
     """Whether an effect explains enough of the unseen data."""
     return proof.fall > FALL and proof.above > SHARE
 
 
-def proven(proof: Proof) -> bool:
+def is_proven(proof: Proof) -> bool:
     """Whether unseen data confirm an effect beyond chance."""
     return proof.t > T
 
 
-def holds(proof: Proof) -> bool:
+def is_confirmed(proof: Proof) -> bool:
     """Whether unseen data confirm an effect: beyond chance, and by enough to matter."""
-    return proven(proof) and matters(proof)
+    return is_proven(proof) and is_relevant(proof)
