@@ -43,7 +43,7 @@ sys.exit(wrong)
 """
     subprocess.run(
         [sys.executable, "-c", code], check=True, cwd=Path(__file__).parent,
-        env={"PYTHONPATH": str(ROOT)},
+        env={"PYTHONPATH": f"{ROOT}:{ROOT / 'tests' / 'cases'}"},
     )  # fmt: skip
 
 

@@ -58,8 +58,8 @@ wrong = (
 sys.exit(wrong)
 """
     subprocess.run(
-        [sys.executable, "-c", code], check=True, cwd=ROOT / "tests" / "cases",
-        env={"PYTHONPATH": str(ROOT)},
+        [sys.executable, "-c", code], check=True, cwd=Path(__file__).parent,
+        env={"PYTHONPATH": f"{ROOT}:{ROOT / 'tests' / 'cases'}"},
     )  # fmt: skip
 
 
