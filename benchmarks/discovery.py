@@ -39,6 +39,8 @@ def pinned(count: Any) -> None:
 
 def answer_of(found: Any) -> dict[str, Any]:
     """A discovery as a row keeps it."""
+    from identification.report.discovery_json import finding_to_json
+
     above = found.before.rms**2 - min(found.noise_rms**2 + found.disturbance_rms**2,
                                       found.after.rms**2)  # fmt: skip
     named = [
@@ -53,7 +55,8 @@ def answer_of(found: Any) -> dict[str, Any]:
         for n in found.named
     ]  # fmt: skip
     return {
-        "verdict": found.verdict, "named": named, "left": list(found.left),
+        "verdict": found.verdict, "named": named,
+        "findings": [finding_to_json(finding) for finding in found.findings],
         "before": found.before.rms, "after": found.after.rms, "noise": found.noise_rms,
         "disturbance": found.disturbance_rms,
         "gap_closed": (found.before.rms**2 - found.after.rms**2) / above if above > 0 else None,

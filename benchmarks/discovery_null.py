@@ -20,9 +20,14 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     from threadpoolctl import threadpool_limits
 
     from identification.discovery.nominal_model import NominalModel, fit_with_effects
+    from identification.discovery.options import DiscoveryOptions
     from identification.discovery.scoring.scores import score
-    from identification.discovery.scoring.sensitivities import columns, common, single
-    from identification.discovery.scoring.significance import significant
+    from identification.discovery.scoring.sensitivities import (
+        compute_sensitivities,
+        list_common,
+        list_single,
+    )
+    from identification.discovery.scoring.significance import select_significant
     from identification.kalman.noise_fit import fit_noise
     from inca_mj.effects.catalogue import CATALOGUE
     from inca_mj.twin.twin import build_twin
@@ -33,23 +38,26 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     begin = time.perf_counter()
     whole = world(seed, setting=Setting(duration=duration)).log
     plant = build_twin(timestep=timestep_for(whole.sampling_time, TIMESTEP), effects=CATALOGUE)
-    base = NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
-    fit = fit_with_effects(base, whole.part("estimation"), (), {})
+    options = DiscoveryOptions()
+    nominal_model = NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
+    fit = fit_with_effects(nominal_model, whole.part("estimation"), (), {}, options)
     point, prior = fit.point, fit.prior
     effects = [e.effect for e in CATALOGUE]
-    sensed = columns(point, common(effects))
+    sensitivities = compute_sensitivities(point, list_common(effects))
     best: dict[str, Any] = {}
-    for s in score(fit, sensed):
+    for s in score(fit, sensitivities, options):
         best.setdefault(s.candidate.effect.name, s.candidate)
-    sensed += columns(point, single([*best.values()]))
+    sensitivities += compute_sensitivities(point, list_single([*best.values()]))
     rng = np.random.default_rng([seed, 9])
     rows = []
     for k, e in enumerate(residuals(point, draws, coloured, rng)):
-        evaluated = type(point)(point.predictor, point.space, point.q, e, point.J, point.linear)
+        drawn = replace(point, e=e)
         with threadpool_limits(1, "blas"):
-            level = fit_noise(point.linear, e, point.J, prior, point.log.sampling_time)
-            scores = score(replace(fit, point=evaluated, level=level, mean=point.q), sensed)
-        false = [f"{s.candidate.effect.name}, {s.candidate.where}" for s in significant(scores)]
+            level = fit_noise(point.linear, e, point.J, prior, point.log.sampling_time, options)
+            refit = replace(fit, point=drawn, level=level, mean=point.q)
+            scores = score(refit, sensitivities, options)
+        false = [f"{s.candidate.effect.name}, {s.candidate.where}"
+                 for s in select_significant(scores, options)]  # fmt: skip
         smallest = [min(getattr(s, n) for s in scores) for n in ("p_value", "block_p_value")]
         rows.append({
             "key": f"null/{seed}/{coloured}/{k}", "false": false, "candidates": len(scores),

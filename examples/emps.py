@@ -21,7 +21,7 @@ from identification.estimation.estimation import estimate
 from identification.estimation.window_error import window_error
 from identification.estimation.window_estimate import estimate_windows
 from identification.logs.decimation import decimate
-from identification.report.discovery_words import not_believed
+from identification.report.effect_words import describe_rejected
 from identification.report.style import save_png
 from identification.report.windows_figure import windows_figure
 
@@ -67,7 +67,7 @@ def main(folder, figure=None):
     print(found.verdict, "| unexplained:", found.unexplained)
     for named in found.named:
         print(named.candidate.effect.name, named.parameters, f"confidence {named.confidence:.2f}")
-    print(*not_believed(found))
+    print(*describe_rejected(found))
 
     more = {n: v for n, v in found.final.point.values.items() if n not in free}  # its sizes
     best = estimate_windows(plant, log, (*START, *more), HORIZON, {**fit.values, **more})

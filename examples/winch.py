@@ -37,6 +37,7 @@ from identification.effects.joint_plant import candidates, joint_plant
 from identification.effects.rows import read_model
 from identification.estimation.window_estimate import estimate_windows
 from identification.logs.irregular import on_a_grid
+from identification.report.finding_words import describe_finding
 
 MODEL = Path(__file__).parents[1] / "models" / "winch.xml"
 ROTOR = 3e-4  # [kg m^2], a guess for an outrunner of this size; the load has m r^2
@@ -93,12 +94,12 @@ def explain(log, mass):
         print(f"  {part.name}: f_c {f_c}, f_0 {f_0}, rms {fit.rms:.2f} rad")
     free = tuple(p.name for p in records(mass))
     known = np.array([0.5, 1.0, 0.5, 0.2, 0.1, 1.0])  # J, d, f_c relative; N m, rad, rad/s
-    base = NominalModel(plant.with_values(fit.values), free, known, HORIZON)
-    found = discover(base, log, candidates(plant, free))
+    nominal_model = NominalModel(plant.with_values(fit.values), free, known, HORIZON)
+    found = discover(nominal_model, log, candidates(plant, free))
     best = found.scores[0]
     print(f"  {found.verdict}; first score: {best.candidate.effect.name}, {best.gain:.0f}")
-    for line in found.left:
-        print("    left:", line)
+    for finding in found.findings:
+        print("    left:", describe_finding(finding))
     for named in found.named:
         print("   ", named.candidate.effect.name, named.parameters, f"{named.confidence:.2f}")
 

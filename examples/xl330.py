@@ -65,8 +65,8 @@ def main(folder: Path, figure: Path | None) -> None:
     free = tuple(p.name for p in RECORDS)
     for log in fitted:
         if len(log) > LONG:
-            base = NominalModel(plant.with_values(fit.values), free, KNOWN, HORIZON)
-            found = discover(base, log, candidates(plant, free))
+            nominal_model = NominalModel(plant.with_values(fit.values), free, KNOWN, HORIZON)
+            found = discover(nominal_model, log, candidates(plant, free))
             named = [n.candidate.effect.name for n in found.named]
             first = [f"{s.candidate.effect.name} {s.gain:.0f}" for s in found.scores[:3]]
             print(f"{log.name}: {found.verdict} {named}, first {first}", flush=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from identification.commands.common import (
     note,
@@ -15,9 +15,6 @@ from identification.commands.common import (
 )
 from identification.commands.robots import OnRobot
 
-if TYPE_CHECKING:
-    from identification.discovery.result import Discovery
-
 WITHOUT = "without what is named", "with it"
 
 
@@ -25,27 +22,33 @@ WITHOUT = "without what is named", "with it"
 class Discover(OnRobot):
     """Find what the model lacks and prove it on unseen data, or say that it is unknown."""
 
+    options: Path | None = None
+    """TOML file with judgement constants, such as min_proof_t = 3.0 (docs/discovery.md)."""
+
     def run(self) -> int:
         """Discover, confirm, say, keep."""
-        from identification.discovery.final_values import final_values
+        from identification.discovery.final_values import collect_final_values
+        from identification.discovery.options import read_options
         from identification.discovery.search import discover
         from identification.files import whole_folder
         from identification.report.discovery_json import discovery_to_json
-        from identification.report.discovery_text import discovery_text, finite
+        from identification.report.discovery_report import write_discovery_report
+        from identification.report.discovery_text import discovery_text
         from identification.robot.checks import refuse_search_horizon, refuse_start
         from identification.robot.confirmation import confirmed
         from identification.robot.write import write_robot
 
         refuse_folder(self.output.out)
+        options = None if self.options is None else read_options(self.options)
         robot, records = self.read()
         refuse_search_horizon(robot.file, robot.log)
         refuse_start(robot.file, robot.plant.model, robot.log)
-        found = discover(robot.base, robot.log, robot.candidates, note)
-        before, after = found.nominal.point.values, final_values(found)
-        # with nothing named, the fitted model beside the one that the file describes
+        found = discover(robot.nominal_model, robot.log, robot.candidates, note, options)
+        before, after = found.nominal.point.values, collect_final_values(found)
+        # Where nothing is named, the fitted model is compared with the one of the file.
         compared = (before, after, WITHOUT) if found.named else ({}, after)
         pairs = [confirmed(robot, log, *compared) for log in records]
-        record: dict[str, Any] = finite(discovery_to_json(found))
+        record: dict[str, Any] = discovery_to_json(found)
         record = {**record, "confirm": [vars(c) for c in pairs]}
         if self.output.json:
             say_json(record)
@@ -53,7 +56,7 @@ class Discover(OnRobot):
             say("\n".join([discovery_text(found), *map(str, pairs)]))
         if self.output.out is not None:
             with whole_folder(self.output.out) as out:
-                _keep(found, [str(c) for c in pairs], out)
+                write_discovery_report(found, out, sentences=[str(c) for c in pairs])
                 has = {
                     n
                     for named in found.named
@@ -63,28 +66,3 @@ class Discover(OnRobot):
                 write_robot(robot, values, out / "robot.toml", self.output.out)
                 write_result(out / "result.json", self, record)
         return 0
-
-
-def _keep(found: Discovery, confirmed: list[str], out: Path) -> None:
-    """Write the report and its figures into a folder."""
-    from identification.report import discovery_sections as parts
-    from identification.report import discovery_tables as tables
-    from identification.report.discovery_verdict import discovery_verdict
-    from identification.report.page import save_figures, write_report
-
-    sections = [
-        parts.gap_section(found),
-        parts.where_section(found),
-        parts.rivals_section(found),
-        tables.diff_section(found),
-        tables.parameters_section(found),
-        tables.unseen_section(found),
-    ]
-    save_figures(sections, out)
-    write_report(
-        out / "report.html",
-        f"{found.log.name}: what the model lacks",
-        [*discovery_verdict(found), *confirmed],
-        sections,
-        good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
-    )

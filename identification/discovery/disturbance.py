@@ -1,7 +1,7 @@
-"""What unlogged errors of the inputs do to predictions: to a free run, and over a horizon.
+"""How far unlogged errors of the inputs move a prediction: a free run, or windows of it.
 
 cov(r) = G K Gᵀ            free run from a known start; K: covariance of the errors, G: response
-r = (I - X X⁺) G w         over a window from its own best state; X: response to that state
+r = (I - X X⁺) G w         a window from its own best start; X: response to that start
 """
 
 from __future__ import annotations
@@ -12,7 +12,14 @@ from identification.kalman.noise_model import Whitener
 
 
 def propagate_input_error(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -> np.ndarray:
-    """Variance that input errors put on the outputs of a free run, mean over them, shape (N,)."""
+    """Variance over σ² that input errors cause in a free run, mean over the outputs, shape (N,).
+
+    Args:
+        A: transitions of the state of plant and input error, shape (N-1, nz, nz).
+        C: outputs from that state, shape (ny, nz).
+        ratio: std of an input error over that of the sensors.
+        nu: number of inputs.
+    """
     if not A.size:
         return np.zeros(0)
     P = np.zeros(A.shape[1:])
@@ -29,13 +36,13 @@ def propagate_input_error(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -
 def propagate_over_windows(
     filter_: Whitener, ratio: float, nu: int, starts: np.ndarray, length: int
 ) -> np.ndarray:
-    """The same over windows whose start is the best one, mean over each, shape (W,).
+    """The same over windows that begin in their best state, mean over each window, shape (W,).
 
     Args:
-        filter_: its A and C are those of state and input error.
+        filter_: has the transitions of the state of plant and input error.
         ratio: std of an input error over that of the sensors.
-        nu: inputs.
-        starts: first sample of each window.
+        nu: number of inputs.
+        starts: first sample of each window, shape (W,).
         length: of a window, in samples.
     """
     if not filter_.A.size:
@@ -46,7 +53,7 @@ def propagate_over_windows(
 def _window(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -> float:
     nz = A.shape[1]
     nx = nz - nu
-    Z = np.zeros((nz, nx + nu * (len(A) + 1)))  # columns: the first state, then each sample's error
+    Z = np.zeros((nz, nx + nu * (len(A) + 1)))  # columns: the first state, then the errors
     Z[:nx, :nx], Z[nx:, nx:nz] = np.eye(nx), ratio * np.eye(nu)
     out = [C @ Z]
     for k, step in enumerate(A, start=1):
@@ -56,5 +63,5 @@ def _window(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -> float:
         out.append(C @ Z)
     Y = np.concatenate(out)
     X, G = Y[:, :nx], Y[:, nx:]
-    left = G - X @ np.linalg.lstsq(X, G, rcond=None)[0]
-    return float(np.sum(left**2)) / len(Y)
+    remaining = G - X @ np.linalg.lstsq(X, G, rcond=None)[0]
+    return float(np.sum(remaining**2)) / len(Y)

@@ -1,4 +1,4 @@
-"""The numbers that a discovery ends with."""
+"""The values with which a discovery ends."""
 
 from __future__ import annotations
 
@@ -6,22 +6,22 @@ from identification.discovery.result import Discovery
 from identification.kalman.refit import Refit
 
 
-def final_values(found: Discovery) -> dict[str, float]:
-    """Values of all parameters of the final fit, those of the named effects included."""
-    at = found.final.point
-    out = {**at.predictor.plant.parameters.values(), **at.values}
+def collect_final_values(found: Discovery) -> dict[str, float]:
+    """Values of all parameters of the final fit by name, those of the named effects included."""
+    point = found.final.point
+    out = {**point.predictor.plant.parameters.values(), **point.values}
     for named in found.named:
         effect, where = named.candidate.effect, named.candidate.where
         shapes = {shape.name for shape in effect.shapes}
         for name, (value, _, _) in named.parameters.items():
-            # one shape serves all places
+            # A shape is one parameter for all places.
             key = f"{effect.name}.{name}" if name in shapes else effect.parameter(name, where)
             out[key] = value
     return out
 
 
-def std_of(fit: Refit) -> dict[str, float]:
-    """Std of the values of a fit's free parameters, in their units."""
+def collect_std(fit: Refit) -> dict[str, float]:
+    """Std of the free parameters of a fit by name, in their units."""
     space = fit.point.space
     std = fit.std * space.slope(fit.point.q)
     return dict(zip(space.names, std.tolist(), strict=True))

@@ -1,7 +1,4 @@
-"""What the steps of a discovery are made of: a model with some effects, and when one is worth it.
-
-An effect is worth a name when unseen data confirm it beyond chance, and by enough to matter.
-"""
+"""A fitted and validated model with some effects: what it may lack, and when it is proven."""
 
 from __future__ import annotations
 
@@ -10,30 +7,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.discovery.nominal_model import NominalModel, fit_with_effects
+from identification.discovery.effect_results import Proof
+from identification.discovery.nominal_model import fit_with_effects
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import Validation, validate
-from identification.discovery.result import Proof
 from identification.discovery.scoring.scores import Score, score
 from identification.discovery.scoring.sensitivities import Sensitivity
+from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
-from identification.kalman.innovations import MATTERS
 from identification.kalman.refit import Refit
-from identification.logs.log import Log
-
-T = 2.0  # t of the proof: 2.5 % one-sided
-END = 0.02  # of a logarithm: this near to its limit a parameter is at it
-FALL, SHARE = MATTERS, 0.1  # of the free run's mean square, and of what is above the sensors' noise
 
 
 @dataclass(frozen=True)
 class FittedModel:
-    """A model with some effects, fitted and seen on the whole log.
+    """A model with some effects, fitted on a part of a log and validated on the rest.
 
     Attributes:
         candidates: its effects.
         refit: the fit on the fitted samples.
-        validation: the same over the whole log.
+        validation: its prediction of the whole log.
     """
 
     candidates: tuple[Candidate, ...]
@@ -41,123 +34,131 @@ class FittedModel:
     validation: Validation
 
     @property
-    def criterion(self) -> float:
-        """BIC, negated and in units of twice the log likelihood."""
+    def negative_bic(self) -> float:
+        """2 ln L - p ln n: Schwarz' criterion, negated, so that a larger value is better."""
         free = len(self.refit.point.q)
         return 2 * self.refit.log_posterior - free * float(np.log(len(self.refit.point.log)))
 
     @property
     def innovations(self) -> np.ndarray:
-        """Of the fitted samples, in units of σ, shape (n, ny).
-
-        On others an error of the parameters, however small, would look like a line.
-        """
+        """Innovations of the fitted samples, in units of σ, shape (n, ny)."""
         return self.validation.innovations[: len(self.refit.point.log)]
-
-    @property
-    def stretched(self) -> tuple[str, ...]:
-        """Base parameters that end where they stop to be plausible."""
-        point = self.refit.point
-        room = np.minimum(point.q - point.space.lower, point.space.upper - point.q)
-        own = {n for c in self.candidates for n in c.sizes}
-        own |= {
-            c.effect.parameter(shape.name, c.where)
-            for c in self.candidates
-            for shape in c.effect.shapes
-        }
-        ends = point.space.logarithmic & (room < END)
-        return tuple(n for n, e in zip(point.space.names, ends, strict=True) if e and n not in own)
 
 
 @dataclass(frozen=True)
 class AcceptedEffect:
-    """An effect that was added.
+    """An effect that was added to a model.
 
     Attributes:
-        step: the model with it.
-        proof: on unseen data.
-        gain: of twice the log likelihood over the model without it.
-        others: what else was refitted in its place.
+        model: the model with it; the effect is the last of its candidates.
+        proof: what it does for unseen samples.
+        gain: of twice the log likelihood over the model without it, less what BIC asks.
+        alternatives: models with another effect that was refitted in its place.
     """
 
-    step: FittedModel
+    model: FittedModel
     proof: Proof
     gain: float
-    others: tuple[FittedModel, ...]
+    alternatives: tuple[FittedModel, ...]
+
+    @property
+    def candidate(self) -> Candidate:
+        """The effect."""
+        return self.model.candidates[-1]
+
+
+def fit_model(
+    task: DiscoveryTask,
+    candidates: tuple[Candidate, ...],
+    start: Mapping[str, float],
+    near: FittedModel | None = None,
+) -> FittedModel:
+    """Fit the nominal model with some effects, and validate it.
+
+    Args:
+        task: the nominal model, the log and the options.
+        candidates: the effects.
+        start: values to begin at by name.
+        near: a model whose linearisation and noise are good enough to begin with.
+
+    Raises:
+        DivergenceError: the start cannot be simulated.
+        InputError: the robot cannot rest at its start.
+    """
+    model, log, options = task.nominal_model, task.log, task.options
+    nearby = None if near is None else near.refit
+    part = log.part("estimation")
+    fit = fit_with_effects(model, part, candidates, start, options, near=nearby)
+    return FittedModel(candidates, fit, validate(fit, log, model.horizon))
+
+
+def try_fit(
+    task: DiscoveryTask,
+    candidates: tuple[Candidate, ...],
+    start: Mapping[str, float],
+    near: FittedModel | None = None,
+) -> FittedModel | None:
+    """The same as `fit_model`; None where that raises an error."""
+    try:
+        return fit_model(task, candidates, start, near)
+    except (DivergenceError, InputError):
+        return None
+
+
+def score_candidates(model: FittedModel, sensitivities: Sequence[Sensitivity],
+                     options: DiscoveryOptions) -> tuple[Score, ...]:  # fmt: skip
+    """Scores of all candidates that a model does not have yet, the best first."""
+    has = {(c.effect.name, c.where) for c in model.candidates}
+    everywhere = {c.effect.name for c in model.candidates if not c.effect.places[c.where]}
+    others = [
+        s for s in sensitivities
+        if (s.candidate.effect.name, s.candidate.where) not in has
+        and s.candidate.effect.name not in everywhere
+    ]  # fmt: skip
+    return score(model.refit, others, options)
 
 
 def collect_parameters(
-    base: NominalModel, step: FittedModel, candidate: Candidate
+    task: DiscoveryTask, model: FittedModel, candidate: Candidate
 ) -> dict[str, tuple[float, float, str]]:
-    """Sizes of an effect in a fitted model by their symbols: value, std, unit."""
-    point = step.refit.point
-    std = dict(zip(point.space.names, step.refit.std * point.space.slope(point.q), strict=True))
+    """Sizes and shapes of an effect in a fitted model, by symbol: value, std, unit."""
+    point = model.refit.point
+    std = dict(zip(point.space.names, model.refit.std * point.space.slope(point.q), strict=True))
     out = {}
     for name in (*candidate.sizes, *candidate.fixed):
-        record = base.plant.parameters[name]
+        record = task.nominal_model.plant.parameters[name]
         out[record.symbol or record.name] = (
             point.values[name], float(std.get(name, 0.0)), record.unit,
         )  # fmt: skip
     return out
 
 
-def fit_model(
-    base: NominalModel,
-    whole: Log,
-    candidates: tuple[Candidate, ...],
-    start: Mapping[str, float],
-    near: FittedModel | None = None,
-) -> FittedModel:
-    """A model with some effects, fitted on the estimation part of a log.
-
-    Args:
-        base: the nominal model.
-        whole: the log.
-        candidates: the effects.
-        start: values to begin at.
-        near: a model whose linearisation and noise are good enough to begin with.
-    """
-    nearby = None if near is None else near.refit
-    fit = fit_with_effects(base, whole.part("estimation"), candidates, start, near=nearby)
-    return FittedModel(candidates, fit, validate(fit, whole, base.horizon))
+def list_parameters_at_limit(model: FittedModel, options: DiscoveryOptions) -> tuple[str, ...]:
+    """Positive parameters of the nominal model that end at a limit of what is plausible."""
+    point = model.refit.point
+    room = np.minimum(point.q - point.space.lower, point.space.upper - point.q)
+    of_effects = {n for c in model.candidates for n in c.sizes}
+    of_effects |= {
+        c.effect.parameter(shape.name, c.where)
+        for c in model.candidates
+        for shape in c.effect.shapes
+    }
+    at_limit = point.space.logarithmic & (room < options.limit_distance)
+    return tuple(
+        n for n, at in zip(point.space.names, at_limit, strict=True) if at and n not in of_effects
+    )
 
 
-def try_fit(
-    base: NominalModel,
-    whole: Log,
-    candidates: tuple[Candidate, ...],
-    start: Mapping[str, float],
-    near: FittedModel | None = None,
-) -> FittedModel | None:
-    """As `fitted`; None where the model cannot be simulated or cannot stand at its start."""
-    try:
-        return fit_model(base, whole, candidates, start, near)
-    except (DivergenceError, InputError):
-        return None
+def is_proven(proof: Proof, options: DiscoveryOptions) -> bool:
+    """Whether unseen samples confirm an effect beyond chance."""
+    return proof.t > options.min_proof_t
 
 
-def score_candidates(step: FittedModel, columns: Sequence[Sensitivity]) -> tuple[Score, ...]:
-    """Scores of all candidates that a model does not have yet."""
-    has = {(c.effect.name, c.where) for c in step.candidates}
-    effects = {c.effect.name for c in step.candidates if not c.effect.places[c.where]}
-    others = [
-        c for c in columns
-        if (c.candidate.effect.name, c.candidate.where) not in has
-        and c.candidate.effect.name not in effects
-    ]  # fmt: skip
-    return score(step.refit, others)
+def is_relevant(proof: Proof, options: DiscoveryOptions) -> bool:
+    """Whether an effect explains enough of the unseen samples to matter."""
+    return proof.fall > options.min_fall and proof.above > options.min_gap_share
 
 
-def is_relevant(proof: Proof) -> bool:
-    """Whether an effect explains enough of the unseen data."""
-    return proof.fall > FALL and proof.above > SHARE
-
-
-def is_proven(proof: Proof) -> bool:
-    """Whether unseen data confirm an effect beyond chance."""
-    return proof.t > T
-
-
-def is_confirmed(proof: Proof) -> bool:
-    """Whether unseen data confirm an effect: beyond chance, and by enough to matter."""
-    return is_proven(proof) and is_relevant(proof)
+def is_confirmed(proof: Proof, options: DiscoveryOptions) -> bool:
+    """Whether unseen samples confirm an effect: beyond chance, and by enough to matter."""
+    return is_proven(proof, options) and is_relevant(proof, options)

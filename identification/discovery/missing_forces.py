@@ -1,10 +1,11 @@
-"""The missing force: what would have to act, and where, for the nominal model to be right.
+"""Missing forces: which forces would have to act, and where, for the nominal model to be right.
 
     M δv̇ = … + r w,    w: a first-order process of the level that makes the residual most likely
 
-r weighs each by how much it moves the outputs, so that newtons and newton metres compare. One group
-of degrees of freedom at a time, the actuated joints or a free body. Both may explain all: where few
-outputs are measured, a force elsewhere does nearly the same, and only a law tells the place.
+r scales each force by how much it moves the outputs, so that newtons and newton metres compare. One
+group of degrees of freedom is taken at a time: the actuated joints, or a free body. Each group may
+explain all of the residual. Where few outputs are measured, forces at another place have nearly the
+same effect, and only the law of an effect tells the place.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from identification.kalman.linear import LinearPlant, linearise
-from identification.kalman.noise_fit import TIME, compute_unit_ratio, fit_noise
+from identification.kalman.noise_fit import compute_unit_ratio, fit_noise
+from identification.kalman.options import KalmanOptions
 from identification.kalman.refit import Refit
 from identification.kalman.smoother import smooth
 
@@ -24,7 +26,7 @@ AXES = ("x", "y", "z")
 FREE, SLIDE = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class MissingForce:
     """Forces on some degrees of freedom that would explain a residual.
 
@@ -32,9 +34,9 @@ class MissingForce:
         where: "the actuated joints", or the name of a free body.
         names: of the degrees of freedom, k of them.
         units: N or N m, k of them.
-        force: the smoothed estimate over the fitted samples, shape (N, k).
-        gain: twice the log likelihood that it adds to a model without.
-        share: of the residual's mean square that it explains.
+        force: the smoothed estimate over the fitted samples, shape (N, k), in their units.
+        gain: twice the log likelihood that they add to a model without them.
+        share: of the residual's mean square that they explain, 0 to 1.
     """
 
     where: str
@@ -45,11 +47,12 @@ class MissingForce:
     share: float
 
 
-def estimate_missing_forces(fit: Refit) -> tuple[MissingForce, ...]:
-    """The missing force of every group of degrees of freedom, by where they act.
+def estimate_missing_forces(fit: Refit, options: KalmanOptions) -> tuple[MissingForce, ...]:
+    """The missing forces of every group of degrees of freedom.
 
     Args:
         fit: the nominal model, fitted.
+        options: the correlation times that are admitted.
 
     Raises:
         DivergenceError: the model cannot be simulated.
@@ -58,26 +61,30 @@ def estimate_missing_forces(fit: Refit) -> tuple[MissingForce, ...]:
     groups = _groups(point.predictor.plant.model)
     dofs = [d for _, of, _, _ in groups for d in of]
     plant = linearise(point.predictor, point.space.decode(point.q), forces=dofs)
-    Ts, out, done = point.log.sampling_time, [], 0
+    Ts, time, out, done = point.log.sampling_time, options.start_correlation_time, [], 0
     with threadpool_limits(1, "blas"):
         for where, of, names, units in groups:
             B = plant.B[:, :, done : done + len(of)]
             done += len(of)
             if not B.any():
                 continue
-            each = [compute_unit_ratio(LinearPlant(plant.A, b[:, :, None], plant.C), Ts, TIME)
+            each = [compute_unit_ratio(LinearPlant(plant.A, b[:, :, None], plant.C), Ts, time)
                     for b in np.moveaxis(B, 2, 0)]  # fmt: skip
             mine = LinearPlant(plant.A, B * each, plant.C)
-            level = fit_noise(mine, point.e, point.J, fit.prior, Ts, fine=False)
-            none = fit_noise(mine, point.e, point.J, fit.prior, Ts, levels=(0.0,), fine=False)
+            known = mine, point.e, point.J, fit.prior, Ts, options
+            level = fit_noise(*known, fine=False)
+            none = fit_noise(*known, levels=(0.0,), fine=False)
             force, part = smooth(mine, level.noise, point.e, Ts)
             out.append(
                 MissingForce(
-                    where, names, units, force * each,
-                    2 * (level.log_likelihood - none.log_likelihood),
-                    1 - float(np.mean((point.e - part) ** 2) / np.mean(point.e**2)),
+                    where=where,
+                    names=names,
+                    units=units,
+                    force=force * each,
+                    gain=2 * (level.log_likelihood - none.log_likelihood),
+                    share=1 - float(np.mean((point.e - part) ** 2) / np.mean(point.e**2)),
                 )
-            )  # fmt: skip
+            )
     return tuple(out)
 
 

@@ -1,4 +1,4 @@
-"""A model with some effects: its free parameters, and where their search begins."""
+"""The nominal model, and its fit with some effects: free parameters, priors, and the start."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
-from identification.kalman.noise_fit import TIME
 from identification.kalman.point import evaluate_point
 from identification.kalman.refit import Refit, refit
 from identification.logs.log import Log
@@ -16,21 +16,20 @@ from identification.model.coordinates import Coordinates, coordinates
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Plant, Predictor
 
-SHAPE_STD = 1.0  # prior of a shape's logarithm about the grid value that scored best
-FARTHEST = 3.0  # factor by which a base parameter may leave its nominal value
-SMALL = 1e-3  # of a probe: where the search for a size begins that must not be zero
+SMALL = 1e-3  # of a probe: the search for a size begins at least this far from zero
 
 
 @dataclass(frozen=True)
 class NominalModel:
-    """The nominal model's free parameters and what is known of them.
+    """The nominal model: its plant, its free parameters, and what is known of them.
 
     Attributes:
-        plant: the model, all candidate effects included.
-        names: its free parameters.
-        std: prior std of each, relative where it is logarithmic, else in its unit, shape (p,).
-        horizon: over which predictions are judged [s]; None for a free run of the whole log, which
-            says little of a robot that integrates what disturbs it.
+        plant: the model with all candidate effects compiled in.
+        names: of the free parameters, p of them.
+        std: std of the prior of each, relative for a positive parameter and else in the parameter's
+            unit, shape (p,).
+        horizon: length of the windows over which predictions are judged [s]; None for a free run
+            of the whole log, which says little of a robot that integrates what disturbs it.
     """
 
     plant: Plant
@@ -40,27 +39,29 @@ class NominalModel:
 
 
 def fit_with_effects(
-    base: NominalModel,
+    nominal_model: NominalModel,
     log: Log,
     candidates: Sequence[Candidate],
     start: Mapping[str, float],
+    options: DiscoveryOptions,
     steps: int = 20,
     near: Refit | None = None,
 ) -> Refit:
-    """Fit the model with some effects: base parameters, their sizes and their free shapes.
+    """Fit the nominal model's parameters together with the sizes and free shapes of some effects.
 
     Args:
-        base: the nominal model.
-        log: what to explain.
+        nominal_model: the model without effects.
+        log: the samples to fit.
         candidates: the effects.
         start: values to begin at by name; the plant's own where not given.
-        steps: at most as many.
+        options: which noise and which parameters are believed.
+        steps: largest number of steps.
         near: a fit whose linearisation and noise are good enough to begin with.
 
     Raises:
         DivergenceError: the start cannot be simulated.
     """
-    parameters = base.plant.parameters
+    parameters = nominal_model.plant.parameters
     sizes = [name for c in candidates for name in c.free]
     shapes = dict.fromkeys(
         c.effect.parameter(shape.name, c.where)
@@ -71,47 +72,47 @@ def fit_with_effects(
     fixed = {
         n: v for c in candidates for n, v in (*c.fixed.items(), *c.whole.items()) if n not in shapes
     }
-    names = (*base.names, *sizes, *shapes)
+    names = (*nominal_model.names, *sizes, *shapes)
     own = {**parameters.values(), **{n: v for c in candidates for n, v in c.fixed.items()}}
-    begin = {**own, **start, **{n: _there(parameters[n], {**own, **start}[n]) for n in sizes}}
+    begin = {**own, **start, **{n: _nonzero(parameters[n], {**own, **start}[n]) for n in sizes}}
     first = np.array([_inside(parameters[n], begin[n]) for n in names])
-    space = _plausible(coordinates(parameters, names, first, linear=sizes), parameters, base.names)
-    known = {*base.names, *shapes}  # a size has no prior, and its mean no meaning
+    space = coordinates(parameters, names, first, linear=sizes)
+    space = _within_factor(space, parameters, nominal_model.names, options.nominal_factor)
+    # A size has no prior, so that the mean of its prior is never used.
+    known = {*nominal_model.names, *shapes}
     mean = space.encode(np.where([n in known for n in names], [own[n] for n in names], first))
-    weight = np.concatenate(
-        [1 / base.std, np.zeros(len(sizes)), np.full(len(shapes), 1 / SHAPE_STD)]
-    )
+    of_shapes = np.full(len(shapes), 1 / options.shape_std)
+    weight = np.concatenate([1 / nominal_model.std, np.zeros(len(sizes)), of_shapes])
     linear, level = (None, None) if near is None else (near.point.linear, near.level)
-    point = evaluate_point(
-        Predictor(base.plant, log, names, fixed), space, space.encode(first), linear
-    )
-    if level is not None:  # what its inputs' error lasted may have been the effect
-        level = replace(level, noise=level.noise.lasting(TIME))
-    return refit(point, mean, weight, steps, level)
+    predictor = Predictor(nominal_model.plant, log, names, fixed)
+    point = evaluate_point(predictor, space, space.encode(first), linear)
+    if level is not None:
+        # The correlation time that was found without the effect may have been the effect's own.
+        level = replace(level, noise=level.noise.lasting(options.start_correlation_time))
+    return refit(point, mean, weight, options, steps, level)
 
 
-def _plausible(space: Coordinates, parameters: ParameterSet, names: Sequence[str]) -> Coordinates:
-    """Coordinates whose base parameters stay within a factor of their nominal values.
-
-    A wrong model would carry them anywhere, to imitate what it lacks.
-    """
+def _within_factor(
+    space: Coordinates, parameters: ParameterSet, names: Sequence[str], factor: float
+) -> Coordinates:
+    """Coordinates in which the positive parameters among `names` stay within a factor."""
     nominal = np.array([parameters[n].value if n in names else 1.0 for n in space.names])
     bounded = space.logarithmic & np.isin(space.names, names)
     middle = np.log(np.where(bounded, nominal, 1.0))
     return replace(
         space,
-        lower=np.where(bounded, np.maximum(space.lower, middle - np.log(FARTHEST)), space.lower),
-        upper=np.where(bounded, np.minimum(space.upper, middle + np.log(FARTHEST)), space.upper),
+        lower=np.where(bounded, np.maximum(space.lower, middle - np.log(factor)), space.lower),
+        upper=np.where(bounded, np.minimum(space.upper, middle + np.log(factor)), space.upper),
     )
 
 
-def _there(record: Parameter, value: float) -> float:
-    """A size that is not zero."""
+def _nonzero(record: Parameter, value: float) -> float:
+    """The value of a size, moved away from zero where it is too near to it."""
     least = SMALL * record.scale
     return value if abs(value) > least else least * (1 if record.upper > 0 else -1)
 
 
 def _inside(record: Parameter, value: float) -> float:
-    """A value a little inside its bounds."""
+    """The value moved a little inside its bounds."""
     margin = 1e-9 * max(abs(value), record.scale)
     return float(np.clip(value, record.lower + margin, record.upper - margin))

@@ -1,4 +1,4 @@
-"""Proof on unseen data: does an effect predict samples better that no fit has seen?
+"""Proof on unseen samples: does a model with an effect predict what no fit has seen better?
 
     Δ_b = ½ Σ_{k in b} ‖E_k(without)‖² - ‖E_k(with)‖²        over blocks b of unseen samples
     t = mean(Δ_b)/(std(Δ_b)/√B)
@@ -6,8 +6,8 @@
     share = (rms²(without) - rms²(with))/(rms²(without) - σ² - d²)
 
 Both residuals pass the filter of the model without the effect, so that neither predictor follows
-the data more closely than the other. rms is that of a free run, d what input errors do to it; where
-a free run drifts by them, rms and d are those over a horizon (see
+the data more closely than the other. rms is that of the free run, and d is what input errors do to
+it. Where the nominal model has a horizon, rms and d are those of windows of that length (see
 `identification.estimation.window_error`).
 """
 
@@ -19,7 +19,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from identification.discovery.disturbance import propagate_input_error, propagate_over_windows
-from identification.discovery.result import Gap, Proof
+from identification.discovery.effect_results import Gap, Proof
+from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
 from identification.estimation.metrics import fit_percent
 from identification.estimation.window_error import window_error
@@ -29,27 +30,25 @@ from identification.kalman.point import extend_point
 from identification.kalman.refit import Refit
 from identification.logs.log import Log
 
-BLOCKS = 20
 
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Validation:
-    """A fit on the whole log, of which it has seen the beginning.
+    """The prediction of a whole log by a model that was fitted on its beginning.
 
     Attributes:
         refit: the fit.
-        whole: the log.
-        e: free-run residual, shape (N, ny).
-        innovations: whitened, in units of σ, shape (N, ny).
-        filter: what whitened them.
-        first: first unseen sample.
-        disturbance: rms of what input errors do to the error that is judged.
+        log: the whole log, of N samples.
+        e: residual of the free run, shape (N, ny).
+        innovations: whitened residual in units of σ, shape (N, ny).
+        filter: the whitening filter.
+        first: index of the first unseen sample.
+        disturbance: rms of what input errors do to the judged error, in the outputs' unit.
         measured: outputs of the unseen samples that are judged, shape (n, ny).
-        judged: error there, of the free run or over the horizon, shape (n, ny).
+        judged: their error, of the free run or of the windows, shape (n, ny).
     """
 
     refit: Refit
-    whole: Log
+    log: Log
     e: np.ndarray
     innovations: np.ndarray
     filter: Whitener
@@ -60,52 +59,69 @@ class Validation:
 
     @property
     def rms(self) -> float:
-        """Of the error that is judged."""
+        """Rms of the judged error, over all outputs."""
         return float(np.sqrt(np.mean(self.judged**2)))
 
     @property
     def gap(self) -> Gap:
-        """The error on the unseen samples."""
+        """The judged error as a gap."""
         return Gap(self.rms, fit_percent(self.measured, self.measured - self.judged))
 
 
-def validate(fit: Refit, whole: Log, horizon: float | None = None) -> Validation:
-    """A fit, predicted over the whole log.
+def validate(fit: Refit, log: Log, horizon: float | None = None) -> Validation:
+    """Predict a whole log with a fit.
 
     Args:
-        fit: on the beginning of the log.
-        whole: the log.
-        horizon: of the errors that are judged [s]; those of the free run when None.
+        fit: of the beginning of the log.
+        log: the whole log.
+        horizon: length of the windows whose errors are judged [s]; None for the free run.
+
+    Raises:
+        InputError: no window begins in the unseen samples.
+        DivergenceError: the model cannot be simulated over the whole log.
     """
-    point = extend_point(fit.point, whole)
+    point = extend_point(fit.point, log)
     first = len(fit.point.log)
     with threadpool_limits(1, "blas"):
-        filter_ = build_whitener(point.linear, fit.level.noise, whole.sampling_time)
+        filter_ = build_whitener(point.linear, fit.level.noise, log.sampling_time)
         E = filter_(point.e) / fit.level.sigma
         nu, ratio = point.linear.B.shape[2], fit.level.noise.ratio
-        measured, judged = whole.outputs[first:], point.e[first:]
+        measured, judged = log.outputs[first:], point.e[first:]
         if horizon is None:
             moved = propagate_input_error(filter_.A, filter_.C, ratio, nu)[first:]
         else:
-            errors = window_error(point.predictor.plant, whole, horizon, point.values)
-            starts = windows(whole, horizon).starts
+            errors = window_error(point.predictor.plant, log, horizon, point.values)
+            starts = windows(log, horizon).starts
             late, L = starts >= first, errors.shape[1]
             if not late.any():
-                raise InputError(f"no window of {horizon:g} s begins in the unseen samples")
+                raise InputError(
+                    f"no window of {horizon:g} s begins in the unseen samples; give a shorter"
+                    " horizon or a longer log"
+                )
             judged = errors[late].reshape(-1, errors.shape[2])
-            measured = windows(whole, horizon).outputs[late].reshape(judged.shape)
+            measured = windows(log, horizon).outputs[late].reshape(judged.shape)
             moved = propagate_over_windows(filter_, ratio, nu, starts[late], L)
     disturbance = fit.level.sigma * np.sqrt(moved.mean()) if moved.size else 0.0
-    return Validation(fit, whole, point.e, E, filter_, first, float(disturbance), measured, judged)
+    return Validation(
+        refit=fit, log=log, e=point.e, innovations=E, filter=filter_, first=first,
+        disturbance=float(disturbance), measured=measured, judged=judged,
+    )  # fmt: skip
 
 
-def prove(without: Validation, with_it: Validation) -> Proof:
-    """What the second of two fits does for the unseen samples."""
+def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -> Proof:
+    """What the second of two fits does for the unseen samples.
+
+    Args:
+        without: the model without an effect.
+        with_it: the model with it.
+        options: the number of blocks.
+    """
     with threadpool_limits(1, "blas"):
         E = without.filter(with_it.e) / without.refit.level.sigma
     fewer = np.sum(without.innovations**2 - E**2, axis=1) / 2
     gain = fewer[with_it.first :]
-    starts = np.linspace(0, len(gain), min(BLOCKS, len(gain) // 5), endpoint=False).astype(int)
+    count = min(options.proof_blocks, len(gain) // 5)
+    starts = np.linspace(0, len(gain), count, endpoint=False).astype(int)
     blocks = np.add.reduceat(gain, starts)
     scatter = blocks.std(ddof=1) / np.sqrt(len(blocks))
     t = float(blocks.mean() / scatter) if scatter > 0 else 0.0
@@ -114,9 +130,9 @@ def prove(without: Validation, with_it: Validation) -> Proof:
     closed = without.rms**2 - with_it.rms**2
     sensed = without.rms**2 - min(with_it.refit.level.sigma, with_it.rms) ** 2
     return Proof(
-        float(gain.sum()),
-        t,
-        float(closed / above) if above > 0 else 0.0,
-        float(closed / without.rms**2),
-        float(closed / sensed) if sensed > 0 else 0.0,
+        gain=float(gain.sum()),
+        t=t,
+        share=float(closed / above) if above > 0 else 0.0,
+        fall=float(closed / without.rms**2),
+        above=float(closed / sensed) if sensed > 0 else 0.0,
     )

@@ -1,9 +1,9 @@
-"""Could the base parameters alone explain what is named, were less known of them?
+"""Could the nominal model's parameters explain what an effect explains, if less were known of them?
 
-    loss = min_δ C(q̂ + δ | η = 0) - min_δ C(q̂ + δ),      C: the criterion, its priors WIDER
+    loss = min_δ C(q̂ + δ | η = 0) - min_δ C(q̂ + δ),      C: the criterion with wider priors
 
-about the final fit, linearised. A log that moves in one way only tells an effect from a wrong base
-parameter by what was said to be known of the latter, and a name that rests on that should say so.
+about the final fit, linearised. A log that shows one kind of motion only may tell an effect from a
+wrong parameter by nothing but the prior of that parameter. A name that rests on a prior says so.
 """
 
 from __future__ import annotations
@@ -13,48 +13,50 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from identification.discovery.result import Retuned
+from identification.discovery.effect_results import Retuned
+from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.kalman.problem import linearise_criterion
 from identification.kalman.refit import Refit
 
-WIDER = 3.0  # times what was known of the base parameters
 
-
-def retuned(fit: Refit, base: Sequence[str], candidate: Candidate) -> tuple[float, Retuned]:
-    """What a model loses with an effect when its base parameters may make up for it.
+def retune(
+    fit: Refit, nominal: Sequence[str], candidate: Candidate, options: DiscoveryOptions
+) -> tuple[float, Retuned]:
+    """What a fit loses without an effect when the nominal model's parameters may replace it.
 
     Args:
-        fit: with the effect.
-        base: names of the base parameters.
+        fit: the fit with the effect.
+        nominal: names of the nominal model's free parameters.
         candidate: the effect.
+        options: how much wider the priors are.
 
     Returns:
-        The loss, of twice the log likelihood, and how far the base parameters would have to go;
-        its confidence is left at zero. A limit has no size that could go to zero: its loss is
-        infinite.
+        The loss, of twice the log likelihood, and how far the parameters would have to move; its
+        confidence is zero and is computed later. An effect whose size is not estimated (a limit)
+        cannot be taken out by setting the size to zero: its loss is infinite.
     """
     space, q = fit.point.space, fit.point.q
     names = np.array(space.names)
-    own, mine = np.isin(names, base), np.isin(names, candidate.free)
+    own, mine = np.isin(names, nominal), np.isin(names, candidate.free)
     if not mine.any():
-        return np.inf, Retuned(base[0], 0.0, 0.0)
-    prior = np.where(own, fit.prior / WIDER, fit.prior)
+        return np.inf, Retuned(nominal[0], 0.0, 0.0)
+    prior = np.where(own, fit.prior / options.retuned_factor, fit.prior)
     problem = linearise_criterion(fit.point, fit.level, fit.mean, prior)
     lower, upper = space.lower - q, space.upper - q
-    _, with_it = _least(problem.rows, problem.target, lower, upper)
-    rest = ~mine  # sizes are linear coordinates, zero in the nominal model
+    _, with_it = _minimise(problem.rows, problem.target, lower, upper)
+    rest = ~mine  # the coordinates of sizes are linear, and zero in the nominal model
     target = problem.target + problem.rows[:, mine] @ q[mine]
-    move, without = _least(problem.rows[:, rest], target, lower[rest], upper[rest])
+    move, without = _minimise(problem.rows[:, rest], target, lower[rest], upper[rest])
     away = np.where(own[rest], (q[rest] + move - fit.mean[rest]) * fit.prior[rest], 0.0)
     far = int(np.abs(away).argmax())
     return max(0.0, without - with_it), Retuned(str(names[rest][far]), float(away[far]), 0.0)
 
 
-def _least(
+def _minimise(
     rows: np.ndarray, target: np.ndarray, lower: np.ndarray, upper: np.ndarray
 ) -> tuple[np.ndarray, float]:
-    """The move within bounds that leaves the least of a target, and its square."""
+    """The move within bounds that makes ‖target - rows move‖² least, and that minimum."""
     scale = np.linalg.norm(rows, axis=0) + 1e-300
     Q, R = np.linalg.qr(rows / scale)
     bounds = (lower * scale - 1e-12, upper * scale + 1e-12)

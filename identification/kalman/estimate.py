@@ -1,10 +1,11 @@
-"""Estimation where the inputs are not what the log says: innovations instead of a free run.
+"""Estimation by innovations, where the inputs differ from what the log says.
 
-    e_k = y_k - ŷ_k(q) = noise of the sensors + what an unlogged error of the inputs did
+    e_k = y_k - ŷ_k(q) = noise of the sensors + response to an unlogged error of the inputs
 
-A free run adds up what disturbs the plant, so that its residual is many times the noise and its
-parameters are bent. The Kalman predictor corrects itself with each sample; how much the inputs err,
-and for how long, is estimated with the parameters by maximum likelihood (Ljung 1999, section 7.4).
+A free run accumulates what disturbs the plant: its residual is many times the noise, and a fit of
+it bends the parameters. The Kalman predictor corrects itself with each sample. The level and the
+correlation time of the inputs' error are estimated together with the parameters by maximum
+likelihood (Ljung 1999, section 7.4).
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from identification.estimation.residuals import residual_tests
 from identification.kalman.linear import linearise
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise, build_whitener
+from identification.kalman.options import KalmanOptions
 from identification.kalman.point import Point, evaluate_point
 from identification.kalman.refit import Refit, conclude, descend
 from identification.logs.log import Log
@@ -32,19 +34,19 @@ from identification.model.coordinates import coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.model.sensitivity import refuse_without_effect, without_effect
 
-FEWEST = 50  # samples of a log whose noise can be split into that of sensors and of inputs
-HOLD = 0.1  # 1/std of a ridge on q that keeps what no output feels where it is
+FEWEST = 50  # samples that are needed to tell the noise of the sensors from that of the inputs
+HOLD = 0.1  # 1/std of a ridge on q, which holds directions that have no effect on the outputs
 
 
 @dataclass(frozen=True)
 class InnovationsFit:
-    """Estimates of the innovations, and what they leave.
+    """An estimate by innovations.
 
     Attributes:
-        fit: values; std, correlation and tests are those of the innovations, residual and fit
+        fit: the values; std, correlation and tests are those of the innovations, residual and fit
             percentages those of a free run.
         level: the noise of sensors and inputs.
-        innovations: of the whole log, scaled to the sensors' noise, shape (N, ny).
+        innovations: of the whole log, of the std of the sensors' noise each, shape (N, ny).
         first: first sample that was not fitted.
     """
 
@@ -55,12 +57,12 @@ class InnovationsFit:
 
     @property
     def rms(self) -> float:
-        """Of the innovations on the fitted samples."""
+        """Rms of the innovations on the fitted samples, in the outputs' unit."""
         return float(np.sqrt(np.mean(self.innovations[: self.first] ** 2)))
 
     @property
     def validation_rms(self) -> float | None:
-        """Of the innovations on the samples that were not fitted; None when there are none."""
+        """Rms of the innovations on the samples that were not fitted; None without such."""
         rest = self.innovations[self.first :]
         return float(np.sqrt(np.mean(rest**2))) if len(rest) > 2 else None
 
@@ -73,6 +75,7 @@ def estimate_innovations(
     priors: Mapping[str, float] | None = None,
     progress: Progress | None = None,
     steps: int = 30,
+    options: KalmanOptions | None = None,
 ) -> InnovationsFit:
     """Estimate parameters by the innovations of a log's part `estimation`; confirm on the rest.
 
@@ -85,40 +88,42 @@ def estimate_innovations(
         start: starting values by name; the plant's own where not given.
         priors: std by name of q about the start (of ln(value) where q is a logarithm).
         progress: is told one line per accepted step.
-        steps: at most as many.
+        steps: largest number of steps.
+        options: which noise is believed.
 
     Raises:
         InputError: a name is unknown or has no effect, or the log is too short.
         DivergenceError: the start cannot be simulated.
     """
     began = time.perf_counter()
-    options = Options(priors=dict(priors or {}))
+    weights = Options(priors=dict(priors or {}))
     part = log.part("estimation")
     if len(part) < FEWEST:
         raise InputError(
             f"the log has {len(part)} samples to fit; innovations need at least {FEWEST}"
         )
-    for name in (*names, *(start or {}), *options.priors):
+    for name in (*names, *(start or {}), *weights.priors):
         plant.parameters[name]
     own = {**plant.parameters.values(), **(start or {})}
     first = np.array([own[name] for name in names])
     space = coordinates(plant.parameters, names, first)
     predictor = Predictor(plant, part, tuple(names), dict(start or {}))
     mean = space.encode(first)
-    prior = np.maximum(prior_weight(options, names), HOLD)
+    prior = np.maximum(prior_weight(weights, names), HOLD)
     begun = evaluate_point(predictor, space, mean)
     if without_effect(begun.J, part.outputs).any():
         refuse_without_effect(begun.J, space.names, part)
     seen = [(begun, NoiseLevel(Noise(0.0, 1.0), 1.0, 0.0))]
-    status = _search(descend(begun, mean, prior, steps=steps), seen, progress)
+    points = descend(begun, mean, prior, options or KalmanOptions(), steps=steps)
+    status = _search(points, seen, progress)
     taken = max(0, len(seen) - 2)
     end = conclude(*seen[-1], mean, prior, taken)
     ends = Estimate(
         predictor, space, first, end.point.q, np.eye(part.outputs.shape[1]) / end.level.sigma,
-        np.ones_like(part.outputs), options, taken + 1, taken + 1, status, 0.0,
+        np.ones_like(part.outputs), weights, taken + 1, taken + 1, status, 0.0,
     )  # fmt: skip
     fit = _of_innovations(end, assess(ends, log))
-    E = innovations(end, log)
+    E = compute_innovations(end, log)
     fit = replace(fit, estimate=replace(ends, seconds=time.perf_counter() - began))
     return InnovationsFit(fit, end.level, E, len(part))
 
@@ -128,7 +133,7 @@ def _search(
     seen: list[tuple[Point, NoiseLevel]],
     progress: Progress | None,
 ) -> Status:
-    """Follow a search until it ends, adding its points to `seen`."""
+    """Follow a search until it ends, and append its points to `seen`."""
     try:
         while True:
             point, level = next(points)
@@ -142,8 +147,8 @@ def _search(
         return "stopped"
 
 
-def innovations(end: Refit, whole: Log) -> np.ndarray:
-    """Innovations over a log of which a fit has seen the beginning, shape (N, ny)."""
+def compute_innovations(end: Refit, whole: Log) -> np.ndarray:
+    """Innovations over a log whose beginning was fitted, shape (N, ny)."""
     point = end.point
     predictor = replace(point.predictor, log=whole)
     values = point.space.decode(point.q)
@@ -153,12 +158,12 @@ def innovations(end: Refit, whole: Log) -> np.ndarray:
 
 
 def _of_innovations(end: Refit, fit: Fit) -> Fit:
-    """A fit with the uncertainty and the tests of its innovations."""
+    """The fit with the uncertainty and the tests of the innovations."""
     point, σ = end.point, end.level.sigma
     with threadpool_limits(1, "blas"):
         filter_ = build_whitener(point.linear, end.level.noise, point.log.sampling_time)
         E, S = filter_(point.e), filter_(point.J).reshape(point.e.size, -1) / σ
-    found = fit.found  # of the free run, whose blind directions are exact
+    found = fit.found  # directions without effect are found by the free run, where they are exact
     covariance = np.linalg.pinv(S.T @ S + np.diag(end.prior**2), hermitian=True)
     std = np.sqrt(np.diag(covariance))
     return replace(

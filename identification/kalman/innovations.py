@@ -1,10 +1,12 @@
-"""What is left when the noise model has had its share: are the innovations white?
+"""Tests of innovations: are they white, and do all channels have the same variance?
 
     Q = N (N+2) Σ_l r_l²/(N-l)  over L lags and n_y channels  ~  χ²_{L n_y}      (Ljung, Box 1978)
     g = max_f I(f)/Σ_f I(f),  P(g > x) ≈ M (1 - x)^{M-1}                         (Fisher 1929)
 
-A missing effect that no candidate explains looks to the noise model like input noise; what is not
-random in it (a line of the spectrum, a rhythm of the input, one drive louder than the rest) stays.
+I(f) is the periodogram of one channel at M frequencies. The noise model takes a missing effect that
+no candidate explains for an error of the inputs. The part of it that is not random (a line of the
+spectrum, correlation between samples, one output with a larger variance) remains in the innovations
+and is found here.
 """
 
 from __future__ import annotations
@@ -14,22 +16,23 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-LAGS = 20
-SURE = 1e-4  # chance at which structure in innovations is believed
-MATTERS = 0.03  # share of a mean square below which what explains it is no missing effect
+from identification.kalman.options import KalmanOptions
+
+LAGS = 20  # of the correlations that the portmanteau test takes
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Whiteness:
     """Tests of innovations.
 
     Attributes:
-        p_correlation: of the portmanteau test over all channels.
-        predictable: share of the power that the correlations would predict, beyond chance's.
-        p_line: of the strongest line over all channels.
-        channel: index of the output on which that line is the loudest.
+        p_correlation: p-value of the portmanteau test over all channels.
+        predictable: share of the power that the correlations would predict, less the share that
+            chance would predict, 0 to 1.
+        p_line: p-value of the strongest spectral line of all channels.
+        channel: index of the output on which that line has the most power.
         frequency: of that line [Hz].
-        p_louder: that the channels have one variance.
+        p_louder: p-value of the test that all channels have the same variance.
         loudest: index of the output with the largest variance.
     """
 
@@ -41,14 +44,21 @@ class Whiteness:
     p_louder: float
     loudest: int
 
-    @property
-    def correlated(self) -> bool:
+    def is_correlated(self, options: KalmanOptions) -> bool:
         """Whether samples are correlated beyond chance, and by enough to matter."""
-        return self.p_correlation < SURE and self.predictable > MATTERS
+        return (
+            self.p_correlation < options.structure_level
+            and self.predictable > options.min_structure_share
+        )
 
 
 def whiteness(E: np.ndarray, sampling_time: float) -> Whiteness:
-    """Tests of innovations in units of their own std, shape (N, ny)."""
+    """Test innovations.
+
+    Args:
+        E: innovations, shape (N, ny), of any scale that is common to all channels.
+        sampling_time: [s].
+    """
     n, ny = E.shape
     E = E - E.mean(axis=0)
     power = np.mean(E**2, axis=0)
@@ -61,15 +71,15 @@ def whiteness(E: np.ndarray, sampling_time: float) -> Whiteness:
     M = len(I)
     at, sharp = np.unravel_index(int(share.argmax()), share.shape)
     line = ny * M * (1 - share[at, sharp]) ** (M - 1)
-    channel = int(I[at].argmax())  # it is the loudest where it comes from
+    channel = int(I[at].argmax())  # the line has the most power on the output that it comes from
     ratio = power / power.mean()
     louder = float(n / 2 * np.sum((ratio - 1) ** 2))
     return Whiteness(
-        float(chi2.sf(Q, LAGS * ny)),
-        excess / (1 + excess),  # a² of a first-order process with the coefficient a
-        float(min(1.0, line)),
-        channel,
-        float((at + 1) / (n * sampling_time)),
-        float(chi2.sf(louder, ny - 1)) if ny > 1 else 1.0,
-        int(ratio.argmax()),
+        p_correlation=float(chi2.sf(Q, LAGS * ny)),
+        predictable=excess / (1 + excess),  # a² of a first-order process with the coefficient a
+        p_line=float(min(1.0, line)),
+        channel=channel,
+        frequency=float((at + 1) / (n * sampling_time)),
+        p_louder=float(chi2.sf(louder, ny - 1)) if ny > 1 else 1.0,
+        loudest=int(ratio.argmax()),
     )

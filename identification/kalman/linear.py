@@ -1,12 +1,12 @@
-"""The plant along a predicted trajectory, linearised: how small errors of state and input grow.
+"""The plant linearised along a predicted trajectory: how small errors of state and input grow.
 
     δẋ = F(t) δx + G(t) δu,    δx_{k+1} = A_k δx_k + B_k δu_k,    δy_k = C δx_k
 
     [A_k B_k; 0 I] = exp([F G; 0 0] T_s)                               (Van Loan 1978)
 
-x is MuJoCo's state in tangent space: position (nv), velocity (nv), activation (na). F's columns of
-position and velocity come from MuJoCo's own finite differences of one short Euler step, the others
-from those of accelerations.
+x is MuJoCo's state in tangent space: position (nv), velocity (nv), activation (na). The columns of
+F that belong to position and velocity come from MuJoCo's finite differences of one short Euler
+step; the others are finite differences of accelerations.
 """
 
 from __future__ import annotations
@@ -48,7 +48,8 @@ def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = 
     Args:
         predictor: plant and log.
         values: shape (p,), in the parameters' units.
-        forces: degrees of freedom on whose generalised forces B shall act, instead of the inputs.
+        forces: degrees of freedom; where given, B is the effect of generalised forces on them
+            instead of the effect of the inputs.
 
     Raises:
         DivergenceError: the simulation left the finite numbers.
@@ -76,13 +77,13 @@ def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = 
     nx, nu = F.shape[1], G.shape[2]
     block = np.zeros((len(F), nx + nu, nx + nu))
     block[:, :nx] = np.concatenate([F, G], axis=2) * log.sampling_time
-    with threadpool_limits(1, "blas"):  # the matrices are small; threads only wait for each other
+    with threadpool_limits(1, "blas"):  # the matrices are small, so threads would only wait
         block = expm(block)
     return LinearPlant(block[:, :nx, :nx], block[:, :nx, nx:], C)
 
 
 def _felt(F: np.ndarray, C: np.ndarray) -> np.ndarray:
-    """States that some output feels, shape (nx,)."""
+    """Which states have an effect on an output, directly or through others, shape (nx,)."""
     links = np.abs(F).max(axis=0) > 0
     felt = np.any(C != 0, axis=0)
     while (more := felt | links[felt].any(axis=0)).sum() > felt.sum():
@@ -125,12 +126,13 @@ def _derivatives(
 def _differences(model: mujoco.MjModel, data: mujoco.MjData, field: str, n: int) -> np.ndarray:
     """Columns of F or G for activations or inputs, shape (nx, n).
 
-    MuJoCo's own differences hold the passive forces while they move these; a callback's may depend
-    on them, as a cable's tension does on the length that its drum has paid out.
+    MuJoCo's own differences keep the passive forces constant while activations and inputs change.
+    The passive forces of a callback may depend on them: the tension of a cable depends on an
+    activation, the length that its drum has paid out.
     """
     out = np.zeros((1 + n, 2 * model.nv + model.na))
     at = getattr(data, field)
-    for i in range(-1, n):  # first as it is
+    for i in range(-1, n):  # -1: nothing is changed
         if i >= 0:
             was = at[i]
             at[i] = was + EPS

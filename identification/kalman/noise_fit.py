@@ -1,10 +1,10 @@
-"""The level of the noise, by maximum likelihood.
+"""The level of the noise of sensors and inputs, by maximum likelihood.
 
     log L(ρ, τ) = -½ (n log(‖E - Φ c‖²/n) + log det S(ρ, τ)),     σ² = ‖E - Φ c‖²/n
 
-E, Φ: whitened residual and sensitivities, c: the best small change of the parameters, held by
-their priors. ρ is sought on a scale of the plant's own: at ρ₀ the inputs' error moves the outputs
-by as much as the sensors' noise.
+E and Φ are the whitened residual and sensitivities; c is the small change of the parameters, held
+by their priors, that fits best. ρ is searched on a scale that the plant gives: at ρ₀ the inputs'
+error moves the outputs by as much as the sensors' noise.
 """
 
 from __future__ import annotations
@@ -17,26 +17,22 @@ from threadpoolctl import threadpool_limits
 
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_model import Noise, Whitener, build_whitener
+from identification.kalman.options import KalmanOptions
 
-TIME = 0.03  # correlation time of the inputs' error at which a search begins [s]
-LONGEST = (
-    0.3  # what errs for longer is an effect: a noise of any length would explain a constant [s]
-)
-ALLOWED = 0.1  # error of the inputs, of their motion, that is still noise and no missing effect
-FIRST, LAST = 1.6, 1.15  # factors of the pattern search
-AROUND = (1.0, 0.3, 0.05, 0.0)  # times a noise that is near
-ROUGH = (0.0, 0.1, 1.0)  # ρ/ρ₀ to try where none was seen
-LEVELS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # ρ/ρ₀ to try
+FIRST, LAST = 1.6, 1.15  # factors with which the pattern search begins and ends
+AROUND = (1.0, 0.3, 0.05, 0.0)  # multiples of the ρ of a point nearby that are tried
+ROUGH = (0.0, 0.1, 1.0)  # ρ/ρ₀ that are tried where a point nearby had no error of the inputs
+LEVELS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # ρ/ρ₀ that are tried at first
 
 
 @dataclass(frozen=True)
 class NoiseLevel:
-    """A noise and how likely it makes a residual.
+    """A noise and the likelihood of a residual under it.
 
     Attributes:
         noise: ρ and τ.
-        sigma: σ of the sensors, in the outputs' unit.
-        log_likelihood: of the residual, up to a constant of the log.
+        sigma: σ, std of the sensors' noise, in the outputs' unit.
+        log_likelihood: of the residual, up to a constant that depends on the log only.
     """
 
     noise: Noise
@@ -45,12 +41,18 @@ class NoiseLevel:
 
     @property
     def input_std(self) -> float:
-        """ρ σ: std of the inputs' unlogged error, in their unit."""
+        """ρ σ: std of the unlogged error of the inputs, in the inputs' unit."""
         return self.noise.ratio * self.sigma
 
 
 def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) -> float:
-    """ρ₀ at a correlation time: where input errors move the outputs by σ (rms over the log)."""
+    """ρ₀ at a correlation time: there input errors move the outputs by σ (rms over the log).
+
+    Args:
+        plant: the linearised plant.
+        sampling_time: [s].
+        time: correlation time of the inputs' error [s].
+    """
     n, nx, nu = plant.B.shape
     a = np.exp(-sampling_time / time)
     A = np.zeros((n, nx + nu, nx + nu))
@@ -67,7 +69,7 @@ def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) ->
 def evaluate_noise(
     filter_: Whitener, noise: Noise, e: np.ndarray, J: np.ndarray, prior: np.ndarray
 ) -> NoiseLevel:
-    """How likely a noise makes a residual once the parameters have been adjusted.
+    """The likelihood of a residual under a noise, with the parameters adjusted to it.
 
     Args:
         filter_: the whitening filter of the noise.
@@ -78,7 +80,7 @@ def evaluate_noise(
     """
     E, F = filter_(e).ravel(), filter_(J).reshape(e.size, -1)
     sigma = np.sqrt(E @ E / E.size)
-    for _ in range(2):  # the prior weighs by σ
+    for _ in range(2):  # the weight of the prior depends on σ
         H = F.T @ F + np.diag((prior * sigma) ** 2)
         c = np.linalg.solve(H, F.T @ E)
         sigma = np.sqrt(np.sum((E - F @ c) ** 2) / E.size)
@@ -93,6 +95,7 @@ def fit_noise(
     J: np.ndarray,
     prior: np.ndarray,
     sampling_time: float,
+    options: KalmanOptions,
     near: NoiseLevel | None = None,
     fine: bool = True,
     levels: Sequence[float] = LEVELS,
@@ -106,12 +109,14 @@ def fit_noise(
         J: sensitivities, shape (N, ny, p).
         prior: 1/std of each parameter's prior, shape (p,).
         sampling_time: [s].
-        near: where one is known from a point nearby, to begin at.
-        fine: whether ρ and τ are sharpened.
-        levels: ρ/ρ₀ to try where no noise is known.
-        largest: error of the inputs that is believed before it is sharpened, in their unit.
+        options: the correlation times that are admitted.
+        near: the noise of a point nearby, to begin at, where one is known.
+        fine: whether ρ and τ are refined by a pattern search, or only chosen from the grid.
+        levels: the grid of ρ/ρ₀ where no noise is known.
+        largest: largest error of the inputs that is believed on the grid, in the inputs' unit.
     """
-    with threadpool_limits(1, "blas"):  # the matrices are small; threads only wait for each other
+    time = options.start_correlation_time
+    with threadpool_limits(1, "blas"):  # the matrices are small, so threads would only wait
 
         def at(noise: Noise) -> NoiseLevel:
             return evaluate_noise(build_whitener(plant, noise, sampling_time), noise, e, J, prior)
@@ -123,38 +128,41 @@ def fit_noise(
         found: list[NoiseLevel] = []
         if near is not None and near.noise.ratio:
             found = believed(near.noise, AROUND)
-        if len(found) < 2:  # nothing is near, or none of it but silence is believed
-            unit = Noise(compute_unit_ratio(plant, sampling_time, TIME), TIME)
+        if len(found) < 2:  # no noise is known nearby, or only that of ρ = 0 is believed
+            unit = Noise(compute_unit_ratio(plant, sampling_time, time), time)
             silent = near is not None and not near.noise.ratio
             found = believed(unit, ROUGH if silent and not fine else levels)
         best = _best(found)
-        return sharpen(best, at, sampling_time / 3) if fine and best.noise.ratio else best
+        times = sampling_time / 3, options.max_correlation_time  # below the first it is white
+        return refine_noise(best, at, times) if fine and best.noise.ratio else best
 
 
-def sharpen(best: NoiseLevel, at: Callable[[Noise], NoiseLevel], shortest: float) -> NoiseLevel:
+def refine_noise(
+    best: NoiseLevel, at: Callable[[Noise], NoiseLevel], times: tuple[float, float]
+) -> NoiseLevel:
     """The most likely noise near a level: a pattern search over ln ρ√τ and ln τ.
 
-    What a slow plant feels is ρ²τ: the two directions are nearly independent.
+    A slow plant responds to ρ²τ, so that the two directions are nearly independent.
 
     Args:
         best: where to begin.
-        at: the level of a noise.
-        shortest: correlation time, below which the error is white [s].
+        at: gives the level of a noise.
+        times: shortest and longest correlation time [s].
     """
-    step, alone = FIRST, True  # ρ alone first: at a wrong ρ a wrong τ is likely
+    step, alone = FIRST, True  # first ρ alone, because at a wrong ρ a wrong τ is likely
     while step > LAST:
         near = [(step, 1.0), (1 / step, 1.0)]
         near += [] if alone else [(1.0, step**2), (1.0, step**-2)]
-        new = _best([best, *(at(_moved(best.noise, r, τ, shortest)) for r, τ in near)])
+        new = _best([best, *(at(_moved(best.noise, r, τ, times)) for r, τ in near)])
         if new is best:
             step, alone = (step, False) if alone else (step**0.5, False)
         best = new
     return best
 
 
-def _moved(noise: Noise, felt: float, time: float, shortest: float) -> Noise:
-    """A noise whose ρ√τ and τ are multiplied."""
-    other = float(np.clip(noise.time * time, shortest, LONGEST))
+def _moved(noise: Noise, felt: float, time: float, times: tuple[float, float]) -> Noise:
+    """A noise whose ρ√τ is multiplied by `felt` and whose τ is multiplied by `time`."""
+    other = float(np.clip(noise.time * time, *times))
     return noise.lasting(other).scaled(felt)
 
 

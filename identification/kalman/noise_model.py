@@ -1,12 +1,13 @@
-"""What the sensors and the unlogged inputs do to the outputs: a whitening filter for it.
+"""The noise model of sensors and unlogged input errors, and its whitening filter.
 
     δx_{k+1} = A_k δx_k + B_k w_k          w: unlogged error of each input
     w_{k+1}  = a w_k + √(1-a²) ρ ν_k        of std ρ σ, correlation time τ, a = exp(-T_s/τ)
     e_k      = C δx_k + σ v_k               v, ν: white, of unit variance
 
-The Kalman filter of this model turns residuals into innovations that are white where the model is
-right (Kailath 1968): innovations of residual and sensitivities alike make generalised least
-squares and likelihoods as easy as with white noise. σ scales everything and is estimated last.
+The Kalman filter of this model turns residuals into innovations, which are white where the model is
+right (Kailath 1968). With the same filter applied to residuals and sensitivities, generalised least
+squares and likelihoods are as simple as with white noise. σ scales everything and is estimated
+last.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from identification.kalman.linear import LinearPlant
 
 @dataclass(frozen=True)
 class Noise:
-    """Levels of the noise.
+    """The two numbers of the noise model beside σ.
 
     Attributes:
         ratio: ρ, std of the inputs' error over σ [unit of the input per unit of the output].
@@ -31,23 +32,23 @@ class Noise:
     time: float
 
     def scaled(self, factor: float) -> Noise:
-        """The same with another ρ."""
+        """The same noise with ρ multiplied by a factor."""
         return Noise(self.ratio * factor, self.time)
 
     def lasting(self, time: float) -> Noise:
-        """One of another τ and the same ρ²τ, which is what a slow plant feels."""
+        """A noise of another τ [s] and of the same ρ²τ, to which a slow plant responds."""
         return Noise(self.ratio * (self.time / time) ** 0.5, time)
 
 
 @dataclass(frozen=True)
 class Whitener:
-    """A whitening filter: apply it to residuals and sensitivities alike.
+    """A whitening filter; residuals and sensitivities pass the same one.
 
     Attributes:
-        A: transition of state and disturbance, shape (N-1, nz, nz).
-        C: shape (ny, nz).
-        K: gains, shape (N, nz, ny).
-        L: Cholesky factors of the innovations' covariance over σ², inverted, shape (N, ny, ny).
+        A: transitions of the state z = (x, w) of plant and input error, shape (N-1, nz, nz).
+        C: outputs from that state, shape (ny, nz).
+        K: Kalman gains, shape (N, nz, ny).
+        L: inverted Cholesky factors of the innovations' covariances over σ², shape (N, ny, ny).
         log_determinant: Σ log det of the covariances over σ².
     """
 
@@ -58,7 +59,7 @@ class Whitener:
     log_determinant: float
 
     def __call__(self, e: np.ndarray) -> np.ndarray:
-        """Innovations of e, shape (n, ny) or (n, ny, p) for n <= N samples; their std is σ."""
+        """Innovations of e, shape (n, ny) or (n, ny, p) for n <= N samples, of std σ each."""
         if not self.A.size:
             return np.array(e)
         columns = e.reshape(*e.shape[:2], -1)
@@ -75,7 +76,12 @@ class Whitener:
 def augment(
     plant: LinearPlant, noise: Noise, sampling_time: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """A (N-1, nz, nz), C (ny, nz), P at the first sample and Q, both over σ², of z = (x, w)."""
+    """The linear system of the state z = (x, w) of plant and input error.
+
+    Returns:
+        A, shape (N-1, nz, nz), C, shape (ny, nz), and the covariances over σ² of the first state,
+        P, and of the process noise of a sample, Q, shape (nz, nz) each.
+    """
     n, nx, nu = plant.B.shape
     a = np.exp(-sampling_time / noise.time)
     A = np.zeros((n, nx + nu, nx + nu))
@@ -88,7 +94,10 @@ def augment(
 
 
 def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
-    """The whitening filter for a level of noise; the start is known (its errors are parameters)."""
+    """The whitening filter of a noise.
+
+    The state of the plant at the first sample is taken as known, because its errors are parameters.
+    """
     n, ny = len(plant.B), len(plant.C)
     if noise.ratio == 0:
         return Whitener(np.empty((0, 0, 0)), plant.C, np.empty(0), np.empty(0), 0.0)

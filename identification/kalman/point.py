@@ -17,14 +17,14 @@ from identification.model.predictor import Predictor
 STEP = 1e-4  # of q, for forward differences
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Point:
-    """What is known at q.
+    """A plant evaluated at the coordinates q of its free parameters.
 
     Attributes:
         predictor: plant, log, and names of the free parameters.
-        space: their coordinates.
-        q: where, shape (p,).
+        space: coordinates of the free parameters.
+        q: the point, shape (p,).
         e: residual, shape (N, ny).
         J: sensitivities Φ, shape (N, ny, p).
         linear: the plant linearised along its trajectory.
@@ -39,7 +39,7 @@ class Point:
 
     @property
     def log(self) -> Log:
-        """The log that is explained."""
+        """The log that the residual belongs to."""
         return self.predictor.log
 
     @property
@@ -57,13 +57,13 @@ class Point:
 def evaluate_point(
     predictor: Predictor, space: Coordinates, q: np.ndarray, linear: LinearPlant | None = None
 ) -> Point:
-    """Simulate a plant and its sensitivities at q, all in one batch.
+    """Simulate a plant and its sensitivities at q, in one batch of simulations.
 
     Args:
         predictor: plant, log and free parameters.
         space: coordinates of the free parameters.
         q: shape (p,).
-        linear: the linearisation, where an older one is good enough.
+        linear: a linearisation from a point nearby that is good enough; a new one when None.
 
     Raises:
         DivergenceError: a simulation left the finite numbers.
@@ -72,11 +72,12 @@ def evaluate_point(
     predicted, J = _sensitivities(predictor, space, inside)
     if linear is None:
         linear = linearise(predictor, space.decode(inside))
-    return Point(predictor, space, inside, predictor.log.outputs - predicted, J, linear)
+    e = predictor.log.outputs - predicted
+    return Point(predictor=predictor, space=space, q=inside, e=e, J=J, linear=linear)
 
 
 def evaluate_sensitivities(point: Point, whole: Log) -> np.ndarray:
-    """J of the same values on a longer log, shape (N, ny, p)."""
+    """J of the same point on a longer log, shape (N, ny, p)."""
     return _sensitivities(replace(point.predictor, log=whole), point.space, point.q)[1]
 
 
@@ -90,8 +91,11 @@ def _sensitivities(
 
 
 def extend_point(point: Point, whole: Log) -> Point:
-    """The same values on a longer log, whose first samples are the point's own."""
+    """The same point on a longer log, of which its own log is the beginning; without J."""
     predictor = replace(point.predictor, log=whole)
     values = point.space.decode(point.q)
     e = whole.outputs - predictor.predict(values)[0]
-    return Point(predictor, point.space, point.q, e, point.J[:0], linearise(predictor, values))
+    linear = linearise(predictor, values)
+    return Point(
+        predictor=predictor, space=point.space, q=point.q, e=e, J=point.J[:0], linear=linear
+    )

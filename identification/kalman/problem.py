@@ -1,10 +1,10 @@
-"""The criterion about a point, linearised, and its damped steps.
+"""The criterion of a fit, linearised about a point, and its damped steps.
 
     min_δ ‖r + F δ‖² + μ ‖δ‖²,    r: innovations over σ, and the priors
 
-Its valleys are narrow and curved (a Stribeck peak and the slope of the smooth sign make up for one
-another), so that a straight step that falls short is bent by what the residual does along it
-("geodesic acceleration", Transtrum and Sethna 2012):
+The valleys of the criterion are narrow and curved: a Stribeck peak and the slope of the smooth sign
+compensate each other. A straight step whose gain is less than expected is therefore bent along the
+second derivative of the residual ("geodesic acceleration", Transtrum and Sethna 2012):
 
     q + δ + a,    a = argmin ‖r''(δ)/2 - F a‖² + μ ‖a‖²,    r''(δ) = (r(q + hδ) - r(q) + h F δ) 2/h²
 """
@@ -21,13 +21,23 @@ from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Whitener, build_whitener
 from identification.kalman.point import Point
 
-LARGEST = 0.5  # step of a logarithm: parameters change by at most 65 % at a time
-ALONG = 0.1  # h, of the step
+LARGEST = 0.5  # largest step of a logarithm: a parameter changes by at most 65 % at a time
+ALONG = 0.1  # h: the share of the step at which the second derivative is taken
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Problem:
-    """The criterion about a point: rows of the innovations and of the priors, in units of σ."""
+    """The criterion about a point: rows of the innovations and of the priors, in units of σ.
+
+    Attributes:
+        point: the plant at the point, with p free parameters.
+        level: the noise.
+        mean: q̄ of the priors, shape (p,).
+        prior: 1/std of each prior, zero where there is none, shape (p,).
+        filter: the whitening filter of the noise.
+        rows: F, shape (N ny + p, p).
+        target: -r, shape (N ny + p,).
+    """
 
     point: Point
     level: NoiseLevel
@@ -39,27 +49,33 @@ class Problem:
 
     @property
     def cost_here(self) -> float:
-        """The criterion at the point itself."""
+        """The value of the criterion at the point."""
         return float(self.target @ self.target)
 
     @property
     def log_posterior(self) -> float:
-        """Of the point as it is, where that of its noise lets the parameters move a little."""
+        """Log posterior of the point itself, up to a constant.
+
+        `level.log_likelihood` is that after a small change of the parameters.
+        """
         return self.level.log_likelihood - self.cost_here / 2
 
     @property
-    def left(self) -> np.ndarray:
-        """Innovations that the best small change of the parameters would leave, shape (N, ny)."""
-        left = self.target - self.rows @ self.step(0.0)[0]
-        return left[: self.point.e.size].reshape(self.point.e.shape)
+    def remaining_innovations(self) -> np.ndarray:
+        """Innovations after the best small change of the parameters, shape (N, ny)."""
+        remaining = self.target - self.rows @ self.step(0.0)[0]
+        return remaining[: self.point.e.size].reshape(self.point.e.shape)
 
     def step(self, μ: float) -> tuple[np.ndarray, float]:
-        """The step of Levenberg and Marquardt, and how far the criterion would fall."""
+        """The Levenberg-Marquardt step, shape (p,), and the expected fall of the criterion."""
         move = self._least(self.target, μ, np.zeros_like(self.point.q))
         return move, self.cost_here - float(np.sum((self.target - self.rows @ move) ** 2))
 
-    def bent(self, move: np.ndarray, μ: float) -> np.ndarray:
-        """A step that follows the residual's curve; the step itself where that leads nowhere."""
+    def bend(self, move: np.ndarray, μ: float) -> np.ndarray:
+        """The step with its second-order correction, shape (p,).
+
+        It is the step itself where the plant cannot be simulated along it.
+        """
         ahead = self.residual(self.point.q + ALONG * move)
         if ahead is None:
             return move
@@ -67,7 +83,7 @@ class Problem:
         return move + self._least(curve / 2, μ, move)
 
     def _least(self, target: np.ndarray, μ: float, begun: np.ndarray) -> np.ndarray:
-        """The damped move that leaves the least of a target, where one has begun to move."""
+        """The damped move that makes ‖target - F δ‖ least, within the bounds left after `begun`."""
         point, size = self.point, np.where(self.point.space.logarithmic, LARGEST, np.inf)
         lower = np.minimum(np.maximum(point.space.lower - point.q, -size) - begun, 0.0)
         upper = np.maximum(np.minimum(point.space.upper - point.q, size) - begun, 0.0)
@@ -79,22 +95,22 @@ class Problem:
         return np.asarray(lsq_linear(square, both, bounds).x / scale)
 
     def residual(self, q: np.ndarray) -> np.ndarray | None:
-        """Rows of the residual elsewhere, by the same filter; None where it cannot be simulated."""
+        """-r at another q with the same filter, shape (N ny + p,); None where it diverges."""
         point = self.point
         try:
             predicted = point.predictor.predict(point.space.decode(point.space.inside(q)))[0]
-        except (DivergenceError, InputError):  # or a start that cannot stand
+        except (DivergenceError, InputError):  # InputError: the robot cannot rest at its start
             return None
         E = self.filter(point.log.outputs - predicted) / self.level.sigma
         return np.concatenate([E.ravel(), self.prior * (self.mean - q)])
 
     def cost(self, q: np.ndarray) -> float:
-        """The criterion elsewhere; infinite where nothing can be simulated."""
+        """The criterion at another q; infinite where the plant cannot be simulated."""
         there = self.residual(q)
         return np.inf if there is None else float(there @ there)
 
     def std(self) -> np.ndarray:
-        """Std of q by the curvature, shape (p,)."""
+        """Std of q by the curvature of the criterion, shape (p,)."""
         covariance = np.linalg.pinv(self.rows.T @ self.rows, rcond=1e-14, hermitian=True)
         return np.sqrt(np.diag(covariance))
 
@@ -102,11 +118,20 @@ class Problem:
 def linearise_criterion(
     point: Point, level: NoiseLevel, mean: np.ndarray, prior: np.ndarray
 ) -> Problem:
-    """The criterion about a point."""
+    """The criterion about a point.
+
+    Args:
+        point: the plant at the point.
+        level: the noise.
+        mean: q̄ of the priors, shape (p,).
+        prior: 1/std of each prior, zero where there is none, shape (p,).
+    """
     filter_ = build_whitener(point.linear, level.noise, point.log.sampling_time)
     E, F = (
         filter_(point.e).ravel() / level.sigma,
         filter_(point.J).reshape(point.e.size, -1) / level.sigma,
     )
     rows, target = np.vstack([F, np.diag(prior)]), np.concatenate([E, prior * (mean - point.q)])
-    return Problem(point, level, mean, prior, filter_, rows, target)
+    return Problem(
+        point=point, level=level, mean=mean, prior=prior, filter=filter_, rows=rows, target=target
+    )

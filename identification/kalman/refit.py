@@ -2,9 +2,10 @@
 
     min_q  ‖E(q)‖²/σ² + Σ ((q_j - q̄_j)/s_j)²,      E: innovations of e = y - ŷ(q)
 
-A free run of a wrong model drifts, and a fit of it bends the parameters to follow. The predictor's
-noise takes part of what is missing for unlogged input errors, at a level that the data choose: the
-criterion is tame from afar, and at the truth it is maximum likelihood.
+A free run of a wrong model drifts away from the data, and a fit of the free run bends the
+parameters until it follows. The noise model of the Kalman predictor takes a part of what is missing
+for unlogged errors of the inputs, at a level that is estimated. The criterion is therefore smooth
+far from the truth, and at the truth it is that of maximum likelihood.
 """
 
 from __future__ import annotations
@@ -16,30 +17,30 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.kalman.innovations import whiteness
-from identification.kalman.noise_fit import ALLOWED, NoiseLevel, fit_noise
+from identification.kalman.noise_fit import NoiseLevel, fit_noise
+from identification.kalman.options import KalmanOptions
 from identification.kalman.point import Point, evaluate_point
 from identification.kalman.problem import Problem, linearise_criterion
 
 NEAR = 0.02  # relative change of the parameters after which the linearisation still holds
-ENDED = 0.1  # expected fall of the criterion, in units of the noise, that ends the search
-DAMPED = 1e-4  # μ after the first step that failed; the rows' columns have length 1
-TRIES = 6  # of a step, each damped ten times as much
-PATIENCE = 2  # steps that gain nothing, after which a search ends
-CLOSER = 0.97  # of innovations or a free run, that is a gain while noise is only roughly known
-SHORT = 0.5  # of the fall that was expected, below which a step is bent
+ENDED = 0.1  # expected fall of the criterion, in units of the noise, below which a search ends
+DAMPED = 1e-4  # μ after the first step that failed; the columns of the rows have length 1
+TRIES = 6  # attempts at a step, each damped ten times as much as the one before
+PATIENCE = 2  # successive steps without progress after which a search ends
+SHORT = 0.5  # share of the expected fall below which a step is bent
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Refit:
-    """Where the search ended.
+    """The estimate at which a search ended.
 
     Attributes:
         point: the plant at the estimate.
         level: the noise.
-        std: of q, by the likelihood's curvature, shape (p,).
+        std: of q, by the curvature of the likelihood, shape (p,).
         mean: q̄ of the priors, shape (p,).
         prior: 1/std of each prior, zero where there is none, shape (p,).
-        steps: taken to it.
+        steps: number of steps that were taken.
     """
 
     point: Point
@@ -51,28 +52,36 @@ class Refit:
 
     @property
     def log_posterior(self) -> float:
-        """Log likelihood less what the priors hold against the estimate."""
+        """Log likelihood plus log density of the priors, up to a constant."""
         against = float(np.sum(((self.point.q - self.mean) * self.prior) ** 2))
         return self.level.log_likelihood - against / 2
+
+    @property
+    def relative_input_error(self) -> float:
+        """Std of the inputs' error in the noise model, as a share of the inputs' own motion."""
+        moved = self.point.motion
+        return self.level.input_std / moved if moved > 0 else 0.0
 
 
 def refit(
     point: Point,
     mean: np.ndarray,
     prior: np.ndarray,
+    options: KalmanOptions,
     steps: int = 20,
     near: NoiseLevel | None = None,
 ) -> Refit:
-    """Estimate the free parameters of a point, from where it is.
+    """Estimate the free parameters of a point, beginning where it is.
 
     Args:
         point: where to begin.
         mean: q̄ of the priors, shape (p,).
         prior: 1/std of each prior, zero where there is none, shape (p,).
-        steps: at most as many.
+        options: which noise is believed.
+        steps: largest number of steps.
         near: a noise to begin at, where one is known.
     """
-    seen = deque(enumerate(descend(point, mean, prior, near, steps)), maxlen=1)
+    seen = deque(enumerate(descend(point, mean, prior, options, near, steps)), maxlen=1)
     taken, (end, level) = seen[0]
     return conclude(end, level, mean, prior, taken)
 
@@ -81,37 +90,40 @@ def descend(
     point: Point,
     mean: np.ndarray,
     prior: np.ndarray,
+    options: KalmanOptions,
     near: NoiseLevel | None = None,
     steps: int = 20,
 ) -> Generator[tuple[Point, NoiseLevel], None, bool]:
     """The points of a search, each with its noise, from the first to the likeliest.
 
-    First the model approaches the data, in likelihood or in its free run, under a noise that is
-    only roughly known and no larger than noise is. Then the noise is sharpened, and likelihood
-    alone counts, unless it is blind.
+    First the model approaches the data: a step counts as progress when likelihood or free run
+    improve, under a noise that is chosen from a grid and bounded by `options.allowed_input_error`.
+    Then the noise is refined without that bound, and only the likelihood counts. This second part
+    is left out where the refined noise exceeds the bound and its innovations are not white.
 
     Args:
         point: where to begin.
         mean: q̄ of the priors, shape (p,).
         prior: 1/std of each prior, zero where there is none, shape (p,).
+        options: which noise is believed.
         near: a noise to begin at, where one is known.
-        steps: at most as many.
+        steps: largest number of steps.
 
     Returns:
-        Whether it ended before the steps did.
+        Whether the search ended before it had used all steps.
     """
-    believed = ALLOWED * point.motion
-    level = estimate_noise(point, prior, near, largest=believed)
+    believed = options.allowed_input_error * point.motion
+    level = estimate_noise(point, prior, options, near, largest=believed)
     yield point, level
     for fine in (False, True):
         if fine:
-            level = estimate_noise(point, prior, level, fine)
+            level = estimate_noise(point, prior, options, level, fine)
             yield point, level
         last = point
         problem = linearise_criterion(point, level, mean, prior)
         best, most, least = (point, level), problem.log_posterior, _rms(point)
         μ, idle = 0.0, 0
-        while steps and idle < PATIENCE and not (fine and _blind(problem)):
+        while steps and idle < PATIENCE and not (fine and _is_refuted(problem, options)):
             move, μ = _move(problem, μ)
             if move is None:
                 break
@@ -120,14 +132,15 @@ def descend(
             point = evaluate_point(
                 point.predictor, point.space, point.q + move, point.linear if moved < NEAR else None
             )
-            level = estimate_noise(point, prior, level, largest=np.inf if fine else believed)
+            largest = np.inf if fine else believed
+            level = estimate_noise(point, prior, options, level, largest=largest)
             yield point, level
             last = point
-            # Each point has a linearisation and a noise of its own, so that likelihood may fall.
+            # Every point has its own linearisation and noise, so the likelihood may also fall.
             problem = linearise_criterion(point, level, mean, prior)
             likely, off = problem.log_posterior, _rms(point)
-            gain = ENDED if fine else -point.e.size * float(np.log(CLOSER))
-            better = likely > most + gain or (not fine and off < CLOSER * least)
+            gain = ENDED if fine else -point.e.size * float(np.log(options.approach_factor))
+            better = likely > most + gain or (not fine and off < options.approach_factor * least)
             if better or likely > most:
                 best = point, level
             most, least, idle = max(likely, most), min(off, least), 0 if better else idle + 1
@@ -137,27 +150,32 @@ def descend(
     return steps > 0
 
 
-def _blind(problem: Problem) -> bool:
-    """Whether the noise explains what it is not: inputs that err too much, and not by chance."""
+def _is_refuted(problem: Problem, options: KalmanOptions) -> bool:
+    """Whether the noise model is wrong here: its input error is too large and is not random.
+
+    Its likelihood is then no guide.
+    """
     point = problem.point
-    large = problem.level.input_std > ALLOWED * point.motion
-    return large and whiteness(problem.left, point.log.sampling_time).correlated
+    if problem.level.input_std <= options.allowed_input_error * point.motion:
+        return False
+    white = whiteness(problem.remaining_innovations, point.log.sampling_time)
+    return white.is_correlated(options)
 
 
 def _rms(point: Point) -> float:
-    """Of the residual of the free run."""
+    """Rms of the residual of the free run."""
     return float(np.sqrt(np.mean(point.e**2)))
 
 
 def _move(problem: Problem, μ: float) -> tuple[np.ndarray | None, float]:
-    """A step that makes the criterion fall, None where none is left; and the next damping."""
+    """A step that lowers the criterion, shape (p,), or None; and the next damping."""
     if problem.step(0.0)[1] < ENDED:
         return None, μ
     for _ in range(TRIES):
         move, fall = problem.step(μ)
         cost = problem.cost(problem.point.q + move)
         if problem.cost_here - cost < SHORT * fall:
-            bent = problem.bent(move, μ)
+            bent = problem.bend(move, μ)
             if (other := problem.cost(problem.point.q + bent)) < cost:
                 move, cost = bent, other
         if cost < problem.cost_here:
@@ -169,19 +187,28 @@ def _move(problem: Problem, μ: float) -> tuple[np.ndarray | None, float]:
 def conclude(
     point: Point, level: NoiseLevel, mean: np.ndarray, prior: np.ndarray, taken: int
 ) -> Refit:
-    """The end of a search."""
-    return Refit(
-        point, level, linearise_criterion(point, level, mean, prior).std(), mean, prior, taken
-    )
+    """The estimate at the point where a search ended after `taken` steps."""
+    std = linearise_criterion(point, level, mean, prior).std()
+    return Refit(point=point, level=level, std=std, mean=mean, prior=prior, steps=taken)
 
 
 def estimate_noise(
     point: Point,
     prior: np.ndarray,
+    options: KalmanOptions,
     near: NoiseLevel | None,
     fine: bool = False,
     largest: float = np.inf,
 ) -> NoiseLevel:
-    """The most likely noise of a point's residual."""
-    Ts = point.log.sampling_time
-    return fit_noise(point.linear, point.e, point.J, prior, Ts, near, fine, largest=largest)
+    """The most likely noise of a point's residual.
+
+    Args:
+        point: the plant with its residual.
+        prior: 1/std of each prior, zero where there is none, shape (p,).
+        options: the correlation times that are admitted.
+        near: the noise of a point nearby, where one is known.
+        fine: whether the noise is refined by a search.
+        largest: largest error of the inputs that is believed before, in the inputs' unit.
+    """
+    linear, e, J, Ts = point.linear, point.e, point.J, point.log.sampling_time
+    return fit_noise(linear, e, J, prior, Ts, options, near, fine, largest=largest)

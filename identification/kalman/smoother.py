@@ -1,8 +1,9 @@
-"""What the inputs lacked, seen from the whole log: the fixed-interval smoother.
+"""The most likely errors of the inputs, given a whole log: the fixed-interval smoother.
 
     ẑ_{k|N} = ẑ_{k|k} + G_k (ẑ_{k+1|N} - ẑ_{k+1|k}),    G_k = P_{k|k} A_kᵀ P_{k+1|k}⁻¹
 
-z is the state of `noise_model`: the plant's and the inputs' error w (Rauch, Tung, Striebel 1965).
+z = (x, w) is the state of `noise_model`: that of the plant and the error of the inputs (Rauch, Tung
+and Striebel 1965).
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from identification.kalman.noise_model import Noise, augment
 def smooth(
     plant: LinearPlant, noise: Noise, e: np.ndarray, sampling_time: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The most likely errors of the inputs, and what they do to the outputs.
+    """The most likely errors of the inputs, and their part of the residual.
 
     Args:
         plant: the linearised plant.
@@ -32,7 +33,7 @@ def smooth(
         return np.zeros((n, nu)), np.zeros_like(e)
     A, C, P, Q = augment(plant, noise, sampling_time)
     z = np.zeros(len(P))
-    seen, later = [], []  # (z, P) given the sample, and given those before it
+    seen, later = [], []  # (z, P) given the samples up to k, and given those up to k - 1
     for k in range(n):
         later.append((z, P))
         PC = P @ C.T

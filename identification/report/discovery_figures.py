@@ -1,4 +1,4 @@
-"""Figures of a discovery: the gap on unseen data, where it is, and who could explain it."""
+"""Figures of a discovery: the gap on unseen samples, where it is, and the scores of candidates."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from identification.report.style import GREY, INK, MEASURED, SIMULATED, STYLE
 
 BEFORE, AFTER = SIMULATED, MEASURED
 BAND = "#C9CED6"
-FAR = 20.0  # a bar this much shorter than another is lost on a linear axis
+FAR = 20.0  # a bar shorter than another by this factor needs a logarithmic axis
 
 
 def gap_figure(
@@ -137,7 +137,7 @@ def rms_figure(
 
 
 def gains_figure(labels: Sequence[str], gains: np.ndarray, named: Sequence[bool]) -> Figure:
-    """Horizontal bars of what each candidate would explain, the best on top.
+    """Horizontal bars of how much each candidate would explain, the best on top.
 
     Args:
         labels: of the candidates.

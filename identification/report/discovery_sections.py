@@ -1,4 +1,4 @@
-"""What the report of a discovery says, section by section."""
+"""Sections of a report with figures: the gap, where the models fail, and all candidates."""
 
 from __future__ import annotations
 
@@ -15,11 +15,9 @@ from identification.report.discovery_figures import (
     gap_figure,
     rms_figure,
 )
-from identification.report.discovery_verdict import (
-    floor_rms,
-    sentence,
-)
-from identification.report.discovery_words import not_believed, phrase
+from identification.report.discovery_verdict import floor_rms
+from identification.report.effect_words import describe_effect, describe_rejected
+from identification.report.finding_words import describe_finding, sentence
 from identification.report.page import Section, Table
 
 if TYPE_CHECKING:
@@ -29,7 +27,7 @@ BEST = 10  # candidates shown
 
 
 def unseen_rows(found: Discovery) -> np.ndarray:
-    """Which samples the fit has not seen; all, where it has seen all."""
+    """Which samples the fit has not seen, shape (N,); all of them where it has seen all."""
     splits = found.log.splits or halves(found.log)
     start, end = splits["estimation"]
     unseen = (found.log.time < start) | (found.log.time >= end)
@@ -37,7 +35,7 @@ def unseen_rows(found: Discovery) -> np.ndarray:
 
 
 def gap_section(found: Discovery) -> Section:
-    """How the gap shrinks on data that the fit has not seen."""
+    """The section on the gap on unseen samples, before and after."""
     unit, rows = found.log.output_unit, unseen_rows(found)
     log, before, after = found.log, *_errors(found)
     figure = gap_figure(
@@ -66,11 +64,11 @@ def gap_section(found: Discovery) -> Section:
 
 
 def where_section(found: Discovery) -> Section:
-    """Where the nominal model fails, and where the final one still does."""
+    """The section on where the nominal model fails, and where the final one still does."""
     rows, unit = unseen_rows(found), found.log.output_unit
     before, after = _errors(found)
     title = "With what is named" if found.named else "What is left"
-    left = [f"{title}: {'; '.join(found.left)}."] if found.left else []
+    left = [f"{title}: {'; '.join(map(describe_finding, found.findings))}."]
     figure = rms_figure(
         _rms(before[rows]), None if after is None else _rms(after[rows]), floor_rms(found),
         found.log.output_names, unit,
@@ -78,17 +76,18 @@ def where_section(found: Discovery) -> Section:
     forces = tuple(
         (f"Force on {m.where} that the nominal model lacks",
          force_figure(found.log.time[: len(m.force)], m.force, m.names, m.units))
-        for m in found.missing
+        for m in found.missing_forces
     )  # fmt: skip
+    located = " ".join(sentence(describe_finding(f)) for f in found.located)
     return Section(
         "Where it disagrees",
-        "\n\n".join([" ".join(map(sentence, found.located)), *left]),
+        "\n\n".join([located, *(left if found.findings else [])]),
         figures=(("Error by output on unseen data", figure), *forces),
     )
 
 
 def rivals_section(found: Discovery) -> Section:
-    """Who could explain the gap, and how well."""
+    """The section on all candidates: how much each would explain, and the rivals of the named."""
     each: dict[str, Score] = {}  # the best place and shape of every effect
     for score in found.scores:
         each.setdefault(score.candidate.effect.name, score)
@@ -103,7 +102,12 @@ def rivals_section(found: Discovery) -> Section:
         )
         figures = (("Gain of the best candidates on the nominal fit", figure),)
     rows = tuple(
-        (phrase(n.candidate), phrase(r.candidate), f"{100 * r.confidence:.0f} %", r.alike)
+        (
+            describe_effect(n.candidate),
+            describe_effect(r.candidate),
+            f"{100 * r.confidence:.0f} %",
+            r.alike,
+        )
         for n in found.named
         for r in n.rivals
     )
@@ -113,7 +117,7 @@ def rivals_section(found: Discovery) -> Section:
     )
     if not rows and found.named:
         text += "\n\nNo other explanation comes near those that are named."
-    title, lines = not_believed(found)
+    title, lines = describe_rejected(found)
     if lines:
         text += f"\n\n{title.capitalize()}: {' '.join(map(sentence, lines))}"
     return Section(
@@ -125,7 +129,7 @@ def rivals_section(found: Discovery) -> Section:
 
 
 def label(score: Score) -> str:
-    """A candidate's name, place and shapes, short."""
+    """A short label of a candidate: its name, place and shapes."""
     c = score.candidate
     where = "" if c.where.startswith("all ") or c.where == "platform" else f" ({c.where})"
     shape = ", ".join(f"{n} = {v:.3g}" for n, v in c.shape.items())
@@ -133,7 +137,7 @@ def label(score: Score) -> str:
 
 
 def _judged(found: Discovery) -> str:
-    """That the table is not of the figure's free run, where that is so."""
+    """A paragraph where the table is of windows and the figure of a free run."""
     if found.horizon is None:
         return ""
     return (

@@ -1,17 +1,23 @@
-"""What the report of a discovery says in tables: what was added, parameters, what stays hidden."""
+"""Sections of a report that are tables: added effects, parameters, and what stays hidden."""
 
 from __future__ import annotations
 
-from identification.discovery.final_values import final_values, std_of
-from identification.discovery.result import Detectable, Discovery
+from identification.discovery.effect_results import Detectable
+from identification.discovery.final_values import collect_final_values, collect_std
+from identification.discovery.result import Discovery
 from identification.quantities import quantity
 from identification.report.discovery_verdict import split_detectable
-from identification.report.discovery_words import phrase
+from identification.report.effect_words import describe_effect
 from identification.report.page import Section, Table
 
 
 def diff_section(found: Discovery, files: str = "") -> Section:
-    """What was added to the model, as laws and numbers; `files` says where that model is."""
+    """The effects that were added to the model, as laws and numbers.
+
+    Args:
+        found: the discovery.
+        files: a sentence that says where the model with them is.
+    """
     if not found.named:
         return Section("What was added", "Nothing: the model is the nominal one, fitted.")
     rows = []
@@ -19,7 +25,7 @@ def diff_section(found: Discovery, files: str = "") -> Section:
         c = named.candidate
         for k, (name, (value, std, unit)) in enumerate(named.parameters.items()):
             rows.append(
-                (f"+ {phrase(c)}" if k == 0 else "", c.effect.law if k == 0 else "", name,
+                (f"+ {describe_effect(c)}" if k == 0 else "", c.effect.law if k == 0 else "", name,
                  quantity(value, std, unit), f"{100 * named.confidence:.0f} %" if k == 0 else "")
             )  # fmt: skip
     return Section(
@@ -30,10 +36,10 @@ def diff_section(found: Discovery, files: str = "") -> Section:
 
 
 def parameters_section(found: Discovery) -> Section:
-    """Nominal values beside those of the first fit and of the last."""
+    """Nominal values beside those of the fit without effects and of the final fit."""
     plant = found.final.point.predictor.plant
-    first, last = std_of(found.nominal), std_of(found.final)
-    nominal, values = found.nominal.point.values, final_values(found)
+    first, last = collect_std(found.nominal), collect_std(found.final)
+    nominal, values = found.nominal.point.values, collect_final_values(found)
     rows, held = [], []
     for p in plant.parameters:
         if p.name not in last and p.name not in first:
@@ -47,9 +53,10 @@ def parameters_section(found: Discovery) -> Section:
         )
         rows.append(row if found.named else row[:3])
     titles = ("parameter", "nominal", "fitted without effects", "fitted with what is named")
-    said = "A std holds for the model as it is: that of a wrong model is too small."
+    said = "A std holds if the model is right; that of a wrong model is too small."
     if held:
-        said += f" So it is where {' or '.join(held)}, held at the nominal value, is not that."
+        said += f" It is also too small where the true value of {' or '.join(held)}, which was held"
+        said += " fixed, is not the nominal one."
     return Section(
         "The parameters",
         said,
@@ -58,11 +65,13 @@ def parameters_section(found: Discovery) -> Section:
 
 
 def unseen_section(found: Discovery) -> Section:
-    """What this log could have shown, and what not."""
+    """What this log would have shown, and what not."""
     seen, blind = split_detectable(found.detectable)
-    rows = [(phrase(d.candidate), d.size, quantity(d.smallest, unit=d.unit), _plausible(d))
+    rows = [(describe_effect(d.candidate), d.size, quantity(d.smallest, unit=d.unit), _plausible(d))
             for d in seen]  # fmt: skip
-    rows += [(phrase(d.candidate), d.size, "not by this log", _plausible(d)) for d in blind]
+    rows += [
+        (describe_effect(d.candidate), d.size, "not by this log", _plausible(d)) for d in blind
+    ]
     return Section(
         "What it could have seen",
         "The smallest size of each effect that is found in 9 of 10 logs like this one, beside the"

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from math import isfinite
-from typing import Any
+from collections.abc import Sequence
 
-from identification.discovery.result import Discovery, Gap
+from identification.discovery.effect_results import Gap
+from identification.discovery.findings.finding import Finding
+from identification.discovery.result import Discovery
 from identification.quantities import alike, quantity
 from identification.report.discovery_verdict import (
     diff_line,
@@ -13,29 +14,31 @@ from identification.report.discovery_verdict import (
     floor_rms,
     split_detectable,
 )
-from identification.report.discovery_words import not_believed, phrase
+from identification.report.effect_words import describe_effect, describe_rejected
+from identification.report.finding_words import describe_finding
 
-SHOWN = 0.005  # chance of an explanation that is worth a line
+SHOWN = 0.005  # an explanation with a smaller confidence gets no line
 
 
 def discovery_text(found: Discovery) -> str:
-    """All of it, in paragraphs."""
-    title, lines = not_believed(found)
+    """The whole outcome, in paragraphs."""
+    title, lines = describe_rejected(found)
     parts = [
         "\n".join(discovery_verdict(found)),
         "\n".join(_diff(found)),
         "\n".join(_gap(found)),
-        "\n".join(["where the nominal model fails:", *(f"  {s}" for s in found.located)])
-        if found.located
-        else "",
-        "\n".join(["where the final model still fails:", *(f"  {s}" for s in found.left)])
-        if found.left
-        else "",
+        _list("where the nominal model fails", found.located),
+        _list("where the final model still fails", found.findings),
         "\n".join([f"{title}:", *(f"  {line}" for line in lines)]) if lines else "",
         "\n".join(_detectable(found)),
         f"{sum(found.seconds.values()):.1f} s",
     ]
     return "\n\n".join(part for part in parts if part)
+
+
+def _list(title: str, findings: Sequence[Finding]) -> str:
+    lines = (f"  {describe_finding(finding)}" for finding in findings)
+    return "\n".join([f"{title}:", *lines]) if findings else ""
 
 
 def _diff(found: Discovery) -> list[str]:
@@ -44,8 +47,9 @@ def _diff(found: Discovery) -> list[str]:
         lines += [diff_line(named), f"    law: {named.candidate.effect.law}"]
         gains = f"    gain {named.gain:.4g} on fitted samples, {named.proof.gain:.4g} on unseen"
         lines.append(f"{gains} (t = {named.proof.t:.1f})")
-        lines += [f"    rival: {phrase(r.candidate)}, confidence {100 * r.confidence:.0f} %"
-                  for r in named.rivals]  # fmt: skip
+        for rival in named.rivals:
+            said = f"{describe_effect(rival.candidate)}, confidence {100 * rival.confidence:.0f} %"
+            lines.append(f"    rival: {said}")
         if (other := named.retuned).confidence >= SHOWN:
             lines.append(
                 f"    no effect, but {other.parameter} {other.distance:+.2g} std from what was"
@@ -79,12 +83,3 @@ def _detectable(found: Discovery) -> list[str]:
     lines += [f"  {d.candidate.effect.name:<{width}}  {d.size}: not at any plausible size"
               for d in blind]  # fmt: skip
     return lines
-
-
-def finite(value: Any) -> Any:
-    """Plain values with None for every number that is not finite."""
-    if isinstance(value, dict):
-        return {k: finite(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [finite(v) for v in value]
-    return None if isinstance(value, float) and not isfinite(value) else value

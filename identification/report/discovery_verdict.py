@@ -1,18 +1,18 @@
-"""What a discovery means, in sentences: one paragraph each of what was found and what was not."""
+"""The verdict of a discovery in sentences, and what supports it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from math import hypot, isfinite
 
-from identification.discovery.findings.location import input_error
-from identification.discovery.result import Detectable, Discovery, Named
-from identification.kalman.noise_fit import ALLOWED
+from identification.discovery.effect_results import Detectable, NamedEffect
+from identification.discovery.result import Discovery
 from identification.quantities import alike, quantity
-from identification.report.discovery_words import phrase, sizes
+from identification.report.effect_words import describe_effect, describe_sizes
+from identification.report.finding_words import describe_finding, sentence
 
-RETUNED = 0.05  # chance of it that is worth a sentence
-SHOWN = 4  # effects named where more could be
+RETUNED = 0.05  # the explanation without an effect gets a sentence above this confidence
+SHOWN = 4  # of the effects that the log would have shown, as many are listed
 
 
 def discovery_verdict(found: Discovery) -> list[str]:
@@ -29,7 +29,7 @@ def discovery_verdict(found: Discovery) -> list[str]:
 
 
 def nothing(found: Discovery) -> str:
-    """Nothing is missing, as far as this log can tell."""
+    """The paragraph that says that nothing is missing, as far as this log can tell."""
     seen, unseen = split_detectable(found.detectable)
     left, noise = alike([found.before.rms, floor_rms(found)], found.log.output_unit)
     said = (
@@ -39,7 +39,7 @@ def nothing(found: Discovery) -> str:
     if floor_rms(found) > found.noise_rms:
         said += _unlogged(found)
     if seen:
-        listed = "; ".join(f"{phrase(d.candidate)}, {_smallest(d)}" for d in seen[:SHOWN])
+        listed = "; ".join(f"{describe_effect(d.candidate)}, {_smallest(d)}" for d in seen[:SHOWN])
         said += f" The log would have shown, in 9 cases of 10, effects as small as: {listed}."
     if unseen:
         names = _unique(d.candidate.effect.phrase or d.candidate.effect.name for d in unseen)
@@ -48,7 +48,7 @@ def nothing(found: Discovery) -> str:
 
 
 def _unlogged(found: Discovery) -> str:
-    """What of the noise is taken for errors of the inputs, on which the verdict rests."""
+    """The errors of the inputs that are part of the noise, and on which the verdict rests."""
     level, log = found.final.level, found.log
     sensors = alike([found.noise_rms], log.output_unit)[0]
     size = quantity(level.input_std, unit=log.units.get(log.input_names[0], ""))
@@ -60,7 +60,7 @@ def _unlogged(found: Discovery) -> str:
 
 
 def unknown(found: Discovery) -> str:
-    """Something is missing that no known effect explains."""
+    """The paragraph that says that something is missing which no known effect explains."""
     tried = len({s.candidate.effect.name for s in found.scores})
     ratio = found.before.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
     return " ".join(
@@ -69,13 +69,13 @@ def unknown(found: Discovery) -> str:
             f" fitted model is {_size(found, found.before.rms)} rms off on unseen data"
             + (f", {ratio:.3g} times the sensors' noise." if isfinite(ratio) else "."),
             "It is not named here rather than named wrongly.",
-            *map(sentence, (*found.left, *found.located)),
+            *(sentence(describe_finding(f)) for f in (*found.findings, *found.located)),
         ]
     )
 
 
 def unexplained(found: Discovery) -> str:
-    """What is left after the named effects."""
+    """The paragraph on what is left after the named effects."""
     more = "what is named" if len(found.named) == 1 else "all that is named"
     ratio = found.after.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
     times = f", {ratio:.3g} times the noise" if 1 < ratio < float("inf") else ""
@@ -83,13 +83,13 @@ def unexplained(found: Discovery) -> str:
         [
             f"Something is left beside {more} that no known effect explains: the model is still"
             f" {_size(found, found.after.rms)} rms off on unseen data{times}.",
-            *map(sentence, found.left),
+            *(sentence(describe_finding(f)) for f in found.findings),
         ]
     )
 
 
-def _named(found: Discovery, named: Named) -> str:
-    """A missing effect; with `one_of` the set of which the data cannot choose."""
+def _named(found: Discovery, named: NamedEffect) -> str:
+    """A sentence on a named effect, or on the set that it belongs to where it is `one_of`."""
     first = "Missing from the model" if named is found.named[0] else "Missing too"
     if named.one_of and named.rivals:
         rivals = [r for r in named.rivals if r.confidence >= 0.1 * named.confidence] or [
@@ -97,22 +97,22 @@ def _named(found: Discovery, named: Named) -> str:
         ]
         total = named.confidence + sum(r.confidence for r in rivals)
         each = "; ".join(
-            [f"{phrase(named.candidate)} ({100 * named.confidence:.0f} %)"]
-            + [f"{phrase(r.candidate)} ({100 * r.confidence:.0f} %)" for r in rivals]
+            [f"{describe_effect(named.candidate)} ({100 * named.confidence:.0f} %)"]
+            + [f"{describe_effect(r.candidate)} ({100 * r.confidence:.0f} %)" for r in rivals]
         )
         return (
             f"{first} is one of these, which this log cannot tell apart: {each};"
             f" together {100 * min(total, 1.0):.0f} %. The first is put into the model:"
-            f" {sizes(named)}." + (f" {named.advice}" if named.advice else "")
+            f" {describe_sizes(named)}." + (f" {named.advice}" if named.advice else "")
         )
     return (
-        f"{first}: {phrase(named.candidate)}, {sizes(named)}"
+        f"{first}: {describe_effect(named.candidate)}, {describe_sizes(named)}"
         f"; confidence {100 * named.confidence:.0f} % among the known effects."
     )
 
 
-def _retuned(named: Named) -> str:
-    """That base parameters farther from what was known would explain the same."""
+def _retuned(named: NamedEffect) -> str:
+    """A sentence where a parameter farther from what was known of it would explain the same."""
     other = named.retuned
     if other.confidence < RETUNED:
         return ""
@@ -142,21 +142,15 @@ def _proof(found: Discovery) -> str:
     return said
 
 
-def sentence(clause: str) -> str:
-    """A clause as a sentence."""
-    end = "" if clause.endswith((".", "!", "?")) else "."
-    return clause[:1].upper() + clause[1:] + end
-
-
-def diff_line(named: Named) -> str:
+def diff_line(named: NamedEffect) -> str:
     """A named effect as a line of a diff of the model."""
-    return f"+ {phrase(named.candidate)}: {sizes(named)}"
+    return f"+ {describe_effect(named.candidate)}: {describe_sizes(named)}"
 
 
 def split_detectable(
     detectable: Sequence[Detectable],
 ) -> tuple[list[Detectable], list[Detectable]]:
-    """Effects that would be seen at a plausible size, the clearest first; and the others."""
+    """Effects that a plausible size would show, the easiest to find first; and the others."""
     largest = {id(d): _largest(d) for d in detectable}
     seen = [d for d in detectable if d.smallest <= largest[id(d)]]
     return (
@@ -166,12 +160,14 @@ def split_detectable(
 
 
 def floor_rms(found: Discovery) -> float:
-    """What sensors and unlogged input errors make of a free run of the true model, rms.
+    """Rms of what sensors and unlogged input errors make of a free run of the true model.
 
-    Input errors count where they can be believed: with a model that is, and as small as noise is.
+    Input errors count where they can be believed to be noise: where the model is believed, and
+    where they are no larger than `allowed_input_error`.
     """
-    believed = found.verdict != "unknown effect" and input_error(found.final) <= ALLOWED
-    return hypot(found.noise_rms, found.disturbance_rms if believed else 0.0)
+    is_small = found.final.relative_input_error <= found.options.allowed_input_error
+    is_believed = found.verdict != "unknown effect" and is_small
+    return hypot(found.noise_rms, found.disturbance_rms if is_believed else 0.0)
 
 
 def _largest(d: Detectable) -> float:

@@ -1,4 +1,4 @@
-"""What a fit means, in sentences a person can act on."""
+"""What a fit means, in sentences that say what to do next."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ if TYPE_CHECKING:
     from identification.estimation.fit import Fit
     from identification.estimation.window_estimate import WindowEstimate
 
-# The floor bounds the noise from above and errs by a few percent itself.
+# A residual above this multiple of the noise floor is more than noise; the floor itself is an upper
+# bound of the noise that errs by a few percent.
 ABOVE = 1.2
-HOLDS = 1.2  # times what is to be expected on unseen data
-GROWN = 10.0  # times the fitted residual; a free run that loses itself confirms nothing
-LEVEL = 0.01  # of the residual's tests: one false alarm in a hundred
+HOLDS = 1.2  # a fit holds on unseen data up to this multiple of the residual that is expected there
+GROWN = 10.0  # a free run that errs by more than this multiple of the fitted residual has diverged
+LEVEL = 0.01  # significance of the tests of the residual: one false alarm in a hundred
 
 
 def verdict(fit: Fit) -> list[str]:
-    """Sentences: did it converge, what can be known, is the model enough, does it hold unseen."""
-    if fit.estimate.status == "stopped":  # what was not found says nothing of the model
+    """Sentences: did it converge, what can be known, is the model enough, does it hold elsewhere."""
+    if fit.estimate.status == "stopped":  # a search that was stopped says nothing of the model
         return search_sentences(fit)
     return [*search_sentences(fit), *identifiable_sentences(fit), *_enough(fit), *_unseen(fit)]
 
@@ -40,7 +41,7 @@ def search_sentences(fit: Fit) -> list[str]:
 
 
 def identifiable_sentences(fit: Fit) -> list[str]:
-    """What can be known of the parameters."""
+    """Which parameters, or products of them, can be known from the log."""
     found = fit.found
     if not len(found.blind):
         values = np.array(list(fit.estimate.values.values()))
@@ -67,7 +68,7 @@ def identifiable_sentences(fit: Fit) -> list[str]:
 
 
 def window_sentences(found: WindowEstimate, floor: float) -> list[str]:
-    """How a search over windows ended, what it cannot know, and what it leaves."""
+    """How a search over windows ended, which parameters it cannot know, and its residual."""
     said = ["The search converged." if found.converged else "The search ran out of iterations."]
     if bound := [n for n, at in zip(found.values, found.at_bound, strict=True) if at]:
         said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
@@ -86,12 +87,12 @@ def coloured_outputs(fit: Fit) -> int:
 
 
 def _floor(fit: Fit) -> float:
-    """Noise of all outputs, rms."""
+    """Rms of the noise over all outputs."""
     return float(np.sqrt(np.mean(fit.floor**2)))
 
 
 def _above(fit: Fit) -> float:
-    """How many times the noise the residual is."""
+    """The residual as a multiple of the noise floor."""
     return fit.rms / _floor(fit) if _floor(fit) > 0 else np.inf
 
 

@@ -49,8 +49,8 @@ class Robot:
     std: np.ndarray
 
     @property
-    def base(self) -> NominalModel:
-        """What a discovery begins with."""
+    def nominal_model(self) -> NominalModel:
+        """The nominal model with which a discovery begins."""
         return NominalModel(self.plant, self.file.free, self.std, self.file.horizon)
 
     @property

@@ -39,6 +39,8 @@ class Discover:
     """Film the final twin against the log; only with --out."""
     settled: bool = False
     """The robot stood at rest by itself, with what the twin lacks, when the log began."""
+    options: Path | None = None
+    """TOML file with judgement constants, such as min_proof_t = 3.0 (docs/discovery.md)."""
     robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
@@ -49,6 +51,7 @@ class Discover:
             blind = cannot_draw()  # before MuJoCo is imported
         else:
             do_not_draw()
+        from identification.discovery.options import read_options
         from identification.files import whole_folder
         from identification.report.discovery_text import discovery_text
         from inca_mj.twin.logs import read_inca_log
@@ -57,9 +60,12 @@ class Discover:
         log, parameters, place = (
             read_inca_log(self.log), self.robot.parameters(), self.robot.place()
         )  # fmt: skip
+        options = None if self.options is None else read_options(self.options)
         out = self.output.out
         refuse_folder(out)
-        found = discover(log, parameters, place, progress=note, settled=self.settled)
+        found = discover(
+            log, parameters, place, progress=note, settled=self.settled, options=options
+        )
         if not self.output.json:
             say(discovery_text(found))
         files: dict[str, Path] = {}
@@ -79,18 +85,13 @@ class Discover:
 def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
     """The outcome and the path of its model as plain values; what is not finite is null."""
     from identification.report.discovery_json import discovery_to_json
-    from identification.report.discovery_text import finite
 
-    record: dict[str, Any] = finite(discovery_to_json(found))
-    return {**record, "model": None if model is None else str(model)}
+    return {**discovery_to_json(found), "model": None if model is None else str(model)}
 
 
 def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, Path]:
     """Write report, figures, model, effects, result and film into a folder; the paths by kind."""
-    from identification.report import discovery_sections as parts
-    from identification.report import discovery_tables as tables
-    from identification.report.discovery_verdict import discovery_verdict
-    from identification.report.page import save_figures, write_report
+    from identification.report.discovery_report import write_discovery_report
     from inca_mj.report.sections import film_section, model_section
     from inca_mj.twin.saved import save_twin
     from inca_mj.workflows.discovery_model import named_twin, rerun
@@ -98,34 +99,15 @@ def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, 
     robot = named_twin(found)
     model, effects = save_twin(robot, out)
     drawn = _film(found, robot, rerun(robot, found.log), out) if film else None
-    sections = [
-        parts.gap_section(found),
-        parts.where_section(found),
-        parts.rivals_section(found),
-        tables.diff_section(
-            found,
-            "The model with it is in model.xml and effects.json; inca_mj.load_twin reads them.",
-        ),
-        tables.parameters_section(found),
-        tables.unseen_section(found),
-        *([film_section(drawn)] if drawn else []),
-        model_section(_base(robot)),
-    ]
-    save_figures(sections, out)
-    report = write_report(
-        out / "report.html",
-        f"{found.log.name}: what the model lacks",
-        discovery_verdict(found),
-        sections,
-        good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
-    )
+    more = [*([film_section(drawn)] if drawn else []), model_section(_without_zeros(robot))]
+    report = write_discovery_report(found, out, sections=more, files=FILES)
     write_result(out / "result.json", command, as_json(found, Path(model.name)))
     files = {"report": report, "model": model, "effects": effects}
     return {**files, "film": drawn} if drawn else files
 
 
-def _base(robot: Twin) -> Twin:
-    """The twin without the zeros of its effects: a table of them says nothing."""
+def _without_zeros(robot: Twin) -> Twin:
+    """The twin without the parameters of effects that are zero, which need no row in a table."""
     from dataclasses import replace
 
     shown = tuple(p for p in robot.parameters if p.where != "effect" or p.value)

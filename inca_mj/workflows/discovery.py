@@ -1,4 +1,4 @@
-"""Discovery on a log of the robot: its base parameters, what is known of them, its catalogue."""
+"""Discovery on a log of the robot: its nominal model, what is known of it, and its catalogue."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from identification import Log
 from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
 from identification.discovery.search import discover as search
 from identification.discovery.search import refuse_unfit
@@ -38,6 +39,7 @@ def discover(
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
     settled: bool = False,
+    options: DiscoveryOptions | None = None,
 ) -> Discovery:
     """Name the physical effect that the twin lacks to explain a log, and prove it.
 
@@ -50,13 +52,15 @@ def discover(
         timestep: largest step of the integrator [s].
         settled: whether the robot had stood for a while with what the twin lacks when the log
             began, so that it starts at rest; else it was held where the nominal one rests.
+        options: what is believed; the defaults of `DiscoveryOptions` when None.
 
     Raises:
         InputError: the log is too short, is not wired as the robot is, or its start has no
             pretension.
         DivergenceError: the nominal model cannot be simulated.
     """
-    refuse_unfit(log)
+    options = options or DiscoveryOptions()
+    refuse_unfit(log, options)
     step = timestep_for(log.sampling_time, timestep)
     refuse_miswired(log, build_twin(parameters, geometry, timestep=step, visual=False))
     if progress is not None:
@@ -64,5 +68,6 @@ def discover(
     plant = build_twin(
         parameters, geometry, timestep=step, effects=effects, settled=settled, visual=False
     )
-    base = NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
-    return told(search(base, log, [e.effect for e in effects], progress))
+    nominal_model = NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
+    candidates = [e.effect for e in effects]
+    return told(search(nominal_model, log, candidates, progress, options))

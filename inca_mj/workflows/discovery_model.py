@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from identification.discovery.final_values import final_values
+from identification.discovery.final_values import collect_final_values
 from identification.discovery.result import Discovery
 from identification.errors import InputError
 from identification.logs.log import Log
@@ -29,7 +29,8 @@ def named_twin(found: Discovery) -> Twin:
     effects = tuple(e for e in plant.effects if e.name in names)
     base = tuple(p for p in plant.parameters if p.where != "effect")
     known = with_effects(replace(plant.parameters, records=base), effects)
-    at = {name: value for name, value in final_values(found).items() if name in known.values()}
+    values = collect_final_values(found).items()
+    at = {name: value for name, value in values if name in known.values()}
     free = {name: at[name] for name in found.final.point.space.names if name in at}
     return build_twin(
         known.with_values(at).with_values(free, "fitted to the log"),

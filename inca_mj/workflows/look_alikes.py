@@ -1,6 +1,6 @@
 """Which input would tell two look-alikes apart.
 
-    d(u) = ‖(I - P) ∂ŷ/∂η η‖/σ,    P: onto what base parameters and the rival imitate
+    d(u) = ‖(I - P) ∂ŷ/∂η η‖/σ,    P: onto what nominal parameters and rival imitate
 
 d is how many std of the noise a record under the input u would lie from all that the rival can do.
 It is computed for the log's own input and for those that people try, over the fitted duration.
@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.discovery.result import Discovery, Named
-from identification.discovery.scoring.sensitivities import columns
+from identification.discovery.effect_results import NamedEffect
+from identification.discovery.result import Discovery
+from identification.discovery.scoring.sensitivities import compute_sensitivities
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError
 from identification.kalman.point import Point, evaluate_point
@@ -39,7 +40,7 @@ class Contrast:
     own: float
 
 
-def tell_apart(found: Discovery, named: Named) -> Contrast | None:
+def tell_apart(found: Discovery, named: NamedEffect) -> Contrast | None:
     """The input that tells a named effect best from its first rival; None where none can be run."""
     fit, rival = found.final, named.rivals[0].candidate
     own = _distance(fit.point, fit.point.log, named.candidate, rival, fit.level.sigma)
@@ -96,7 +97,7 @@ def _distance(point: Point, log: Log, named: Candidate, rival: Candidate, sigma:
     here = evaluate_point(
         Predictor(point.predictor.plant, log, names, fixed), space, q, point.linear
     )
-    mine, *theirs = (c.S for c in columns(here, [named, rival]))
+    mine, *theirs = (s.S for s in compute_sensitivities(here, [named, rival]))
     size = np.array([values.get(n, 0.0) or named.whole.get(n, 0.0) for n in named.sizes])
     S = np.concatenate([here.J, *theirs], axis=2).reshape(log.outputs.size, -1)
     Q = np.linalg.qr(S / (np.linalg.norm(S, axis=0) + 1e-300))[0]

@@ -9,8 +9,10 @@ import numpy as np
 
 from identification import Log, Parameter, ParameterSet
 from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import score
 from identification.discovery.scoring.sensitivities import Sensitivity
+from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate, Effect, Size
 from identification.kalman.linear import LinearPlant
 from identification.kalman.point import Point
@@ -20,6 +22,7 @@ from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor
 
 STEP = 0.02  # between samples [s]
+OPTIONS = DiscoveryOptions()
 
 
 def linear_plant(rng, samples=40, nx=3, nu=2, ny=2):
@@ -61,7 +64,7 @@ def effect(sign=0, m=1, largest=10.0):
     return Effect("push", "f", sizes, places={"joint": ""})
 
 
-def column(S, sign=0, name="push"):
+def sensitivity(S, sign=0, name="push"):
     of = effect(sign, S.shape[2])
     return Sensitivity(Candidate(Effect(name, "f", of.sizes, places=of.places), "joint", {}), S)
 
@@ -73,13 +76,21 @@ def point_of(plant, e, J):
     wide = np.full(p, np.inf)
     space = Coordinates(names, np.zeros(p, bool), -wide, wide, np.ones(p))
     log = SimpleNamespace(sampling_time=STEP)
-    return Point(SimpleNamespace(log=log), space, np.zeros(p), e, J, plant)
+    return Point(
+        predictor=SimpleNamespace(log=log), space=space, q=np.zeros(p), e=e, J=J, linear=plant
+    )
 
 
-def scored(at, level, prior, columns, mean=None):
-    """Scores at a point, as if a fit with these priors had ended there."""
+def refit_at(point, level, prior, mean=None):
+    """A fit with these priors that has ended at a point."""
     mean = np.zeros(len(prior)) if mean is None else mean
-    return score(Refit(at, level, np.ones(len(prior)), mean, prior, 0), columns)
+    std = np.ones(len(prior))
+    return Refit(point=point, level=level, std=std, mean=mean, prior=prior, steps=0)
+
+
+def scored(point, level, prior, sensitivities, mean=None):
+    """Scores at a point, as if a fit with these priors had ended there."""
+    return score(refit_at(point, level, prior, mean), sensitivities, OPTIONS)
 
 
 SLIDER = """<mujoco>
@@ -114,8 +125,13 @@ def slider(**values):
     return ModelPlant(model, ParameterSet("slider", RECORDS).with_values(values))
 
 
-def base(**values):
+def nominal_model(**values):
     return NominalModel(slider(**values), FREE, KNOWN)
+
+
+def task(log, options=OPTIONS, model=None):
+    """What does the slider, or another model, lack to explain a log?"""
+    return DiscoveryTask(model or nominal_model(), log, EFFECTS, options)
 
 
 def steps(samples, seed=1, hold=10):

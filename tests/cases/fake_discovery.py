@@ -6,17 +6,20 @@ from functools import cache
 import numpy as np
 
 from identification import Predictor, fit_percent
-from identification.discovery.missing_forces import MissingForce
-from identification.discovery.result import (
+from identification.discovery.effect_results import (
     Detectable,
-    Discovery,
     Gap,
-    Named,
+    NamedEffect,
     Proof,
+    RejectedEffect,
     Retuned,
     Rival,
-    Tried,
 )
+from identification.discovery.findings.evidence import WorstInterval, WorstOutput
+from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.missing_forces import MissingForce
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.result import Discovery
 from identification.discovery.scoring.scores import Score
 from identification.effects.effect import Candidate
 from identification.kalman.noise_fit import NoiseLevel
@@ -41,7 +44,10 @@ RETUNED = Retuned("m", 40.0, 0.0)
 STRIBECK = Candidate(STRIBECK_FRICTION.effect, "all drives", {"v_s": 2.4, "n": 2.0})
 MISMATCH = Candidate(FRICTION_MISMATCH.effect, "drive 3", {})
 LATE = Candidate(DELAY.effect, "all drives", {})
-REJECTED = Tried(LATE, {"tau": (2.5e-4, 1e-4, "s")}, 4.0, Proof(-1.2, -0.7, 0.0, -0.002, 0.0))
+WORSE = Proof(gain=-1.2, t=-0.7, share=0.0, fall=-0.002, above=0.0)
+REJECTED = RejectedEffect(LATE, {"tau": (2.5e-4, 1e-4, "s")}, 4.0, WORSE)
+SLOW = Finding(FindingKind.WORST_INTERVAL, WorstInterval(0.2, 0.3, 0.4))
+DRIVE_3 = Finding(FindingKind.WORST_OUTPUT, WorstOutput("angle_3", "rad", 2e-3, 0.5, 4.0))
 
 
 @cache
@@ -68,9 +74,11 @@ def fit(values: dict[str, float]) -> Refit:
     predictor = Predictor(robot(), log(), names)
     space = coordinates(robot().parameters, names, np.array([values[n] for n in names]))
     q = space.encode(np.array([values[n] for n in names]))
-    shape = log().outputs.shape
-    at = Point(predictor, space, q, np.zeros(shape), np.zeros((*shape, len(q))), None)
-    return Refit(at, _level(), np.full(len(q), 0.02), q, np.zeros(len(q)), 3)
+    shape, p = log().outputs.shape, len(q)
+    e, J = np.zeros(shape), np.zeros((*shape, p))
+    point = Point(predictor=predictor, space=space, q=q, e=e, J=J, linear=None)
+    std, prior = np.full(p, 0.02), np.zeros(p)
+    return Refit(point=point, level=_level(), std=std, mean=q, prior=prior, steps=3)
 
 
 def found(verdict="named", *, one_of=False, unexplained=False, several=False) -> Discovery:
@@ -80,53 +88,62 @@ def found(verdict="named", *, one_of=False, unexplained=False, several=False) ->
     final = fit({"b_v": 2.3e-4, "x": 0.01 / 3, **SIZES}) if is_named else nominal
     named = (_stribeck(one_of),) if is_named else ()
     if several:
-        named += (
-            Named(MISMATCH, {"delta": (0.2, 0.03, "")}, 0.8, (), False, 31.0, _proof(), RETUNED),
-        )
+        named += (_mismatch(),)
     before, after = (
         f.point.predictor.predict(f.point.space.decode(f.point.q))[0] for f in (nominal, final)
     )
     scores = tuple(
-        Score(c, np.array([s]), np.array([s / 9]), g, 1e-9, 1e-6, 0.5, _level())
+        score_of(c, s, g)
         for c, s, g in ((STRIBECK, 0.004, 900.0), (MISMATCH, 0.2, 70.0), (LATE, 3e-4, -1.0))
     )
     return Discovery(
-        log(), verdict, named, unexplained, NOISE, 0.0, _gap(before), _gap(after), nominal, final,
-        before, after, scores, scores[1:],
-        (Detectable(STRIBECK, "f_s", 2e-4, "N m"), Detectable(LATE, "tau", np.inf, "s")),
-        ("The error grows at low speed.",), ("The error is largest at drive 3.",) * unexplained,
-        () if verdict == "nothing missing" else (_pushed(),),
-        {"fit": 1.5, "score": 2.0},
-        rejected=(REJECTED,) if is_named else (),
+        log=log(), options=DiscoveryOptions(), verdict=verdict, named=named,
+        rejected=(REJECTED,) if is_named else (), unexplained=unexplained,
+        noise_rms=NOISE, disturbance_rms=0.0, before=_gap(before), after=_gap(after),
+        nominal=nominal, final=final, predicted_before=before, predicted_after=after,
+        scores=scores, remaining=scores[1:],
+        detectable=(Detectable(STRIBECK, "f_s", 2e-4, "N m"), Detectable(LATE, "tau", np.inf, "s")),
+        located=(SLOW,), findings=(DRIVE_3,) * unexplained,
+        missing_forces=() if verdict == "nothing missing" else (_pushed(),),
+        seconds={"fit": 1.5, "score": 2.0},
+    )  # fmt: skip
+
+
+def score_of(candidate: Candidate, size: float, gain: float) -> Score:
+    return Score(
+        candidate=candidate, size=np.array([size]), std=np.array([size / 9]), gain=gain,
+        p_value=1e-9, block_p_value=1e-6, identifiable=0.5, level=_level(),
     )  # fmt: skip
 
 
 def _pushed() -> MissingForce:
-    names = tuple(f"roller_{k}" for k in range(1, 9))
+    names, units = tuple(f"roller_{k}" for k in range(1, 9)), ("N m",) * 8
     force = 1e-3 * np.random.default_rng(5).standard_normal((50, 8))
-    return MissingForce("the actuated joints", names, ("N m",) * 8, force, 812.0, 0.93)
+    where = "the actuated joints"
+    return MissingForce(where=where, names=names, units=units, force=force, gain=812.0, share=0.93)
 
 
-def _stribeck(one_of: bool) -> Named:
+def _mismatch() -> NamedEffect:
+    return NamedEffect(
+        candidate=MISMATCH, parameters={"delta": (0.2, 0.03, "")}, confidence=0.8, rivals=(),
+        one_of=False, gain=31.0, proof=_proof(), retuned=RETUNED,
+    )  # fmt: skip
+
+
+def _stribeck(one_of: bool) -> NamedEffect:
     parameters = {
         "f_s": (SIZES["stribeck_friction.f_s"], 2.1e-4, "N m"),
         "v_s": (SIZES["stribeck_friction.v_s"], 0.1, "rad/s"),
     }
     rival = Rival(MISMATCH, 0.36 if one_of else 0.02, 0.97)
-    return Named(
-        STRIBECK,
-        parameters,
-        0.61 if one_of else 0.97,
-        (rival,),
-        one_of,
-        900.0,
-        _proof(),
-        RETUNED,
-    )
+    return NamedEffect(
+        candidate=STRIBECK, parameters=parameters, confidence=0.61 if one_of else 0.97,
+        rivals=(rival,), one_of=one_of, gain=900.0, proof=_proof(), retuned=RETUNED,
+    )  # fmt: skip
 
 
 def _proof() -> Proof:
-    return Proof(450.0, 12.0, 0.98, 0.97, 0.98)
+    return Proof(gain=450.0, t=12.0, share=0.98, fall=0.97, above=0.98)
 
 
 def _level() -> NoiseLevel:

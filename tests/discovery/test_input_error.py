@@ -3,22 +3,33 @@
 import mujoco
 import numpy as np
 import pytest
-from discovery_cases import SENSOR, STEP, base, linear_plant, record, slider, steps, wander
+from discovery_cases import (
+    OPTIONS,
+    SENSOR,
+    STEP,
+    linear_plant,
+    record,
+    slider,
+    steps,
+    task,
+    wander,
+)
 from discovery_cases import response as dense
 
 from identification import Log, Parameter, ParameterSet
+from identification.discovery.findings.finding import FindingKind
 from identification.discovery.findings.input_error import (
-    _apart,
-    _curves,
-    families,
+    draw_curves,
     find_input_error,
-    followed,
-    response,
+    fit_families,
+    list_families,
+    separate_inputs,
+    simulate_response,
 )
 from identification.discovery.fitted_model import fit_model
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.search import discover
-from identification.discovery.selection.shapes import structured
+from identification.discovery.selection.shapes import is_structured
 from identification.effects.effect import Effect, Size
 from identification.errors import DivergenceError
 from identification.kalman.innovations import whiteness
@@ -65,20 +76,25 @@ def carts(crosstalk, seed):
     return NominalModel(plant, free, np.full(len(free), 0.3)), log
 
 
+def carts_task(crosstalk, seed):
+    nominal_model, log = carts(crosstalk, seed)
+    return task(log, model=nominal_model)
+
+
 def test_the_response_is_that_of_the_dense_plant():
     rng = np.random.default_rng(3)
     plant = linear_plant(rng)
     n, _, nu = plant.B.shape
     r = rng.standard_normal((n + 1, nu, 4))
     expected = (dense(plant) @ r.reshape(-1, 4)).reshape(n + 1, -1, 4)
-    found = response(build_whitener(plant, Noise(0.3, 0.1), STEP), r)
+    found = simulate_response(build_whitener(plant, Noise(0.3, 0.1), STEP), r)
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9)
 
 
 def test_curves_sum_to_one_and_each_is_of_one_input():
     x = np.random.default_rng(1).standard_normal((50, 3))
-    np.testing.assert_allclose(_curves(x).sum(axis=2), 1)
-    r = _apart(_curves(x)).reshape(50, 3, 3, -1)
+    np.testing.assert_allclose(draw_curves(x, OPTIONS.error_knots).sum(axis=2), 1)
+    r = separate_inputs(draw_curves(x, OPTIONS.error_knots)).reshape(50, 3, 3, -1)
     for i in range(3):
         assert not np.delete(r[:, i], i, axis=1).any()
         np.testing.assert_allclose(np.sqrt(np.mean(r[:, i, i] ** 2, axis=0)), 1)
@@ -88,35 +104,35 @@ def test_curves_sum_to_one_and_each_is_of_one_input():
 @pytest.mark.parametrize("seed", range(4))
 def test_a_random_error_goes_along_with_nothing(seed):
     error = wander(N, 0.05, 0.1, seed=seed)
-    step = fit_model(base(), record(slider(mass=2.2, damping=2.7), N, seed, error), (), {})
-    assert step.refit.level.input_std > 0
-    assert len(followed(step.validation)) == 3
-    assert find_input_error(step) == ()
-    assert find_input_error(fit_model(*carts(0.0, seed), (), {})) == ()
-    assert not structured(step)
+    model = fit_model(task(record(slider(mass=2.2, damping=2.7), N, seed, error)), (), {})
+    assert model.refit.level.input_std > 0
+    assert len(fit_families(model.validation, OPTIONS)) == 3
+    assert find_input_error(model.validation, OPTIONS) == ()
+    assert find_input_error(fit_model(carts_task(0.0, seed), (), {}).validation, OPTIONS) == ()
+    assert not is_structured(model, OPTIONS)
 
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_crosstalk_is_told_with_its_size_and_the_input_that_feels_it(seed):
-    step = fit_model(*carts(0.1, seed), (), {})
-    (said,) = find_input_error(step)
-    assert "the other inputs" in said
-    assert "most of all on g" in said
-    best = max(followed(step.validation), key=lambda f: f.share)
-    felt = 0.1 * np.std(step.validation.whole.inputs[:, 0])
+    model = fit_model(carts_task(0.1, seed), (), {})
+    (finding,) = find_input_error(model.validation, OPTIONS)
+    assert finding.evidence.regressor == "other inputs"
+    assert finding.evidence.input == "g"
+    best = max(fit_families(model.validation, OPTIONS), key=lambda f: f.share)
+    felt = 0.1 * np.std(model.validation.log.inputs[:, 0])
     assert best.error[1] == pytest.approx(felt, rel=0.2)
     assert best.error[0] < 0.5 * best.error[1]
-    others = next(iter(families(step.validation))).r.reshape(-1, 2, 2, 2)
+    others = next(iter(list_families(model.validation, OPTIONS.error_knots))).r.reshape(-1, 2, 2, 2)
     assert not np.einsum("niii->ni", others).any()  # its own input is not among them
     assert others[:, 0, 0, 1].any()
 
 
 def test_crosstalk_is_an_unknown_effect_and_no_noise():
-    base, log = carts(0.1, 2)
-    answer = discover(base, log, (SPRING,))
+    answer = discover(*carts(0.1, 2), (SPRING,))
     assert answer.verdict == "unknown effect"
     assert answer.disturbance_rms == 0.0
-    assert any("the other inputs" in said for said in answer.left)
+    (finding,) = (f for f in answer.findings if f.kind is FindingKind.STRUCTURED_INPUT_ERROR)
+    assert finding.evidence.regressor == "other inputs"
     quiet = discover(*carts(0.0, 2), (SPRING,))
     assert quiet.verdict == "nothing missing"
     assert quiet.disturbance_rms > 0
@@ -128,15 +144,15 @@ def test_an_error_along_the_rate_is_told_as_that():
     for _ in range(30):  # the force follows from the motion that it makes
         y = record(robot, n, 2, error, noise=0.0).outputs
         error = (error + random + 0.15 * np.sin(5 * np.gradient(y, STEP, axis=0))) / 2
-    step = fit_model(base(), record(robot, n, 2, error), (), {})
-    (said,) = find_input_error(step)
-    assert "the rate of its output" in said
-    assert not whiteness(step.innovations, STEP).correlated
-    assert structured(step)
+    model = fit_model(task(record(robot, n, 2, error)), (), {})
+    (finding,) = find_input_error(model.validation, OPTIONS)
+    assert finding.evidence.regressor == "output rate"
+    assert not whiteness(model.innovations, STEP).is_correlated(OPTIONS)
+    assert is_structured(model, OPTIONS)
 
 
 def test_a_robot_that_a_small_change_of_a_parameter_loses_is_not_asked(monkeypatch):
-    step = fit_model(*carts(0.1, 2), (), {})
+    model = fit_model(carts_task(0.1, 2), (), {})
 
     def lost(*_):
         raise DivergenceError("lost")
@@ -144,4 +160,4 @@ def test_a_robot_that_a_small_change_of_a_parameter_loses_is_not_asked(monkeypat
     monkeypatch.setattr(
         "identification.discovery.findings.input_error.evaluate_sensitivities", lost
     )
-    assert find_input_error(step) == ()
+    assert find_input_error(model.validation, OPTIONS) == ()

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from identification.discovery.findings.location import located
-from identification.discovery.fitted_model import FittedModel
+from identification.discovery.findings.location import locate_error
 from identification.discovery.missing_forces import estimate_missing_forces
 from identification.discovery.nominal_model import NominalModel, fit_with_effects
-from identification.discovery.proof import validate
+from identification.discovery.options import DiscoveryOptions
+from identification.report.finding_words import describe_finding
 from inca_mj.effects.delay import DELAY
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.discovery import KNOWN
@@ -16,16 +16,18 @@ from inca_mj.worlds import Setting, effect, world
 def test_both_places_have_forces_in_their_units_and_sentences():
     log, _ = world(4, [effect("cogging")], ratio=20.0, setting=Setting(duration=4.0))
     plant = build_twin(timestep=2e-3, effects=(DELAY,))
-    base = NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
-    fit = fit_with_effects(base, log.part("estimation"), (), {})
-    drives, platform = estimate_missing_forces(fit)
+    nominal_model, options = (
+        NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()])), DiscoveryOptions()
+    )  # fmt: skip
+    fit = fit_with_effects(nominal_model, log.part("estimation"), (), {}, options)
+    drives, platform = estimate_missing_forces(fit, options)
     assert (drives.where, platform.where) == ("the actuated joints", "platform")
     assert set(drives.units) == {"N m"}
     assert platform.units == ("N",) * 3 + ("N m",) * 3
     for missing in (drives, platform):
         assert missing.gain > 100
         assert 0.8 < missing.share <= 1
-    said = " ".join(located(FittedModel((), fit, validate(fit, log)), (drives, platform)))
+    said = " ".join(map(describe_finding, locate_error(fit, (drives, platform), options)))
     assert "rms on the actuated joints would explain" in said
     assert "N and" in said
     assert "N m rms on platform would explain" in said

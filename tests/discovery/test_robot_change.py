@@ -5,9 +5,21 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
-from discovery_cases import EFFECTS, SENSOR, SLIDER, STEP, base, record, slider, wander
+from discovery_cases import (
+    EFFECTS,
+    OPTIONS,
+    SENSOR,
+    SLIDER,
+    STEP,
+    nominal_model,
+    record,
+    slider,
+    task,
+    wander,
+)
 
-from identification.discovery.findings.robot_change import _onset, find_robot_change
+from identification.discovery.findings.finding import FindingKind
+from identification.discovery.findings.robot_change import find_onset, find_robot_change
 from identification.discovery.fitted_model import fit_model
 from identification.discovery.search import discover
 from identification.errors import DivergenceError
@@ -32,17 +44,17 @@ def changing(damping, seed=11):
     return replace(log, outputs=y + noise)
 
 
-def far(said):
-    """How many times as much is missed."""
-    return float(said.split(" times as much as")[0].split()[-1])
+def changes(log):
+    """What is found of a change by the nominal model that is fitted to a log."""
+    return find_robot_change(fit_model(task(log), (), {}).validation, OPTIONS)
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_a_robot_that_stays_as_it_is_has_not_changed(seed):
     error = wander(N, 0.03 * (seed % 2), 0.1, seed=seed)
     log = record(slider(mass=2.2, damping=2.7), N, seed=seed, error=error)
-    assert find_robot_change(fit_model(base(), log, (), {})) == ()
-    assert find_robot_change(fit_model(base(), changing(2.7, seed), (), {})) == ()
+    assert changes(log) == ()
+    assert changes(changing(2.7, seed)) == ()
 
 
 @pytest.mark.parametrize("first", [0, 100, 260])
@@ -50,12 +62,12 @@ def test_the_change_is_dated(first):
     rng = np.random.default_rng(first)
     power = rng.chisquare(8, (2, 400)) / 8
     power[1, first:] *= 3
-    assert abs(_onset(*power) - first) <= 20  # a block
+    assert abs(find_onset(*power, OPTIONS.proof_blocks) - first) <= 20  # a block
 
 
 def test_a_robot_that_a_small_change_of_a_parameter_loses_is_judged_without_it(monkeypatch):
-    step = fit_model(base(), changing(4.0), (), {})
-    (said,) = find_robot_change(step)
+    model = fit_model(task(changing(4.0)), (), {})
+    (found,) = find_robot_change(model.validation, OPTIONS)
 
     def lost(*_):
         raise DivergenceError("lost")
@@ -63,14 +75,14 @@ def test_a_robot_that_a_small_change_of_a_parameter_loses_is_judged_without_it(m
     monkeypatch.setattr(
         "identification.discovery.findings.robot_change.evaluate_sensitivities", lost
     )
-    (other,) = find_robot_change(step)
-    assert far(other) > far(said) > 2
+    (other,) = find_robot_change(model.validation, OPTIONS)
+    assert other.evidence.ratio > found.evidence.ratio > 2
 
 
 def test_a_change_after_the_fitted_samples_is_never_called_nothing_missing():
     log = changing(4.0)
-    (said,) = find_robot_change(fit_model(base(), log, (), {}))
-    assert "times as much as those that were" in said
-    answer = discover(base(), log, EFFECTS)
+    (found,) = changes(log)
+    assert found.kind is FindingKind.ROBOT_CHANGE
+    answer = discover(nominal_model(), log, EFFECTS)
     assert answer.verdict == "unknown effect"
-    assert said in answer.left
+    assert found in answer.findings

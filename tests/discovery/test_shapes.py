@@ -5,14 +5,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from discovery_cases import OPTIONS
 
 from identification.discovery.selection import shapes
-from identification.discovery.selection.shapes import BARE, improved
+from identification.discovery.selection.shapes import improve_shape
 from identification.effects.effect import Candidate, Effect, Shape, Size
 from inca_mj.effects.current_saturation import CURRENT_SATURATION
 from inca_mj.workflows.discovery import discover
 from inca_mj.worlds import Setting, effect, world
 
+BARE = OPTIONS.bare_bic
 KINDS = Effect(
     "limit",
     "clip",
@@ -29,23 +31,23 @@ def candidate(soft):
     return Candidate(KINDS, "joint", {"at": 1.0, "soft": soft})
 
 
-def of(soft, criterion):
-    return SimpleNamespace(candidates=(candidate(soft),), criterion=criterion)
+def of(soft, negative_bic):
+    return SimpleNamespace(candidates=(candidate(soft),), negative_bic=negative_bic)
 
 
 def choose(monkeypatch, best, other, white=True):
     """What becomes of the best fit, and the kinds that were refitted."""
     asked = []
 
-    def shaped(base, whole, step, s):
+    def fit_shape(asked_of, model, s):
         asked.append(s.candidate.shape["soft"])
         return other
 
-    monkeypatch.setattr(shapes, "structured", lambda step: not white)
-    monkeypatch.setattr(shapes, "_shaped", shaped)
+    monkeypatch.setattr(shapes, "is_structured", lambda model, options: not white)
+    monkeypatch.setattr(shapes, "_fit_shape", fit_shape)
     ranked = [SimpleNamespace(candidate=candidate(soft)) for soft in (1.0, 0.0)]
     more = SimpleNamespace(candidates=(None,))
-    return improved(None, None, more, best, ranked), asked
+    return improve_shape(SimpleNamespace(options=OPTIONS), more, best, ranked), asked
 
 
 @pytest.mark.parametrize(("ahead", "usual"), [(BARE - 0.1, True), (BARE + 0.1, False)])

@@ -2,21 +2,27 @@
 
 import numpy as np
 import pytest
-from discovery_cases import EFFECTS, FREE, base, record, slider, wander
+from discovery_cases import EFFECTS, FREE, OPTIONS, nominal_model, record, slider, wander
 
 from identification import Parameter
 from identification.discovery.nominal_model import _inside, fit_with_effects
 from identification.effects.effect import Candidate
-from identification.kalman.noise_fit import ALLOWED, NoiseLevel
+from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 from identification.kalman.problem import linearise_criterion
 from identification.kalman.refit import descend, estimate_noise
 
+ALLOWED = OPTIONS.allowed_input_error
 TRUE = {"mass": 2.4, "damping": 2.6, "x0": 0.02, "v0": -0.03}
 
 
 def fitted(log, start, candidates=()):
-    return fit_with_effects(base(), log, candidates, start)
+    return fit_with_effects(nominal_model(), log, candidates, start, OPTIONS)
+
+
+def begun_at(log, start):
+    """A fit of no step."""
+    return fit_with_effects(nominal_model(), log, (), start, OPTIONS, steps=0)
 
 
 @pytest.mark.parametrize("factors", [(2.0, 0.5), (0.5, 2.0), (2.5, 2.5)])
@@ -74,15 +80,15 @@ def test_base_parameters_stay_within_a_factor_of_their_nominal_values():
 def test_a_search_ends_at_the_likeliest_point_since_its_noise_was_sharpened(monkeypatch, steps):
     t = 0.02 * np.arange(300)[:, None]  # a vibration, which no noise of the inputs is like
     log = record(slider(**TRUE), 300, seed=1, error=3.0 * np.sin(2 * np.pi * 4.1 * t))
-    begun = fit_with_effects(base(), log, (), {}, steps=0)
+    begun = begun_at(log, {})
     sharpened = []
 
-    def spy(at, prior, near, fine=False, largest=np.inf):
+    def spy(point, prior, options, near, fine=False, largest=np.inf):
         sharpened.append(fine)
-        return estimate_noise(at, prior, near, fine, largest)
+        return estimate_noise(point, prior, options, near, fine, largest)
 
     monkeypatch.setattr("identification.kalman.refit.estimate_noise", spy)
-    points = [*descend(begun.point, begun.mean, begun.prior, steps=steps)]
+    points = [*descend(begun.point, begun.mean, begun.prior, OPTIONS, steps=steps)]
     likely = [linearise_criterion(*p, begun.mean, begun.prior).log_posterior for p in points]
     assert sharpened.count(True) == 1
     assert sharpened.count(False) <= 1 + steps
@@ -92,8 +98,8 @@ def test_a_search_ends_at_the_likeliest_point_since_its_noise_was_sharpened(monk
 def test_likelihood_does_not_lead_where_inputs_err_beyond_belief_and_not_by_chance():
     t = 0.02 * np.arange(300)[:, None]
     log = record(slider(**TRUE), 300, seed=1, error=3.0 * np.sin(2 * np.pi * 4.1 * t))
-    begun = fit_with_effects(base(), log, (), {}, steps=0)
-    points = [*descend(begun.point, begun.mean, begun.prior)]
+    begun = begun_at(log, {})
+    points = [*descend(begun.point, begun.mean, begun.prior, OPTIONS)]
     (end, level), levels = points[-1], [lv for _, lv in points]
     assert level.input_std > ALLOWED * end.motion  # which the vibration needs
     sharpened = levels.index(level)
@@ -103,8 +109,8 @@ def test_likelihood_does_not_lead_where_inputs_err_beyond_belief_and_not_by_chan
 
 def test_likelihood_does_lead_where_inputs_err_much_but_by_chance():
     log = record(slider(**TRUE), 300, seed=1, error=wander(300, 0.3, 0.1, seed=1))
-    begun = fit_with_effects(base(), log, (), {"mass": 4.0}, steps=0)
-    points = [*descend(begun.point, begun.mean, begun.prior)]
+    begun = begun_at(log, {"mass": 4.0})
+    points = [*descend(begun.point, begun.mean, begun.prior, OPTIONS)]
     likely = [linearise_criterion(*p, begun.mean, begun.prior).log_posterior for p in points]
     sharpened = next(
         k for k, (_, lv) in enumerate(points) if lv.input_std > ALLOWED * begun.point.motion
@@ -116,12 +122,10 @@ def test_a_bent_step_follows_the_curve_of_the_residual_to_one_order_more():
     log, white = record(slider(**TRUE), 200, noise=1e-9), NoiseLevel(Noise(0.0, 0.1), 1.0, 0.0)
     left = {}
     for away in (0.2, 0.1):  # of the logarithm of the mass
-        far = fit_with_effects(
-            base(), log, (), {**TRUE, "mass": TRUE["mass"] * np.exp(away)}, steps=0
-        ).point
+        far = begun_at(log, {**TRUE, "mass": TRUE["mass"] * np.exp(away)}).point
         problem = linearise_criterion(far, white, far.q, np.zeros(4))
         move, _ = problem.step(0.0)
-        left[away] = [problem.cost(far.q + m) ** 0.5 for m in (move, problem.bent(move, 0.0))]
+        left[away] = [problem.cost(far.q + m) ** 0.5 for m in (move, problem.bend(move, 0.0))]
     (straight, bent), (straight_half, bent_half) = left[0.2], left[0.1]
     assert bent < 0.5 * straight
     assert straight / straight_half == pytest.approx(4, rel=0.2)  # second order

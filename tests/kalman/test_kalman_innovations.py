@@ -5,6 +5,7 @@ import pytest
 from scipy.stats import kstest
 
 from identification.kalman.innovations import whiteness
+from identification.kalman.options import KalmanOptions
 
 H, N, NY = 0.01, 600, 8
 
@@ -73,4 +74,4 @@ def test_the_predictable_share_of_a_first_order_process(a):
     w = whiteness(E, H)
     assert w.predictable == pytest.approx(a**2, rel=0.1)
     assert w.p_correlation < 1e-4  # beyond chance in all three, but of the first too little
-    assert w.correlated == (a > 0.1)
+    assert w.is_correlated(KalmanOptions()) == (a > 0.1)

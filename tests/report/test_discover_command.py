@@ -11,16 +11,22 @@ import pytest
 from fake_discovery import EFFECTS, found, log
 
 from identification import write_log
+from identification.discovery.options import DiscoveryOptions
 from inca_mj.cli import main
 from inca_mj.twin.saved import load_twin
 
 
 @pytest.fixture(autouse=True)
 def outcome(monkeypatch: pytest.MonkeyPatch) -> list:
-    """What the discovery finds; change its only entry for another."""
+    """What the discovery finds, to be changed for another, and the options that it was given."""
     result = [found()]
     module = ModuleType("inca_mj.workflows.discovery")
-    module.discover = lambda *_, **__: result[0]  # type: ignore[attr-defined]
+
+    def discover(*_, **given):
+        result[1:] = [given["options"]]
+        return result[0]
+
+    module.discover = discover  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "inca_mj.workflows.discovery", module)
     return result
 
@@ -88,6 +94,24 @@ def test_a_folder_of_results_is_whole(
     assert {"python", "mujoco"} <= set(kept["versions"])
     twin = load_twin(tmp_path, EFFECTS)
     assert {e.name for e in twin.effects} == {e["name"] for e in record["effects"]}
+
+
+def test_options_of_a_file_are_passed_on_and_bad_ones_refused(
+    path: Path, tmp_path: Path, outcome: list, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = tmp_path / "options.toml"
+    options.write_text("min_proof_t = 3.0\n")
+    assert run("discover", path, "--options", options) == 0
+    assert outcome[1] == DiscoveryOptions(min_proof_t=3.0)
+    assert run("discover", path) == 0
+    assert outcome[1] is None
+    capsys.readouterr()
+    options.write_text("max_effects = 'two'\n")
+    assert run("discover", path, "--options", options) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.count("\n") == 1
+    assert "max_effects is 'two'; give a whole number of 1 or more" in said.err
 
 
 def test_bad_input_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

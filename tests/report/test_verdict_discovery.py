@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import hypot
 
 import pytest
-from fake_discovery import NOISE, found
+from fake_discovery import DRIVE_3, NOISE, SLOW, found
 
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
@@ -12,6 +12,7 @@ from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_tables import parameters_section
 from identification.report.discovery_text import discovery_text
 from identification.report.discovery_verdict import diff_line, discovery_verdict, floor_rms
+from identification.report.finding_words import describe_finding, sentence
 
 
 def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
@@ -49,7 +50,7 @@ def test_look_alikes_are_a_set() -> None:
 def test_what_is_left_is_said_last() -> None:
     said = discovery_verdict(found(unexplained=True))
     assert said[-1].startswith("Something is left beside what is named that no known effect")
-    assert said[-1].endswith("The error is largest at drive 3.")
+    assert said[-1].endswith(sentence(describe_finding(DRIVE_3)))
 
 
 def test_two_effects_are_two_sentences() -> None:
@@ -92,7 +93,7 @@ def test_a_proof_says_what_of_the_noise_the_sensors_make() -> None:
 def test_an_unknown_effect_is_not_named() -> None:
     (said,) = discovery_verdict(found("unknown effect"))
     assert said.startswith("Something is missing that none of the 3 known effects surely explains")
-    assert "The error grows at low speed." in said
+    assert sentence(describe_finding(SLOW)) in said
     assert "Stribeck" not in said
 
 

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from robot_cases import NAMES, TOML, run
+from robot_cases import NAMES, TOML, refused, run
 
 from identification.robot.file import read_robot
 from identification.robot.robot import read_robot_log, robot_of
@@ -24,7 +24,7 @@ def test_what_the_file_leaves_out_comes_from_the_model_and_the_log(folder):
     units = [at[n].unit for n in NAMES]
     assert units == ["kg", "N s/m", "m", "m/s"]
     assert robot.starts == ("qpos[0]", "qvel[0]")
-    assert robot.base.names == NAMES
+    assert robot.nominal_model.names == NAMES
     assert {"stribeck_friction", "delay"} <= {e.name for e in robot.candidates}
 
 
@@ -62,6 +62,19 @@ def test_a_discovery_names_what_is_hidden_and_writes_a_report(folder, tmp_path, 
     assert again.free == (*NAMES, name)
     assert robot.plant.parameters[name].value == effect["parameters"]["d_a"]["value"]
     assert robot.plant.parameters["mass"].value == pytest.approx(1.8, rel=0.02)
+
+
+def test_options_of_a_file_decide(folder, tmp_path, capsys):
+    path, options = folder / "one.toml", tmp_path / "options.toml"
+    path.write_text(TOML + '[effects]\nonly = ["asymmetric_viscous_friction"]\n')
+    options.write_text("min_proof_t = 1e9\n")
+    found = run(capsys, "discover", path, folder / "hidden.csv", "--options", options)
+    assert found["verdict"] == "unknown effect"
+    assert found["options"]["min_proof_t"] == 1e9
+    assert "doubtful effect" in [f["kind"] for f in found["findings"]]
+    options.write_text("min_prof_t = 2.0\n")
+    said = refused(capsys, "discover", path, folder / "hidden.csv", "--options", options)
+    assert "did you mean 'min_proof_t'" in said
 
 
 def test_a_robot_with_an_effect_reads_back_to_the_bit(folder, tmp_path):

@@ -1,12 +1,12 @@
-"""Is the unlogged error of the inputs random, or does it go along with what was logged?
+"""Is the unlogged error of the inputs random, or does it follow something that was logged?
 
     w_k = Σ_i g_i r_i(k),   δx_{k+1} = A_k δx_k + B_k w_k,   S_i = C δx for g_i = 1
     (δ̂, ĝ) = argmin ‖E - F δ - S g‖² + Σ ((q_j + δ_j - q̄_j)/s_j)² + ‖g‖²       fitted samples
     Δ_b = ½ Σ_{k in b} ‖E_k‖² - ‖E_k - F_k δ̂ - S_k ĝ‖²                blocks b of unseen samples
 
-A noise model takes any error of the inputs for chance. One that follows from inputs, outputs or
-rates predicts samples that no fit has seen; chance does not. Each r_i has the size of the error
-that the noise model takes for granted, and g_i is held by that.
+The noise model takes every error of the inputs for random. An error that follows inputs, outputs or
+rates predicts unseen samples; a random one does not. Each regressor r_i has the rms of the error
+that the noise model assumes, and the prior of g_i has the std 1.
 """
 
 from __future__ import annotations
@@ -18,109 +18,134 @@ import numpy as np
 from scipy.stats import ttest_1samp
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.fitted_model import FittedModel
-from identification.discovery.proof import BLOCKS, Validation
+from identification.discovery.findings.evidence import StructuredInputError
+from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.proof import Validation
 from identification.errors import DivergenceError
-from identification.kalman.innovations import MATTERS, SURE
 from identification.kalman.noise_model import Whitener
 from identification.kalman.point import evaluate_sensitivities
-from identification.quantities import quantity
-
-KNOTS = 12  # of a curve
 
 
 @dataclass(frozen=True)
-class Family:
-    """Errors of the inputs that would go along with something.
+class ErrorFamily:
+    """Errors of the inputs that follow one thing that was logged.
 
     Attributes:
-        what: it is.
-        r: errors of the inputs, shape (N, nu, p), rms 1 each where they are not zero.
+        name: of what they follow.
+        r: the regressors, errors of the inputs, shape (N, nu, p), of rms 1 each or zero.
     """
 
-    what: str
+    name: str
     r: np.ndarray
 
 
 @dataclass(frozen=True)
-class Followed:
-    """How well a family predicts unseen samples.
+class FamilyFit:
+    """How well a family of errors predicts unseen samples.
 
     Attributes:
-        what: it goes along with.
-        chance: that an error without structure is predicted as well.
-        share: of the innovations' power that is predicted.
-        fall: of the free run's mean square.
-        error: rms of each input's error, shape (nu,).
+        name: of what the errors follow.
+        p_value: chance that a random error is predicted as well.
+        share: of the power of the unseen innovations that is predicted.
+        fall: of the mean square of the free run on unseen samples.
+        error: rms of the error of each input, in its unit, shape (nu,).
     """
 
-    what: str
-    chance: float
+    name: str
+    p_value: float
     share: float
     fall: float
     error: np.ndarray
 
 
-def find_input_error(step: FittedModel) -> tuple[str, ...]:
-    """A sentence on what the inputs' error goes along with; none where it is random.
+def find_input_error(validation: Validation, options: DiscoveryOptions) -> tuple[Finding, ...]:
+    """What the inputs' error follows, beyond chance and by enough to matter; else nothing.
+
+    Each family of errors is a test of its own.
 
     Args:
-        step: a fitted model, seen on the whole log.
+        validation: the prediction of the whole log by a fitted model.
+        options: what is beyond chance, and large enough to matter.
     """
-    tried = followed(step.validation)  # each a test of its own, as the others of what is left
-    found = [f for f in tried if f.chance < SURE and max(f.share, f.fall) > MATTERS]
+    found = [
+        f for f in fit_families(validation, options)
+        if f.p_value < options.structure_level
+        and max(f.share, f.fall) > options.min_structure_share
+    ]  # fmt: skip
     if not found:
         return ()
-    best, log = max(found, key=lambda f: f.share), step.validation.whole
-    rms, worst = float(np.sqrt(np.mean(best.error**2))), log.input_names[best.error.argmax()]
-    size = quantity(rms, unit=log.units.get(worst, ""))
-    return (
-        f"an error of the inputs that nobody logged, {size} rms, that is not random: it goes along"
-        f" with {best.what}, most of all on {worst}, and with it the mean square on unseen data is"
-        f" {100 * max(best.fall, best.share):.0f} % less",
+    best, log = max(found, key=lambda f: f.share), validation.log
+    worst = log.input_names[best.error.argmax()]
+    evidence = StructuredInputError(
+        regressor=best.name,
+        input=worst,
+        unit=log.units.get(worst, ""),
+        rms=float(np.sqrt(np.mean(best.error**2))),
+        fall=max(best.fall, best.share),
     )
+    return (Finding(FindingKind.STRUCTURED_INPUT_ERROR, evidence),)
 
 
-def followed(seen: Validation) -> tuple[Followed, ...]:
-    """How well each family predicts; none where no error of the inputs is taken for granted."""
-    if not seen.filter.A.size:
+def fit_families(validation: Validation, options: DiscoveryOptions) -> tuple[FamilyFit, ...]:
+    """How well each family predicts; none where the noise model has no error of the inputs.
+
+    Args:
+        validation: the prediction of the whole log by a fitted model.
+        options: the numbers of knots and blocks.
+    """
+    if not validation.filter.A.size:
         return ()
-    fit = seen.refit
+    fit = validation.refit
     try:
-        J = evaluate_sensitivities(fit.point, seen.whole)
-    except DivergenceError:  # where a parameter that is moved a little loses the robot
+        J = evaluate_sensitivities(fit.point, validation.log)
+    except DivergenceError:  # a small change of a parameter makes the simulation diverge
         return ()
     with threadpool_limits(1, "blas"):
-        F = seen.filter(J) / fit.level.sigma
-        each = [_followed(seen, J, F, family) for family in families(seen)]
+        F = validation.filter(J) / fit.level.sigma
+        families = list_families(validation, options.error_knots)
+        each = [_fit_family(validation, J, F, f, options.proof_blocks) for f in families]
     return tuple(each)
 
 
-def families(seen: Validation) -> Iterator[Family]:
-    """What errors of the inputs are tried; as many outputs as inputs are taken for theirs."""
-    u, y = seen.whole.inputs, seen.whole.outputs - seen.e
+def list_families(validation: Validation, knots: int) -> Iterator[ErrorFamily]:
+    """The families of errors that are tried.
+
+    Outputs and rates are among them where there are as many outputs as inputs: each output is then
+    taken for the one that the input of the same index moves.
+
+    Args:
+        validation: the prediction of the whole log by a fitted model.
+        knots: of each curve.
+    """
+    u, y = validation.log.inputs, validation.log.outputs - validation.e
     nu = u.shape[1]
     if nu > 1:
-        yield Family("the other inputs", _apart(u[:, None] * (1 - np.eye(nu))))
-    yield Family("its own input", _apart(_curves(u)))
+        yield ErrorFamily("other inputs", separate_inputs(u[:, None] * (1 - np.eye(nu))))
+    yield ErrorFamily("own input", separate_inputs(draw_curves(u, knots)))
     if y.shape[1] == nu:
-        yield Family("its output", _apart(_curves(y)))
-        yield Family("the rate of its output", _apart(_curves(np.gradient(y, axis=0))))
+        yield ErrorFamily("output", separate_inputs(draw_curves(y, knots)))
+        rate = np.gradient(y, axis=0)
+        yield ErrorFamily("output rate", separate_inputs(draw_curves(rate, knots)))
 
 
-def _curves(x: np.ndarray) -> np.ndarray:
-    """Hat functions of each column of x between its quantiles, shape (N, nu, KNOTS)."""
-    out = np.empty((*x.shape, KNOTS))
+def draw_curves(x: np.ndarray, knots: int) -> np.ndarray:
+    """Hat functions of each column of x, shape (N, nu), between its quantiles: (N, nu, knots)."""
+    out = np.empty((*x.shape, knots))
     for i, own in enumerate(x.T):
-        knots = np.quantile(own, np.linspace(0, 1, KNOTS))
-        knots += np.ptp(own) * 1e-9 * np.arange(KNOTS)  # an input of two levels has equal ones
-        for k, hat in enumerate(np.eye(KNOTS)):
-            out[:, i, k] = np.interp(own, knots, hat)
+        places = np.quantile(own, np.linspace(0, 1, knots))
+        # An input of two levels has equal quantiles; they are moved apart by a little.
+        places += np.ptp(own) * 1e-9 * np.arange(knots)
+        for k, hat in enumerate(np.eye(knots)):
+            out[:, i, k] = np.interp(own, places, hat)
     return out
 
 
-def _apart(x: np.ndarray) -> np.ndarray:
-    """Each input with coefficients of its own: (N, nu, k) as (N, nu, nu k), centred, rms 1."""
+def separate_inputs(x: np.ndarray) -> np.ndarray:
+    """Regressors with coefficients of its own for each input: (N, nu, k) as (N, nu, nu k).
+
+    They are centred and scaled to rms 1.
+    """
     N, nu, k = x.shape
     x = x - x.mean(axis=0)
     rms = np.sqrt(np.mean(x**2, axis=0))
@@ -128,11 +153,11 @@ def _apart(x: np.ndarray) -> np.ndarray:
     return np.einsum("nik,ij->nijk", x, np.eye(nu)).reshape(N, nu, nu * k)
 
 
-def response(filter_: Whitener, r: np.ndarray) -> np.ndarray:
-    """What errors of the inputs do to the outputs of a free run.
+def simulate_response(filter_: Whitener, r: np.ndarray) -> np.ndarray:
+    """The response of the outputs of a free run to errors of the inputs.
 
     Args:
-        filter_: its A and C are those of state and input error.
+        filter_: has the transitions of the state of plant and input error.
         r: the errors, shape (N, nu, p).
 
     Returns:
@@ -148,27 +173,29 @@ def response(filter_: Whitener, r: np.ndarray) -> np.ndarray:
     return np.array(out)
 
 
-def _followed(seen: Validation, J: np.ndarray, F: np.ndarray, family: Family) -> Followed:
-    fit, E, first, p = seen.refit, seen.innovations, seen.first, J.shape[2]
+def _fit_family(
+    validation: Validation, J: np.ndarray, F: np.ndarray, family: ErrorFamily, blocks: int
+) -> FamilyFit:
+    fit, E, first, p = validation.refit, validation.innovations, validation.first, J.shape[2]
     r = fit.level.input_std * family.r
-    moved = response(seen.filter, r)
-    X = np.concatenate([F, seen.filter(moved) / fit.level.sigma], axis=2)
-    held = np.concatenate([fit.prior, np.ones(r.shape[2])])
+    moved = simulate_response(validation.filter, r)
+    X = np.concatenate([F, validation.filter(moved) / fit.level.sigma], axis=2)
+    weight = np.concatenate([fit.prior, np.ones(r.shape[2])])
     off = np.concatenate([fit.mean - fit.point.q, np.zeros(r.shape[2])])
-    rows = np.vstack([X[:first].reshape(-1, X.shape[2]), np.diag(held)])
-    target = np.concatenate([E[:first].ravel(), held * off])
+    rows = np.vstack([X[:first].reshape(-1, X.shape[2]), np.diag(weight)])
+    target = np.concatenate([E[:first].ravel(), weight * off])
     scale = 1 / (np.linalg.norm(rows, axis=0) + 1e-300)
     rows *= scale
     δg = scale * np.linalg.lstsq(rows.T @ rows, rows.T @ target, rcond=1e-12)[0]
     before, after = E[first:], E[first:] - X[first:] @ δg
     fewer = np.sum(before**2 - after**2, axis=1) / 2
-    blocks = [part.mean() for part in np.array_split(fewer, BLOCKS)]
-    chance = float(ttest_1samp(blocks, 0.0, alternative="greater").pvalue)
-    free, left = seen.e[first:], seen.e[first:] - np.concatenate([J, moved], axis=2)[first:] @ δg
-    return Followed(
-        family.what,
-        chance,
-        1 - float(np.sum(after**2) / np.sum(before**2)),
-        1 - float(np.sum(left**2) / np.sum(free**2)),
-        np.sqrt(np.mean((r @ δg[p:]) ** 2, axis=0)),
+    means = [part.mean() for part in np.array_split(fewer, blocks)]
+    free = validation.e[first:]
+    remaining = free - np.concatenate([J, moved], axis=2)[first:] @ δg
+    return FamilyFit(
+        name=family.name,
+        p_value=float(ttest_1samp(means, 0.0, alternative="greater").pvalue),
+        share=1 - float(np.sum(after**2) / np.sum(before**2)),
+        fall=1 - float(np.sum(remaining**2) / np.sum(free**2)),
+        error=np.sqrt(np.mean((r @ δg[p:]) ** 2, axis=0)),
     )

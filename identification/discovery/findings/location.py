@@ -1,6 +1,6 @@
-"""Where model and log disagree: which output, when, at which frequency, along with what.
+"""Where nominal model and log disagree: on which output, when, at which frequency, by which force.
 
-What a missing force goes along with is told by the share of its power that one regressor explains.
+What a missing force follows is told by the share of its power that one regressor explains.
 """
 
 from __future__ import annotations
@@ -9,155 +9,119 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from identification.discovery.fitted_model import FittedModel, is_relevant
+from identification.discovery.findings.evidence import (
+    ForceEvidence,
+    MedianFrequency,
+    WorstInterval,
+    WorstOutput,
+)
+from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.missing_forces import MissingForce
-from identification.discovery.result import Tried
-from identification.kalman.innovations import SURE, whiteness
-from identification.kalman.noise_fit import ALLOWED
+from identification.discovery.options import DiscoveryOptions
 from identification.kalman.refit import Refit
-from identification.quantities import probability, quantity
-from identification.report.discovery_words import phrase, sizes
 
-TELLING = 0.1  # share of a missing force that is worth a sentence
-BELIEVED = 1.0  # the same, above which the log's inputs are not what moved the robot
+TENTHS = 10  # intervals into which the fitted samples are divided
+STEEP = 3.0  # of the sign of a rate, smoothed by tanh, per std of the rate
+SLOW = 0.3  # width of "near zero", in std of the rate
 
 
-def regressors(fit: Refit) -> dict[str, np.ndarray]:
-    """What a missing force may go along with, by name: shape (N, ny) each, or (N, 1)."""
+def locate_error(
+    fit: Refit, forces: Sequence[MissingForce], options: DiscoveryOptions
+) -> tuple[Finding, ...]:
+    """Where the nominal model fails on the fitted samples.
+
+    Args:
+        fit: the nominal model, fitted.
+        forces: the forces that it lacks.
+        options: from which share on the regressor of a force is told.
+    """
+    return (
+        Finding(FindingKind.WORST_OUTPUT, _worst_output(fit)),
+        Finding(FindingKind.WORST_INTERVAL, _worst_interval(fit)),
+        Finding(FindingKind.MEDIAN_FREQUENCY, _median_frequency(fit)),
+        *(Finding(FindingKind.MISSING_FORCE, _summarise(fit, f, options)) for f in forces),
+    )
+
+
+def _worst_output(fit: Refit) -> WorstOutput:
+    log, e = fit.point.log, fit.point.e
+    rms = np.sqrt(np.mean(e**2, axis=0))
+    worst = int(rms.argmax())
+    name = log.output_names[worst]
+    return WorstOutput(
+        output=name,
+        unit=log.units.get(name, ""),
+        rms=float(rms[worst]),
+        share=float(rms[worst] ** 2 / np.sum(rms**2)),
+        noise_ratio=float(rms[worst] / fit.level.sigma),
+    )
+
+
+def _worst_interval(fit: Refit) -> WorstInterval:
+    log, e = fit.point.log, fit.point.e
+    starts = np.linspace(0, len(e), TENTHS, endpoint=False).astype(int)
+    energy = np.add.reduceat(np.sum(e**2, axis=1), starts)
+    late, span = int(energy.argmax()), log.duration / TENTHS
+    return WorstInterval(late * span, (late + 1) * span, float(energy[late] / energy.sum()))
+
+
+def _median_frequency(fit: Refit) -> MedianFrequency:
+    e = fit.point.e
+    spectrum = np.sum(np.abs(np.fft.rfft(e - e.mean(axis=0), axis=0)) ** 2, axis=1)
+    f = np.fft.rfftfreq(len(e), fit.point.log.sampling_time)
+    half = f[int(np.searchsorted(np.cumsum(spectrum), 0.5 * spectrum.sum()))]
+    return MedianFrequency(float(max(half, f[1])))
+
+
+def _summarise(fit: Refit, force: MissingForce, options: DiscoveryOptions) -> ForceEvidence:
+    units, rms = tuple(dict.fromkeys(force.units)), []
+    for unit in units:
+        mine = [u == unit for u in force.units]
+        rms.append(float(np.sqrt(np.mean(force.force[:, mine] ** 2))))
+    shares = explain_force(fit, force.force)
+    best = max(shares, key=shares.__getitem__)
+    return ForceEvidence(
+        where=force.where,
+        units=units,
+        rms=tuple(rms),
+        share=force.share,
+        regressor=best if shares[best] >= options.regressor_share else None,
+        regressor_share=shares[best],
+    )
+
+
+def list_regressors(fit: Refit) -> dict[str, np.ndarray]:
+    """What a missing force may follow, by name: shape (N, ny) each, or (N, 1).
+
+    Rates and positions are among them where there are as many outputs as inputs: each output is
+    then taken for the position on which the input of the same index acts.
+    """
     log = fit.point.log
     y = log.outputs - fit.point.e
     rate = np.gradient(y, log.sampling_time, axis=0)
     u = log.inputs
-    same = u.shape[1] == y.shape[1]
-    out = {"time": log.time[:, None] - log.time.mean()}
-    out["its input"] = u
-    if same:
+    out = {"time": log.time[:, None] - log.time.mean(), "input": u}
+    if u.shape[1] == y.shape[1]:
         scale = rate.std(axis=0) + 1e-300
         out |= {
-            "the sign of its rate": np.tanh(3 * rate / scale),
-            "its rate": rate,
-            "the size of its rate": np.abs(rate),
-            "its rate near zero": rate * np.exp(-((rate / (0.3 * scale)) ** 2)),
-            "the square of its rate": rate * np.abs(rate),
-            "its angle": y,
+            "rate sign": np.tanh(STEEP * rate / scale),
+            "rate": rate,
+            "rate size": np.abs(rate),
+            "rate near zero": rate * np.exp(-((rate / (SLOW * scale)) ** 2)),
+            "rate squared": rate * np.abs(rate),
+            "position": y,
         }
     return out
 
 
-def shares(fit: Refit, force: np.ndarray) -> Mapping[str, float]:
-    """Share of a force's power (N, k) that goes along with each regressor, 0 to 1 each."""
+def explain_force(fit: Refit, force: np.ndarray) -> Mapping[str, float]:
+    """Share of a force's power (N, k) that follows each regressor, 0 to 1 each."""
     w = force - force.mean(axis=0)
     power = np.sum(w**2) + 1e-300
     out = {}
-    for name, r in regressors(fit).items():
+    for name, r in list_regressors(fit).items():
         if r.shape[1] in (1, w.shape[1]):
             r = np.broadcast_to(r - r.mean(axis=0), w.shape)
             along = np.sum(r * w, axis=0) ** 2 / (np.sum(r**2, axis=0) + 1e-300)
             out[name] = float(np.sum(along) / power)
     return out
-
-
-def located(nominal: FittedModel, missing: Sequence[MissingForce]) -> tuple[str, ...]:
-    """Where the nominal model fails on the fitted samples, in sentences."""
-    fit = nominal.refit
-    log, e = fit.point.log, fit.point.e
-    out = []
-    rms = np.sqrt(np.mean(e**2, axis=0))
-    worst = int(rms.argmax())
-    share = rms[worst] ** 2 / np.sum(rms**2)
-    name = log.output_names[worst]
-    unit = log.units.get(name, "")
-    out.append(
-        "of the fitted samples the error is largest on"
-        f" {name}: {quantity(rms[worst], unit=unit)} rms, {100 * share:.0f} % of all,"
-        f" {rms[worst] / fit.level.sigma:.1f} times the sensors' noise"
-    )
-    energy = np.add.reduceat(
-        np.sum(e**2, axis=1), np.linspace(0, len(e), 10, endpoint=False).astype(int)
-    )
-    late = int(energy.argmax())
-    span = log.duration / 10
-    out.append(
-        f"it is largest from {late * span:.1f} to {(late + 1) * span:.1f} s"
-        f" ({100 * energy[late] / energy.sum():.0f} % of it)"
-    )
-    spectrum = np.sum(np.abs(np.fft.rfft(e - e.mean(axis=0), axis=0)) ** 2, axis=1)
-    f = np.fft.rfftfreq(len(e), log.sampling_time)
-    half = f[int(np.searchsorted(np.cumsum(spectrum), 0.5 * spectrum.sum()))]
-    out.append(f"half of it lies below {max(half, f[1]):.2g} Hz")
-    return (*out, *(_acting(fit, m) for m in missing))
-
-
-def _acting(fit: Refit, missing: MissingForce) -> str:
-    """A missing force, its size, its share, and what it goes along with."""
-    sizes = []
-    for unit in dict.fromkeys(missing.units):
-        mine = [u == unit for u in missing.units]
-        sizes.append(f"{np.sqrt(np.mean(missing.force[:, mine] ** 2)):.2g} {unit}")
-    said = (
-        f"generalised forces of {' and '.join(sizes)} rms on {missing.where} would explain"
-        f" {100 * missing.share:.0f} % of it"
-    )
-    found = shares(fit, missing.force)
-    best = max(found, key=found.__getitem__)
-    if found[best] >= TELLING:
-        said += f"; {100 * found[best]:.0f} % of their power goes along with {best}"
-    return said
-
-
-def find_structure(step: FittedModel) -> tuple[str, ...]:
-    """What the final model does not explain, in sentences; empty when it explains all."""
-    log = step.refit.point.log
-    white = whiteness(step.innovations, log.sampling_time)
-    out = []
-    if white.p_line < SURE:
-        out.append(
-            f"a line at {white.frequency:.2f} Hz on {log.output_names[white.channel]} that no"
-            f" candidate explains (chance {probability(white.p_line)})"
-        )
-    if white.p_louder < SURE:
-        out.append(
-            f"{log.output_names[white.loudest]} is noisier than the others"
-            f" (chance {probability(white.p_louder)})"
-        )
-    if white.correlated:
-        out.append(
-            f"innovations that are not white: {100 * white.predictable:.0f} % of their power"
-            f" follows from the samples before (chance {probability(white.p_correlation)})"
-        )
-    if step.stretched:
-        out.append(
-            f"{' and '.join(step.stretched)} at the end of what is plausible, by the nominal"
-            " values that were given"
-        )
-    if (err := input_error(step.refit)) > ALLOWED:
-        level = step.refit.level
-        unit = log.units.get(log.input_names[0], "")
-        out.append(
-            f"inputs that would have to err by {quantity(level.input_std, unit=unit)} rms beside"
-            f" what the log says, {100 * err:.0f} % of their own motion, for"
-            f" {level.noise.time:.2g} s at a time"
-        )
-    return tuple(out)
-
-
-def find_doubtful_effect(rejected: Sequence[Tried]) -> tuple[str, ...]:
-    """The likeliest effect that fitted samples want and that would matter, but is not proven."""
-    wanted = [t for t in rejected if t.gain > 0 and is_relevant(t.proof)]
-    return tuple(
-        f"{phrase(t.candidate)}, {sizes(t)}, which explains the fitted samples beyond chance and"
-        f" {100 * t.proof.fall:.0f} % of the error on unseen data, but not surely there"
-        f" (t = {t.proof.t:.1f})"
-        for t in wanted[:1]
-    )
-
-
-def believed(step: FittedModel) -> bool:
-    """Whether a model may be named that leaves something: inputs and base parameters as given."""
-    return input_error(step.refit) < BELIEVED and not step.stretched
-
-
-def input_error(fit: Refit) -> float:
-    """Error of the inputs that the noise model takes for granted, as a share of their motion."""
-    moved = fit.point.motion
-    return fit.level.input_std / moved if moved > 0 else 0.0

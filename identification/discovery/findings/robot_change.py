@@ -1,9 +1,10 @@
-"""Does what was fitted hold on the other samples? A robot may change, or show more of itself.
+"""Are the unseen samples predicted as well as the fitted ones? If not, the robot may have changed.
 
     δ = argmin ‖E - F δ‖² + Σ ((q_j + δ_j - q̄_j)/s_j)²        over all samples, F = ∂E/∂q
 
-Parameters that a fit knows only roughly predict other samples only roughly; what a small change of
-them does not take away from the innovations there is no uncertainty of theirs.
+A fit that knows its parameters only roughly predicts unseen samples only roughly. The part of the
+innovations that a small change δ of the parameters can explain is therefore removed; the rest is no
+uncertainty of the parameters.
 """
 
 from __future__ import annotations
@@ -12,75 +13,85 @@ import numpy as np
 from scipy.stats import ttest_ind
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.fitted_model import FittedModel
-from identification.discovery.proof import BLOCKS, Validation
+from identification.discovery.findings.evidence import RobotChange
+from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.proof import Validation
 from identification.errors import DivergenceError
-from identification.kalman.innovations import MATTERS, SURE
 from identification.kalman.point import evaluate_sensitivities
 
 
-def find_robot_change(step: FittedModel) -> tuple[str, ...]:
-    """A sentence where the unseen samples are farther off than the fitted ones, beyond chance.
+def find_robot_change(validation: Validation, options: DiscoveryOptions) -> tuple[Finding, ...]:
+    """The change of the robot, where unseen innovations are larger beyond chance; else nothing.
 
     Args:
-        step: a fitted model, seen on the whole log.
+        validation: the prediction of the whole log by a fitted model.
+        options: what is beyond chance, and large enough to matter.
     """
-    seen, first = step.validation, step.validation.first
-    fitted, E = seen.innovations[:first], seen.innovations
-    if not _louder(fitted, E[first:]):
+    first, E = validation.first, validation.innovations
+    fitted, blocks = E[:first], options.proof_blocks
+    if not _is_larger(fitted, E[first:], options):
         return ()
     try:
-        left = E - _taken(seen)
-    except DivergenceError:  # where a parameter that is moved a little loses the robot
-        left = E
-    if not _louder(fitted, left[first:]):
+        remaining = E - _explain(validation)
+    except DivergenceError:  # a small change of a parameter makes the simulation diverge
+        remaining = E
+    unseen = remaining[first:]
+    if not _is_larger(fitted, unseen, options):
         return ()
-    log, ratio = seen.refit.point.log, _power(left[first:]).mean() / _power(fitted).mean()
-    at = log.time[-1] + log.sampling_time * (1 + _onset(_power(fitted), _power(left[first:])))
-    return (
-        f"samples that were not fitted, which a predictor of the next sample misses by"
-        f" {np.sqrt(ratio):.3g} times as much as those that were, from about {at:.3g} s on: the"
-        " robot changed, or does there what the fitted part never shows",
-    )
+    log, ratio = validation.refit.point.log, _power(unseen).mean() / _power(fitted).mean()
+    onset = find_onset(_power(fitted), _power(unseen), blocks)
+    time = log.time[-1] + log.sampling_time * (1 + onset)
+    evidence = RobotChange(float(np.sqrt(ratio)), float(time))
+    return (Finding(FindingKind.ROBOT_CHANGE, evidence),)
 
 
-def _onset(fitted: np.ndarray, unseen: np.ndarray) -> int:
-    """First sample of the unseen ones from which on they differ the most from all before."""
-    ends = np.array_split(np.arange(len(unseen)), BLOCKS)
-    a, b = np.log(_blocks(fitted)), np.log(_blocks(unseen))
+def find_onset(fitted: np.ndarray, unseen: np.ndarray, blocks: int) -> int:
+    """Index of the unseen sample from which on the power differs most from all before.
 
-    def apart(k: int) -> float:
+    Args:
+        fitted: power of each fitted sample, shape (n,).
+        unseen: power of each unseen sample, shape (m,).
+        blocks: number of blocks, to whose starts the index is rounded.
+    """
+    ends = np.array_split(np.arange(len(unseen)), blocks)
+    a, b = np.log(_means(fitted, blocks)), np.log(_means(unseen, blocks))
+
+    def difference(k: int) -> float:
         before, after = np.concatenate([a, b[:k]]), b[k:]
         n, m = len(before), len(after)
         return float((after.mean() - before.mean()) * np.sqrt(n * m / (n + m)))
 
-    return int(ends[max(range(BLOCKS), key=apart)][0])
+    return int(ends[max(range(blocks), key=difference)][0])
 
 
-def _blocks(power: np.ndarray) -> np.ndarray:
-    return np.array([part.mean() for part in np.array_split(power, BLOCKS)])
+def _means(power: np.ndarray, blocks: int) -> np.ndarray:
+    return np.array([part.mean() for part in np.array_split(power, blocks)])
 
 
 def _power(E: np.ndarray) -> np.ndarray:
-    return np.mean(E**2, axis=1)
+    return np.asarray(np.mean(E**2, axis=1))
 
 
-def _louder(fitted: np.ndarray, unseen: np.ndarray) -> bool:
+def _is_larger(fitted: np.ndarray, unseen: np.ndarray, options: DiscoveryOptions) -> bool:
     """Whether unseen innovations are larger, beyond chance and by enough to matter."""
-    a, b = _blocks(_power(fitted)), _blocks(_power(unseen))
-    # logarithms, as a few blocks far off would be scatter and no difference
+    a, b = (_means(_power(E), options.proof_blocks) for E in (fitted, unseen))
+    # The logarithm keeps a few blocks with large errors from looking like scatter only.
     p = ttest_ind(np.log(b), np.log(a), equal_var=False, alternative="greater").pvalue
-    return bool(p < SURE and b.mean() > (1 + MATTERS) * a.mean())
+    matters = b.mean() > (1 + options.min_structure_share) * a.mean()
+    return bool(p < options.structure_level and matters)
 
 
-def _taken(seen: Validation) -> np.ndarray:
-    """What a small change of the parameters takes from the innovations of all samples, (N, ny)."""
-    fit = seen.refit
+def _explain(validation: Validation) -> np.ndarray:
+    """What a small change of the parameters explains of all innovations, shape (N, ny)."""
+    fit = validation.refit
     with threadpool_limits(1, "blas"):
-        J = evaluate_sensitivities(fit.point, seen.whole)
-        F = seen.filter(J).reshape(seen.e.size, -1) / fit.level.sigma
+        J = evaluate_sensitivities(fit.point, validation.log)
+        F = validation.filter(J).reshape(validation.e.size, -1) / fit.level.sigma
         rows = np.vstack([F, np.diag(fit.prior)])
-        target = np.concatenate([seen.innovations.ravel(), fit.prior * (fit.mean - fit.point.q)])
+        target = np.concatenate(
+            [validation.innovations.ravel(), fit.prior * (fit.mean - fit.point.q)]
+        )
         scale = np.linalg.norm(rows, axis=0) + 1e-300
         move = np.linalg.lstsq(rows / scale, target, rcond=1e-12)[0] / scale
-    return (F @ move).reshape(seen.e.shape)
+    return np.asarray((F @ move).reshape(validation.e.shape))

@@ -1,19 +1,21 @@
-"""Score tests: what each candidate would explain of a residual, the base parameters re-tuned.
+"""Scores: how much each candidate would explain of a residual, the free parameters re-tuned.
 
     E, Φ, S_j                    whitened residual and sensitivities
     r⊥ = r - Φ (ΦᵀΦ + P)⁻¹ Φᵀ r  what re-tuning within the priors P cannot imitate
-    η̂_j = (S⊥ᵀS⊥)⁻¹ S⊥ᵀE⊥       the size, at once
-    LR_j = 2 max_ρ log L_j(ρ) - 2 max_ρ log L_0(ρ)
+    η̂_j = (S⊥ᵀS⊥)⁻¹ S⊥ᵀE⊥       the estimate of the size in one linear step
+    LR_j = 2 max_ρ log L_j(ρ) - 2 max_ρ log L_0(ρ)       the gain
 
-Each candidate is judged with the noise that is the most likely *with it*: an effect that is truly
-missing looks like input noise until it is there. p-values hold the noise of the nominal model,
+Each candidate is judged with the noise that is the most likely *with it*, because a missing effect
+looks like input noise as long as the model lacks it. The p-value takes the noise of the nominal
+model,
 
     p_j = P(χ²_m > η̂ᵀ S⊥ᵀS⊥ η̂/σ²)          halved where physics admits one sign only,
 
-and are checked by the scatter over blocks of the scores with the candidate, which needs no noise
-model (White 1980):
+and is checked by a Wald test that needs no noise model: it takes the scatter of the scores over
+blocks of the log, with the candidate in the model (White 1980):
 
-    W = η̂ᵀ H (Σ_b g_b g_bᵀ)⁻¹ H η̂ ~ m F(m, B - m),  g_b = Σ_{k in b} S⊥ᵀ(E⊥ - S⊥ η̂),  H = S⊥ᵀS⊥
+    W = η̂ᵀ H (Σ_b g_b g_bᵀ)⁻¹ H η̂,   g_b = Σ_{k in b} S⊥ᵀ(E⊥ - S⊥ η̂),   H = S⊥ᵀS⊥
+    W (B - m)/(B m) ~ F(m, B - m)        B blocks, m sizes
 """
 
 from __future__ import annotations
@@ -26,29 +28,29 @@ from scipy.stats import chi2
 from scipy.stats import f as f_distribution
 from threadpoolctl import threadpool_limits
 
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.effects.effect import Candidate
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise, build_whitener
 from identification.kalman.refit import Refit
 
-BLOCKS = 40
-SMALLER = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # noise of the inputs to try, in units of the nominal
+SMALLER = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # ρ that are tried, in units of the nominal model's
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Score:
     """What a candidate would explain.
 
     Attributes:
-        candidate: which.
+        candidate: the effect, its place and its shapes.
         size: η̂, shape (m,), in the units of its sizes.
-        std: of η̂, by the noise with the candidate, shape (m,).
+        std: of η̂, under the noise with the candidate, shape (m,).
         gain: LR_j.
-        p_value: that as much is explained by chance.
-        block_p_value: the same, by blocks.
+        p_value: chance that as much is explained by luck, by the noise model.
+        block_p_value: the same by blocks.
         identifiable: share of its sensitivity that re-tuning cannot imitate, 0 to 1.
-        level: the noise with it.
+        level: the noise with the candidate.
     """
 
     candidate: Candidate
@@ -61,44 +63,44 @@ class Score:
     level: NoiseLevel
 
 
-def score(fit: Refit, columns: Sequence[Sensitivity]) -> tuple[Score, ...]:
+def score(
+    fit: Refit, sensitivities: Sequence[Sensitivity], options: DiscoveryOptions
+) -> tuple[Score, ...]:
     """Score candidates on a fitted model, the best first.
 
     Args:
         fit: the model.
-        columns: sensitivities of the candidates.
+        sensitivities: of the candidates, on the fitted samples.
+        options: the number of blocks.
     """
     point, noise = fit.point, fit.level.noise
-    stacked = np.concatenate([point.e[..., None], point.J, *(c.S for c in columns)], axis=2)
+    stacked = np.concatenate([point.e[..., None], point.J, *(s.S for s in sensitivities)], axis=2)
     with threadpool_limits(1, "blas"):
         seen = [
-            _Projected(fit, noise.scaled(share), stacked, columns)
+            _Projected(fit, noise.scaled(share), stacked, sensitivities)
             for share in (SMALLER if noise.ratio else (1.0,))
         ]
         nominal = max(p.log_likelihood(p.rest) for p in seen)
-        out = [_score(j, column, seen, nominal) for j, column in enumerate(columns)]
+        out = [_score(j, s, seen, nominal, options) for j, s in enumerate(sensitivities)]
     return tuple(sorted(out, key=lambda s: -s.gain))
 
 
 class _Projected:
-    """Residual and columns under one noise, with the base parameters projected out."""
+    """Residual and sensitivities under one noise, with the free parameters projected out."""
 
     def __init__(
-        self, fit: Refit, noise: Noise, stacked: np.ndarray, columns: Sequence[Sensitivity]
+        self, fit: Refit, noise: Noise, stacked: np.ndarray, each: Sequence[Sensitivity]
     ) -> None:
         point = fit.point
         filter_ = build_whitener(point.linear, noise, point.log.sampling_time)
         W = filter_(stacked)
         p = point.J.shape[2]
-        self.noise, self.samples, self.log_determinant = (
-            noise,
-            point.e.size,
-            filter_.log_determinant,
-        )
+        self.noise, self.samples = noise, point.e.size
+        self.log_determinant = filter_.log_determinant
         rest = np.delete(W, np.s_[1 : 1 + p], axis=2)
         flat = rest.reshape(point.e.size, -1)
         self.raw = np.einsum("ij,ij->j", flat, flat)[1:]
-        # The priors are measurements like others: rows below the samples, in units of σ.
+        # The priors enter as further measurements: rows below the samples, in units of σ.
         ridge = fit.prior * fit.level.sigma
         F = np.vstack([W[..., 1 : 1 + p].reshape(-1, p), np.diag(ridge)])
         below = np.zeros((p, flat.shape[1]))
@@ -109,25 +111,32 @@ class _Projected:
         self.gram = flat.T @ flat
         self.rest = float(self.gram[0, 0])
         self.perpendicular = flat[: point.e.size].reshape(*rest.shape)
-        ends = 1 + np.cumsum([c.S.shape[2] for c in columns])
-        self.slices = [slice(e - c.S.shape[2], e) for c, e in zip(columns, ends, strict=True)]
+        counts = [s.S.shape[2] for s in each]
+        ends = 1 + np.cumsum(counts)
+        self.slices = [slice(e - m, e) for m, e in zip(counts, ends, strict=True)]
 
     def log_likelihood(self, sum_of_squares: float) -> float:
         n = self.samples
         return -0.5 * (n * np.log(sum_of_squares / n) + self.log_determinant)
 
     def solve(self, j: int, signs: Sequence[int]) -> tuple[np.ndarray, np.ndarray, float]:
-        """η̂, its Gram matrix and the sum of squares with the candidate."""
+        """η̂, its Gram matrix, and the sum of squares with the candidate."""
         s = self.slices[j]
         H, b = self.gram[s, s], self.gram[s, 0]
         size = np.linalg.lstsq(H, b, rcond=1e-12)[0]
         if len(signs) == 1 and signs[0] * size[0] < 0:
-            return size, H, self.rest  # physics does not admit it
+            return size, H, self.rest  # physics does not admit the sign
         return size, H, max(self.rest - float(b @ size), 1e-12 * self.rest)
 
 
-def _score(j: int, column: Sensitivity, seen: Sequence[_Projected], nominal: float) -> Score:
-    signs = [s.sign for s in column.candidate.effect.sizes]
+def _score(
+    j: int,
+    sensitivity: Sensitivity,
+    seen: Sequence[_Projected],
+    nominal: float,
+    options: DiscoveryOptions,
+) -> Score:
+    signs = [s.sign for s in sensitivity.candidate.effect.sizes]
     solved = [(p, *p.solve(j, signs)) for p in seen]
     best = max(solved, key=lambda s: s[0].log_likelihood(s[3]))
     with_it, size, H, squares = best
@@ -138,28 +147,33 @@ def _score(j: int, column: Sensitivity, seen: Sequence[_Projected], nominal: flo
     statistic = (null[0].rest - null[3]) / (null[0].rest / null[0].samples)
     one_sided = m == 1 and signs[0] != 0
     s = null[0].slices[j]
-    both = with_it.perpendicular
+    e, S = with_it.perpendicular[..., 0], with_it.perpendicular[..., s]
     own = np.trace(null[2])
     return Score(
-        column.candidate,
-        size,
-        sigma * np.sqrt(np.diag(np.linalg.pinv(H, rcond=1e-12, hermitian=True))),
-        float(gain),
-        float(chi2.sf(statistic, m)) * (0.5 if one_sided else 1.0),
-        _by_blocks(both[..., 0], both[..., s], size, H, signs),
-        float(own / max(null[0].raw[s.start - 1 : s.stop - 1].sum(), 1e-300)),
-        NoiseLevel(with_it.noise, float(sigma), with_it.log_likelihood(squares)),
+        candidate=sensitivity.candidate,
+        size=size,
+        std=sigma * np.sqrt(np.diag(np.linalg.pinv(H, rcond=1e-12, hermitian=True))),
+        gain=float(gain),
+        p_value=float(chi2.sf(statistic, m)) * (0.5 if one_sided else 1.0),
+        block_p_value=_by_blocks(e, S, size, H, signs, options.score_blocks),
+        identifiable=float(own / max(null[0].raw[s.start - 1 : s.stop - 1].sum(), 1e-300)),
+        level=NoiseLevel(with_it.noise, float(sigma), with_it.log_likelihood(squares)),
     )
 
 
 def _by_blocks(
-    e: np.ndarray, S: np.ndarray, size: np.ndarray, H: np.ndarray, signs: Sequence[int]
+    e: np.ndarray,
+    S: np.ndarray,
+    size: np.ndarray,
+    H: np.ndarray,
+    signs: Sequence[int],
+    most: int,
 ) -> float:
-    """p-value of the block-robust Wald test."""
+    """p-value of the Wald test by blocks, `most` at most and of 10 samples at least."""
     m = S.shape[2]
     if m == 1 and signs[0] * size[0] < 0:
         return 1.0
-    blocks = min(BLOCKS, len(e) // 10)
+    blocks = min(most, len(e) // 10)
     starts = np.linspace(0, len(e), blocks, endpoint=False).astype(int)
     scores = np.einsum("nip,ni->np", S, e - S @ size)
     g = np.add.reduceat(scores, starts, axis=0)

@@ -1,6 +1,6 @@
-"""What each candidate would do to the outputs: its sensitivities, many candidates in one batch.
+"""Sensitivities of the outputs to every candidate effect, many candidates in one batch.
 
-S_j = (ŷ(θ, η_j = h_j) - ŷ(θ, 0))/h_j          h_j: a probe that a log would show
+S_j = (ŷ(θ, η_j = h_j) - ŷ(θ, 0))/h_j          h_j: a probe, a size that a log would show
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from identification.errors import DivergenceError, InputError
 from identification.kalman.point import Point
 from identification.model.predictor import Predictor
 
-BATCH = 48  # simulations at a time: bounds the memory of their trajectories
+BATCH = 48  # simulations in one batch, which bounds the memory of their trajectories
 
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Sensitivities of one candidate.
+    """Sensitivities of the outputs to one candidate.
 
     Attributes:
-        candidate: which.
+        candidate: the effect, its place and its shapes.
         S: shape (N, ny, m), per unit of each of its m sizes.
     """
 
@@ -32,43 +32,46 @@ class Sensitivity:
     S: np.ndarray
 
 
-def common(effects: Sequence[Effect]) -> tuple[Candidate, ...]:
-    """Every effect with all its shapes where it acts everywhere, or at all its single places."""
+def list_common(effects: Sequence[Effect]) -> tuple[Candidate, ...]:
+    """Every effect with all its shapes, where it acts on all places at once.
+
+    An effect that has no such place is listed at each of its single places.
+    """
     out = []
     for effect in effects:
         everywhere = [where for where, suffix in effect.places.items() if not suffix]
         for where in everywhere or effect.places:
             out += [
                 Candidate(effect, where, shape, probe)
-                for shape in shapes(effect)
+                for shape in iterate_shapes(effect)
                 for probe in effect.probes
             ]
     return tuple(out)
 
 
-def single(best: Sequence[Candidate]) -> tuple[Candidate, ...]:
-    """The same effects at each of their single places, with the shapes given."""
+def list_single(common: Sequence[Candidate]) -> tuple[Candidate, ...]:
+    """Candidates that act on all places at once, at each of their single places, shapes kept."""
     return tuple(
         Candidate(c.effect, where, c.shape, c.probe)
-        for c in best
+        for c in common
         if not c.effect.places[c.where]
         for where, suffix in c.effect.places.items()
         if suffix
     )
 
 
-def shapes(effect: Effect) -> Iterator[dict[str, float]]:
+def iterate_shapes(effect: Effect) -> Iterator[dict[str, float]]:
     """All combinations of the grids of an effect's shapes."""
     for values in product(*(shape.grid for shape in effect.shapes)):
         yield dict(zip((shape.name for shape in effect.shapes), values, strict=True))
 
 
-def columns(point: Point, candidates: Sequence[Candidate]) -> tuple[Sensitivity, ...]:
+def compute_sensitivities(point: Point, candidates: Sequence[Candidate]) -> tuple[Sensitivity, ...]:
     """Sensitivities of candidates at a point; one whose simulation diverges is left out.
 
     Args:
-        point: where; the candidates' own sizes are zero there.
-        candidates: which.
+        point: the plant, at which the sizes of the candidates are zero.
+        candidates: the effects, each at a place and with shapes.
     """
     predicted = point.log.outputs - point.e
     out: list[Sensitivity] = []

@@ -1,6 +1,6 @@
-"""Which scores are worth a refit: beyond chance, with a size that physics admits.
+"""Which scores are worth a refit: those beyond chance, with a size that physics admits.
 
-max(p_j, p_j by blocks) n < ALPHA        n candidates (Bonferroni)
+max(p_j, p_j by blocks) n < significance        n candidates (Bonferroni)
 """
 
 from __future__ import annotations
@@ -9,66 +9,76 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import Score
 from identification.effects.effect import Candidate
 
-ALPHA = 0.01  # family-wise chance of a name where nothing is missing, before the proof
-LIKE = 0.8  # share of a score that makes another one as good
 
-
-def significant(scores: Sequence[Score]) -> list[Score]:
-    """Scores beyond chance with plausible sizes, the best shape of each effect and place."""
+def select_significant(scores: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
+    """Scores beyond chance with plausible sizes: the best shape of each effect at each place."""
     each: dict[tuple[str, str], Score] = {}
-    for s in sorted(scores, key=_as_a_whole, reverse=True):
-        likely = chance(s, scores) < ALPHA
-        if likely and plausible(s.candidate, s.size) and s.gain > 0:
+    for s in sorted(scores, key=_gain_of_whole, reverse=True):
+        likely = correct_p_value(s, len(scores)) < options.significance
+        if likely and is_plausible(s.candidate, s.size, options) and s.gain > 0:
             each.setdefault((s.candidate.effect.name, s.candidate.where), s)
     return sorted(each.values(), key=lambda s: -s.gain)
 
 
-def _as_a_whole(s: Score) -> float:
-    """Gain of a score, less where its size is not the one that the effect has when it is there."""
+def _gain_of_whole(s: Score) -> float:
+    """The gain of a score; less where an effect that can have but one size has another one.
+
+    The score of such an effect (a limit) estimates its size; the farther the estimate is from the
+    one size, the worse is its shape.
+    """
     fixed = [size.present for size in s.candidate.effect.sizes]
     if fixed[0] is None or s.size[0] <= 0:
         return s.gain
     return s.gain * float(np.exp(-abs(np.log(s.size[0] / fixed[0]))))
 
 
-def plausible(candidate: Candidate, size: np.ndarray) -> bool:
-    """Whether sizes have the right sign and are not beyond what physics admits."""
-    return possible(candidate, size) and not larger(candidate, size)
+def is_plausible(candidate: Candidate, size: np.ndarray, options: DiscoveryOptions) -> bool:
+    """Whether sizes have a sign that physics admits and a magnitude that is believed."""
+    return is_possible(candidate, size) and not is_oversized(candidate, size, options)
 
 
-def possible(candidate: Candidate, size: np.ndarray) -> bool:
-    """Whether sizes have a sign that physics admits."""
+def is_possible(candidate: Candidate, size: np.ndarray) -> bool:
+    """Whether all sizes have a sign that physics admits."""
     return all(s.sign * v >= 0 for v, s in zip(size, candidate.effect.sizes, strict=True))
 
 
-def larger(candidate: Candidate, size: np.ndarray) -> bool:
-    """Whether a size is beyond what is thought to be plausible."""
-    return any(abs(v) > s.farthest for v, s in zip(size, candidate.effect.sizes, strict=True))
+def is_oversized(candidate: Candidate, size: np.ndarray, options: DiscoveryOptions) -> bool:
+    """Whether a size is beyond what is believed."""
+    sizes = zip(size, candidate.effect.sizes, strict=True)
+    return any(abs(v) > options.size_factor * s.largest for v, s in sizes)
 
 
-def find_oversized(scores: Sequence[Score], named: Sequence[str]) -> Score | None:
-    """What explains more than all that is named, beyond chance, but at a size beyond belief.
+def find_oversized(
+    scores: Sequence[Score], named: Sequence[str], options: DiscoveryOptions
+) -> Score | None:
+    """The candidate that explains more than all named effects, but at a size beyond belief.
 
-    An effect that explains as much with another shape, at a size that is believed, had its trial.
+    It is beyond chance as well. An effect that explains as much with another shape, at a size that
+    is believed, was refitted and does not count.
 
     Args:
         scores: of all candidates on the nominal fit.
-        named: effects that are named.
+        named: names of the named effects.
+        options: what is beyond chance and beyond belief.
     """
     own = max((s.gain for s in scores if s.candidate.effect.name in named), default=np.inf)
-    heard = {s.candidate.effect.name: s.gain for s in reversed(significant(scores))}
+    refitted = {
+        s.candidate.effect.name: s.gain for s in reversed(select_significant(scores, options))
+    }
     found = [
         s for s in scores
-        if chance(s, scores) < ALPHA
-        and possible(s.candidate, s.size) and larger(s.candidate, s.size)
-        and LIKE * s.gain > own and s.gain > heard.get(s.candidate.effect.name, 0.0)
+        if correct_p_value(s, len(scores)) < options.significance
+        and is_possible(s.candidate, s.size) and is_oversized(s.candidate, s.size, options)
+        and options.equal_share * s.gain > own
+        and s.gain > refitted.get(s.candidate.effect.name, 0.0)
     ]  # fmt: skip
     return max(found, key=lambda s: s.gain, default=None)
 
 
-def chance(s: Score, scores: Sequence[Score]) -> float:
-    """That one of some candidates does as well by luck."""
-    return min(1.0, max(s.p_value, s.block_p_value) * len(scores))
+def correct_p_value(s: Score, count: int) -> float:
+    """Chance that one of `count` candidates has as large a score by luck (Bonferroni)."""
+    return min(1.0, max(s.p_value, s.block_p_value) * count)

@@ -1,19 +1,23 @@
-"""The next effect of a model: the best candidates are refitted, the most likely one is proved.
+"""Forward selection: the best candidates are refitted, and the most likely one is to be proven.
 
-Of those that were refitted the most likely one is chosen, by BIC, and accepted when unseen data say
-so too: beyond chance and, but for a first effect that leaves nothing else to explain, by enough to
-matter; a second name is often but the wrong shape of the first. Where no score is beyond chance but
-inputs are said to err, the best are refitted all the same, and must then gain beyond chance.
+The refitted models are ordered by BIC. The first one is accepted that unseen samples confirm beyond
+chance and by enough to matter; a second name is often only the wrong shape of the first. A first
+effect need not matter where the nominal model leaves no structure unexplained: such an effect is
+small, but it is all that is missing. Where no score is beyond chance but the noise model has an
+error of the inputs, the best candidates are refitted all the same, and their gain must then be
+beyond chance.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 from scipy.stats import chi2
 
+from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.findings.input_error import find_input_error
-from identification.discovery.findings.location import find_structure
+from identification.discovery.findings.structure import find_structure
 from identification.discovery.fitted_model import (
     AcceptedEffect,
     FittedModel,
@@ -22,93 +26,127 @@ from identification.discovery.fitted_model import (
     is_confirmed,
     is_proven,
 )
-from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import prove
-from identification.discovery.result import Tried
 from identification.discovery.scoring.scores import Score
-from identification.discovery.scoring.significance import ALPHA, plausible, significant
-from identification.discovery.selection.shapes import improved
+from identification.discovery.scoring.significance import is_plausible, select_significant
+from identification.discovery.selection.shapes import improve_shape
+from identification.discovery.task import DiscoveryTask
 from identification.errors import DivergenceError, InputError
-from identification.logs.log import Log
+from identification.estimation.options import Progress
 
-CONTENDERS = 3  # explanations that are refitted at most
-CLOSE = 0.3  # share of the best gain that makes a contender
-ELSEWHERE = 0.7  # share of an effect's best gain that makes another place a contender
+
+@dataclass(frozen=True)
+class Selection:
+    """The outcome of one round of forward selection.
+
+    Attributes:
+        accepted: the effect to add; none when no effect is worth it.
+        rejected: what was refitted instead, the best first; empty when an effect is accepted.
+        unproven: of those the most likely model that predicts unseen samples better one step ahead,
+            although its free run comes no nearer; None when there is none.
+    """
+
+    accepted: tuple[AcceptedEffect, ...] = ()
+    rejected: tuple[RejectedEffect, ...] = ()
+    unproven: FittedModel | None = None
 
 
 def select_effect(
-    base: NominalModel,
-    whole: Log,
-    step: FittedModel,
-    ranked: Sequence[Score],
-    say: Callable[[str], None],
-) -> tuple[AcceptedEffect | None, tuple[Tried, ...], FittedModel | None]:
-    """The best effect to add to a model, if any is worth it; else those that were not.
+    task: DiscoveryTask, model: FittedModel, scores: Sequence[Score], progress: Progress
+) -> Selection:
+    """Select the best effect to add to a model.
 
-    Returns:
-        the effect; what was tried; and of that the likeliest model that foretells unseen samples,
-        though its free run is no nearer.
+    Args:
+        task: the nominal model, the log and the options.
+        model: the model so far.
+        scores: of the candidates on it, the best first.
+        progress: is told a line per refit.
     """
-    tried: list[FittedModel] = []
-    contenders = _contenders(significant(ranked))
-    hidden = not contenders and not step.candidates and bool(step.refit.level.noise.ratio)
-    for s in _likeliest(ranked) if hidden else contenders:
-        sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
-        more = (*step.candidates, s.candidate)
-        try:
-            new = fit_model(base, whole, more, {**step.refit.point.values, **sizes}, step)
-        except (DivergenceError, InputError) as error:
-            say(f"{s.candidate.effect.name}, {s.candidate.where}: left out, {error}")
-            continue
-        gain = new.criterion - step.criterion
-        say(f"{s.candidate.effect.name}, {s.candidate.where}: gain {gain:.0f}")
-        if not hidden or _beyond_chance(new, step, len(ranked)):
-            tried.append(new)
-    tried.sort(key=lambda new: new.criterion, reverse=True)
-    if tried:
-        tried[0] = improved(base, whole, step, tried[0], ranked)
-    rejected: list[Tried] = []
-    hopeful: FittedModel | None = None
-    clean = not step.candidates and not find_structure(step)
-    for k, new in enumerate(tried):
-        proof = prove(step.validation, new.validation)
-        gain = new.criterion - step.criterion
+    options = task.options
+    refitted = _refit_candidates(task, model, scores, progress)
+    if refitted:
+        refitted[0] = improve_shape(task, model, refitted[0], scores)
+    rejected: list[RejectedEffect] = []
+    unproven: FittedModel | None = None
+    is_clean = not model.candidates and not find_structure(model, options)
+    for k, new in enumerate(refitted):
+        proof = prove(model.validation, new.validation, options)
+        gain = new.negative_bic - model.negative_bic
         if gain > 0 and (
-            is_confirmed(proof) or (clean and is_proven(proof) and not find_input_error(new))
+            is_confirmed(proof, options)
+            or (
+                is_clean
+                and is_proven(proof, options)
+                and not find_input_error(new.validation, options)
+            )
         ):
-            return AcceptedEffect(new, proof, gain, tuple(tried[:k] + tried[k + 1 :])), (), None
-        if gain > 0 and is_proven(proof) and hopeful is None:
-            hopeful = new
+            others = tuple(refitted[:k] + refitted[k + 1 :])
+            return Selection(accepted=(AcceptedEffect(new, proof, gain, others),))
+        if gain > 0 and is_proven(proof, options) and unproven is None:
+            unproven = new
         mine = new.candidates[-1]
-        rejected.append(Tried(mine, collect_parameters(base, new, mine), gain, proof))
-    return None, tuple(rejected), hopeful
+        parameters = collect_parameters(task, new, mine)
+        rejected.append(RejectedEffect(mine, parameters, gain, proof))
+    return Selection(rejected=tuple(rejected), unproven=unproven)
 
 
-def _likeliest(ranked: Sequence[Score]) -> list[Score]:
-    """What may hide as an error of the inputs: the best of few effects, whose scores are luck.
+def _refit_candidates(
+    task: DiscoveryTask, model: FittedModel, scores: Sequence[Score], progress: Progress
+) -> list[FittedModel]:
+    """The model with each of the best candidates in turn, the most likely one first."""
+    chosen = _select_contenders(select_significant(scores, task.options), task.options)
+    is_hidden = not chosen and not model.candidates and bool(model.refit.level.noise.ratio)
+    if is_hidden:
+        chosen = _select_likeliest(scores, task.options)
+    refitted = []
+    for s in chosen:
+        name = f"{s.candidate.effect.name}, {s.candidate.where}"
+        sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
+        more = (*model.candidates, s.candidate)
+        try:
+            new = fit_model(task, more, {**model.refit.point.values, **sizes}, model)
+        except (DivergenceError, InputError) as error:
+            progress(f"{name}: left out, {error}")
+            continue
+        progress(f"{name}: gain {new.negative_bic - model.negative_bic:.0f}")
+        if not is_hidden or _is_beyond_chance(new, model, len(scores), task.options):
+            refitted.append(new)
+    return sorted(refitted, key=lambda new: new.negative_bic, reverse=True)
 
-    Base parameters that were bent for want of an effect lie too far for a score, which is linear.
+
+def _select_likeliest(scores: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
+    """The best scores of a few effects, which may be luck.
+
+    Without the effect the fit may have moved the parameters so far that the score, which is linear,
+    says little, and the noise model may have taken the rest for an error of the inputs.
     """
     best: dict[str, Score] = {}
-    for s in ranked:
-        if s.gain > 0 and plausible(s.candidate, s.size):
+    for s in scores:
+        if s.gain > 0 and is_plausible(s.candidate, s.size, options):
             best.setdefault(s.candidate.effect.name, s)
-    return [*best.values()][:CONTENDERS]
+    return [*best.values()][: options.max_refits]
 
 
-def _beyond_chance(new: FittedModel, step: FittedModel, n: int) -> bool:
-    """Whether a refit gains more than the best of n candidates does by luck."""
-    more = len(new.refit.point.q) - len(step.refit.point.q)
-    gain = 2 * (new.refit.log_posterior - step.refit.log_posterior)
-    return bool(chi2.sf(gain, more) * n < ALPHA)
+def _is_beyond_chance(
+    new: FittedModel, model: FittedModel, count: int, options: DiscoveryOptions
+) -> bool:
+    """Whether a refit gains more than the best of `count` candidates does by luck."""
+    more = len(new.refit.point.q) - len(model.refit.point.q)
+    gain = 2 * (new.refit.log_posterior - model.refit.log_posterior)
+    return bool(chi2.sf(gain, more) * count < options.significance)
 
 
-def _contenders(found: Sequence[Score]) -> list[Score]:
-    """The few best of what is significant; one effect in two places only where both are near."""
+def _select_contenders(significant: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
+    """The few best of the significant scores.
+
+    One effect is refitted at two places only where both have nearly the same gain.
+    """
     best: dict[str, float] = {}
     out = []
-    for s in found:
-        if s.gain > max(CLOSE * found[0].gain, ELSEWHERE * best.get(s.candidate.effect.name, 0.0)):
+    for s in significant:
+        here = options.other_place_share * best.get(s.candidate.effect.name, 0.0)
+        if s.gain > max(options.refit_share * significant[0].gain, here):
             out.append(s)
             best.setdefault(s.candidate.effect.name, s.gain)
-    return out[:CONTENDERS]
+    return out[: options.max_refits]

@@ -1,13 +1,13 @@
-"""Two effects at once, where the first alone cannot be proven for want of the second.
+"""A pair of effects, where the first cannot be proven as long as the second is missing.
 
-An effect may be likely and foretell the next sample of unseen data, and yet bring a free run no
-nearer while another is missing. Then a second is sought beside it; each must be proven beside the
-other, and both against the model with neither.
+An effect may be likely, and predict the next sample of unseen data better, and yet bring the free
+run no nearer while another effect is missing. A second effect is then searched beside it. Each of
+the two must be proven beside the other, and both together against the model with neither.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from identification.discovery.fitted_model import (
     AcceptedEffect,
@@ -16,41 +16,42 @@ from identification.discovery.fitted_model import (
     score_candidates,
     try_fit,
 )
-from identification.discovery.nominal_model import NominalModel
 from identification.discovery.proof import prove
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.discovery.selection.forward_selection import select_effect
-from identification.logs.log import Log
+from identification.discovery.task import DiscoveryTask
+from identification.estimation.options import Progress
 
 
 def find_pair(
-    base: NominalModel,
-    whole: Log,
-    step: FittedModel,
+    task: DiscoveryTask,
+    model: FittedModel,
     first: FittedModel,
-    columns: Sequence[Sensitivity],
-    say: Callable[[str], None],
+    sensitivities: Sequence[Sensitivity],
+    progress: Progress,
 ) -> tuple[AcceptedEffect, ...]:
-    """An effect that is not proven alone, and the one beside which it is; none where there is none.
+    """The effect that is not proven alone and the one beside which it is; empty without such.
 
     Args:
-        base: the nominal model.
-        whole: the log.
-        step: the model with neither.
-        first: the model with the first.
-        columns: sensitivities of all candidates.
-        say: is told a line per refit.
+        task: the nominal model, the log and the options.
+        model: the model with neither effect.
+        first: the model with the first effect.
+        sensitivities: of all candidates.
+        progress: is told a line per refit.
     """
-    second, *_ = select_effect(base, whole, first, score_candidates(first, columns), say)
-    if second is None:
+    options = task.options
+    scores = score_candidates(first, sensitivities, options)
+    selection = select_effect(task, first, scores, progress)
+    if not selection.accepted:
         return ()
-    pair = second.step
-    other = pair.candidates[-1]
-    rest = (*step.candidates, other)
-    alone = try_fit(base, whole, rest, pair.refit.point.values, pair)
+    (second,) = selection.accepted
+    pair = second.model
+    rest = (*model.candidates, second.candidate)
+    alone = try_fit(task, rest, pair.refit.point.values, pair)
     if alone is None:
         return ()
-    proof = prove(alone.validation, pair.validation)
-    if not (is_confirmed(proof) and is_confirmed(prove(step.validation, pair.validation))):
+    proof = prove(alone.validation, pair.validation, options)
+    together = prove(model.validation, pair.validation, options)
+    if not (is_confirmed(proof, options) and is_confirmed(together, options)):
         return ()
-    return AcceptedEffect(first, proof, first.criterion - step.criterion, ()), second
+    return AcceptedEffect(first, proof, first.negative_bic - model.negative_bic, ()), second

@@ -1,8 +1,8 @@
-"""Second thoughts: once several effects are named, is each still needed, and still the right one?
+"""Pruning: once several effects are accepted, is each still needed, and still the right one?
 
-backward: an effect is dropped when the model without it has the better BIC
-swap:     an effect gives way to one that was refitted in its place, or that scores as well beside
-          the others, when that one has the better BIC now that the others are known
+Backward elimination drops an effect when the model without it has the better BIC. Exchange replaces
+an effect by one that was refitted in its place, or that scores as well beside the other effects,
+when the model with that one has the better BIC.
 """
 
 from __future__ import annotations
@@ -17,83 +17,99 @@ from identification.discovery.fitted_model import (
     score_candidates,
     try_fit,
 )
-from identification.discovery.nominal_model import NominalModel
 from identification.discovery.proof import prove
 from identification.discovery.scoring.sensitivities import Sensitivity
-from identification.discovery.scoring.significance import LIKE, significant
-from identification.discovery.selection.forward_selection import CONTENDERS
+from identification.discovery.scoring.significance import select_significant
+from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
-from identification.logs.log import Log
-
-HOPELESS = 0.5  # share of an effect's gain that a rival must have had to be tried again
 
 
-def backward(
-    base: NominalModel, log: Log, accepted: Sequence[AcceptedEffect], step: FittedModel
-) -> tuple[list[AcceptedEffect], FittedModel]:
-    """Drop effects that those found later have made needless; the last one was just proved."""
-    kept = list(accepted)
-    for old in accepted[:-1]:
-        mine = old.step.candidates[-1]
-        rest = tuple(c for c in step.candidates if c is not mine)
-        without = try_fit(base, log, rest, step.refit.point.values, step)
-        if without is not None and without.criterion > step.criterion:
-            kept, step = [a for a in kept if a is not old], without
-    return kept, step
-
-
-def swap(
-    base: NominalModel,
-    log: Log,
+def prune(
+    task: DiscoveryTask,
     nominal: FittedModel,
     accepted: Sequence[AcceptedEffect],
-    step: FittedModel,
-    columns: Sequence[Sensitivity],
-) -> tuple[list[AcceptedEffect], FittedModel]:
-    """Let the near rivals of each effect try its place among the others."""
-    kept = list(accepted) if len(accepted) > 1 else []
-    for i, old in enumerate(kept):
-        mine = old.step.candidates[-1]
-        rest = tuple(c for c in step.candidates if c is not mine)
-        for theirs, start in _rivals(base, log, old, rest, step, columns):
-            if any(theirs.effect.name == c.effect.name for c in rest):
+    model: FittedModel,
+    sensitivities: Sequence[Sensitivity],
+) -> tuple[tuple[AcceptedEffect, ...], FittedModel]:
+    """The effects that are kept or take the place of others, and the model with them.
+
+    Args:
+        task: the nominal model, the log and the options.
+        nominal: the fitted model without effects.
+        accepted: the effects in the order in which they were added.
+        model: the model with all of them.
+        sensitivities: of all candidates.
+    """
+    kept, model = eliminate(task, accepted, model)
+    return exchange(task, nominal, kept, model, sensitivities)
+
+
+def eliminate(
+    task: DiscoveryTask, accepted: Sequence[AcceptedEffect], model: FittedModel
+) -> tuple[tuple[AcceptedEffect, ...], FittedModel]:
+    """Drop effects that later ones have made needless; the last one was just proven."""
+    kept = list(accepted)
+    for old in accepted[:-1]:
+        rest = tuple(c for c in model.candidates if c is not old.candidate)
+        without = try_fit(task, rest, model.refit.point.values, model)
+        if without is not None and without.negative_bic > model.negative_bic:
+            kept, model = [a for a in kept if a is not old], without
+    return tuple(kept), model
+
+
+def exchange(
+    task: DiscoveryTask,
+    nominal: FittedModel,
+    accepted: Sequence[AcceptedEffect],
+    model: FittedModel,
+    sensitivities: Sequence[Sensitivity],
+) -> tuple[tuple[AcceptedEffect, ...], FittedModel]:
+    """Try the rivals of each of several effects in its place; a single effect is left as it is."""
+    kept = list(accepted)
+    for i, old in enumerate(kept if len(kept) > 1 else ()):
+        rest = tuple(c for c in model.candidates if c is not old.candidate)
+        for rival, start in _list_rivals(task, old, rest, model, sensitivities):
+            if any(rival.effect.name == c.effect.name for c in rest):
                 continue
-            new = try_fit(base, log, (*rest, theirs), {**step.refit.point.values, **start}, step)
+            begin = {**model.refit.point.values, **start}
+            new = try_fit(task, (*rest, rival), begin, model)
             if new is None:
                 continue
-            proof = prove(nominal.validation, new.validation)
-            if new.criterion > step.criterion and is_confirmed(proof):
-                others = (replace(step, candidates=(*rest, mine)),)
-                gain = old.gain + new.criterion - step.criterion
-                kept[i] = AcceptedEffect(new, old.proof, gain, others)
-                step = new
+            proof = prove(nominal.validation, new.validation, task.options)
+            if new.negative_bic > model.negative_bic and is_confirmed(proof, task.options):
+                alternatives = (replace(model, candidates=(*rest, old.candidate)),)
+                gain = old.gain + new.negative_bic - model.negative_bic
+                kept[i] = AcceptedEffect(new, old.proof, gain, alternatives)
+                model = new
                 break
-    return kept or list(accepted), step
+    return tuple(kept), model
 
 
-def _rivals(
-    base: NominalModel,
-    log: Log,
+def _list_rivals(
+    task: DiscoveryTask,
     old: AcceptedEffect,
     rest: tuple[Candidate, ...],
-    step: FittedModel,
-    columns: Sequence[Sensitivity],
+    model: FittedModel,
+    sensitivities: Sequence[Sensitivity],
 ) -> list[tuple[Candidate, Mapping[str, float]]]:
-    """What may stand in an effect's place, each with values to begin at."""
-    mine = old.step.candidates[-1]
+    """Candidates that may stand in an effect's place, each with values to begin at."""
+    options = task.options
     out: dict[tuple[str, str], tuple[Candidate, Mapping[str, float]]] = {
-        _key(r.candidates[-1]): (r.candidates[-1], r.refit.point.values)
-        for r in old.others
-        if old.step.criterion - r.criterion <= HOPELESS * old.gain
+        _key(m.candidates[-1]): (m.candidates[-1], m.refit.point.values)
+        for m in old.alternatives
+        if old.model.negative_bic - m.negative_bic <= options.retry_share * old.gain
     }
-    without = try_fit(base, log, rest, step.refit.point.values, step)
-    scores = [] if without is None else significant(score_candidates(without, columns))
-    own = next((s.gain for s in scores if _key(s.candidate) == _key(mine)), 0.0)
+    without = try_fit(task, rest, model.refit.point.values, model)
+    scores = []
+    if without is not None:
+        scores = select_significant(score_candidates(without, sensitivities, options), options)
+    mine = _key(old.candidate)
+    own = next((s.gain for s in scores if _key(s.candidate) == mine), 0.0)
     for s in scores:
-        if s.gain > LIKE * own and _key(s.candidate) != _key(mine):
+        if s.gain > options.equal_share * own and _key(s.candidate) != mine:
             sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
             out.setdefault(_key(s.candidate), (s.candidate, sizes))
-    return list(out.values())[:CONTENDERS]
+    return list(out.values())[: options.max_refits]
 
 
 def _key(candidate: Candidate) -> tuple[str, str]:

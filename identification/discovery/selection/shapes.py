@@ -1,7 +1,8 @@
-"""The best refit of an effect, looked at again: another start, another shape, the usual shape.
+"""A second look at the best refit of an effect: another start, another shape, the usual shape.
 
-Where it leaves structure its next likely shape is tried, and for a first effect a start at the
-nominal values. Where the data hardly tell its kind from the usual one, the usual one is taken.
+Where the refit leaves structure in the innovations, its next likely shape is tried; a first effect
+is also fitted from the nominal values. Where the data do not tell two shapes apart, the usual one
+is taken.
 """
 
 from __future__ import annotations
@@ -10,94 +11,91 @@ from collections.abc import Iterator, Sequence
 
 from identification.discovery.findings.input_error import find_input_error
 from identification.discovery.fitted_model import FittedModel, try_fit
-from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import Score
+from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
 from identification.kalman.innovations import whiteness
-from identification.logs.log import Log
-
-BARE = 2.0  # of BIC, below which a difference is hardly worth a mention (Kass, Raftery 1995)
 
 
-def improved(
-    base: NominalModel, whole: Log, step: FittedModel, best: FittedModel, ranked: Sequence[Score]
+def improve_shape(
+    task: DiscoveryTask, model: FittedModel, best: FittedModel, scores: Sequence[Score]
 ) -> FittedModel:
-    """The best refit of the last candidate, or a better one of the same effect.
+    """The best refit of an effect, or a better refit of the same effect with another shape.
 
     Args:
-        base: the nominal model.
-        whole: the log.
-        step: the model without the candidate.
-        best: the model with it.
-        ranked: scores of all candidates on `step`.
+        task: the nominal model, the log and the options.
+        model: the model without the effect.
+        best: the model with it; the effect is the last of its candidates.
+        scores: of all candidates on `model`.
     """
-    if structured(best):
-        other = _other_shape(base, whole, step, best, ranked)
-        if not step.candidates and (other is best or structured(other)):
-            other = _from_nominal(base, whole, step, other)
+    if is_structured(best, task.options):
+        other = _try_other_shape(task, model, best, scores)
+        if not model.candidates and (other is best or is_structured(other, task.options)):
+            other = _try_from_nominal(task, model, other)
         best = other
-    return _as_usual(base, whole, step, best, ranked)
+    return _prefer_usual(task, model, best, scores)
 
 
-def structured(step: FittedModel) -> bool:
-    """Whether innovations are not white, or what the noise model takes for chance is none."""
-    white = whiteness(step.innovations, step.refit.point.log.sampling_time)
-    return white.correlated or bool(find_input_error(step))
+def is_structured(model: FittedModel, options: DiscoveryOptions) -> bool:
+    """Whether the innovations are not white, or the inputs' error is not random."""
+    white = whiteness(model.innovations, model.refit.point.log.sampling_time)
+    return white.is_correlated(options) or bool(find_input_error(model.validation, options))
 
 
-def _from_nominal(
-    base: NominalModel, whole: Log, step: FittedModel, best: FittedModel
-) -> FittedModel:
-    """The better of a fit and of one that begins at the nominal values.
+def _try_from_nominal(task: DiscoveryTask, model: FittedModel, best: FittedModel) -> FittedModel:
+    """The better of a fit and of the same fit begun at the nominal values.
 
-    A wrong model may have led the base parameters astray, too far to come back.
+    The wrong model may have moved the parameters too far away to come back.
     """
-    old = {n: step.refit.point.values[n] for c in step.candidates for n in c.free}
+    old = {n: model.refit.point.values[n] for c in model.candidates for n in c.free}
     new = {n: best.refit.point.values[n] for n in best.candidates[-1].free}
-    again = try_fit(base, whole, best.candidates, {**old, **new})
-    return max(best, again or best, key=_criterion)
+    again = try_fit(task, best.candidates, {**old, **new})
+    return max(best, again or best, key=_negative_bic)
 
 
-def _other_shape(
-    base: NominalModel, whole: Log, step: FittedModel, best: FittedModel, ranked: Sequence[Score]
+def _try_other_shape(
+    task: DiscoveryTask, model: FittedModel, best: FittedModel, scores: Sequence[Score]
 ) -> FittedModel:
-    """The better of a fit and of one whose fixed shapes (a power, a kind) are the next likely."""
+    """The better of a fit and of one with the next likely fixed shapes (a power, a kind)."""
     mine = best.candidates[-1]
     fixed = [shape.name for shape in mine.effect.shapes if not shape.free]
-    for s in _same(mine, ranked):
+    for s in _select_same(mine, scores):
         if any(s.candidate.shape[name] != mine.shape[name] for name in fixed):
-            return max(best, _shaped(base, whole, step, s) or best, key=_criterion)
+            return max(best, _fit_shape(task, model, s) or best, key=_negative_bic)
     return best
 
 
-def _as_usual(
-    base: NominalModel, whole: Log, step: FittedModel, best: FittedModel, ranked: Sequence[Score]
+def _prefer_usual(
+    task: DiscoveryTask, model: FittedModel, best: FittedModel, scores: Sequence[Score]
 ) -> FittedModel:
-    """A fit whose kinds are the usual ones, where the data hardly tell it from the best."""
+    """The fit with the usual fixed shapes, where the data do not tell it from the best."""
     mine = best.candidates[-1]
     usual = {s.name: s.usual for s in mine.effect.shapes if not s.free and s.usual is not None}
     if all(mine.shape[name] == value for name, value in usual.items()):
         return best
-    for s in _same(mine, ranked):
+    for s in _select_same(mine, scores):
         if all(s.candidate.shape[name] == value for name, value in usual.items()):
-            other = _shaped(base, whole, step, s)
-            return other if other and best.criterion - other.criterion < BARE else best
+            other = _fit_shape(task, model, s)
+            if other and best.negative_bic - other.negative_bic < task.options.bare_bic:
+                return other
+            return best
     return best
 
 
-def _same(mine: Candidate, ranked: Sequence[Score]) -> Iterator[Score]:
-    """Scores of an effect at its place, whatever the shape."""
-    for s in ranked:
+def _select_same(mine: Candidate, scores: Sequence[Score]) -> Iterator[Score]:
+    """Scores of the same effect at the same place, with any shape."""
+    for s in scores:
         if s.candidate.effect.name == mine.effect.name and s.candidate.where == mine.where:
             yield s
 
 
-def _shaped(base: NominalModel, whole: Log, step: FittedModel, s: Score) -> FittedModel | None:
-    """A model with a candidate fitted; None where that cannot be simulated."""
+def _fit_shape(task: DiscoveryTask, model: FittedModel, s: Score) -> FittedModel | None:
+    """The model with a candidate of another shape; None where it cannot be simulated."""
     sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
-    more = (*step.candidates, s.candidate)
-    return try_fit(base, whole, more, {**step.refit.point.values, **sizes}, step)
+    more = (*model.candidates, s.candidate)
+    return try_fit(task, more, {**model.refit.point.values, **sizes}, model)
 
 
-def _criterion(step: FittedModel) -> float:
-    return step.criterion
+def _negative_bic(model: FittedModel) -> float:
+    return model.negative_bic

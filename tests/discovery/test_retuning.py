@@ -6,21 +6,22 @@ import numpy as np
 import pytest
 from discovery_cases import (
     FREE,
+    OPTIONS,
     RECORDS,
     effect,
     linear_plant,
     point_of,
     record,
+    refit_at,
     slider,
 )
 
 from identification import Parameter, ParameterSet
 from identification.discovery.nominal_model import NominalModel, fit_with_effects
-from identification.discovery.retuning import WIDER, retuned
+from identification.discovery.retuning import retune
 from identification.effects.effect import Candidate, Effect, Size
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
-from identification.kalman.refit import Refit
 from identification.model.plant import ModelPlant
 
 PRIOR, SIGMA = 0.2, 0.5  # std of what is known, of the noise
@@ -33,7 +34,7 @@ def _fit(J, q):
     at = point_of(plant, np.zeros(J.shape[:2]), J)
     at = replace(at, space=replace(at.space, names=("p0", *CANDIDATE.free)), q=np.array(q))
     level = NoiseLevel(Noise(0.0, 0.1), SIGMA, 0.0)
-    return Refit(at, level, np.ones(2), np.zeros(2), np.array([1 / PRIOR, 0.0]), 1)
+    return refit_at(at, level, np.array([1 / PRIOR, 0.0]))
 
 
 def _rows(seed):
@@ -42,14 +43,14 @@ def _rows(seed):
 
 def test_what_nothing_imitates_loses_all_that_it_explains():
     J = 7 * _rows(1).reshape(40, 2, 2)
-    loss, _ = retuned(_fit(J, [0.0, 0.3]), ("p0",), CANDIDATE)
+    loss, _ = retune(_fit(J, [0.0, 0.3]), ("p0",), CANDIDATE, OPTIONS)
     assert loss == pytest.approx((7 * 0.3 / SIGMA) ** 2, rel=1e-9)
 
 
 def test_a_limit_has_no_size_that_could_go_to_zero():
     size = Size("c", "", 1.0, 0.02, 1, present=1.0)
     limit = Candidate(Effect("limit", "c", (size,), places={"joint": ""}), "joint", {})
-    loss, other = retuned(_fit(7 * _rows(1).reshape(40, 2, 2), [0.0, 0.3]), ("p0",), limit)
+    loss, other = retune(_fit(7 * _rows(1).reshape(40, 2, 2), [0.0, 0.3]), ("p0",), limit, OPTIONS)
     assert loss == np.inf
     assert other.distance == 0
 
@@ -57,8 +58,8 @@ def test_a_limit_has_no_size_that_could_go_to_zero():
 def test_what_a_base_parameter_imitates_loses_what_the_wider_prior_holds_against_it():
     column = 7 * _rows(2)[:, :1]
     J = np.hstack([column, column]).reshape(40, 2, 2)
-    loss, other = retuned(_fit(J, [0.1, 0.3]), ("p0",), CANDIDATE)
-    data, held, total = 49 / SIGMA**2, 1 / (WIDER * PRIOR) ** 2, 0.1 + 0.3
+    loss, other = retune(_fit(J, [0.1, 0.3]), ("p0",), CANDIDATE, OPTIONS)
+    data, held, total = 49 / SIGMA**2, 1 / (OPTIONS.retuned_factor * PRIOR) ** 2, 0.1 + 0.3
     assert loss == pytest.approx(data * held / (data + held) * total**2, rel=1e-6)
     assert other.parameter == "p0"
     assert other.distance == pytest.approx(data / (data + held) * total / PRIOR, rel=1e-6)
@@ -79,8 +80,8 @@ def test_a_brake_is_no_more_than_damping_that_nobody_expected():
         plant, FREE, np.array([0.3, 0.06, 0.05, 0.05])
     )  # damping to 6 %: it looks doubled
     candidate = Candidate(brake, "joint", {})
-    fit = fit_with_effects(known, log, (candidate,), {"brake.b": -2.0})
-    loss, other = retuned(fit, FREE, candidate)
+    fit = fit_with_effects(known, log, (candidate,), {"brake.b": -2.0}, OPTIONS)
+    loss, other = retune(fit, FREE, candidate, OPTIONS)
     assert other.parameter == "damping"
     assert other.distance == pytest.approx(1 / 0.06, rel=0.05)  # linearised: Δd = d
-    assert loss == pytest.approx((other.distance / WIDER) ** 2, rel=0.05)
+    assert loss == pytest.approx((other.distance / OPTIONS.retuned_factor) ** 2, rel=0.05)

@@ -4,23 +4,26 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from discovery_cases import EFFECTS, base, record, slider, wander
+from discovery_cases import EFFECTS, OPTIONS, nominal_model, record, slider, wander
 
 from identification import InputError, Parameter
+from identification.discovery.findings.doubts import find_oversized_effect
 from identification.discovery.scoring.scores import Score
-from identification.discovery.scoring.significance import find_oversized, significant
+from identification.discovery.scoring.significance import find_oversized, select_significant
 from identification.discovery.search import discover
 from identification.effects.effect import Candidate, Effect, Size
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
-from identification.report.discovery_words import beyond
+from identification.report.finding_words import describe_finding
 
 
 def scored(name, size, gain, p=1e-9, sign=0, largest=1.0):
     effect = Effect(name, "f", (Size("f", "N", largest, 1e-3, sign),), places={"joint": ""})
     level = NoiseLevel(Noise(0.0, 0.1), 1.0, 0.0)
-    return Score(Candidate(effect, "joint", {}), np.array([size]), np.ones(1), gain, p, p, 1.0,
-                 level)  # fmt: skip
+    return Score(
+        candidate=Candidate(effect, "joint", {}), size=np.array([size]), std=np.ones(1), gain=gain,
+        p_value=p, block_p_value=p, identifiable=1.0, level=level,
+    )  # fmt: skip
 
 
 MILD = scored("mild", 0.5, 100.0)
@@ -38,19 +41,24 @@ MILD = scored("mild", 0.5, 100.0)
 )
 def test_a_name_must_not_hide_what_explains_more_at_a_size_beyond_belief(other, hides):
     scores = (other, MILD)
-    found = find_oversized(scores, ["mild"])
+    found = find_oversized(scores, ["mild"], OPTIONS)
     assert found is (other if hides else None)
-    assert find_oversized(scores, []) is None
-    assert find_oversized(scores, ["mild", "stiff"]) is None
+    assert find_oversized(scores, [], OPTIONS) is None
+    assert find_oversized(scores, ["mild", "stiff"], OPTIONS) is None
     if hides:
-        assert [s.candidate.effect.name for s in significant(scores)] == ["mild"]
-        assert "f = 6 N where 5 N is thought to be the most" in beyond(other)
+        assert [s.candidate.effect.name for s in select_significant(scores, OPTIONS)] == ["mild"]
+        (finding,) = find_oversized_effect(scores, ["mild"], OPTIONS)
+        assert finding.evidence.limits == {"f": 5.0}
+        said = describe_finding(finding)
+        assert "f = 6 N where 5 N is thought to be the most" in said
+    else:
+        assert find_oversized_effect(scores, ["mild"], OPTIONS) == ()
 
 
 @pytest.mark.parametrize(("gain", "heard"), [(250.0, True), (150.0, False)])
 def test_an_effect_of_another_shape_that_was_refitted_does_not_hide(gain, heard):
     beyond_belief, believed = scored("stiff", 6.0, 200.0), scored("stiff", 4.0, gain)
-    found = find_oversized((beyond_belief, believed, MILD), ["mild"])
+    found = find_oversized((beyond_belief, believed, MILD), ["mild"], OPTIONS)
     assert found is (None if heard else beyond_belief)
 
 
@@ -60,11 +68,11 @@ def test_one_that_explains_less_is_not_named_in_place_of_one_that_may_not_be_so_
     weak = replace(spring, sizes=(replace(k, largest=0.2),))  # of which 1 N/m is believed
     log = record(slider(mass=2.2, damping=2.7, **{"spring.k": 5.0}), 500, seed=11,
                  error=wander(500, 0.03, 0.1, seed=8))  # fmt: skip
-    answer = discover(base(), log, (weak, *others))
+    answer = discover(nominal_model(), log, (weak, *others))
     assert answer.verdict != "nothing missing"
     assert "spring" not in {n.candidate.effect.name for n in answer.named}
     assert not answer.named
-    free = discover(base(), log, EFFECTS)
+    free = discover(nominal_model(), log, EFFECTS)
     assert [n.candidate.effect.name for n in free.named] == ["spring"]
 
 
@@ -72,7 +80,7 @@ def test_a_free_parameter_that_no_output_feels_is_refused():
     idle = Parameter("width", 1.0, "kg m^2", "body/cart.inertia[1]", lower=0.0)
     plant = slider()
     own = replace(plant.parameters, records=(*plant.parameters, idle))
-    robot = base()
+    robot = nominal_model()
     robot = replace(robot, plant=replace(plant, parameters=own),
                     names=(*robot.names, "width"), std=np.append(robot.std, 0.3))  # fmt: skip
     with pytest.raises(InputError, match="width has no effect on position"):

@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from discovery_cases import OPTIONS, task
 from joint_cases import DAMPING, MASS, SLIDER, run, slider_log
 from scipy.signal import lfilter
 
+from identification.discovery.findings.finding import FindingKind
 from identification.discovery.findings.input_hold import find_input_hold
 from identification.discovery.fitted_model import fit_model
 from identification.discovery.nominal_model import NominalModel
@@ -24,17 +26,18 @@ def moving(hold, samples=800):
     return replace(log, outputs=y + NOISE * np.random.default_rng(4).standard_normal(y.shape))
 
 
-def said(log):
+def found(log):
     plant = joint_plant(SLIDER, (MASS, DAMPING), log)
-    return find_input_hold(
-        fit_model(NominalModel(plant, ("mass", "damping"), np.array([0.3, 0.3])), log, (), {})
-    )
+    model = NominalModel(plant, ("mass", "damping"), np.array([0.3, 0.3]))
+    return find_input_hold(fit_model(task(log, model=model), (), {}).refit, OPTIONS)
 
 
 @pytest.mark.parametrize(("true", "other"), [("foh", "zoh"), ("zoh", "foh")])
 def test_the_other_hold_is_told_where_it_is_the_right_one(true, other):
     log = moving(true)
-    assert said(log) == ()
-    (sentence,) = said(replace(log, hold=other))
-    assert f'hold = "{true}"' in sentence
-    assert "mV rms" in sentence
+    assert found(log) == ()
+    (finding,) = found(replace(log, hold=other))
+    assert finding.kind is FindingKind.INPUT_HOLD
+    assert finding.evidence.hold == true
+    assert finding.evidence.unit == "V"
+    assert finding.evidence.rms < 0.5 * finding.evidence.rms_now

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from discovery_cases import STEP, coloured, linear_plant, record, response, slider, wander
+from discovery_cases import OPTIONS, STEP, coloured, linear_plant, record, response, slider, wander
 
 from identification import InputError
 from identification.discovery.disturbance import propagate_over_windows
@@ -35,7 +35,7 @@ def test_what_input_errors_do_in_a_window_is_what_the_dense_covariance_says():
 def fitted():
     log = record(slider(mass=2.2), 500, seed=2, error=wander(500, 0.1, 0.1, seed=3))
     return fit_with_effects(
-        NominalModel(slider(), FREE, KNOWN), log.part("estimation"), (), {}
+        NominalModel(slider(), FREE, KNOWN), log.part("estimation"), (), {}, OPTIONS
     ), log
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from discovery_cases import EFFECTS, SENSOR, STEP, base, record, slider, wander
+from discovery_cases import EFFECTS, OPTIONS, SENSOR, STEP, record, slider, task, wander
 
 from identification.discovery.fitted_model import fit_model
 from identification.discovery.proof import prove
@@ -16,18 +16,18 @@ def sprung():
     """A log of a slider with a spring, its model without and with one."""
     error = wander(400, 0.02, 0.1, seed=5)
     log = record(slider(**{"spring.k": 6.0}), 400, seed=4, error=error)
-    return log, fit_model(base(), log, (), {}), fit_model(base(), log, (SPRING,), {"spring.k": 2.0})
+    return log, fit_model(task(log), (), {}), fit_model(task(log), (SPRING,), {"spring.k": 2.0})
 
 
 def test_a_model_proves_nothing_against_itself(sprung):
     _, without, _ = sprung
-    proof = prove(without.validation, without.validation)
+    proof = prove(without.validation, without.validation, OPTIONS)
     assert (proof.gain, proof.t, proof.share) == (0, 0, 0)
 
 
 def test_what_is_there_is_proved_and_what_is_proved_can_be_disproved(sprung):
     _, without, with_it = sprung
-    proof, back = (prove(*pair) for pair in (
+    proof, back = (prove(*pair, OPTIONS) for pair in (
         (without.validation, with_it.validation), (with_it.validation, without.validation)
     ))  # fmt: skip
     assert proof.t > 2
@@ -53,7 +53,7 @@ def test_both_are_seen_through_the_filter_of_the_first(sprung):
     first, second = without.validation, with_it.validation
     E = first.filter(second.e) / without.refit.level.sigma
     fewer = 0.5 * np.sum(first.innovations**2 - E**2, axis=1)[first.first :]
-    assert prove(first, second).gain == pytest.approx(fewer.sum())
+    assert prove(first, second, OPTIONS).gain == pytest.approx(fewer.sum())
 
 
 def test_with_the_truth_the_free_run_errs_by_sensors_and_inputs(sprung):
@@ -69,9 +69,9 @@ def test_what_closes_the_gap_is_proved_where_the_inputs_have_no_noise():
     """The wrong model's predictor follows the data; the right one's free run errs by its std."""
     log = record(slider(mass=2.2, damping=2.7, x0=0.01, v0=0.02, **{"spring.k": 5.0}), seed=7)
     without, with_it = (
-        fit_model(base(), log, (), {}),
-        fit_model(base(), log, (SPRING,), {"spring.k": 5}),
+        fit_model(task(log), (), {}),
+        fit_model(task(log), (SPRING,), {"spring.k": 5}),
     )
-    proof = prove(without.validation, with_it.validation)
+    proof = prove(without.validation, with_it.validation, OPTIONS)
     assert proof.share > 0.99
     assert proof.t > 2

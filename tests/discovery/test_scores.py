@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from discovery_cases import column, covariance, linear_plant, point_of, scored
+from discovery_cases import covariance, linear_plant, point_of, scored, sensitivity
 from scipy.stats import chi2, kstest
 
 from identification.discovery.scoring.scores import SMALLER
@@ -34,7 +34,9 @@ def squares(V, e, F, ridge, below):
 def test_gain_size_and_std_are_those_of_brute_force(seed, ratio):
     plant, noise, e, J, S = case(seed, ratio)
     prior, sigma, mean = np.array([0.0, 2.0, 5.0]), 1.3, np.array([7.0, 0.4, -0.3])
-    (s,) = scored(point_of(plant, e, J), NoiseLevel(noise, sigma, 0.0), prior, [column(S)], mean)
+    (s,) = scored(
+        point_of(plant, e, J), NoiseLevel(noise, sigma, 0.0), prior, [sensitivity(S)], mean
+    )
     n, F = N * NY, J.reshape(N * NY, P)
     G = np.hstack([F, S.reshape(n, 2)])
     ridge = np.hstack([np.diag(prior * sigma), np.zeros((P, 2))])
@@ -61,8 +63,8 @@ def test_mixing_the_base_columns_and_scaling_the_effect_change_no_gain():
     plant, noise, e, J, S = case(4, 0.5)
     M = np.random.default_rng(0).standard_normal((P, P))
     level, free = NoiseLevel(noise, 1.0, 0.0), np.zeros(P)
-    (one,) = scored(point_of(plant, e, J), level, free, [column(S)])
-    (two,) = scored(point_of(plant, e, J @ M), level, free, [column(1e3 * S)])
+    (one,) = scored(point_of(plant, e, J), level, free, [sensitivity(S)])
+    (two,) = scored(point_of(plant, e, J @ M), level, free, [sensitivity(1e3 * S)])
     for name in ("gain", "p_value", "block_p_value", "identifiable"):
         assert getattr(two, name) == pytest.approx(getattr(one, name), rel=1e-6), name
     np.testing.assert_allclose(1e3 * two.size, one.size, rtol=1e-7)
@@ -72,9 +74,9 @@ def test_what_the_base_can_imitate_is_not_identifiable():
     plant, noise, e, J, _ = case(5, 0.5)
     S = (J @ np.array([1.0, -2.0, 0.5]))[..., None]
     level = NoiseLevel(noise, 1.0, 0.0)
-    (s,) = scored(point_of(plant, e, J), level, np.zeros(P), [column(S)])
+    (s,) = scored(point_of(plant, e, J), level, np.zeros(P), [sensitivity(S)])
     assert s.identifiable < 1e-12
-    (held,) = scored(point_of(plant, e, J), level, np.full(P, 1e6), [column(S)])
+    (held,) = scored(point_of(plant, e, J), level, np.full(P, 1e6), [sensitivity(S)])
     assert held.identifiable > 0.99
 
 
@@ -83,7 +85,8 @@ def test_an_effect_of_the_wrong_sign_gains_nothing():
     S = S[..., :1]
     level = NoiseLevel(noise, 1.0, 0.0)
     right, wrong = (
-        scored(point_of(plant, e, J), level, np.zeros(P), [column(S, sign)])[0] for sign in (1, -1)
+        scored(point_of(plant, e, J), level, np.zeros(P), [sensitivity(S, sign)])[0]
+        for sign in (1, -1)
     )
     assert right.size[0] > 0
     assert right.gain > 5
@@ -94,8 +97,8 @@ def test_an_effect_of_the_wrong_sign_gains_nothing():
 
 def test_the_best_comes_first():
     plant, noise, e, J, S = case(7)
-    columns = [column(S[..., 1:], name="other"), column(S[..., :1], name="true")]
-    found = scored(point_of(plant, e, J), NoiseLevel(noise, 1.0, 0.0), np.zeros(P), columns)
+    two = [sensitivity(S[..., 1:], name="other"), sensitivity(S[..., :1], name="true")]
+    found = scored(point_of(plant, e, J), NoiseLevel(noise, 1.0, 0.0), np.zeros(P), two)
     assert [s.candidate.effect.name for s in found] == ["true", "other"]
     assert found[0].gain >= found[1].gain
 
@@ -111,11 +114,11 @@ def test_chances_are_uniform_where_nothing_is_missing(ratio):
     t = np.arange(samples)[:, None, None]
     J = np.cos(t * rng.uniform(0, 0.3, (NY, P)) + rng.uniform(0, 6, (NY, P)))
     S = np.cos(t * rng.uniform(0, 0.6, (NY, 12)) + rng.uniform(0, 6, (NY, 12)))
-    columns = [column(S[..., k : k + 2], name=f"e{k}") for k in range(0, 12, 2)]
+    six = [sensitivity(S[..., k : k + 2], name=f"e{k}") for k in range(0, 12, 2)]
     p, blocks = [], []
     for _ in range(40):
         e = (factor @ rng.standard_normal(samples * NY)).reshape(samples, NY)
-        found = scored(point_of(plant, e, J), NoiseLevel(noise, 1.0, 0.0), np.zeros(P), columns)
+        found = scored(point_of(plant, e, J), NoiseLevel(noise, 1.0, 0.0), np.zeros(P), six)
         p += [s.p_value for s in found]
         blocks += [s.block_p_value for s in found]
     assert kstest(p, "uniform").pvalue > 0.01

@@ -1,0 +1,134 @@
+"""What a discovery says of one effect: named, rejected, a rival, or the smallest that shows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.effects.effect import Candidate
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proof:
+    """What an effect does for samples that no fit has seen.
+
+    Attributes:
+        gain: log likelihood of the unseen samples with it minus without, under one noise.
+        t: Student's t of the gain, by blocks.
+        share: of the mean square above sensors' noise and input errors, the share that it closes.
+        fall: relative fall of the mean square of the judged error.
+        above: of the mean square above the sensors' noise, the share that it closes.
+    """
+
+    gain: float
+    t: float
+    share: float
+    fall: float
+    above: float
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Error on the samples that no fit has seen.
+
+    Attributes:
+        rms: over all outputs, in their unit.
+        fit_percent: of each output, shape (ny,) [%].
+    """
+
+    rms: float
+    fit_percent: np.ndarray
+
+
+@dataclass(frozen=True)
+class Rival:
+    """Another effect that may explain the same data.
+
+    Attributes:
+        candidate: the effect.
+        confidence: probability that it is the right one of those considered.
+        alike: cosine between its sensitivity and that of the named effect, with the nominal
+            model's parameters projected out.
+    """
+
+    candidate: Candidate
+    confidence: float
+    alike: float
+
+
+@dataclass(frozen=True)
+class Retuned:
+    """What the nominal model's parameters would have to be to explain the same without an effect.
+
+    Attributes:
+        parameter: name of the one that would move the farthest from what was known of it.
+        distance: how far it would move, in std of its prior.
+        confidence: probability that this is right and the effect is not, of those considered.
+    """
+
+    parameter: str
+    distance: float
+    confidence: float
+
+
+@dataclass(frozen=True)
+class RejectedEffect:
+    """An effect that was refitted and not accepted.
+
+    Attributes:
+        candidate: the effect.
+        parameters: its sizes and shapes by name: value, std, unit.
+        gain: by how much it raises the negative BIC on the fitted samples.
+        proof: what it does for unseen samples.
+    """
+
+    candidate: Candidate
+    parameters: Mapping[str, tuple[float, float, str]]
+    gain: float
+    proof: Proof
+
+
+@dataclass(frozen=True, kw_only=True)
+class NamedEffect:
+    """An effect that is missing from the nominal model.
+
+    Attributes:
+        candidate: effect, place, and shapes as estimated.
+        parameters: its sizes and shapes by name: value, std, unit.
+        confidence: probability that the name is right among its rivals, 0 to 1.
+        rivals: other effects that were refitted in its place.
+        one_of: whether the data cannot tell it from its first rival.
+        gain: by how much it raises the negative BIC on the fitted samples.
+        proof: what it does for unseen samples.
+        retuned: the explanation without an effect.
+        advice: the experiment that would tell it from its first rival, in a sentence.
+    """
+
+    candidate: Candidate
+    parameters: Mapping[str, tuple[float, float, str]]
+    confidence: float
+    rivals: tuple[Rival, ...]
+    one_of: bool
+    gain: float
+    proof: Proof
+    retuned: Retuned
+    advice: str = ""
+
+
+@dataclass(frozen=True)
+class Detectable:
+    """The smallest effect of a kind that a log would have shown.
+
+    Attributes:
+        candidate: the effect.
+        size: name of one of its sizes.
+        smallest: the magnitude that is found in 9 of 10 logs [unit]; inf when none is.
+        unit: SI unit.
+    """
+
+    candidate: Candidate
+    size: str
+    smallest: float
+    unit: str

@@ -1,0 +1,223 @@
+"""All judgement constants of a discovery in one record: what it takes to be named.
+
+Statistics give the distributions; how sure is sure enough, and how large is large enough to matter,
+is judgement. `docs/discovery.md` lists every option; a TOML file may set any of them.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+from identification.effects.effect import FARTHEST
+from identification.errors import InputError, unknown_name
+from identification.files import read_bytes
+from identification.kalman.options import KalmanOptions, option
+from identification.logs.names import quoted
+
+MAX_FILE = 2**20  # bytes of a file of options
+
+
+@dataclass(frozen=True, kw_only=True)
+class DiscoveryOptions(KalmanOptions):
+    """What a discovery believes; the options of the noise model are among them.
+
+    Every field has its unit, reason and source in its metadata (`dataclasses.fields`).
+
+    Raises:
+        InputError: a value is no number, or lies outside the range that makes sense.
+    """
+
+    # The search.
+    min_samples: int = option(
+        200, "samples",
+        "Fewest samples to fit, and as many to confirm: the blocks of scores and proof then have"
+        " at least 10 samples each.",
+        "judgement", least=50,
+    )  # fmt: skip
+    max_effects: int = option(
+        3, "effects",
+        "Largest number of effects that are named; each further one costs a round of refits.",
+        "judgement", least=1,
+    )  # fmt: skip
+    nominal_factor: float = option(
+        3.0, "factor",
+        "A positive parameter of the nominal model stays within this factor of its nominal value; a"
+        " wrong model would carry it anywhere to imitate what is missing.",
+        "judgement", least=1.0,
+    )  # fmt: skip
+    limit_distance: float = option(
+        0.02, "of a logarithm",
+        "A parameter this near to the end of its range counts as at its limit.",
+        "judgement",
+    )  # fmt: skip
+    shape_std: float = option(
+        1.0, "of a logarithm",
+        "Std of the prior of a shape about the grid value with the best score; the grids are about"
+        " as coarse.",
+        "judgement", least=1e-6,
+    )  # fmt: skip
+
+    # Scores, and which candidates are refitted.
+    significance: float = option(
+        0.01, "probability",
+        "Chance that any candidate is taken for significant where nothing is missing (Bonferroni);"
+        " the proof comes after it.",
+        "judgement", most=1.0,
+    )  # fmt: skip
+    score_blocks: int = option(
+        40, "blocks",
+        "Blocks of the fitted samples whose scatter checks a score without the noise model.",
+        "White 1980 for the test, judgement for the number", least=8,
+    )  # fmt: skip
+    size_factor: float = option(
+        FARTHEST, "of the largest plausible size",
+        "A size beyond this is not believed. The bounds of the parameters are at the default, so it"
+        " can only be lowered.",
+        "judgement", most=FARTHEST,
+    )  # fmt: skip
+    equal_share: float = option(
+        0.8, "of a gain",
+        "A candidate whose gain is at least this share of another one's explains as much as it.",
+        "judgement", most=1.0,
+    )  # fmt: skip
+    max_refits: int = option(
+        3, "candidates",
+        "Largest number of candidates that are refitted in a round, and in the place of a named"
+        " effect; a refit takes seconds.",
+        "judgement", least=1,
+    )  # fmt: skip
+    refit_share: float = option(
+        0.3, "of the best gain",
+        "A candidate with a smaller gain is not refitted: a score is linear and errs, but not so"
+        " much.",
+        "judgement", most=1.0,
+    )  # fmt: skip
+    other_place_share: float = option(
+        0.7, "of an effect's best gain",
+        "An effect with a smaller gain at another place is not refitted there.",
+        "judgement", most=1.0,
+    )  # fmt: skip
+    retry_share: float = option(
+        0.5, "of the gain of the named effect",
+        "An effect that was refitted in its place is tried again beside the other named effects"
+        " unless its negative BIC was lower by more than this share.",
+        "judgement", most=1.0,
+    )  # fmt: skip
+    bare_bic: float = option(
+        2.0, "of BIC",
+        "Two shapes of an effect whose BIC differ by less are not told apart, and the usual one is"
+        " taken.",
+        "Kass and Raftery 1995: not worth more than a bare mention",
+    )  # fmt: skip
+
+    # The proof on unseen samples.
+    proof_blocks: int = option(
+        20, "blocks",
+        "Blocks of the unseen samples over which gains are compared; each is to be longer than the"
+        " memory of the residual.",
+        "judgement", least=3,
+    )  # fmt: skip
+    min_proof_t: float = option(
+        2.0, "t of the mean gain of the blocks",
+        "The proof is beyond chance above this: 3 % one-sided with 19 degrees of freedom.",
+        "Student's t",
+    )  # fmt: skip
+    min_fall: float = option(
+        0.03, "of the mean square of the error on unseen samples",
+        "An effect matters when the error falls by more than this.",
+        "judgement, as min_structure_share", most=1.0,
+    )  # fmt: skip
+    min_gap_share: float = option(
+        0.1, "of the mean square above the sensors' noise",
+        "An effect matters when it closes more than this share of the gap.",
+        "judgement", most=1.0,
+    )  # fmt: skip
+
+    # The verdict.
+    min_explained_share: float = option(
+        0.5, "of the gap on unseen samples",
+        "Effects are named although something is left only when they close more than this.",
+        "judgement", most=1.0,
+    )  # fmt: skip
+    max_named_input_error: float = option(
+        1.0, "of the inputs' own motion",
+        "Nothing that leaves anything is named where the inputs would have to err by more: the"
+        " inputs of the log are then not what moved the robot.",
+        "judgement",
+    )  # fmt: skip
+    other_hold_share: float = option(
+        0.5, "of the inputs' error",
+        "The other hold of the inputs is reported when the inputs' error with it is smaller than"
+        " this.",
+        "judgement", most=1.0,
+    )  # fmt: skip
+    error_knots: int = option(
+        12, "knots",
+        "Knots of the curves over input, output and rate that an error of the inputs may follow.",
+        "judgement", least=2,
+    )  # fmt: skip
+    regressor_share: float = option(
+        0.1, "of the power of a missing force",
+        "The regressor that a missing force follows is reported above this share.",
+        "judgement", most=1.0,
+    )  # fmt: skip
+    detection_noncentrality: float = option(
+        35.0, "(size/std)²",
+        "An effect of this size is found in 9 of 10 logs: (4.6 + 1.3)², where t = 4.6 is what the"
+        " blocks demand at a chance of 0.01 over 200 candidates and 1.3 is the normal quantile of"
+        " 0.9.",
+        "noncentral F distribution",
+    )  # fmt: skip
+
+    # The confidence.
+    temperature: float = option(
+        10.0, "factor of BIC's scale",
+        "The likelihood believes its noise model, so that BIC alone is sure of everything; this"
+        " flattens the probabilities.",
+        "judgement; calibration in docs/benchmarks.md", least=1.0,
+    )  # fmt: skip
+    max_confidence: float = option(
+        0.95, "probability",
+        "No name is certain that was confirmed under one kind of input.",
+        "judgement; calibration in docs/benchmarks.md", most=1.0,
+    )  # fmt: skip
+    set_confidence: float = option(
+        0.2, "probability",
+        "A rival that is more likely than this makes the answer a set of look-alikes.",
+        "judgement", most=1.0,
+    )  # fmt: skip
+    retuned_factor: float = option(
+        3.0, "of the prior std",
+        "What the nominal model's parameters could explain without an effect is judged with priors"
+        " that are wider by this factor.",
+        "judgement", least=1.0,
+    )  # fmt: skip
+
+
+def read_options(path: str | Path) -> DiscoveryOptions:
+    """The options of a TOML file of lines `name = value`; defaults where it says nothing.
+
+    Args:
+        path: of the file.
+
+    Raises:
+        InputError: the file cannot be read as TOML, a name is unknown, or a value has the wrong
+            type or lies outside the range that makes sense.
+    """
+    path = Path(path)
+    try:
+        values = tomllib.loads(read_bytes(path, MAX_FILE).decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{path} is not TOML ({quoted(str(error), 120)}); correct it") from error
+    known = {f.name for f in fields(DiscoveryOptions)}
+    for name in values:
+        if name not in known:
+            raise unknown_name(f"option in {path}:", name, known)
+    try:
+        return DiscoveryOptions(**values)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None

@@ -1,0 +1,172 @@
+"""The state of a search, and its steps: the nominal fit, rounds of selection, and pruning.
+
+fit the nominal model  ->  score all candidates  ->  refit the best  ->  prove on unseen samples
+                                   ^_____________________________________________|   again, with it
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from identification.discovery.effect_results import RejectedEffect
+from identification.discovery.fitted_model import (
+    AcceptedEffect,
+    FittedModel,
+    fit_model,
+    score_candidates,
+)
+from identification.discovery.scoring.scores import Score
+from identification.discovery.scoring.sensitivities import (
+    Sensitivity,
+    compute_sensitivities,
+    list_common,
+    list_single,
+)
+from identification.discovery.selection.forward_selection import select_effect
+from identification.discovery.selection.pairs import find_pair
+from identification.discovery.selection.pruning import prune
+from identification.discovery.task import DiscoveryTask
+from identification.estimation.options import Progress
+from identification.model.sensitivity import refuse_without_effect
+
+Stage = Literal["selection", "pruning", "finished"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SearchState:
+    """All that a search knows after a step.
+
+    Attributes:
+        task: what is asked.
+        stage: what the next step does.
+        nominal: the fitted model without effects.
+        sensitivities: of all candidates, at the nominal fit.
+        nominal_scores: of all candidates on the nominal fit, the best first.
+        model: the fitted model with the accepted effects.
+        accepted: the effects that were accepted, in that order.
+        scores: of the candidates that the model does not have, on it, the best first.
+        rejected: what the last round refitted and did not accept, the best first.
+        seconds: wall time by kind of work [s].
+    """
+
+    task: DiscoveryTask
+    stage: Stage
+    nominal: FittedModel
+    sensitivities: tuple[Sensitivity, ...]
+    nominal_scores: tuple[Score, ...]
+    model: FittedModel
+    accepted: tuple[AcceptedEffect, ...]
+    scores: tuple[Score, ...]
+    rejected: tuple[RejectedEffect, ...]
+    seconds: Mapping[str, float]
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether there is nothing left to try."""
+        return self.stage == "finished"
+
+
+def first_state(task: DiscoveryTask, progress: Progress) -> SearchState:
+    """The state after the nominal fit: nothing is accepted, and all candidates are scored.
+
+    Args:
+        task: what is asked.
+        progress: is told a line per step.
+
+    Raises:
+        InputError: a free parameter has no effect on any output.
+        DivergenceError: the nominal model cannot be simulated.
+    """
+    watch = _Watch()
+    nominal = fit_model(task, (), {})
+    refuse_without_effect(nominal.refit.point.J, task.nominal_model.names, task.log)
+    watch.stop("nominal fit")
+    progress(f"nominal fit: {1e3 * nominal.validation.rms:.3g}e-3 on unseen data")
+    sensitivities = _compute_all_sensitivities(task, nominal)
+    watch.stop("sensitivities")
+    scores = score_candidates(nominal, sensitivities, task.options)
+    watch.stop("scores")
+    progress(f"{len(scores)} candidates scored, {scores[0].candidate.effect.name} first")
+    return SearchState(
+        task=task, stage="selection", nominal=nominal, sensitivities=sensitivities,
+        nominal_scores=scores, model=nominal, accepted=(), scores=scores, rejected=(),
+        seconds=watch.seconds,
+    )  # fmt: skip
+
+
+def next_state(state: SearchState, progress: Progress) -> SearchState:
+    """The state after one more step; a finished state stays as it is.
+
+    Args:
+        state: the state before.
+        progress: is told a line per refit.
+    """
+    if state.stage == "selection":
+        return _select(state, progress)
+    if state.stage == "pruning":
+        return _prune(state)
+    return state
+
+
+def _select(state: SearchState, progress: Progress) -> SearchState:
+    """One round of forward selection: an effect is added, or a pair, or there is none to add."""
+    task, watch = state.task, _Watch(state.seconds)
+    most = task.options.max_effects - len(state.accepted)
+    selection = select_effect(task, state.model, state.scores, progress)
+    new = selection.accepted
+    if selection.unproven is not None and most >= 2:
+        new = find_pair(task, state.model, selection.unproven, state.sensitivities, progress)
+    watch.stop("refits")
+    if not new:
+        rejected = selection.rejected
+        return replace(state, stage="pruning", rejected=rejected, seconds=watch.seconds)
+    model = new[-1].model
+    scores = score_candidates(model, state.sensitivities, task.options)
+    watch.stop("scores")
+    return replace(
+        state, stage="selection" if most > len(new) else "pruning", model=model,
+        accepted=(*state.accepted, *new), scores=scores, rejected=(), seconds=watch.seconds,
+    )  # fmt: skip
+
+
+def _prune(state: SearchState) -> SearchState:
+    """Drop or exchange accepted effects; the search is then finished."""
+    task, watch = state.task, _Watch(state.seconds)
+    kept, model = prune(task, state.nominal, state.accepted, state.model, state.sensitivities)
+    watch.stop("refits")
+    scores = state.scores
+    if model is not state.model:
+        scores = score_candidates(model, state.sensitivities, task.options)
+        watch.stop("scores")
+    return replace(
+        state, stage="finished", model=model, accepted=kept, scores=scores, seconds=watch.seconds
+    )
+
+
+def _compute_all_sensitivities(
+    task: DiscoveryTask, nominal: FittedModel
+) -> tuple[Sensitivity, ...]:
+    """Of every effect on all its places, then of its best shape at each single place."""
+    point = nominal.refit.point
+    common = compute_sensitivities(point, list_common(task.effects))
+    best: dict[str, Score] = {}
+    for s in score_candidates(nominal, common, task.options):
+        best.setdefault(s.candidate.effect.name, s)
+    single = list_single([s.candidate for s in best.values()])
+    return common + compute_sensitivities(point, single)
+
+
+class _Watch:
+    """Wall time by kind of work [s], added to what was measured before."""
+
+    def __init__(self, before: Mapping[str, float] | None = None) -> None:
+        self.seconds = dict(before or {})
+        self.last = time.perf_counter()
+
+    def stop(self, work: str) -> None:
+        now = time.perf_counter()
+        self.seconds[work] = self.seconds.get(work, 0.0) + now - self.last
+        self.last = now

@@ -1,0 +1,142 @@
+"""The verdict on a finished search: are the accepted effects named, and what is left unexplained?
+
+Only kinds and numbers of findings decide; words are made in `identification.report`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from identification.discovery.confidence import name_effects
+from identification.discovery.effect_results import NamedEffect, RejectedEffect
+from identification.discovery.findings.doubts import find_doubtful_effect, find_oversized_effect
+from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.findings.input_error import find_input_error
+from identification.discovery.findings.input_hold import find_input_hold
+from identification.discovery.findings.location import locate_error
+from identification.discovery.findings.robot_change import find_robot_change
+from identification.discovery.findings.structure import find_structure
+from identification.discovery.fitted_model import FittedModel
+from identification.discovery.missing_forces import estimate_missing_forces
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.proof import prove
+from identification.discovery.result import Discovery, Verdict
+from identification.discovery.scoring.detectability import list_detectable
+from identification.discovery.state import SearchState
+
+# With these findings a model is not believed, and nothing is named that leaves anything.
+DISBELIEVED = (FindingKind.PARAMETERS_AT_LIMIT, FindingKind.OVERSIZED_EFFECT)
+
+
+def find_remaining(state: SearchState) -> tuple[Finding, ...]:
+    """What the model of a finished search leaves unexplained; empty when it explains all."""
+    options, model = state.task.options, state.model
+    named = [a.candidate.effect.name for a in state.accepted]
+    findings = (
+        *find_structure(model, options),
+        *find_robot_change(model.validation, options),
+        *find_input_error(model.validation, options),
+        *(() if named else find_doubtful_effect(state.rejected, options)),
+        *find_oversized_effect(state.nominal_scores, named, options),
+    )
+    if not findings:
+        return ()
+    return (*find_input_hold(state.nominal.refit, options), *findings)
+
+
+def compute_explained_share(
+    nominal: FittedModel, model: FittedModel, findings: Sequence[Finding], options: DiscoveryOptions
+) -> float:
+    """Share of the gap on unseen samples that the effects of a model close.
+
+    The gap ends at what sensors and input errors make of a free run, where the input errors can be
+    believed to be noise: where they are random, and no larger than noise is. Else it ends at what
+    sensors make.
+
+    Args:
+        nominal: the fitted model without effects.
+        model: the fitted model with them.
+        findings: what the model leaves unexplained.
+        options: how large an error of the inputs is noise.
+    """
+    proof = prove(nominal.validation, model.validation, options)
+    is_random = not _has(findings, FindingKind.STRUCTURED_INPUT_ERROR)
+    is_noise = is_random and model.refit.relative_input_error <= options.allowed_input_error
+    return proof.share if is_noise else proof.above
+
+
+def decide(
+    named: Sequence[NamedEffect],
+    findings: Sequence[Finding],
+    explained: float,
+    model: FittedModel,
+    options: DiscoveryOptions,
+) -> Verdict:
+    """The verdict.
+
+    Args:
+        named: the accepted effects.
+        findings: what the model with them leaves unexplained.
+        explained: share of the gap that they close.
+        model: the fitted model with them.
+        options: when effects are named although something is left.
+    """
+    is_believed = model.refit.relative_input_error < options.max_named_input_error and not _has(
+        findings, *DISBELIEVED
+    )
+    explains_most = explained > options.min_explained_share and is_believed
+    if named and (not findings or explains_most):
+        return "named"
+    return "unknown effect" if named or findings else "nothing missing"
+
+
+def conclude(state: SearchState) -> Discovery:
+    """The outcome of a finished search.
+
+    Args:
+        state: the finished state.
+    """
+    task, nominal, model, scores = state.task, state.nominal, state.model, state.scores
+    options, log = task.options, task.log
+    findings = find_remaining(state)
+    explained = compute_explained_share(nominal, model, findings, options)
+    share = explained if findings else 1.0
+    named = name_effects(task, state.accepted, model, state.sensitivities, share)
+    verdict = decide(named, findings, explained, model, options)
+    rejected = state.rejected
+    if verdict == "unknown effect":
+        refused = (RejectedEffect(n.candidate, n.parameters, n.gain, n.proof) for n in named)
+        rejected = (*refused, *rejected)
+        named, model, scores = (), nominal, state.nominal_scores
+    is_missing = verdict != "nothing missing"
+    forces = estimate_missing_forces(nominal.refit, options) if is_missing else ()
+    located = locate_error(nominal.refit, forces, options) if is_missing else ()
+    is_random = not _has(findings, FindingKind.STRUCTURED_INPUT_ERROR)
+    return Discovery(
+        log=log,
+        options=options,
+        verdict=verdict,
+        named=named,
+        rejected=rejected,
+        unexplained=bool(findings),
+        noise_rms=model.refit.level.sigma,
+        disturbance_rms=model.validation.disturbance if is_random else 0.0,
+        before=nominal.validation.gap,
+        after=model.validation.gap,
+        nominal=nominal.refit,
+        final=model.refit,
+        predicted_before=log.outputs - nominal.validation.e,
+        predicted_after=log.outputs - model.validation.e,
+        scores=state.nominal_scores,
+        remaining=scores,
+        detectable=list_detectable(scores, options),
+        located=located,
+        findings=findings,
+        missing_forces=forces,
+        seconds=state.seconds,
+        horizon=task.nominal_model.horizon,
+    )
+
+
+def _has(findings: Sequence[Finding], *kinds: FindingKind) -> bool:
+    return any(f.kind in kinds for f in findings)

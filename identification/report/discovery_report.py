@@ -1,0 +1,63 @@
+"""The report of a discovery: one list of sections, and the one-file page made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from identification.discovery.result import Discovery
+from identification.report.discovery_sections import gap_section, rivals_section, where_section
+from identification.report.discovery_tables import (
+    diff_section,
+    parameters_section,
+    unseen_section,
+)
+from identification.report.discovery_verdict import discovery_verdict
+from identification.report.page import Section, save_figures, write_report
+
+
+def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
+    """The sections of every report of a discovery.
+
+    Args:
+        found: the discovery.
+        files: a sentence that says where the model with the named effects is.
+    """
+    return [
+        gap_section(found),
+        where_section(found),
+        rivals_section(found),
+        diff_section(found, files),
+        parameters_section(found),
+        unseen_section(found),
+    ]
+
+
+def write_discovery_report(
+    found: Discovery,
+    folder: Path,
+    sentences: Sequence[str] = (),
+    sections: Sequence[Section] = (),
+    files: str = "",
+) -> Path:
+    """Write report.html and its figures into a folder; returns the path of the page.
+
+    Args:
+        found: the discovery.
+        folder: exists.
+        sentences: that follow the verdict.
+        sections: that follow those of every report of a discovery.
+        files: a sentence that says where the model with the named effects is.
+
+    Raises:
+        InputError: a file cannot be written.
+    """
+    shown = [*discovery_sections(found, files), *sections]
+    save_figures(shown, folder)
+    return write_report(
+        folder / "report.html",
+        f"{found.log.name}: what the model lacks",
+        [*discovery_verdict(found), *sentences],
+        shown,
+        good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
+    )

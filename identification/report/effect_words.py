@@ -1,0 +1,65 @@
+"""Effects in words: what they are, where they act, how large they are, why one was rejected."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from identification.discovery.effect_results import NamedEffect, RejectedEffect
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.result import Discovery
+from identification.discovery.scoring.scores import Score
+from identification.discovery.scoring.significance import correct_p_value
+from identification.effects.effect import Candidate
+from identification.quantities import quantity
+
+
+def describe_effect(candidate: Candidate) -> str:
+    """An effect and its place in words."""
+    said = candidate.effect.phrase or candidate.effect.name.replace("_", " ")
+    return f"{said}, {candidate.where}"
+
+
+def describe_sizes(found: NamedEffect | RejectedEffect) -> str:
+    """Sizes and shapes of a fitted effect, each with its std."""
+    effect = found.candidate.effect
+    about = {s.name: s.about for s in effect.sizes} | {s.name: s.about for s in effect.shapes}
+    return ", ".join(
+        f"{name} = {quantity(value, std, unit)}" + (f" ({about[name]})" if about.get(name) else "")
+        for name, (value, std, unit) in found.parameters.items()
+    )
+
+
+def describe_rejected(found: Discovery) -> tuple[str, list[str]]:
+    """The effects that were refitted and not accepted: a title and a line each.
+
+    Where an effect is named and no other one was refitted beside it, it is the candidate with the
+    best score that is left.
+    """
+    beside = " beside what is named" if found.named else ""
+    if found.rejected:
+        each = [
+            f"{describe_effect(r.candidate)}: {describe_sizes(r)}; {_describe_proof(r)}"
+            for r in found.rejected
+        ]
+        return f"tried{beside}, and not believed", each
+    if found.named and found.remaining:
+        return f"next{beside}, and not refitted", [_describe_next(found.remaining, found.options)]
+    return "", []
+
+
+def _describe_next(scores: Sequence[Score], options: DiscoveryOptions) -> str:
+    best = max(scores, key=lambda s: s.gain)
+    luck = correct_p_value(best, len(scores))
+    why = f"chance {luck:.2g} that one of {len(scores)} does as well by luck"
+    if luck < options.significance:
+        why = "beyond chance, but at a size of the wrong sign, or larger than physics admits"
+    return f"{describe_effect(best.candidate)}: gain {best.gain:.3g}, {why}"
+
+
+def _describe_proof(rejected: RejectedEffect) -> str:
+    """What a rejected effect would do on fitted and on unseen samples."""
+    proof = rejected.proof
+    return (
+        f"gain {rejected.gain:.4g} on fitted samples; on unseen ones t = {proof.t:.1f}, and the"
+        f" mean square {'falls' if proof.fall >= 0 else 'rises'} by {100 * abs(proof.fall):.3g} %"
+    )

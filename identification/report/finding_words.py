@@ -1,0 +1,166 @@
+"""Findings in words: one clause for each kind, to be joined or made a sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from identification.discovery.findings import evidence as records
+from identification.discovery.findings.finding import Finding, FindingKind
+from identification.quantities import alike, probability, quantity
+from identification.report.effect_words import describe_effect, describe_sizes
+
+HOLDS = {"foh": "ran in straight lines between their samples", "zoh": "kept each sample's value"}
+FOLLOWED = {  # by an error of the inputs: keys of `input_error.list_families`
+    "other inputs": "the other inputs",
+    "own input": "its own input",
+    "output": "its output",
+    "output rate": "the rate of its output",
+}
+REGRESSORS = {  # of a missing force: keys of `location.list_regressors`
+    "time": "time",
+    "input": "its input",
+    "rate sign": "the sign of its rate",
+    "rate": "its rate",
+    "rate size": "the size of its rate",
+    "rate near zero": "its rate near zero",
+    "rate squared": "the square of its rate",
+    "position": "its position",
+}
+
+
+def describe_finding(finding: Finding) -> str:
+    """A finding as a clause, without a capital and without a full stop."""
+    return WORDS[finding.kind](finding.evidence)
+
+
+def sentence(clause: str) -> str:
+    """A clause as a sentence."""
+    end = "" if clause.endswith((".", "!", "?")) else "."
+    return clause[:1].upper() + clause[1:] + end
+
+
+def _worst_output(e: records.WorstOutput) -> str:
+    return (
+        f"on the fitted samples the error is largest on {e.output}: {quantity(e.rms, unit=e.unit)}"
+        f" rms, {100 * e.share:.0f} % of the power over all outputs, {e.noise_ratio:.1f} times the"
+        " sensors' noise"
+    )
+
+
+def _worst_interval(e: records.WorstInterval) -> str:
+    return f"it is largest from {e.start:.1f} to {e.end:.1f} s ({100 * e.share:.0f} % of its power)"
+
+
+def _median_frequency(e: records.MedianFrequency) -> str:
+    return f"half of its power lies below {e.frequency:.2g} Hz"
+
+
+def _missing_force(e: records.ForceEvidence) -> str:
+    sizes = " and ".join(f"{rms:.2g} {unit}" for rms, unit in zip(e.rms, e.units, strict=True))
+    said = (
+        f"generalised forces of {sizes} rms on {e.where} would explain {100 * e.share:.0f} % of it"
+    )
+    if e.regressor is None:
+        return said
+    return (
+        f"{said}; {100 * e.regressor_share:.0f} % of their power follows {REGRESSORS[e.regressor]}"
+    )
+
+
+def _input_hold(e: records.InputHold) -> str:
+    then, now = alike([e.rms, e.rms_now], e.unit)
+    return (
+        f"if the inputs {HOLDS[e.hold]}, they would have to err by {then} rms and not by {now};"
+        f' if that is so, write hold = "{e.hold}" into the log\'s TOML'
+    )
+
+
+def _spectral_line(e: records.SpectralLine) -> str:
+    return (
+        f"a line at {e.frequency:.2f} Hz on {e.output} that no candidate explains"
+        f" (chance {probability(e.p_value)})"
+    )
+
+
+def _noisy_output(e: records.NoisyOutput) -> str:
+    return f"{e.output} is noisier than the other outputs (chance {probability(e.p_value)})"
+
+
+def _correlated_innovations(e: records.CorrelatedInnovations) -> str:
+    return (
+        f"innovations that are not white: {100 * e.share:.0f} % of their power follows from the"
+        f" samples before (chance {probability(e.p_value)})"
+    )
+
+
+def _parameters_at_limit(e: records.ParametersAtLimit) -> str:
+    return (
+        f"{' and '.join(e.parameters)} at the end of what is plausible, by the nominal values that"
+        " were given"
+    )
+
+
+def _large_input_error(e: records.LargeInputError) -> str:
+    return (
+        f"inputs that would have to err by {quantity(e.rms, unit=e.unit)} rms beside what the log"
+        f" says, {100 * e.share:.0f} % of their own motion, for {e.correlation_time:.2g} s at a"
+        " time"
+    )
+
+
+def _robot_change(e: records.RobotChange) -> str:
+    return (
+        "unseen samples whose errors of prediction, one sample ahead, are"
+        f" {e.ratio:.3g} times as large as those of the fitted ones, from about {e.time:.3g} s on:"
+        " the robot changed, or it does there what the fitted samples never show"
+    )
+
+
+def _structured_input_error(e: records.StructuredInputError) -> str:
+    return (
+        f"an unlogged error of the inputs, {quantity(e.rms, unit=e.unit)} rms, that is not random:"
+        f" it follows {FOLLOWED[e.regressor]}, most of all on {e.input}, and with it the mean"
+        f" square on unseen data is {100 * e.fall:.0f} % less"
+    )
+
+
+def _doubtful_effect(e: records.DoubtfulEffect) -> str:
+    r = e.rejected
+    return (
+        f"{describe_effect(r.candidate)}, {describe_sizes(r)}, which explains the fitted samples"
+        f" beyond chance and {100 * r.proof.fall:.0f} % of the error on unseen data, but is not"
+        f" proven there (t = {r.proof.t:.1f})"
+    )
+
+
+def _oversized_effect(e: records.OversizedEffect) -> str:
+    units = {s.name: s.unit for s in e.score.candidate.effect.sizes}
+    values = dict(zip(units, e.score.size, strict=True))
+    said = ", ".join(
+        f"{name} = {quantity(values[name], unit=units[name])} where"
+        f" {quantity(limit, unit=units[name])} is thought to be the most"
+        for name, limit in e.limits.items()
+    )
+    return (
+        f"{describe_effect(e.score.candidate)}, which would explain more than what is named (gain"
+        f" {e.score.gain:.4g}), but only at {said}"
+    )
+
+
+WORDS: dict[FindingKind, Callable[[Any], str]] = {
+    FindingKind.WORST_OUTPUT: _worst_output,
+    FindingKind.WORST_INTERVAL: _worst_interval,
+    FindingKind.MEDIAN_FREQUENCY: _median_frequency,
+    FindingKind.MISSING_FORCE: _missing_force,
+    FindingKind.INPUT_HOLD: _input_hold,
+    FindingKind.SPECTRAL_LINE: _spectral_line,
+    FindingKind.NOISY_OUTPUT: _noisy_output,
+    FindingKind.CORRELATED_INNOVATIONS: _correlated_innovations,
+    FindingKind.PARAMETERS_AT_LIMIT: _parameters_at_limit,
+    FindingKind.LARGE_INPUT_ERROR: _large_input_error,
+    FindingKind.ROBOT_CHANGE: _robot_change,
+    FindingKind.STRUCTURED_INPUT_ERROR: _structured_input_error,
+    FindingKind.DOUBTFUL_EFFECT: _doubtful_effect,
+    FindingKind.OVERSIZED_EFFECT: _oversized_effect,
+}

@@ -1,0 +1,82 @@
+"""Every kind of finding has words and plain values."""
+
+import ast
+import json
+from pathlib import Path
+
+import pytest
+from finding_cases import EVIDENCE_OF, FINDINGS
+
+from identification.discovery.findings.finding import Finding, FindingKind
+from identification.report.discovery_json import finding_to_json
+from identification.report.finding_words import (
+    FOLLOWED,
+    HOLDS,
+    REGRESSORS,
+    describe_finding,
+    sentence,
+)
+
+SAYS = {
+    FindingKind.WORST_OUTPUT: "largest on angle_5: 14.3 mrad rms, 16 % of the power",
+    FindingKind.WORST_INTERVAL: "from 2.0 to 3.0 s (25 %",
+    FindingKind.MEDIAN_FREQUENCY: "below 0.4 Hz",
+    FindingKind.MISSING_FORCE: "0.0049 N and 0.00031 N m rms on platform would explain 97 %",
+    FindingKind.INPUT_HOLD: 'err by 2 mA rms and not by 50 mA; if that is so, write hold = "foh"',
+    FindingKind.SPECTRAL_LINE: "at 2.30 Hz on angle_2 that no candidate explains (chance 3e-09)",
+    FindingKind.NOISY_OUTPUT: "angle_7 is noisier than the other outputs (chance 2e-06)",
+    FindingKind.CORRELATED_INNOVATIONS: "26 % of their power follows from the samples before",
+    FindingKind.PARAMETERS_AT_LIMIT: "b_v and J at the end of what is plausible",
+    FindingKind.LARGE_INPUT_ERROR: "err by 90 mA rms beside what the log says, 35 % of their own",
+    FindingKind.ROBOT_CHANGE: "2.4 times as large as those of the fitted ones, from about 10.5 s",
+    FindingKind.STRUCTURED_INPUT_ERROR: "follows the rate of its output, most of all on current_3",
+    FindingKind.DOUBTFUL_EFFECT: "tau = 250 ± 100 µs (delay), which explains",
+    FindingKind.OVERSIZED_EFFECT: "tau = 0.300 s where 0.100 s is thought to be the most",
+}
+
+
+@pytest.mark.parametrize("kind", FindingKind)
+def test_every_kind_has_a_clause_with_its_numbers(kind):
+    clause = describe_finding(Finding(kind, EVIDENCE_OF[kind]))
+    assert SAYS[kind] in clause
+    assert "nan" not in clause
+    said = sentence(clause)
+    assert said.endswith(".")
+    assert said[0] == said[0].upper()
+
+
+def test_the_clauses_differ():
+    assert len({describe_finding(f) for f in FINDINGS}) == len(FindingKind)
+
+
+@pytest.mark.parametrize("kind", FindingKind)
+def test_every_kind_is_written_with_its_numbers_and_no_sentence(kind):
+    record = json.loads(json.dumps(finding_to_json(Finding(kind, EVIDENCE_OF[kind]))))
+    assert record.pop("kind") == kind.value
+    assert record
+
+
+def strings(path, function):
+    """The names that a function of discovery gives to what it lists."""
+    module = Path(__file__).parents[2] / "identification" / "discovery" / "findings" / path
+    tree = ast.parse(module.read_text(encoding="utf-8"))
+    (body,) = (n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef) and n.name == function)
+    body.body = body.body[1:]  # without its docstring
+    return {n.value for n in ast.walk(body) if isinstance(n, ast.Constant)
+            and isinstance(n.value, str)}  # fmt: skip
+
+
+def test_every_regressor_and_every_hold_has_words():
+    assert strings("location.py", "list_regressors") == set(REGRESSORS)
+    assert strings("input_error.py", "list_families") == set(FOLLOWED)
+    assert set(HOLDS) == {"foh", "zoh"}
+
+
+def test_discovery_knows_no_words():
+    folder = Path(__file__).parents[2] / "identification" / "discovery"
+    for path in folder.rglob("*.py"):
+        assert "identification.report" not in {
+            ".".join((n.module or "").split(".")[:2])
+            for n in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(n, ast.ImportFrom)
+        }, path
