@@ -7,8 +7,11 @@ from pathlib import Path
 
 import fake_discovery
 import pytest
+from finding_cases import FINDINGS
 
 from identification import write_log
+from identification.discovery.findings.finding import FindingKind
+from identification.report.discovery_json import finding_to_json
 from inca_mj.cli import main
 from inca_mj.commands.discover import as_json
 from inca_mj.robot.inputs import make_input
@@ -18,7 +21,10 @@ from inca_mj.twin.twin import build_twin
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
-BY_NAME = ("parameters", "profiles")  # their keys are parameters, not words of ours
+BY_NAME = ("parameters", "profiles", "options")  # their keys are names, explained elsewhere
+
+
+NESTED = {FindingKind.OVERSIZED_EFFECT: ("value", "std", "unit", "limit")}
 
 
 def keys_of(value) -> set[str]:
@@ -28,7 +34,7 @@ def keys_of(value) -> set[str]:
         return set()
     found = set(value)
     for key, inner in value.items():
-        rows = inner.values() if key in BY_NAME else [inner]
+        rows = inner.values() if key in BY_NAME and isinstance(inner, dict) else [inner]
         found |= set().union(*map(keys_of, rows))
     return found
 
@@ -62,3 +68,13 @@ def test_the_page_knows_every_key_of_a_discovery():
     printed = keys_of(as_json(fake_discovery.found(one_of=True, unexplained=True), None))
     assert {"proof", "rivals", "smallest", "gain"} <= printed
     assert printed <= section("discover")
+
+
+@pytest.mark.parametrize("finding", FINDINGS, ids=lambda f: f.kind)
+def test_the_page_knows_the_keys_of_every_kind_of_finding(finding):
+    record = finding_to_json(finding)
+    rows = re.findall(rf"^\| {finding.kind} \| (.*) \|$", PAGE, re.MULTILINE)
+    assert len(rows) == 1
+    assert set(record) - {"kind"} == set(re.findall(r"`(\w+)`", rows[0].split(" as in ")[0])) - {
+        "null", *NESTED.get(finding.kind, ())
+    }  # fmt: skip

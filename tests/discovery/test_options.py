@@ -1,0 +1,85 @@
+"""Options of a discovery: their page, their file, and that each of them is used."""
+
+import ast
+import re
+from dataclasses import fields
+from math import inf, nan
+from pathlib import Path
+
+import pytest
+
+from identification import InputError
+from identification.discovery.options import DiscoveryOptions, read_options
+
+ROOT = Path(__file__).parents[2]
+FIELDS = fields(DiscoveryOptions)
+
+
+def row_of(field):
+    """The row of an option in the table of docs/discovery.md."""
+    m = field.metadata
+    return (f"`{field.name}`", f"{field.default:g}", m["unit"], m["reason"], m["source"])
+
+
+def test_the_page_has_every_option_with_its_value_unit_reason_and_source():
+    page = (ROOT / "docs" / "discovery.md").read_text(encoding="utf-8")
+    rows = [tuple(cell.strip() for cell in line.strip("|").split("|"))
+            for line in page.splitlines() if re.match(r"\| `\w+` \|", line)]  # fmt: skip
+    table = [row for row in rows if len(row) == 5]
+    expected = [row_of(field) for field in FIELDS]
+    assert table == expected, "\n".join("| " + " | ".join(row) + " |" for row in expected)
+
+
+@pytest.mark.parametrize("name", [field.name for field in FIELDS])
+def test_every_option_is_read_by_some_code(name):
+    folders = ("identification/discovery", "identification/kalman")
+    trees = [ast.parse(p.read_text(encoding="utf-8"))
+             for folder in folders for p in (ROOT / folder).rglob("*.py")]  # fmt: skip
+    read = [n for tree in trees for n in ast.walk(tree)
+            if isinstance(n, ast.Attribute) and n.attr == name
+            and ast.unparse(n.value) in ("options", "task.options")]  # fmt: skip
+    assert read
+
+
+def write(tmp_path, text):
+    path = tmp_path / "options.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_file_sets_what_it_names_and_leaves_the_rest(tmp_path):
+    path = write(tmp_path, "min_proof_t = 3\nmax_effects = 1\n")
+    assert read_options(path) == DiscoveryOptions(min_proof_t=3.0, max_effects=1)
+    assert read_options(write(tmp_path, "")) == DiscoveryOptions()
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("min_prof_t = 3.0", "did you mean 'min_proof_t'"),
+        ("min_proof_t = 'three'", "min_proof_t is 'three'; give a number of 0 or more"),
+        ("min_proof_t = true", "min_proof_t is True"),
+        ("min_proof_t = [1]", r"min_proof_t is \[1\]"),
+        ("max_effects = 2.5", "give a whole number of 1 or more"),
+        ("significance = 1.5", "give a number from 0 to 1"),
+        ("temperature = nan", "temperature is nan"),
+        ("[discovery]\nmax_effects = 1", "unknown option in .*: 'discovery'"),
+        ("min_proof_t = ", "is not TOML"),
+    ],
+)
+def test_a_wrong_file_is_refused_in_one_sentence(tmp_path, refusal, text, says):
+    path = write(tmp_path, text)
+    said = refusal(read_options, path)
+    assert re.search(says, said)
+    assert str(path) in said
+
+
+@pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.name)
+def test_the_limits_of_an_option_hold_and_its_default_lies_within(field):
+    least, most = field.metadata["least"], field.metadata["most"]
+    kind = int if isinstance(field.default, int) else float
+    assert least <= field.default <= most
+    assert getattr(DiscoveryOptions(**{field.name: kind(least)}), field.name) == least
+    for value in (least - 1, most + 1 if most < inf else inf, nan):
+        with pytest.raises(InputError, match=field.name):
+            DiscoveryOptions(**{field.name: value})
