@@ -30,6 +30,8 @@ from identification.kalman.point import extend_point
 from identification.kalman.refit import Refit
 from identification.logs.log import Log
 
+SHORTEST = 5  # samples of a block at least
+
 
 @dataclass(frozen=True, kw_only=True)
 class Validation:
@@ -120,7 +122,7 @@ def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -
         E = without.filter(with_it.e) / without.refit.level.sigma
     fewer = np.sum(without.innovations**2 - E**2, axis=1) / 2
     gain = fewer[with_it.first :]
-    count = min(options.proof_blocks, len(gain) // 5)
+    count = min(options.proof_blocks, len(gain) // SHORTEST)
     starts = np.linspace(0, len(gain), count, endpoint=False).astype(int)
     blocks = np.add.reduceat(gain, starts)
     scatter = blocks.std(ddof=1) / np.sqrt(len(blocks))

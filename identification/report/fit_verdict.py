@@ -21,7 +21,7 @@ LEVEL = 0.01  # significance of the tests of the residual: one false alarm in a 
 
 
 def verdict(fit: Fit) -> list[str]:
-    """Sentences: did it converge, what can be known, does the model suffice, does it hold unseen."""
+    """Sentences: did it converge, what can be known, is the model enough, does it hold unseen."""
     if fit.estimate.status == "stopped":  # a search that was stopped says nothing of the model
         return search_sentences(fit)
     return [*search_sentences(fit), *identifiable_sentences(fit), *_enough(fit), *_unseen(fit)]

@@ -35,6 +35,7 @@ from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise, build_whitener
 from identification.kalman.refit import Refit
 
+SHORTEST = 10  # samples of a block at least
 SMALLER = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # ρ that are tried, in units of the nominal model's
 
 
@@ -169,11 +170,11 @@ def _by_blocks(
     signs: Sequence[int],
     most: int,
 ) -> float:
-    """p-value of the Wald test by blocks, `most` at most and of 10 samples at least."""
+    """p-value of the Wald test by `most` blocks, or by fewer where they would be too short."""
     m = S.shape[2]
     if m == 1 and signs[0] * size[0] < 0:
         return 1.0
-    blocks = min(most, len(e) // 10)
+    blocks = min(most, len(e) // SHORTEST)
     starts = np.linspace(0, len(e), blocks, endpoint=False).astype(int)
     scores = np.einsum("nip,ni->np", S, e - S @ size)
     g = np.add.reduceat(scores, starts, axis=0)
