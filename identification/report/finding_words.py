@@ -1,4 +1,4 @@
-"""Findings in words: one clause for each kind, to be joined or made a sentence."""
+"""Findings in words: one clause for each kind, which can be joined with others or be a sentence."""
 
 from __future__ import annotations
 
@@ -63,47 +63,45 @@ def _missing_force(e: records.ForceEvidence) -> str:
     )
     if e.regressor is None:
         return said
-    return (
-        f"{said}; {100 * e.regressor_share:.0f} % of their power follows {REGRESSORS[e.regressor]}"
-    )
+    follows = f"{100 * e.regressor_share:.0f} % of their power follows {REGRESSORS[e.regressor]}"
+    return f"{said}, and {follows}"
 
 
 def _input_hold(e: records.InputHold) -> str:
     then, now = alike([e.rms, e.rms_now], e.unit)
     return (
-        f"if the inputs {HOLDS[e.hold]}, they would have to err by {then} rms and not by {now};"
-        f' if that is so, write hold = "{e.hold}" into the log\'s TOML'
+        f"if the inputs {HOLDS[e.hold]}, they would have to err by only {then} rms and not by {now}"
+        f' (write hold = "{e.hold}" into the log\'s TOML if they did)'
     )
 
 
 def _spectral_line(e: records.SpectralLine) -> str:
     return (
-        f"a line at {e.frequency:.2f} Hz on {e.output} that no candidate explains"
-        f" (chance {probability(e.p_value)})"
+        f"the innovations of {e.output} have a line at {e.frequency:.2f} Hz that no candidate"
+        f" explains (chance {probability(e.p_value)})"
     )
 
 
 def _noisy_output(e: records.NoisyOutput) -> str:
-    return f"{e.output} is noisier than the other outputs (chance {probability(e.p_value)})"
+    return f"the output {e.output} is noisier than the others (chance {probability(e.p_value)})"
 
 
 def _correlated_innovations(e: records.CorrelatedInnovations) -> str:
     return (
-        f"innovations that are not white: {100 * e.share:.0f} % of their power follows from the"
+        f"the innovations are not white: {100 * e.share:.0f} % of their power follows from the"
         f" samples before (chance {probability(e.p_value)})"
     )
 
 
 def _parameters_at_limit(e: records.ParametersAtLimit) -> str:
-    return (
-        f"{' and '.join(e.parameters)} at the end of what is plausible, by the nominal values that"
-        " were given"
-    )
+    names = " and ".join(e.parameters)
+    end = f"parameters {names} end" if len(e.parameters) > 1 else f"parameter {names} ends"
+    return f"the {end} at the limit of what is plausible, by the nominal values that were given"
 
 
 def _large_input_error(e: records.LargeInputError) -> str:
     return (
-        f"inputs that would have to err by {quantity(e.rms, unit=e.unit)} rms beside what the log"
+        f"the inputs would have to err by {quantity(e.rms, unit=e.unit)} rms beside what the log"
         f" says, {100 * e.share:.0f} % of their own motion, for {e.correlation_time:.2g} s at a"
         " time"
     )
@@ -111,15 +109,15 @@ def _large_input_error(e: records.LargeInputError) -> str:
 
 def _robot_change(e: records.RobotChange) -> str:
     return (
-        "unseen samples whose errors of prediction, one sample ahead, are"
-        f" {e.ratio:.3g} times as large as those of the fitted ones, from about {e.time:.3g} s on:"
-        " the robot changed, or it does there what the fitted samples never show"
+        f"from about {e.time:.3g} s on the unseen samples are predicted worse than the fitted ones,"
+        f" with errors {e.ratio:.3g} times as large one sample ahead: the robot changed, or it does"
+        " there what the fitted samples never show"
     )
 
 
 def _structured_input_error(e: records.StructuredInputError) -> str:
     return (
-        f"an unlogged error of the inputs, {quantity(e.rms, unit=e.unit)} rms, that is not random:"
+        f"an unlogged error of the inputs, {quantity(e.rms, unit=e.unit)} rms, is not random:"
         f" it follows {FOLLOWED[e.regressor]}, most of all on {e.input}, and with it the mean"
         f" square on unseen data is {100 * e.fall:.0f} % less"
     )
@@ -128,7 +126,7 @@ def _structured_input_error(e: records.StructuredInputError) -> str:
 def _doubtful_effect(e: records.DoubtfulEffect) -> str:
     r = e.rejected
     return (
-        f"{describe_effect(r.candidate)}, {describe_sizes(r)}, which explains the fitted samples"
+        f"{describe_effect(r.candidate)}, {describe_sizes(r)}, explains the fitted samples"
         f" beyond chance and {100 * r.proof.fall:.0f} % of the error on unseen data, but is not"
         f" proven there (t = {r.proof.t:.1f})"
     )
@@ -143,7 +141,7 @@ def _oversized_effect(e: records.OversizedEffect) -> str:
         for name, limit in e.limits.items()
     )
     return (
-        f"{describe_effect(e.score.candidate)}, which would explain more than what is named (gain"
+        f"{describe_effect(e.score.candidate)}, would explain more than what is named (gain"
         f" {e.score.gain:.4g}), but only at {said}"
     )
 
