@@ -36,7 +36,7 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     base = NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
     fit = fit_with_effects(base, whole.part("estimation"), (), {})
     point, prior = fit.point, fit.prior
-    effects = [e.effect for e in CATALOGUE]
+    effects = list(CATALOGUE)
     sensed = columns(point, common(effects))
     best: dict[str, Any] = {}
     for s in score(fit, sensed):

@@ -9,7 +9,7 @@ import pytest
 from identification.discovery.selection import shapes
 from identification.discovery.selection.shapes import BARE, improved
 from identification.effects.effect import Candidate, Effect, Shape, Size
-from inca_mj.effects.current_saturation import CURRENT_SATURATION
+from inca_mj.effects.motor import CURRENT_SATURATION
 from inca_mj.workflows.discovery import discover
 from inca_mj.worlds import Setting, effect, world
 
