@@ -42,8 +42,7 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     nominal_model = NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
     fit = fit_with_effects(nominal_model, whole.part("estimation"), (), {}, options)
     point, prior = fit.point, fit.prior
-    effects = [e.effect for e in CATALOGUE]
-    sensitivities = compute_sensitivities(point, list_common(effects))
+    sensitivities = compute_sensitivities(point, list_common(CATALOGUE))
     best: dict[str, Any] = {}
     for s in score(fit, sensitivities, options):
         best.setdefault(s.candidate.effect.name, s.candidate)

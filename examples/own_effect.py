@@ -9,13 +9,13 @@ from dataclasses import replace
 from math import tanh
 
 import numpy as np
+from inca_mj.effects.places import DRIVES_EACH
 from numba import njit
 
 from identification.effects.effect import Effect, Size
 from inca_mj import build_twin, make_input, run_to_log, simulate
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.effects.hooks import DriveEffect
-from inca_mj.effects.places import DRIVES_EACH
 
 
 @njit

@@ -4,13 +4,19 @@ An effect is a group of sizes, all zero where it is absent, and of shapes, which
 when it is there (a Stribeck velocity, a harmonic). Its sizes enter the model linearly, or nearly
 so; its shapes do not matter while the sizes are zero, so they are tried on a grid and freed once
 the effect is named.
+
+What it adds to the law of a robot is said by its hooks: each is one njit function of the state of
+what it acts on and of the tuple of its parameters, sizes first. With sizes of zero it adds nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Literal
+from collections.abc import Callable, Mapping
+from dataclasses import KW_ONLY, dataclass, field
+from inspect import signature
+from typing import Any, Literal
+
+from identification.errors import InputError
 
 Sign = Literal[-1, 0, 1]
 FARTHEST = 5.0  # of the largest plausible size
@@ -94,25 +100,70 @@ class Effect:
         places: where it may act, in words, each with its parameters' suffix: {"all drives": "",
             "drive 1": "@1"}; parameters are called `effect.size` + suffix.
         phrase: "{where}: " follows; e.g. "friction: Stribeck peak".
+        reference: table, paper or book of the law.
         probes: multiples of the sizes' probes at which its sensitivity is taken, where the outputs
             follow its size only nearly in proportion.
-        reference: table, paper or book of the law.
+        hooks: where it adds to the law of a robot, e.g. "force", and the njit function (state,
+            parameters) that says what. None are needed where its sizes are paths into a model.
+
+    Raises:
+        InputError: a hook's function is not compiled by numba, or does not take two arguments.
     """
 
     name: str
     law: str
     sizes: tuple[Size, ...]
     shapes: tuple[Shape, ...] = ()
+    _: KW_ONLY
     places: Mapping[str, str] = field(default_factory=dict, hash=False)
     phrase: str = ""
     reference: str = ""
     probes: tuple[float, ...] = (1.0,)
+    hooks: Mapping[str, Callable[..., Any]] = field(default_factory=dict, hash=False)
+
+    def __post_init__(self) -> None:
+        for hook, function in self.hooks.items():
+            _refuse_unfit(self.name, hook, function)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Its parameters in the order in which the hooks get them: sizes, then shapes."""
+        return (*(size.name for size in self.sizes), *(shape.name for shape in self.shapes))
 
     def parameter(self, name: str, where: str) -> str:
         """Name of the plant's parameter for a size at a place, or for a shape, one for all."""
         if any(shape.name == name for shape in self.shapes):
             return f"{self.name}.{name}"
         return f"{self.name}.{name}{self.places[where]}"
+
+    def parameters_at(self, thing: str) -> list[list[str]]:
+        """Names of the plant's parameters that add up to each of its numbers at one thing.
+
+        Args:
+            thing: name of a joint, drive or input, as it stands behind the @ of a place.
+
+        Returns:
+            A list for each of `names`; empty where the effect cannot act on the thing.
+        """
+        single = [suffix for suffix in self.places.values() if suffix]
+        if single and f"@{thing}" not in single:
+            return []
+        suffixes = [s for s in self.places.values() if s in ("", f"@{thing}")]
+        sizes = [[f"{self.name}.{size.name}{at}" for at in suffixes] for size in self.sizes]
+        return sizes + [[f"{self.name}.{shape.name}"] for shape in self.shapes]
+
+
+def _refuse_unfit(effect: str, hook: str, function: Any) -> None:
+    where = f"effect {effect!r}: the function of its hook {hook!r}"
+    law = getattr(function, "py_func", None)
+    if law is None:
+        raise InputError(f"{where} is not compiled; write @njit of numba above it")
+    taken = tuple(signature(law).parameters)
+    if len(taken) != 2:
+        raise InputError(
+            f"{where} takes ({', '.join(taken)}); it must take two arguments, the state of what it"
+            " acts on and the tuple of the effect's parameters"
+        )
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Candidate effects of a robot's inputs; what they do to an input is in `inputs`."""
+"""Candidate effects of a robot's inputs; their laws are in `input_laws`."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.effects.effect import BEFORE, Effect, Shape, Size
-from identification.effects.inputs import clipped, delayed, drifting, lagged
-from identification.effects.joint_effect import JointEffect, places
+from identification.effects.input_laws import DELAY, LAG, clipped, drifting
+from identification.effects.places import places
 from identification.errors import InputError
 from identification.logs.log import Log
 
@@ -48,7 +48,7 @@ def drives(log: Log) -> tuple[Drive, ...]:
     )
 
 
-def input_effects(drives: Sequence[Drive]) -> tuple[JointEffect, ...]:
+def input_effects(drives: Sequence[Drive]) -> tuple[Effect, ...]:
     """All candidates of some inputs, of one unit.
 
     Args:
@@ -66,24 +66,13 @@ def input_effects(drives: Sequence[Drive]) -> tuple[JointEffect, ...]:
     share = Size("c", "", 1.0, 0.02, 1, "share of the clipping, 1 when there is a limit", 1.0)
     tau = "time constant"
     return (
-        JointEffect(
-            Effect("delay", "u(t - τ)", (Size("tau", "s", 0.02, 5e-4, 1, "delay"),), (BEFORE,), at,
-                   phrase="input: comes late", probes=(1.0, 40**0.5, 40.0)),
-            inputs=delayed,
-        ),
-        JointEffect(
-            Effect("lag", "τ u̇' = u - u'", (Size("tau", "s", 0.01, 5e-4, 1, tau),), (BEFORE,), at,
-                   phrase="input: lags", probes=(1.0, 20**0.5, 20.0)),
-            inputs=lagged,
-        ),
-        JointEffect(
-            Effect("saturation", "u clipped at ±u_max", (share,), (limit,), at, "input: clipped"),
-            inputs=clipped,
-        ),
-        JointEffect(
-            Effect("gain_drift", "(1 - α t) u",
-                   (Size("alpha", "1/s", 0.01, 2e-4, about="relative loss a second"),), places=at,
-                   phrase="input: gain drifts"),
-            inputs=drifting,
-        ),
+        Effect("delay", "u(t - τ)", (Size("tau", "s", 0.02, 5e-4, 1, "delay"),), (BEFORE,),
+               places=at, phrase="input: comes late", probes=(1.0, 40**0.5, 40.0), hooks=DELAY),
+        Effect("lag", "τ u̇' = u - u'", (Size("tau", "s", 0.01, 5e-4, 1, tau),), (BEFORE,),
+               places=at, phrase="input: lags", probes=(1.0, 20**0.5, 20.0), hooks=LAG),
+        Effect("saturation", "u clipped at ±u_max", (share,), (limit,), places=at,
+               phrase="input: clipped", hooks={"input": clipped}),
+        Effect("gain_drift", "(1 - α t) u",
+               (Size("alpha", "1/s", 0.01, 2e-4, about="relative loss a second"),), places=at,
+               phrase="input: gain drifts", hooks={"input": drifting}),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Candidate effects of the hinge and slide joints of a robot; their law is in `law`.
+"""Candidate effects of the hinge and slide joints of a robot; their laws are in `joint_laws`.
 
 A size is plausible up to a share of what the drives can do: of F for a force, of F/V for what
 grows with speed, of F/A for what grows along the way, A half the travel (see `axes`).
@@ -9,9 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import pi
 
+from identification.effects import joint_laws as laws
 from identification.effects.axes import Axis, Kind
 from identification.effects.effect import Effect, Shape, Sign, Size
-from identification.effects.joint_effect import JointEffect, places
+from identification.effects.places import places
+from identification.native.element import Function
 
 PROBE = 0.01  # of the largest plausible size
 TURNS = (*map(float, range(1, 13)), 14.0, 16.0, 18.0, 20.0, 24.0, 28.0)  # harmonics of a turn
@@ -19,7 +21,7 @@ SPEEDS = (0.03, 0.06, 0.12, 0.25, 0.5)  # Stribeck velocities to try, of the top
 WAVES = (1.0, 2.0, 4.0, 8.0, 16.0)  # periods of a slide's travel; less is not seen to repeat
 
 
-def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple[JointEffect, ...]:
+def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple[Effect, ...]:
     """All candidates of some joints.
 
     Hinges and slides have units of their own; where a robot has both, the names of the slides'
@@ -43,7 +45,7 @@ def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple
 
 def _catalogue(
     axes: tuple[Axis, ...], kind: Kind, turns: Sequence[float], prefix: str
-) -> list[JointEffect]:
+) -> list[Effect]:
     F, V, L = (max(getattr(a, word) for a in axes) for word in ("force", "speed", "travel"))
     A = L / 2
     f, x = ("N m", "rad") if kind == "hinge" else ("N", "m")
@@ -53,14 +55,13 @@ def _catalogue(
     def size(name: str, largest: float, unit: str, about: str, sign: Sign = 0) -> Size:
         return Size(name, unit, largest, PROBE * largest, sign, about)
 
-    def effect(name: str, law: str, sizes: list[Size], phrase: str, reference: str = "",
-               shapes: tuple[Shape, ...] = (), where: dict[str, str] | None = None,
-               columns: tuple[str, ...] | None = None) -> JointEffect:  # fmt: skip
-        own = Effect(
-            prefix + name, law, tuple(sizes), shapes, at if where is None else where, phrase,
-            reference,
+    def effect(force: Function, law: str, sizes: tuple[Size, ...], phrase: str,
+               reference: str = "", shapes: tuple[Shape, ...] = (),
+               where: dict[str, str] = at) -> Effect:  # fmt: skip
+        return Effect(
+            prefix + force.__name__, law, sizes, shapes, places=where, phrase=phrase,
+            reference=reference, hooks={"force": force},
         )  # fmt: skip
-        return JointEffect(own, columns or (*(s.name for s in sizes), *(s.name for s in shapes)))
 
     v_s = Shape("v_s", f"{x}/s", tuple(V * s for s in SPEEDS), 0.01 * V, 2 * V,
                 about="half width of the peak")  # fmt: skip
@@ -70,41 +71,42 @@ def _catalogue(
         size("b", 0.2 * F, f, "amplitude of the sine"),
     )
     out = [
-        effect("coulomb_friction", "-f_c tanh(v/v₀)",
-               [size("f_c", 0.3 * F, f, "level", 1)], "friction: Coulomb"),
-        effect("asymmetric_friction", "-f_a |tanh(v/v₀)|",
-               [size("f_a", 0.1 * F, f, "half the difference of the two directions")],
+        effect(laws.coulomb_friction, "-f_c tanh(v/v₀)",
+               (size("f_c", 0.3 * F, f, "level", 1),), "friction: Coulomb"),
+        effect(laws.asymmetric_friction, "-f_a |tanh(v/v₀)|",
+               (size("f_a", 0.1 * F, f, "half the difference of the two directions"),),
                "friction: Coulomb level differs by direction"),
-        effect("asymmetric_viscous_friction", "-d_a |v|",
-               [size("d_a", 0.3 * F / V, f"{f} s/{x}", "half the difference of the directions")],
+        effect(laws.asymmetric_viscous_friction, "-d_a |v|",
+               (size("d_a", 0.3 * F / V, f"{f} s/{x}", "half the difference of the directions"),),
                "friction: viscous, differs by direction", "Janot, Gautier, Brunot 2019"),
-        effect("stribeck_friction", "-f_s exp(-(v/v_s)²) tanh(v/v₀)",
-               [size("f_s", 0.2 * F, f, "height of the peak", 1)], "friction: Stribeck peak",
+        effect(laws.stribeck_friction, "-f_s exp(-(v/v_s)²) tanh(v/v₀)",
+               (size("f_s", 0.2 * F, f, "height of the peak", 1),), "friction: Stribeck peak",
                "Armstrong-Hélouvry, Dupont, Canudas de Wit 1994", (v_s,)),
-        effect("quadratic_friction", "-c v |v|",
-               [size("c", 0.3 * F / V**2, f"{f} s^2/{x}^2", "drag", 1)],
+        effect(laws.quadratic_friction, "-c v |v|",
+               (size("c", 0.3 * F / V**2, f"{f} s^2/{x}^2", "drag", 1),),
                "friction: grows with the square of speed"),
-        effect("load_dependent_friction", "-μ |f_u| tanh(v/v₀), f_u the drive's force",
-               [size("mu", 0.2, "", "share of the load", 1)], "friction: grows with the load",
+        effect(laws.load_dependent_friction, "-μ |f_u| tanh(v/v₀), f_u the drive's force",
+               (size("mu", 0.2, "", "share of the load", 1),), "friction: grows with the load",
                "Hamon, Gautier, Garrec 2010", where=places("joint", plain)),
-        effect("position_dependent_friction", "-f_q q tanh(v/v₀)",
-               [size("f_q", 0.3 * F / A, f"{f}/{x}", "growth along the way")],
+        effect(laws.position_dependent_friction, "-f_q q tanh(v/v₀)",
+               (size("f_q", 0.3 * F / A, f"{f}/{x}", "growth along the way"),),
                "friction: Coulomb level changes along the way"),
-        effect("position_dependent_damping", "-d_q q v",
-               [size("d_q", 0.3 * F / (V * A), f"{f} s/{x}^2", "growth along the way")],
+        effect(laws.position_dependent_damping, "-d_q q v",
+               (size("d_q", 0.3 * F / (V * A), f"{f} s/{x}^2", "growth along the way"),),
                "friction: viscous, changes along the way"),
-        effect("periodic_friction", "-(a cos nq + b sin nq) tanh(v/v₀)", list(waves),
-               "friction: repeats along the way", shapes=(n,), columns=("a_f", "b_f", "n_f")),
-        effect("cogging", "a cos nq + b sin nq", list(waves), "motor: cogging", "Krishnan 2010",
+        effect(laws.periodic_friction, "-(a cos nq + b sin nq) tanh(v/v₀)", waves,
+               "friction: repeats along the way", shapes=(n,)),
+        effect(laws.cogging, "a cos nq + b sin nq", waves, "motor: cogging", "Krishnan 2010",
                (n,)),
-        effect("offset", "f_0", [size("f_0", 0.2 * F, f, "constant force")], "force: constant"),
-        effect("stiffness", "-k q", [size("k", 0.3 * F / A, f"{f}/{x}", "of a spring", 1)],
+        effect(laws.offset, "f_0", (size("f_0", 0.2 * F, f, "constant force"),),
+               "force: constant"),
+        effect(laws.stiffness, "-k q", (size("k", 0.3 * F / A, f"{f}/{x}", "of a spring", 1),),
                "spring: pulls back to zero"),
-        effect("hardening", "-k_3 q³",
-               [size("k_3", 0.3 * F / A**3, f"{f}/{x}^3", "of a spring that hardens, or softens")],
+        effect(laws.hardening, "-k_3 q³",
+               (size("k_3", 0.3 * F / A**3, f"{f}/{x}^3", "of a spring that hardens, or softens"),),
                "spring: grows with the cube of the way", "Duffing 1918"),
     ]  # fmt: skip
-    return [e for e in out if e.effect.places]
+    return [e for e in out if e.places]
 
 
 def _waves(kind: Kind, travel: float, turns: Sequence[float]) -> Shape:

@@ -11,25 +11,31 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import mujoco
 import numpy as np
 
+from identification.effects import values as effect_values
 from identification.effects.axes import Axis, axes
 from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
 from identification.effects.input_effects import drives, input_effects
 from identification.effects.joint_catalogue import joint_effects
-from identification.effects.joint_effect import JointEffect
-from identification.effects.rows import column, read_model, with_rows
+from identification.effects.layout import key_of, refuse_misplaced, terms_of
+from identification.effects.rows import read_model, with_rows
 from identification.logs.log import Log
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.paths import Slot
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
-from identification.native import installer as native
+from identification.native.element import Term
+from identification.native.hook_checks import refuse_unfit_functions
+from identification.native.input_filter import INPUT
+from identification.native.installer import Law, install
+from identification.native.joint_callback import FIELDS, FIRST, JOINT, callbacks, width
 
 
 @dataclass(frozen=True)
@@ -45,7 +51,7 @@ class JointPlant:
 
     bare: ModelPlant
     parameters: ParameterSet
-    effects: tuple[JointEffect, ...]
+    effects: tuple[Effect, ...]
     joints: tuple[str, ...]
 
     def __post_init__(self) -> None:
@@ -84,7 +90,7 @@ class JointPlant:
         Raises:
             InputError: a name is unknown, or another library holds MuJoCo's callback.
         """
-        native.install()
+        install(_law(key_of(self._of_joints), terms_of(self._of_joints, JOINT)))
         for name in names:
             self.parameters[name]
         known = {p.name for p in self.bare.parameters}
@@ -93,42 +99,49 @@ class JointPlant:
         others = [k for k, name in enumerate(names) if name not in known]
         return start, [*numbers, *self._rows([names[k] for k in others], values[:, others])]
 
+    @property
+    def _of_joints(self) -> tuple[Effect, ...]:
+        return _of_joints(self.effects)
+
     def _rows(self, names: Sequence[str], values: np.ndarray) -> Numbers:
         """Entries of the joints' rows that some parameters of effects change."""
-        at = {name: values[:, k] for k, name in enumerate(names)}
-        out = []
-        for effect in self.effects:
-            for joint in self.joints if effect.columns else ():
-                sums = effect.parameters_at(joint)
-                for name, parts in zip(effect.columns, sums, strict=False):
-                    if any(part in at for part in parts):
-                        row = (int(self.model.joint(joint).id),)
-                        slot = Slot("jnt_user", row, column(self.model, name))
-                        out.append((slot, self._sum(parts, at, len(values))))
-        return out
+        every = effect_values.merged(self.parameters.values(), names, values)
+        terms = terms_of(self._of_joints, JOINT)
+        first = int(self.model.nuser_jnt) - width(terms) + FIRST
+        return [
+            (Slot("jnt_user", (int(self.model.joint(joint).id),), first + column),
+             np.broadcast_to(numbers, len(values)))
+            for joint in self.joints
+            for column, numbers in effect_values.changed_columns(
+                self._of_joints, terms, joint, names, every
+            )
+        ]  # fmt: skip
 
     def inputs(
         self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
     ) -> np.ndarray:
         """The inputs after the effects that act on them; see `Plant`."""
-        at = {name: values[:, k] for k, name in enumerate(names)}
-        out = held
-        for effect in self.effects:
-            for i in range(self.model.nu if effect.inputs else 0):
-                parts = effect.parameters_at(self.model.actuator(i).name)
-                each = np.array([self._sum(p, at, len(values)) for p in parts])
-                if effect.inputs is None or not each[: len(effect.effect.sizes)].any():
-                    continue
-                if out.ndim == 2:
-                    out = np.repeat(held[None], len(values), axis=0)
-                for u, numbers in zip(out, each.T, strict=True):
-                    u[:, i] = effect.inputs(u[:, i], timestep, *numbers)
-        return out
+        every = effect_values.merged(self.parameters.values(), names, values)
+        actuators = [self.model.actuator(i).name for i in range(self.model.nu)]
+        return effect_values.changed_inputs(
+            self.effects, actuators, every, held, timestep, len(values)
+        )
 
-    def _sum(self, parts: Sequence[str], at: Mapping[str, np.ndarray], n: int) -> np.ndarray:
-        """What some parameters add up to in n value sets, shape (n,)."""
-        zero = np.zeros(n)
-        return np.sum([zero + at.get(p, self.parameters[p].value) for p in parts], axis=0)
+
+def _of_joints(effects: Iterable[Effect]) -> tuple[Effect, ...]:
+    return tuple(e for e in effects if "force" in e.hooks)
+
+
+@cache
+def _law(key: float, terms: tuple[Term, ...]) -> Law:
+    """The law of a set of joint effects."""
+    return Law(
+        name="joints",
+        key=key,
+        functions=callbacks(terms, key),
+        fields=FIELDS,
+        check=lambda: refuse_unfit_functions(JOINT, terms),
+    )
 
 
 def joint_plant(
@@ -137,7 +150,8 @@ def joint_plant(
     log: Log,
     *,
     joints: Sequence[Axis] | None = None,
-    effects: Sequence[JointEffect] | None = None,
+    effects: Sequence[Effect] | None = None,
+    own: Sequence[Effect] = (),
     start: State | None = None,
 ) -> JointPlant:
     """Compile an MJCF whose joints and inputs may have effects.
@@ -148,27 +162,31 @@ def joint_plant(
         log: shows how far joints and inputs move, which says what sizes are plausible.
         joints: the joints that may have effects; those that the log measures when None.
         effects: the candidates; all of the catalogue when None.
+        own: candidates beside them, of the caller's own.
         start: the initial state; the model's own when None.
 
     Raises:
-        InputError: the model or a path is unusable, or a joint does not move in the log.
+        InputError: the model or a path is unusable, a joint does not move in the log, or an effect
+            has a hook that is neither a joint's nor an input's.
     """
     spec = read_model(source)
     known = tuple(joints) if joints is not None else axes(spec.copy().compile(), log)
     if effects is None:
         effects = (*joint_effects(known), *input_effects(drives(log)))
-    records = {p.name: p for e in effects for p in effect_parameters(e.effect)}
+    effects = (*effects, *own)
+    refuse_misplaced(effects, (JOINT, INPUT))
+    records = {p.name: p for e in effects for p in effect_parameters(e)}
     given = {p.name: p for p in parameters}
-    own = ParameterSet("own", tuple(p for p in given.values() if p.name not in records))
-    every = (*own, *(given.get(name, record) for name, record in records.items()))
-    bare = ModelPlant(with_rows(spec, known), own, start)
+    free = ParameterSet("own", tuple(p for p in given.values() if p.name not in records))
+    every = (*free, *(given.get(name, record) for name, record in records.items()))
+    of_joints = _of_joints(effects)
+    model = with_rows(spec, known, width(terms_of(of_joints, JOINT)), key_of(of_joints))
+    bare = ModelPlant(model, free, start)
     name = spec.modelname or "robot"
-    return JointPlant(
-        bare, ParameterSet(name, every), tuple(effects), tuple(a.joint for a in known)
-    )
+    return JointPlant(bare, ParameterSet(name, every), effects, tuple(a.joint for a in known))
 
 
 def candidates(plant: JointPlant, names: Iterable[str]) -> tuple[Effect, ...]:
     """The effects of a plant of which no parameter is among its free ones."""
     free = {name.partition(".")[0] for name in names}
-    return tuple(e.effect for e in plant.effects if e.name not in free)
+    return tuple(e for e in plant.effects if e.name not in free)

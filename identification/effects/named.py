@@ -5,27 +5,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 from difflib import get_close_matches
 
+from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
-from identification.effects.joint_effect import JointEffect
 from identification.errors import InputError, unknown_name
 
 
-def means_effect(name: str, effects: Sequence[JointEffect]) -> bool:
+def means_effect(name: str, effects: Sequence[Effect]) -> bool:
     """Whether a name is meant to be a number of an effect, and not a path into the model."""
     near = get_close_matches(name.partition(".")[0], [e.name for e in effects], n=1)
     return "/" not in name and ("@" in name or bool(near))
 
 
-def unknown_number(name: str, effects: Sequence[JointEffect]) -> InputError:
+def unknown_number(name: str, effects: Sequence[Effect]) -> InputError:
     """What is wrong with a name that is no number of an effect."""
     head, _, rest = name.partition(".")
     size, at, place = rest.partition("@")
-    own = next((e.effect for e in effects if e.name == head), None)
+    own = next((e for e in effects if e.name == head), None)
     if own is None:
         return unknown_name(f"effect in {name!r}:", head, (e.name for e in effects))
     numbers = [p.name for p in effect_parameters(own)]
     # of a robot with slides and hinges each kind has effects of its own
-    there = [p.name for e in effects for p in effect_parameters(e.effect)
+    there = [p.name for e in effects for p in effect_parameters(e)
              if at and p.name.endswith(f"{head}.{size}@{place}")]  # fmt: skip
     if there:
         return unknown_name(f"number of {head}:", name, there)

@@ -1,8 +1,9 @@
 """An MJCF model whose joints carry the numbers of their effects as user data.
 
-user data of a joint = (what the file gave it, KEY, numbers of `law.Numbers`)
+    user data of a joint = (what the file gave it, v₀, parameters of the effects, key, TAG)
 
-The row stands at the end, so that a model's own user data stay where they were.
+The row stands at the end, so that a model's own user data stay where they were; its layout is that
+of `identification.native.joint_callback`.
 """
 
 from __future__ import annotations
@@ -16,8 +17,7 @@ import numpy as np
 from identification.effects.axes import Axis
 from identification.errors import InputError, unknown_name
 from identification.logs.names import quoted
-from identification.native.joint_callback import KEY, WIDTH
-from identification.native.joint_law import Numbers
+from identification.native.joint_callback import SMOOTH, TAG
 
 _LONGEST = 200  # of MuJoCo's words in a message
 _HELD = {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}
@@ -44,12 +44,16 @@ def read_model(source: str | Path) -> mujoco.MjSpec:
     return spec
 
 
-def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis]) -> mujoco.MjModel:
-    """The compiled model with a row of effects on some joints, all sizes zero.
+def with_rows(
+    spec: mujoco.MjSpec, axes: Sequence[Axis], entries: int, key: float
+) -> mujoco.MjModel:
+    """The compiled model with a row of effects on some joints, all their numbers zero.
 
     Args:
         spec: the model, which is not changed.
         axes: the joints.
+        entries: of a row.
+        key: of the set of effects.
 
     Raises:
         InputError: the model has no such hinge or slide joint.
@@ -60,13 +64,8 @@ def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis]) -> mujoco.MjModel:
         if axis.joint not in joints:
             raise unknown_name("hinge or slide joint", axis.joint, joints)
         given = own.jnt_user[own.joint(axis.joint).id]
-        row = np.zeros(WIDTH)
-        row[0], row[1 + Numbers._fields.index("v_0")] = KEY, axis.smooth
+        row = np.zeros(entries)
+        row[SMOOTH], row[-2], row[-1] = axis.smooth, key, TAG
         joints[axis.joint].userdata = np.concatenate([given, row])
-    spec.nuser_jnt = own.nuser_jnt + WIDTH
+    spec.nuser_jnt = own.nuser_jnt + entries
     return spec.compile()
-
-
-def column(model: mujoco.MjModel, name: str) -> int:
-    """Column of `jnt_user` where a number of `law.Numbers` stands."""
-    return int(model.nuser_jnt) - WIDTH + 1 + Numbers._fields.index(name)

@@ -10,9 +10,9 @@ from collections import namedtuple
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from identification.native import structs
+from identification.native.decorators import internal
 from identification.native.memory import load_constant, load_int, load_word
 
 
@@ -28,19 +28,19 @@ def offsets(struct: str, names: str) -> Any:
     return kind(*(structs.word(struct, n) for n in fields))
 
 
-@njit
+@internal
 def word(struct, at):  # type: ignore[no-untyped-def]
     """A size, or the address of an array."""
     return load_word(struct + 8 * at)
 
 
-@njit
+@internal
 def double(struct, at, i):  # type: ignore[no-untyped-def]
     """Entry i of an array of doubles that no callback writes."""
     return load_constant(load_word(struct + 8 * at) + 8 * i)
 
 
-@njit
+@internal
 def integer(struct, at, i):  # type: ignore[no-untyped-def]
     """Entry i of an array of ints."""
     return np.int64(load_int(load_word(struct + 8 * at) + 4 * i))

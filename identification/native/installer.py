@@ -1,74 +1,76 @@
-"""The joints' law, compiled and installed in this process.
+"""Laws, compiled and installed in this process.
 
-MuJoCo holds one callback of a kind in a process. A package that has a passive force of its own
-calls `add_joint_forces` in it and says so with `carry`: then either stands in for both.
+A law is the passive force, and what else MuJoCo asks callbacks for, of one set of effects. Several
+laws work side by side (see `identification.native.table`).
 """
 
 from __future__ import annotations
 
+import ctypes
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-import mujoco
-from numba import cfunc, types
-
-from identification.errors import InputError
-from identification.native import structs
-from identification.native.joint_callback import FIELDS, add_joint_forces
-
-_PROBE = """<mujoco>
-  <size nuser_jnt="1"/>
-  <worldbody><body><joint name="j"/><geom size="1"/></body></worldbody>
-  <actuator><general joint="j" ctrlrange="-1 1" forcerange="-1 1"/></actuator>
-</mujoco>"""
-
-_CARRIERS: list[Any] = []  # callbacks that add the joints' forces; MuJoCo holds bare pointers
+from identification.native import structs, trampolines
+from identification.native.compiler import compiled
+from identification.native.element import Function
+from identification.native.table import enter
 
 
-def carry(callback: Any) -> Any:
-    """Say that a compiled passive callback calls `add_joint_forces`; returns it."""
-    _CARRIERS.append(callback)
-    return callback
+@dataclass(frozen=True, eq=False)
+class Law:
+    """Callbacks of one set of effects.
+
+    Attributes:
+        name: of what they act on, e.g. "joints".
+        key: what its models carry; two laws with one key are one law, of which the newer counts.
+        functions: kind of callback ("passive", "act_dyn", …) -> the function to be compiled.
+        fields: the fields of mjModel and mjData that they touch.
+        check: raises `InputError` where a function of an effect cannot be compiled.
+    """
+
+    name: str
+    key: float
+    functions: Mapping[str, Function]
+    fields: frozenset[str]
+    check: Callable[[], None]
 
 
-def carries(callback: Any) -> bool:
-    """Whether a passive callback adds the joints' forces."""
-    return any(callback is own for own in _CARRIERS)
+def install(law: Law) -> None:
+    """Install a law in this process; does nothing when it is installed already.
+
+    Raises:
+        InputError: another library has installed a MuJoCo callback of its own, or a function of an
+            effect cannot be compiled.
+        RuntimeError: MuJoCo's structs are not laid out as declared.
+    """
+    for kind in law.functions:
+        trampolines.refuse_foreign(kind)
+    for kind, address in _addresses(law).items():
+        enter(kind, law.key, address)
+        trampolines.hold(kind)
+
+
+def uninstall() -> None:
+    """Release MuJoCo's callbacks, to compare a step with a law and without it."""
+    trampolines.release()
+
+
+@cache  # for the life of the process: MuJoCo holds bare pointers
+def _compiled(law: Law) -> Mapping[str, Any]:
+    structs.require(law.fields)
+    try:
+        return {
+            kind: compiled(f"{law.name}.{kind}", function, trampolines.SIGNATURES[kind])
+            for kind, function in law.functions.items()
+        }
+    except Exception:
+        law.check()
+        raise
 
 
 @cache
-def _compiled() -> Any:
-    """The callback, compiled once a process: a disk cache would outlive a MuJoCo upgrade."""
-    model = mujoco.MjModel.from_xml_string(_PROBE)
-    data = mujoco.MjData(model)
-    mujoco.mj_step(model, data)
-    unseen = FIELDS - structs.check(model, data)
-    if unseen:
-        raise RuntimeError(
-            f"MuJoCo {mujoco.__version__} does not show {', '.join(sorted(unseen))};"
-            " install the mujoco version of the lock file"
-        )
-
-    def passive(m, d):  # type: ignore[no-untyped-def]
-        add_joint_forces(m, d)
-
-    signature = types.void(types.int64, types.int64)
-    return carry(cfunc(signature, error_model="numpy")(passive).ctypes)
-
-
-def install() -> None:
-    """Install the law in this process; does nothing when it is installed already.
-
-    Raises:
-        InputError: another library has installed a passive callback of its own.
-        RuntimeError: MuJoCo's structs are not laid out as declared.
-    """
-    present = mujoco.get_mjcb_passive()
-    if carries(present):
-        return
-    if present is not None:
-        raise InputError(
-            "another library has installed mjcb_passive, and MuJoCo holds one a process;"
-            " release it with mujoco.set_mjcb_passive(None), or use a process of its own"
-        )
-    mujoco.set_mjcb_passive(_compiled())
+def _addresses(law: Law) -> Mapping[str, int]:
+    pointers = {k: ctypes.cast(f, ctypes.c_void_p).value for k, f in _compiled(law).items()}
+    return {kind: address for kind, address in pointers.items() if address is not None}

@@ -7,11 +7,25 @@ by ctypes with the platform's C rules, and are checked against live pointers bef
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Iterable
 from functools import cache
 
 import mujoco
 import numpy as np
 from mujoco.introspect import ast_nodes, structs
+
+# A model whose live objects show every field that a callback may touch.
+_PROBE = """<mujoco>
+  <size nuser_jnt="1" nuser_actuator="1" nuser_tendon="1" nuser_sensor="1" nuser_body="1"/>
+  <worldbody><site name="a"/><body pos="1 0 0"><joint name="j"/><geom size="1"/><site name="b"/>
+  </body></worldbody>
+  <tendon><spatial name="t"><site site="a"/><site site="b"/></spatial></tendon>
+  <actuator>
+    <general name="u" joint="j" dyntype="integrator" actdim="1" ctrlrange="-1 1"
+             forcerange="-1 1"/>
+  </actuator>
+  <sensor><user name="s" objtype="actuator" objname="u" dim="1"/></sensor>
+</mujoco>"""
 
 _C_TYPES: dict[str, type] = {
     "int": ctypes.c_int,
@@ -99,3 +113,26 @@ def check(model: mujoco.MjModel, data: mujoco.MjData) -> set[str]:
                 )
             agreed.add(field.name)
     return agreed
+
+
+@cache
+def _shown() -> set[str]:
+    """The fields of a live model that lie where their declarations put them."""
+    model = mujoco.MjModel.from_xml_string(_PROBE)
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data)
+    return check(model, data)
+
+
+def require(fields: Iterable[str]) -> None:
+    """Make sure that every field that callbacks touch lies where they look for it.
+
+    Raises:
+        RuntimeError: it does not, or live objects do not show it.
+    """
+    unseen = set(fields) - _shown()
+    if unseen:
+        raise RuntimeError(
+            f"MuJoCo {mujoco.__version__} does not show {', '.join(sorted(unseen))};"
+            " install the mujoco version of the lock file"
+        )

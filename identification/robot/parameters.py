@@ -14,8 +14,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
-from identification.effects.joint_effect import JointEffect
 from identification.effects.named import means_effect, unknown_number
 from identification.errors import InputError
 from identification.logs.log import Log
@@ -36,7 +36,7 @@ UNITS = {  # of a slide, of a hinge
 
 
 def free_parameter(
-    file: RobotFile, name: str, model: mujoco.MjModel, effects: Sequence[JointEffect], log: Log
+    file: RobotFile, name: str, model: mujoco.MjModel, effects: Sequence[Effect], log: Log
 ) -> tuple[Parameter, float]:
     """A free parameter, and the std of what is known of it in the search's coordinates.
 
@@ -46,8 +46,8 @@ def free_parameter(
     said = file.records.get(name, {})
     given: dict[str, Any] = {k: said[k] for k in ("unit", "about") if k in said}
     given |= {k: float(said[k]) for k in ("value", "lower", "upper", "scale") if k in said}
-    sizes = {p.name: (p, s.largest) for e in effects for s in e.effect.sizes
-             for p in effect_parameters(e.effect) if p.symbol == s.name}  # fmt: skip
+    sizes = {p.name: (p, s.largest) for e in effects for s in e.sizes
+             for p in effect_parameters(e) if p.symbol == s.name}  # fmt: skip
     if name in sizes:
         own, largest = sizes[name]
         if "value" not in given:
@@ -58,7 +58,7 @@ def free_parameter(
         record, guess = replace(own, **given), KNOWN * largest
     else:
         path = said.get("path", name)
-        if any(path == f"{e.name}.{s.name}" for e in effects for s in e.effect.shapes):
+        if any(path == f"{e.name}.{s.name}" for e in effects for s in e.shapes):
             raise InputError(
                 f"{file.path} frees {path}, which says how an effect looks and not how large it is:"
                 " give its value under [fixed]"

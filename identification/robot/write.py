@@ -21,7 +21,7 @@ def write_robot(robot: Robot, values: Mapping[str, float], path: Path, place: Pa
         place: the folder from which the file will be read.
     """
     file, at = robot.file, robot.plant.parameters
-    shapes = {f"{e.name}.{s.name}" for e in robot.plant.effects for s in e.effect.shapes}
+    shapes = {f"{e.name}.{s.name}" for e in robot.plant.effects for s in e.shapes}
     fixed = {**file.fixed, **{n: v for n, v in values.items() if n in shapes}}
     names = [*file.free, *(n for n in values if n not in (*file.free, *shapes))]
     lines = [

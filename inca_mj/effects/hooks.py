@@ -1,22 +1,23 @@
-"""What a candidate effect may add to the law of a drive, and what it may know when it does.
+"""What effects of this robot act on, what they know of it, and where they add to its law.
 
     i + Δi      current                    L + ΔL     path of the cable, with ∂ΔL/∂r
     R + ΔR      roller radius              T + ΔT     tension
     τ + Δτ      torque on the motor        F          force of a cable on its connector
     ẋ           rate of a state of its own            wrench on the platform
 
-A hook is an njit function of a `Drive` (or a `Platform`) and the tuple of the effect's parameters,
-sizes first; it returns what is added. Everything added is zero when the sizes are.
+An effect is an `Effect` whose `hooks` name some of these. A hook's function is compiled by njit and
+takes a `Drive` (or a `Platform`) and the tuple of the effect's parameters, sizes first; it returns
+what is added. Everything added is zero when the sizes are.
 """
 
 from __future__ import annotations
 
 from collections import namedtuple
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
-from identification.effects.effect import Effect
+from identification.native.element import Element, Hook
+from identification.native.input_filter import INPUT
+from inca_mj.robot.geometry import DRIVES
 
 # What a hook sees of a drive; NaN where it comes before the quantity is known.
 #   time [s]; phi [rad], omega [rad/s] of the motor; i [A] as logged; x own state
@@ -31,51 +32,45 @@ Drive: Any = namedtuple(
 # What a hook sees of the platform: position [m], velocity [m/s] in O, body rates [rad/s]
 Platform: Any = namedtuple("Platform", "time x y z vx vy vz wx wy wz")
 
-Hook = Callable[..., Any]
+_XYZ_FORCE = ("force along x [N]", "along y [N]", "along z [N]")
 
+DRIVE = Element(
+    "drive",
+    Drive,
+    (
+        Hook("current", ("Δi [A]",)),  # of what is known before the tension
+        Hook("radius", ("ΔR [m]",)),  # of phi and x
+        Hook("path", ("ΔL [m]", "∂ΔL/∂rx", "∂ΔL/∂ry", "∂ΔL/∂rz")),  # of rx, ry, rz
+        Hook("tension", ("ΔT [N]",)),
+        Hook("torque", ("Δτ on the motor [N m]",)),
+        Hook("force", _XYZ_FORCE),  # on the connector, in O
+        Hook("rate", ("ẋ of its own state [1/s]",)),
+        Hook("start", ("its own state at the start, zero where this hook is not given",)),
+    ),
+)
+PLATFORM = Element(
+    "platform",
+    Platform,
+    (
+        # at the centre of mass, in O
+        Hook("wrench", (*_XYZ_FORCE, "torque about x [N m]", "about y [N m]", "about z [N m]")),
+    ),
+)
+CENTRE = Element(
+    "centre of mass",
+    Platform,
+    (
+        # in body axes; called where values are written into the model, and never while it moves
+        Hook("centre", ("its offset along x [m]", "along y [m]", "along z [m]")),
+    ),
+)
+ELEMENTS = (DRIVE, PLATFORM, CENTRE, INPUT)
 
-@dataclass(frozen=True)
-class DriveEffect:
-    """An effect and the hooks that make it.
+# Where effects may act, with the suffix of their parameters' names.
+THINGS = tuple(str(k) for k in range(1, DRIVES + 1))
+_EACH = {f"drive {k}": f"@{k}" for k in THINGS}
 
-    Attributes:
-        effect: name, law, sizes, shapes and places.
-        current: (Drive, p) -> Δi [A], of what is known before the tension.
-        radius: (Drive, p) -> ΔR [m], of phi and x.
-        path: (Drive, p) -> (ΔL [m], ∂ΔL/∂rx, ∂ΔL/∂ry, ∂ΔL/∂rz), of rx, ry, rz.
-        tension: (Drive, p) -> ΔT [N].
-        torque: (Drive, p) -> Δτ on the motor [N m].
-        force: (Drive, p) -> force on the connector (x, y, z), in O [N].
-        wrench: (Platform, p) -> force (x, y, z) at the centre of mass [N] and torque (x, y, z)
-            [N m], in O.
-        rate: (Drive, p) -> ẋ of the effect's own state, which starts at `rest`.
-        rest: "zero", or "strain": where x starts.
-        inputs: (currents (steps, 8), step [s], p (k, 8)) -> currents; numpy, before the model.
-        centre: its sizes x, y, z [m] move the centre of mass; it has no hooks.
-    """
-
-    effect: Effect
-    current: Hook | None = None
-    radius: Hook | None = None
-    path: Hook | None = None
-    tension: Hook | None = None
-    torque: Hook | None = None
-    force: Hook | None = None
-    wrench: Hook | None = None
-    rate: Hook | None = None
-    rest: str = "zero"
-    inputs: Hook | None = None
-    centre: bool = False
-
-    @property
-    def name(self) -> str:
-        """Canonical name."""
-        return self.effect.name
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Its parameters, sizes first, in the order the hooks get them."""
-        return (
-            *(size.name for size in self.effect.sizes),
-            *(shape.name for shape in self.effect.shapes),
-        )
+DRIVES_EACH = {"all drives": "", **_EACH}  # on all alike, or on one
+ONE_DRIVE = _EACH  # on one only: common to all, it would be a base parameter
+CABLES = {"all cables": ""}
+ON_PLATFORM = {"platform": ""}

@@ -1,4 +1,4 @@
-"""Where the parameters of a set of effects live in the model.
+"""Where the parameters of a set of effects live in the model of this robot.
 
 Those of drives and cables in the rows of `actuator_user`, behind the law's own columns; those of
 the platform in its row of `body_user`; those of the inputs nowhere: they act before the model.
@@ -8,41 +8,17 @@ that a model is never advanced by the law of another.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
-from zlib import crc32
+from functools import cached_property
 
-from identification.errors import InputError
-from inca_mj.effects.hooks import DriveEffect
+from identification.effects.effect import Effect
+from identification.effects.layout import key_of, refuse_misplaced, terms_of
+from identification.native.element import Term
+from inca_mj.effects.hooks import DRIVE, ELEMENTS, PLATFORM
 from inca_mj.robot import law
 
 KEY = law.ACTUATOR_COLUMNS  # column of `actuator_user` with the key of the set
 FIRST = KEY + 1
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where one effect is: its first column, and which of a drive's own states it has.
-
-    Attributes:
-        effect: which.
-        column: first column in `actuator_user` (or `body_user`), -1 where it has none.
-        state: index among a drive's activations, 0 where it has none (that is d₀).
-    """
-
-    effect: DriveEffect
-    column: int
-    state: int
-
-    @property
-    def on_drives(self) -> bool:
-        """Whether its parameters are in `actuator_user`."""
-        return self.column >= 0 and self.effect.wrench is None
-
-    @property
-    def on_platform(self) -> bool:
-        """Whether its parameters are in `body_user`."""
-        return self.effect.wrench is not None
 
 
 @dataclass(frozen=True)
@@ -55,50 +31,43 @@ class Layout:
             while; else with the nominal T(0), as one that was held until then.
 
     Raises:
-        InputError: two effects have one name.
+        InputError: two effects have one name, or one has a hook that this robot has not.
     """
 
-    effects: tuple[DriveEffect, ...] = ()
+    effects: tuple[Effect, ...] = ()
     settled: bool = field(default=False, compare=False)  # the compiled law is the same
 
     def __post_init__(self) -> None:
-        names = [e.name for e in self.effects]
-        twice = sorted({n for n in names if names.count(n) > 1})
-        if twice:
-            raise InputError(f"two effects are called {twice[0]!r}; rename one")
+        refuse_misplaced(self.effects, ELEMENTS)
 
-    @property
+    @cached_property
     def key(self) -> float:
         """Tells this set from others."""
-        return float(crc32(repr([(e.name, e.names, e.effect.law) for e in self.effects]).encode()))
+        return key_of(self.effects)
 
-    def __iter__(self) -> Iterator[Place]:
-        drive, platform, state = FIRST, 0, 0
-        for effect in self.effects:
-            width = len(effect.names)
-            if effect.inputs is not None or effect.centre:
-                yield Place(effect, -1, 0)
-            elif effect.wrench is not None:
-                yield Place(effect, platform, 0)
-                platform += width
-            else:
-                state += effect.rate is not None
-                yield Place(effect, drive, state if effect.rate is not None else 0)
-                drive += width
+    @cached_property
+    def on_drives(self) -> tuple[Term, ...]:
+        """The effects with parameters in `actuator_user`."""
+        return terms_of(self.effects, DRIVE, first=FIRST, own="rate")
+
+    @cached_property
+    def on_platform(self) -> tuple[Term, ...]:
+        """The effects with parameters in `body_user`."""
+        return terms_of(self.effects, PLATFORM)
 
     @property
     def actuator_columns(self) -> int:
         """Width of `actuator_user`."""
         if not self.effects:
             return KEY
-        return FIRST + sum(len(p.effect.names) for p in self if p.on_drives)
+        return FIRST + sum(len(term.names) for term in self.on_drives)
 
     @property
     def body_columns(self) -> int:
         """Width of `body_user`."""
-        return sum(len(p.effect.names) for p in self if p.on_platform)
+        return sum(len(term.names) for term in self.on_platform)
 
     @property
     def states(self) -> int:
         """Activations of a drive: d₀ and the effects' own."""
-        return 1 + sum(e.rate is not None for e in self.effects)
+        return 1 + sum(term.state > 0 for term in self.on_drives)

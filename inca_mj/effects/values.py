@@ -5,50 +5,47 @@ drive k gets    size(all drives) + size@k
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import mujoco
 import numpy as np
 
+from identification.effects import values as effect_values
+from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
+from identification.effects.values import Values, is_present, numbers_at, table_at
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.paths import Slot
 from identification.model.predictor import Numbers
-from inca_mj.effects.hooks import DriveEffect
-from inca_mj.effects.layout import Layout, Place
+from inca_mj.effects.hooks import THINGS, Platform
+from inca_mj.effects.layout import Layout
 from inca_mj.robot.geometry import DRIVES, Geometry
 
+_NOWHERE = Platform(*[np.nan] * len(Platform._fields))  # the centre of mass depends on no state
 
-def records(effects: Sequence[DriveEffect]) -> tuple[Parameter, ...]:
+
+def records(effects: Sequence[Effect]) -> tuple[Parameter, ...]:
     """The parameters of some effects: `name.size` at all its places, `name.shape` once."""
-    return tuple(record for e in effects for record in effect_parameters(e.effect))
+    return tuple(record for e in effects for record in effect_parameters(e))
 
 
-def with_effects(parameters: ParameterSet, effects: Sequence[DriveEffect]) -> ParameterSet:
+def with_effects(parameters: ParameterSet, effects: Sequence[Effect]) -> ParameterSet:
     """A parameter set with those of some effects, zero where it does not name them already."""
     known = {p.name for p in parameters}
     new = tuple(p for p in records(effects) if p.name not in known)
     return replace(parameters, records=(*parameters.records, *new))
 
 
-def drive_values(effect: DriveEffect, values: Mapping[str, float]) -> np.ndarray:
+def drive_values(effect: Effect, values: Mapping[str, float]) -> np.ndarray:
     """Sizes and shapes of an effect at each drive, shape (k, 8)."""
-    out = [
-        [
-            sum(values.get(f"{effect.name}.{size.name}{at}", 0.0) for at in ("", f"@{drive}"))
-            for drive in range(1, DRIVES + 1)
-        ]
-        for size in effect.effect.sizes
-    ]
-    out += [[values[f"{effect.name}.{shape.name}"]] * DRIVES for shape in effect.effect.shapes]
-    return np.array(out, float)
+    return np.array([numbers_at(effect, thing, values) for thing in THINGS]).T
 
 
-def present(effect: DriveEffect, values: Mapping[str, float]) -> bool:
+def present(effect: Effect, values: Mapping[str, float]) -> bool:
     """Whether any size of an effect is not zero."""
-    sizes = drive_values(effect, values)[: len(effect.effect.sizes)]
-    return bool(sizes.any())
+    return is_present(effect, THINGS, values)
 
 
 def numbers(layout: Layout, names: Sequence[str], own: Mapping[str, float], values: np.ndarray,
@@ -63,61 +60,74 @@ def numbers(layout: Layout, names: Sequence[str], own: Mapping[str, float], valu
         model: with the names of the robot.
         geometry: its connectors, of which the centre of mass may move away.
     """
-    touched = {name.partition(".")[0] for name in names}
-    out: list[tuple[Slot, np.ndarray]] = []
-    for place in layout:
-        if place.effect.name in touched:
-            rows = [{**own, **dict(zip(names, row, strict=True))} for row in values]
-            each = np.array([drive_values(place.effect, row) for row in rows])  # (n, k, 8)
-            out += _columns(place, each, model, geometry)
-    return out
+    every, n = effect_values.merged(own, names, values), len(values)
+    changed = [
+        *_in_rows(layout, names, every, model),
+        *_connectors(layout, names, every, n, model, geometry),
+    ]
+    return [(slot, np.broadcast_to(column, n)) for slot, column in changed]
 
 
 def inputs(
-    effects: Sequence[DriveEffect], names: Sequence[str], own: Mapping[str, float],
-    values: np.ndarray, held: np.ndarray, timestep: float,
+    effects: Sequence[Effect], names: Sequence[str], own: Mapping[str, float], values: np.ndarray,
+    held: np.ndarray, timestep: float,
 ) -> np.ndarray:  # fmt: skip
     """Currents after the effects that act before the model, for n value sets.
 
     Returns:
         `held` itself where no such effect is there, else shape (n, steps, 8) [A].
     """
-    acting = [e for e in effects if e.inputs is not None]
-    rows = [{**own, **dict(zip(names, row, strict=True))} for row in values] if acting else []
-    if not any(present(e, row) for e in acting for row in rows):
-        return held
-    out = np.repeat(held[None], len(rows), axis=0)
-    for n, row in enumerate(rows):
-        for effect in acting:
-            if effect.inputs is not None and present(effect, row):
-                out[n] = effect.inputs(out[n], timestep, drive_values(effect, row))
+    every = effect_values.merged(own, names, values)
+    return effect_values.changed_inputs(effects, THINGS, every, held, timestep, len(values))
+
+
+def _in_rows(
+    layout: Layout, names: Sequence[str], every: Values, model: mujoco.MjModel
+) -> Iterator[tuple[Slot, float | np.ndarray]]:
+    """Entries of the rows of drives and platform that some parameters change."""
+    for i, thing in enumerate(THINGS):
+        for column, new in effect_values.changed_columns(
+            layout.effects, layout.on_drives, thing, names, every
+        ):
+            yield Slot("actuator_user", (i,), column), new
+    body = int(model.body("platform").id)
+    for column, new in effect_values.changed_columns(
+        layout.effects, layout.on_platform, "platform", names, every
+    ):
+        yield Slot("body_user", (body,), column), new
+
+
+def _connectors(
+    layout: Layout, names: Sequence[str], every: Values, n: int, model: mujoco.MjModel,
+    geometry: Geometry,
+) -> Iterator[tuple[Slot, np.ndarray]]:  # fmt: skip
+    """The connectors as seen from the centre of mass, where some parameters move it."""
+    touched = {name.partition(".")[0] for name in names}
+    if not any("centre" in e.hooks and e.name in touched for e in layout.effects):
+        return
+    centre = _centre_of_mass(layout.effects, every, n)
+    for k in range(DRIVES):
+        site = int(model.site(f"connector_{k + 1}").id)
+        for j in range(3):
+            yield Slot("site_pos", (site,), j), geometry.B[k, j] - centre[:, j]
+
+
+def _centre_of_mass(effects: Sequence[Effect], every: Values, n: int) -> np.ndarray:
+    """Where the effects put the centre of mass in n value sets, in body axes, shape (n, 3) [m]."""
+    out = np.zeros((n, 3))
+    for effect in (e for e in effects if "centre" in e.hooks):
+        place: Any = effect.hooks["centre"]
+        for moved, row in zip(out, table_at([effect], "platform", every, n), strict=True):
+            if row[: len(effect.sizes)].any():
+                moved += place.py_func(_NOWHERE, tuple(row))
     return out
 
 
-def _columns(place: Place, each: np.ndarray, model: mujoco.MjModel, geometry: Geometry) -> Numbers:
-    k = range(each.shape[1])
-    if place.effect.centre:
-        sites = [model.site(f"connector_{drive}").id for drive in range(1, DRIVES + 1)]
-        return [
-            (Slot("site_pos", (site,), j), b[j] - each[:, j, 0])
-            for site, b in zip(sites, geometry.B, strict=True)
-            for j in k
-        ]
-    if place.on_platform:
-        row = (model.body("platform").id,)
-        return [(Slot("body_user", row, place.column + j), each[:, j, 0]) for j in k]
-    return [
-        (Slot("actuator_user", (i,), place.column + j), each[:, j, i])
-        for j in k
-        for i in range(DRIVES if place.on_drives else 0)
-    ]
-
-
 def about_centre(
-    geometry: Geometry, effects: Sequence[DriveEffect], values: Mapping[str, float]
+    geometry: Geometry, effects: Sequence[Effect], values: Mapping[str, float]
 ) -> Geometry:
     """The geometry with its connectors as seen from where the centre of mass is."""
-    moved = [drive_values(e, values)[:, 0] for e in effects if e.centre and present(e, values)]
-    if not moved:
+    (centre,) = _centre_of_mass(effects, values, 1)
+    if not centre.any():
         return geometry
-    return replace(geometry, connectors=tuple(map(tuple, geometry.B - np.sum(moved, axis=0))))
+    return replace(geometry, connectors=tuple(map(tuple, geometry.B - centre)))

@@ -17,7 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from inca_mj.effects.hooks import Drive, DriveEffect, Platform
+from identification.effects.effect import Effect
+from inca_mj.effects.hooks import Drive, Platform
 from inca_mj.effects.layout import Layout
 from inca_mj.effects.values import drive_values, present
 from inca_mj.robot.geometry import DRIVES, Geometry
@@ -47,7 +48,7 @@ class Change:
     wider: np.ndarray
     d: np.ndarray
     values: Mapping[str, float]
-    stiffening: tuple[DriveEffect, ...]
+    stiffening: tuple[Effect, ...]
 
     def strain(self, T: np.ndarray) -> np.ndarray:
         """ε(0) at tensions T, shape (8,)."""
@@ -68,8 +69,7 @@ class Change:
             for k in range(DRIVES):
                 s = _drive(strain=strain[k], strain_rate=0.0, x=strain[k], d=self.d[k],
                            R=self.values["R"], lambda_=self.values["lambda"])  # fmt: skip
-                if effect.tension is not None:
-                    out[k] += effect.tension(s, tuple(p[:, k]))
+                out[k] += effect.hooks["tension"](s, tuple(p[:, k]))
         return out
 
 
@@ -95,29 +95,51 @@ def change_at_rest(
         for k in range(DRIVES):
             s = _drive(rx=r[k, 0], ry=r[k, 1], rz=r[k, 2], d=float(np.linalg.norm(r[k])),
                        phi=0.0, omega=0.0, x=0.0, R=values["R"])  # fmt: skip
-            if effect.path is not None:
-                way[k] += effect.path(s, tuple(p[:, k]))
-            if effect.force is not None:
-                F = np.array(effect.force(s, tuple(p[:, k])))
+            if "path" in effect.hooks:
+                way[k] += effect.hooks["path"](s, tuple(p[:, k]))
+            if "force" in effect.hooks:
+                F = np.array(effect.hooks["force"](s, tuple(p[:, k])))
                 load -= np.concatenate([F, np.cross(geometry.B[k] @ R.T, F)])
-            if effect.radius is not None:
-                wider[k] += effect.radius(s, tuple(p[:, k]))
-        if effect.wrench is not None:
-            still = Platform(0.0, *pose[:3], *np.zeros(6))
-            load -= np.array(effect.wrench(still, tuple(p[:, 0])))
+            if "radius" in effect.hooks:
+                wider[k] += effect.hooks["radius"](s, tuple(p[:, k]))
+        if "wrench" in effect.hooks:
+            x, y, z = pose[:3]
+            still = Platform(
+                time=0.0, x=x, y=y, z=z, vx=0.0, vy=0.0, vz=0.0, wx=0.0, wy=0.0, wz=0.0
+            )
+            load -= np.array(effect.hooks["wrench"](still, tuple(p[:, 0])))
     d = np.linalg.norm(r, axis=1) + way[:, 0]
     if not layout.settled:
         nothing = np.zeros(DRIVES)
         return Change(way[:, 0], 0 * way[:, 1:], 0 * load, nothing, d, values, ())
-    stiffening = tuple(e for e in there if e.tension is not None)
+    stiffening = tuple(e for e in there if "tension" in e.hooks)
     return Change(way[:, 0], way[:, 1:], load, wider, d, values, stiffening)
+
+
+def own_states(values: Mapping[str, float], strain: np.ndarray, layout: Layout) -> np.ndarray:
+    """States of the effects' own at the start, shape (8, states).
+
+    Args:
+        values: of all parameters, in SI units.
+        strain: ε(0) of each cable, shape (8,).
+        layout: the effects.
+    """
+    by_name = {effect.name: effect for effect in layout.effects}
+    own = [by_name[term.effect] for term in layout.on_drives if term.state]
+    out = np.zeros((DRIVES, len(own)))
+    for j, effect in enumerate(own):
+        start: Any = effect.hooks.get("start")
+        p = drive_values(effect, values)
+        for k in range(DRIVES if start is not None else 0):
+            out[k, j] = start.py_func(_drive(strain=strain[k], x=0.0), tuple(p[:, k]))
+    return out
 
 
 def _drive(**known: float) -> Any:
     return Drive(**{**UNKNOWN, **known})
 
 
-def _touches(effect: DriveEffect, settled: bool) -> bool:
+def _touches(effect: Effect, settled: bool) -> bool:
     """Whether an effect can change anything at rest."""
-    more = (effect.force, effect.tension, effect.wrench, effect.radius)
-    return effect.path is not None or (settled and any(more))
+    more = {"force", "tension", "wrench", "radius"} & effect.hooks.keys()
+    return "path" in effect.hooks or (settled and bool(more))

@@ -18,7 +18,6 @@ import mujoco
 import numpy as np
 
 from identification.errors import unknown_name
-from inca_mj.effects.layout import Layout
 from inca_mj.files import model_path
 from inca_mj.robot import law
 from inca_mj.robot.geometry import DRIVES, INCA
@@ -103,7 +102,7 @@ class Handle(control.Task):
         shift = self.random.uniform(-START_SPREAD, START_SPREAD)
         values = {n: nominal[n].value + s for n, s in zip(names, shift, strict=True)}
         begin = start(nominal.with_values(values), INCA)
-        state = start_state(begin, Layout())
+        state = start_state(begin)
         physics.model.actuator_user[:, law.T_0] = begin.tension  # the drum springs balance it
         physics.data.qpos[:], physics.data.qvel[:] = state.qpos, state.qvel
         physics.data.act[:] = state.act

@@ -1,14 +1,13 @@
 """MuJoCo's fields that the callbacks of the cable law touch, and the rows of a drive and a cable.
 
 `M` and `D` hold the word offsets of the fields of mjModel and mjData, frozen into the compiled
-code; `native` checks them against live objects.
+code; the installer checks them against live objects.
 """
 
 from __future__ import annotations
 
-from numba import njit
-
 from identification.native.access import double, integer, offsets, word
+from identification.native.decorators import internal
 
 __all__ = ["FIELDS", "D", "M", "cable", "double", "drive", "integer", "word"]
 
@@ -25,16 +24,16 @@ D = offsets(
     "time qpos qvel act act_dot ctrl ten_length ten_velocity ten_J qfrc_passive sensordata"
     " site_xpos xpos xmat",
 )
-FIELDS = {*M._fields, *D._fields}  # everything the callbacks touch
+FIELDS = frozenset((*M._fields, *D._fields))  # everything the callbacks touch
 
 
-@njit
+@internal
 def drive(m, i, column):  # type: ignore[no-untyped-def]
     """A number of drive i: row i of `actuator_user`."""
     return double(m, M.actuator_user, word(m, M.nuser_actuator) * i + column)
 
 
-@njit
+@internal
 def cable(m, k, column):  # type: ignore[no-untyped-def]
     """A number of cable k: row k of `tendon_user`."""
     return double(m, M.tendon_user, word(m, M.nuser_tendon) * k + column)

@@ -91,8 +91,9 @@ def _platform(
     for k, connector in enumerate(about_centre(geometry, layout.effects, p).connectors, 1):
         body.add_site(name=f"connector_{k}", pos=connector, size=[0.006, 0.006, 0.006])
     dress_platform(body, geometry)
+    by_name = {effect.name: effect for effect in layout.effects}
     body.userdata = np.concatenate(
-        [np.zeros(0), *(drive_values(e.effect, p)[:, 0] for e in layout if e.on_platform)]
+        [np.zeros(0), *(drive_values(by_name[t.effect], p)[:, 0] for t in layout.on_platform)]
     )
 
 
@@ -150,10 +151,10 @@ def _drive(
 
     row = np.zeros(layout.actuator_columns)
     row[KEY:][:1] = layout.key
-    for place in layout:
-        if place.on_drives:
-            values = drive_values(place.effect, p)[:, k - 1]
-            row[place.column : place.column + len(values)] = values
+    by_name = {effect.name: effect for effect in layout.effects}
+    for term in layout.on_drives:
+        values = drive_values(by_name[term.effect], p)[:, k - 1]
+        row[term.column : term.column + len(values)] = values
     row[law.ACTUATOR_TAG], row[law.CABLE] = law.TAG, k - 1
     row[[law.R, law.R_S, law.K_S]] = p["R"], p["R_s"], p["k_s"]
     row[[law.B_C, law.BETA]] = p["b_c"], p["beta"]
@@ -204,4 +205,4 @@ def _keyframe(
 ) -> None:
     at = start(parameters, geometry, layout)
     qpos = np.concatenate([at.pose[:3], quaternion(*at.pose[3:]), np.zeros(DRIVES)])
-    spec.add_key(name="start", qpos=qpos, act=activations(at, layout))
+    spec.add_key(name="start", qpos=qpos, act=activations(at))

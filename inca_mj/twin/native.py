@@ -1,68 +1,20 @@
 """The law of `inca_mj.twin.callbacks`, compiled and installed in this process.
 
-Callbacks are global in MuJoCo: `install` refuses to displace somebody else's, and models that are
-not ours pass through ours untouched.
+Callbacks are global in MuJoCo: `identification.native.installer` lets the laws of several sets of
+effects work side by side, refuses to displace somebody else's, and leaves alone what is not ours.
 """
 
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
 
-import mujoco
-from numba import cfunc
-
-from identification.errors import InputError
-from identification.native import structs
-from identification.native.installer import carries, carry
+from identification.native import installer
+from identification.native.element import Term
+from identification.native.hook_checks import refuse_unfit_functions
+from inca_mj.effects.hooks import DRIVE, PLATFORM
 from inca_mj.effects.layout import Layout
-from inca_mj.twin.callbacks import SIGNATURES, callbacks
+from inca_mj.twin.callbacks import callbacks
 from inca_mj.twin.fields import FIELDS
-
-_PROBE = """<mujoco>
-  <size nuser_actuator="1" nuser_tendon="1" nuser_sensor="1" nuser_body="1"/>
-  <worldbody><site name="a"/><body pos="1 0 0"><joint name="j"/><geom size="1"/><site name="b"/>
-  </body></worldbody>
-  <tendon><spatial name="t"><site site="a"/><site site="b"/></spatial></tendon>
-  <actuator><general name="u" joint="j" dyntype="integrator" actdim="1"/></actuator>
-  <sensor><user name="s" objtype="actuator" objname="u" dim="1"/></sensor>
-</mujoco>"""
-
-
-def _check_structs() -> None:
-    """Every field the callbacks touch lies where they look for it.
-
-    Raises:
-        RuntimeError: it does not, or live objects do not show it.
-    """
-    model = mujoco.MjModel.from_xml_string(_PROBE)
-    data = mujoco.MjData(model)
-    mujoco.mj_step(model, data)
-    seen = structs.check(model, data)
-    unseen = FIELDS - seen
-    if unseen:
-        raise RuntimeError(
-            f"MuJoCo {mujoco.__version__} does not show {', '.join(sorted(unseen))};"
-            " install the mujoco version of the lock file"
-        )
-
-
-@cache
-def _compiled(layout: Layout) -> dict[str, Any]:
-    """The callbacks, compiled once a process: a disk cache would outlive a MuJoCo upgrade."""
-    _check_structs()
-    return {
-        name: _keep(name, cfunc(SIGNATURES[name], error_model="numpy")(function).ctypes)
-        for name, function in callbacks(layout).items()
-    }
-
-
-_OURS: list[Any] = []  # every callback ever compiled here; MuJoCo holds bare pointers to them
-
-
-def _keep(name: str, callback: Any) -> Any:
-    _OURS.append(callback)
-    return carry(callback) if name == "passive" else callback
 
 
 def install(layout: Layout | None = None) -> None:
@@ -72,23 +24,34 @@ def install(layout: Layout | None = None) -> None:
         layout: the candidate effects to compile into it; none when None.
 
     Raises:
-        InputError: another library has installed MuJoCo callbacks of its own.
+        InputError: another library has installed MuJoCo callbacks of its own, or a function of an
+            effect is not what its hook takes.
         RuntimeError: MuJoCo's structs are not laid out as declared.
     """
-    compiled = _compiled(layout or Layout())
-    for name in compiled:
-        present = getattr(mujoco, f"get_mjcb_{name}")()
-        known = any(present is own for own in _OURS) or carries(present)
-        if present is not None and not known:
-            raise InputError(
-                f"another library has installed mjcb_{name}, and MuJoCo holds one a process;"
-                f" release it with mujoco.set_mjcb_{name}(None), or use a process of its own"
-            )
-    for name, callback in compiled.items():
-        getattr(mujoco, f"set_mjcb_{name}")(callback)
+    layout = layout or Layout()
+    key = layout.key if layout.effects else 0.0  # the drives of a robot without effects carry none
+    installer.install(_law(key, layout.on_drives, layout.on_platform, some=bool(layout.effects)))
 
 
 def uninstall() -> None:
     """Release MuJoCo's callbacks, to compare a step with the law and without it."""
-    for name in SIGNATURES:
-        getattr(mujoco, f"set_mjcb_{name}")(None)
+    installer.uninstall()
+
+
+@cache
+def _law(
+    key: float, on_drives: tuple[Term, ...], on_platform: tuple[Term, ...], *, some: bool
+) -> installer.Law:
+    """The law of the drives with a set of effects."""
+
+    def check() -> None:
+        refuse_unfit_functions(DRIVE, on_drives)
+        refuse_unfit_functions(PLATFORM, on_platform)
+
+    return installer.Law(
+        name="drives",
+        key=key,
+        functions=callbacks(key, on_drives, on_platform, some=some),
+        fields=FIELDS,
+        check=check,
+    )

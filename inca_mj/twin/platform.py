@@ -6,20 +6,19 @@ A free joint has its velocity in O and its rates in body axes; a force F at a po
 
 from __future__ import annotations
 
-from numba import njit
-
+from identification.native.decorators import internal
 from identification.native.memory import load_constant, load_double, store_double
 from inca_mj.effects.hooks import Platform
 from inca_mj.twin.fields import D, M, double, integer, word
 
 
-@njit
+@internal
 def connector(m, k):  # type: ignore[no-untyped-def]
     """Site where cable k ends."""
     return integer(m, M.wrap_objid, integer(m, M.tendon_adr, k) + 1)
 
 
-@njit
+@internal
 def span(m, d, k):  # type: ignore[no-untyped-def]
     """Connector minus exit point of cable k, in O [m]."""
     a, b = integer(m, M.wrap_objid, integer(m, M.tendon_adr, k)), connector(m, k)
@@ -30,13 +29,13 @@ def span(m, d, k):  # type: ignore[no-untyped-def]
     )
 
 
-@njit
+@internal
 def dof(m, body):  # type: ignore[no-untyped-def]
     """First degree of freedom of a body's free joint."""
     return integer(m, M.jnt_dofadr, integer(m, M.body_jntadr, body))
 
 
-@njit
+@internal
 def arm(d, site, body):  # type: ignore[no-untyped-def]
     """From a body's frame to a site of it, in O [m]."""
     return (
@@ -46,7 +45,7 @@ def arm(d, site, body):  # type: ignore[no-untyped-def]
     )
 
 
-@njit
+@internal
 def turned(d, body, x, y, z):  # type: ignore[no-untyped-def]
     """R (x, y, z): from body axes to O."""
     at = word(d, D.xmat) + 72 * body
@@ -57,7 +56,7 @@ def turned(d, body, x, y, z):  # type: ignore[no-untyped-def]
     )
 
 
-@njit
+@internal
 def turned_back(d, body, x, y, z):  # type: ignore[no-untyped-def]
     """Rᵀ (x, y, z): from O to body axes."""
     at = word(d, D.xmat) + 72 * body
@@ -68,13 +67,13 @@ def turned_back(d, body, x, y, z):  # type: ignore[no-untyped-def]
     )
 
 
-@njit
+@internal
 def cross(a, b):  # type: ignore[no-untyped-def]
     """a × b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-@njit
+@internal
 def velocity(m, d, site):  # type: ignore[no-untyped-def]
     """Velocity of a site of the platform, in O [m/s]."""
     body = integer(m, M.site_bodyid, site)
@@ -90,7 +89,7 @@ def velocity(m, d, site):  # type: ignore[no-untyped-def]
     )
 
 
-@njit
+@internal
 def _add(m, d, body, force, torque):  # type: ignore[no-untyped-def]
     """A force and a torque, both in O, on the free joint of a body."""
     at = word(d, D.qfrc_passive) + 8 * dof(m, body)
@@ -100,27 +99,32 @@ def _add(m, d, body, force, torque):  # type: ignore[no-untyped-def]
         store_double(at + 24 + 8 * a, load_double(at + 24 + 8 * a) + own[a])
 
 
-@njit
+@internal
 def push(m, d, site, force):  # type: ignore[no-untyped-def]
     """A force [N], in O, on a site of the platform."""
     body = integer(m, M.site_bodyid, site)
     _add(m, d, body, force, cross(arm(d, site, body), force))
 
 
-@njit
+@internal
 def wrench(m, d, body, w):  # type: ignore[no-untyped-def]
     """A force [N] at the centre of mass and a torque [N m], both in O, on the platform."""
     _add(m, d, body, (w[0], w[1], w[2]), (w[3], w[4], w[5]))
 
 
-@njit
+@internal
 def platform(d, at, body):  # type: ignore[no-untyped-def]
     """What effects on the platform see; `at` is its first degree of freedom."""
     v = word(d, D.qvel) + 8 * at
     return Platform(
-        load_constant(d + 8 * D.time),
-        double(d, D.xpos, 3 * body), double(d, D.xpos, 3 * body + 1),
-        double(d, D.xpos, 3 * body + 2),
-        load_constant(v), load_constant(v + 8), load_constant(v + 16),
-        load_constant(v + 24), load_constant(v + 32), load_constant(v + 40),
-    )  # fmt: skip
+        time=load_constant(d + 8 * D.time),
+        x=double(d, D.xpos, 3 * body),
+        y=double(d, D.xpos, 3 * body + 1),
+        z=double(d, D.xpos, 3 * body + 2),
+        vx=load_constant(v),
+        vy=load_constant(v + 8),
+        vz=load_constant(v + 16),
+        wx=load_constant(v + 24),
+        wy=load_constant(v + 32),
+        wz=load_constant(v + 40),
+    )

@@ -15,11 +15,11 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.files import write_text
 from identification.model.parameter import Parameter, ParameterSet
 from inca_mj.effects.catalogue import CATALOGUE
-from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.values import records
 from inca_mj.robot.geometry import Geometry
 from inca_mj.robot.parameters import parameter_set
@@ -52,7 +52,7 @@ def save_twin(robot: Twin, folder: str | Path) -> tuple[Path, Path]:
     return robot.save(folder / "model.xml"), write_text(folder / "effects.json", text)
 
 
-def load_twin(path: str | Path, effects: Sequence[DriveEffect] = CATALOGUE) -> Twin:
+def load_twin(path: str | Path, effects: Sequence[Effect] = CATALOGUE) -> Twin:
     """Read a twin written by `save_twin`: the same to the last bit.
 
     Args:
@@ -87,17 +87,17 @@ def load_twin(path: str | Path, effects: Sequence[DriveEffect] = CATALOGUE) -> T
     return robot
 
 
-def _effect(effect: DriveEffect, values: dict[str, float]) -> dict[str, Any]:
+def _effect(effect: Effect, values: dict[str, float]) -> dict[str, Any]:
     names = [p.name for p in records([effect]) if p.name in values]
     there = [
-        where for where, suffix in effect.effect.places.items()
-        if any(values.get(f"{effect.name}.{s.name}{suffix}", 0.0) for s in effect.effect.sizes)
+        where for where, suffix in effect.places.items()
+        if any(values.get(f"{effect.name}.{s.name}{suffix}", 0.0) for s in effect.sizes)
     ]  # fmt: skip
     return {
         "name": effect.name,
         "where": there,
-        "law": effect.effect.law,
-        "reference": effect.effect.reference,
+        "law": effect.law,
+        "reference": effect.reference,
         "values": {name: values[name] for name in names},
     }
 
@@ -115,8 +115,8 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def _known(
-    wanted: Sequence[dict[str, Any]], effects: Sequence[DriveEffect], folder: Path
-) -> tuple[DriveEffect, ...]:
+    wanted: Sequence[dict[str, Any]], effects: Sequence[Effect], folder: Path
+) -> tuple[Effect, ...]:
     """The effects of these names, with these laws."""
     at_hand = {e.name: e for e in effects}
     missing = [e["name"] for e in wanted if e["name"] not in at_hand]
@@ -125,7 +125,7 @@ def _known(
             f"the twin in {folder} has effects of which the law is not at hand:"
             f" {', '.join(missing)}; pass them, as load_twin(path, effects=(*CATALOGUE, yours))"
         )
-    changed = [e["name"] for e in wanted if at_hand[e["name"]].effect.law != e["law"]]
+    changed = [e["name"] for e in wanted if at_hand[e["name"]].law != e["law"]]
     if changed:
         raise InputError(
             f"the twin in {folder} was saved with another law of {', '.join(changed)}; pass the"
@@ -134,9 +134,7 @@ def _known(
     return tuple(at_hand[e["name"]] for e in wanted)
 
 
-def _parameters(
-    name: str, values: dict[str, float], effects: Sequence[DriveEffect]
-) -> ParameterSet:
+def _parameters(name: str, values: dict[str, float], effects: Sequence[Effect]) -> ParameterSet:
     base = parameter_set(name)
     known: tuple[Parameter, ...] = (*base.records, *records(effects))
     return replace(base, records=known).with_values(values)

@@ -22,12 +22,12 @@ from inca_mj.effects.values import about_centre
 from inca_mj.robot.geometry import Geometry
 from inca_mj.robot.kinematics import cables, length_jacobian, rotation
 from inca_mj.robot.parameters import GRAVITY, PRETENSION
-from inca_mj.twin.at_rest import Change, change_at_rest
+from inca_mj.twin.at_rest import Change, change_at_rest, own_states
 
 NO_EFFECTS = Layout()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Start:
     """A robot at rest, all angles zero: where a log begins.
 
@@ -37,6 +37,7 @@ class Start:
         no_load_length: d₀(0), shape (8,) [m].
         strain: ε(0) of each cable, shape (8,).
         balance: what the drum springs balance, at the roller of the model, shape (8,) [N].
+        own: states of the effects' own, shape (8, states).
     """
 
     pose: np.ndarray
@@ -44,6 +45,7 @@ class Start:
     no_load_length: np.ndarray
     strain: np.ndarray
     balance: np.ndarray
+    own: np.ndarray
 
 
 def pretension(
@@ -106,17 +108,22 @@ def start_from(
     change = change_at_rest(values, pose, moved, layout)
     T = pretension(pose, moved if layout.settled else geometry, values["m"], change)
     d, _ = cables(pose[:3], rotation(*pose[3:]), moved)
-    if change is None:
-        d_0 = values["lambda"] * d / (values["lambda"] + T)
-        return Start(pose, T, d_0, T / values["lambda"], T)
-    strain = change.strain(T)
+    strain, balance = T / values["lambda"], T
+    d_0 = values["lambda"] * d / (values["lambda"] + T)
+    if change is not None:
+        strain = change.strain(T)
+        d_0 = (d + change.longer) / (1 + strain)
+        balance = T * (1 + change.wider / values["R"])
     return Start(
-        pose, T, (d + change.longer) / (1 + strain), strain, T * (1 + change.wider / values["R"])
+        pose=pose,
+        tension=T,
+        no_load_length=d_0,
+        strain=strain,
+        balance=balance,
+        own=own_states(values, strain, layout),
     )
 
 
-def activations(begin: Start, layout: Layout) -> np.ndarray:
+def activations(begin: Start) -> np.ndarray:
     """The twin's activations at a start: d₀ of each drive, then its effects' own states."""
-    own = [p.effect.rest for p in layout if p.state]
-    rest = {"zero": np.zeros_like(begin.strain), "strain": begin.strain}
-    return np.column_stack([begin.no_load_length, *(rest[name] for name in own)]).ravel()
+    return np.column_stack([begin.no_load_length, begin.own]).ravel()

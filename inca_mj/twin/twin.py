@@ -5,17 +5,18 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import mujoco
 import numpy as np
 
+from identification.effects.effect import Effect
 from identification.model.export import write_xml
 from identification.model.parameter import ParameterSet
 from identification.model.paths import Slot, resolve, write
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
-from inca_mj.effects.hooks import DriveEffect
 from inca_mj.effects.layout import Layout
 from inca_mj.effects.values import inputs as effect_inputs
 from inca_mj.effects.values import numbers as effect_numbers
@@ -44,10 +45,10 @@ class Twin:
     parameters: ParameterSet
     geometry: Geometry
     model: mujoco.MjModel
-    effects: tuple[DriveEffect, ...] = ()
+    effects: tuple[Effect, ...] = ()
     settled: bool = False
 
-    @property
+    @cached_property
     def layout(self) -> Layout:
         """Where the parameters of its effects are in the model."""
         return Layout(self.effects, self.settled)
@@ -60,7 +61,7 @@ class Twin:
     def state(self) -> State:
         """The start as a MuJoCo state."""
         native.install(self.layout)
-        return start_state(self.start, self.layout)
+        return start_state(self.start)
 
     def with_values(self, values: Mapping[str, float]) -> Twin:
         """The twin with other values, without compiling again.
@@ -74,7 +75,7 @@ class Twin:
         write_values(model, parameters, self.geometry, self.layout)
         begin = start(parameters, self.geometry, self.layout)
         model.actuator_user[:, law.T_0] = begin.balance
-        state = start_state(begin, self.layout)
+        state = start_state(begin)
         model.qpos0[:] = model.key("start").qpos[:] = state.qpos
         model.key("start").act[:] = state.act
         mujoco.mj_setConst(model, mujoco.MjData(model))
@@ -109,7 +110,7 @@ class Twin:
         numbers += [
             (Slot("actuator_user", (i,), law.T_0), column) for i, column in enumerate(balance.T)
         ]
-        states = [start_state(begin, self.layout) for begin in starts]
+        states = [start_state(begin) for begin in starts]
         rows = (np.array([getattr(s, field) for s in states]) for field in ("qpos", "qvel", "act"))
         return State(*rows), numbers
 
@@ -138,7 +139,7 @@ def build_twin(
     geometry: Geometry = INCA,
     *,
     timestep: float = TIMESTEP,
-    effects: Sequence[DriveEffect] = (),
+    effects: Sequence[Effect] = (),
     settled: bool = False,
     visual: bool = True,
 ) -> Twin:
@@ -153,8 +154,8 @@ def build_twin(
         visual: whether it can be drawn; without its shapes it moves the same, and sooner.
 
     Raises:
-        InputError: the start has no pretension, two effects have one name, or another library
-            holds MuJoCo's callbacks.
+        InputError: the start has no pretension, two effects have one name, a function of an effect
+            is not what its hook takes, or another library holds MuJoCo's callbacks.
     """
     layout = Layout(tuple(effects), settled)
     parameters = with_effects(parameters or parameter_set(), layout.effects)
@@ -180,8 +181,8 @@ def write_values(
         write(model, slot, float(column[0]))
 
 
-def start_state(begin: Start, layout: Layout) -> State:
+def start_state(begin: Start) -> State:
     """A start as a MuJoCo state: qpos (15,), qvel (14,), act (8 (1 + own states),)."""
     drives = len(begin.tension)
     qpos = np.concatenate([begin.pose[:3], quaternion(*begin.pose[3:]), np.zeros(drives)])
-    return State(qpos, np.zeros(6 + drives), activations(begin, layout))
+    return State(qpos, np.zeros(6 + drives), activations(begin))

@@ -12,9 +12,9 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
 from identification.discovery.search import discover as search
 from identification.discovery.search import refuse_unfit
+from identification.effects.effect import Effect
 from identification.model.parameter import ParameterSet
 from inca_mj.effects.catalogue import CATALOGUE
-from inca_mj.effects.hooks import DriveEffect
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
@@ -35,7 +35,7 @@ def discover(
     log: Log,
     parameters: ParameterSet | None = None,
     geometry: Geometry = INCA,
-    effects: Sequence[DriveEffect] = CATALOGUE,
+    effects: Sequence[Effect] = CATALOGUE,
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
     settled: bool = False,
@@ -69,5 +69,4 @@ def discover(
         parameters, geometry, timestep=step, effects=effects, settled=settled, visual=False
     )
     nominal_model = NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
-    candidates = [e.effect for e in effects]
-    return told(search(nominal_model, log, candidates, progress, options))
+    return told(search(nominal_model, log, effects, progress, options))

@@ -15,7 +15,7 @@ from inca_mj.twin.logs import ANGLES, CURRENTS
 from inca_mj.twin.twin import Twin, build_twin
 
 BY_NAME = {effect.name: effect for effect in CATALOGUE}
-EVERYWHERE = tuple(e for e in CATALOGUE if "all drives" in e.effect.places)
+EVERYWHERE = tuple(e for e in CATALOGUE if "all drives" in e.places)
 
 
 @cache
@@ -30,8 +30,8 @@ def bare() -> Twin:
 
 def probes(effect, where=None, factor=1.0) -> dict[str, float]:
     """All sizes of an effect, at a place."""
-    where = where or next(iter(effect.effect.places))
-    return {effect.effect.parameter(s.name, where): factor * s.probe for s in effect.effect.sizes}
+    where = where or next(iter(effect.places))
+    return {effect.parameter(s.name, where): factor * s.probe for s in effect.sizes}
 
 
 def simulate(twin, names=(), values=None, seconds=0.5) -> np.ndarray:

@@ -27,9 +27,8 @@ from identification.kalman.noise_model import Noise
 from identification.kalman.point import Point
 from identification.kalman.refit import Refit
 from identification.model.coordinates import coordinates
-from inca_mj.effects.delay import DELAY
-from inca_mj.effects.friction_mismatch import FRICTION_MISMATCH
-from inca_mj.effects.stribeck_friction import STRIBECK_FRICTION
+from inca_mj.effects.friction import FRICTION_MISMATCH, STRIBECK_FRICTION
+from inca_mj.effects.motor import DELAY
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate
@@ -41,9 +40,9 @@ BASE = ("b_v", "x")
 NOISE = 5e-4
 RETUNED = Retuned("m", 40.0, 0.0)
 
-STRIBECK = Candidate(STRIBECK_FRICTION.effect, "all drives", {"v_s": 2.4, "n": 2.0})
-MISMATCH = Candidate(FRICTION_MISMATCH.effect, "drive 3", {})
-LATE = Candidate(DELAY.effect, "all drives", {})
+STRIBECK = Candidate(STRIBECK_FRICTION, "all drives", {"v_s": 2.4, "n": 2.0})
+MISMATCH = Candidate(FRICTION_MISMATCH, "drive 3", {})
+LATE = Candidate(DELAY, "all drives", {})
 WORSE = Proof(gain=-1.2, t=-0.7, share=0.0, fall=-0.002, above=0.0)
 REJECTED = RejectedEffect(LATE, {"tau": (2.5e-4, 1e-4, "s")}, 4.0, WORSE)
 SLOW = Finding(FindingKind.WORST_INTERVAL, WorstInterval(0.2, 0.3, 0.4))

@@ -1,15 +1,18 @@
-"""A slider and an arm with every effect compiled in, and a slow obvious way to simulate them."""
+"""A slider and an arm with every effect compiled in, and the forces of their effects by hand."""
 
 from __future__ import annotations
 
 from functools import cache
+from math import tanh
 
 import numpy as np
 
 from identification.effects.joint_plant import JointPlant, joint_plant
+from identification.effects.values import numbers_at
 from identification.logs.log import Log
 from identification.model.parameter import Parameter
 from identification.model.predictor import Predictor
+from identification.native.joint_callback import Joint
 
 STEP = 0.01  # between samples [s]
 SLIDER = """<mujoco model="slider">
@@ -66,3 +69,22 @@ def run(plant, log, **values):
     """Outputs of one value set, shape (N, ny)."""
     names = tuple(values)
     return Predictor(plant, log, names).predict(np.array([[values[n] for n in names]]))[0]
+
+
+def smooth(plant, joint):
+    """v₀ of a joint: its row is the one before the user data end with key and tag."""
+    width = 3 + sum(len(e.names) for e in plant.effects if "force" in e.hooks)
+    return float(plant.model.jnt_user[plant.model.joint(joint).id, -width])
+
+
+def forces(plant, joint, values):
+    """The force of a joint's effects in plain Python: (q, v, f_u) -> f."""
+    every, v_0 = {**plant.parameters.values(), **values}, smooth(plant, joint)
+    terms = [(e.hooks["force"].py_func, tuple(numbers_at(e, joint, every)))
+             for e in plant.effects if "force" in e.hooks]  # fmt: skip
+
+    def force(q, v, f_u):
+        s = Joint(time=0.0, q=q, v=v, v_0=v_0, sign=tanh(v / v_0), f_u=f_u)
+        return sum(law(s, p) for law, p in terms)
+
+    return force

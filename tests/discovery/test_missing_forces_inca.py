@@ -7,7 +7,7 @@ from identification.discovery.missing_forces import estimate_missing_forces
 from identification.discovery.nominal_model import NominalModel, fit_with_effects
 from identification.discovery.options import DiscoveryOptions
 from identification.report.finding_words import describe_finding
-from inca_mj.effects.delay import DELAY
+from inca_mj.effects.motor import DELAY
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.discovery import KNOWN
 from inca_mj.worlds import Setting, effect, world

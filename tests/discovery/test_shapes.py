@@ -10,7 +10,7 @@ from discovery_cases import OPTIONS
 from identification.discovery.selection import shapes
 from identification.discovery.selection.shapes import improve_shape
 from identification.effects.effect import Candidate, Effect, Shape, Size
-from inca_mj.effects.current_saturation import CURRENT_SATURATION
+from inca_mj.effects.motor import CURRENT_SATURATION
 from inca_mj.workflows.discovery import discover
 from inca_mj.worlds import Setting, effect, world
 

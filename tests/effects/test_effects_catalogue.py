@@ -43,9 +43,9 @@ def test_all_sizes_zero_is_the_bare_robot_to_the_bit():
 
 @pytest.mark.parametrize("effect", CATALOGUE, ids=lambda e: e.name)
 def test_numbers_make_sense(effect):
-    for size in effect.effect.sizes:
+    for size in effect.sizes:
         assert 0 < size.probe <= size.largest
-    for shape in effect.effect.shapes:
+    for shape in effect.shapes:
         assert all(shape.lower <= value <= shape.upper for value in shape.grid)
         assert list(shape.grid) == sorted(shape.grid)
 

@@ -1,17 +1,24 @@
-"""Lag and delay of the current against an integration by brute force."""
+"""Lag and delay of an input against an integration by brute force; clipping and drift."""
 
 import numpy as np
 import pytest
 from effect_cases import BY_NAME, full, simulate
 
-from inca_mj.effects.impulse import stepwise
+from identification.effects.input_effects import Drive, input_effects
+from identification.effects.values import changed_inputs
 
 STEP, FINE = 1e-3, 400
 TAUS = [0.0, 1e-7, 3.3e-4, 1e-3, 1.7e-3, 4e-3, 2.5e-2, 10.0]
+ANY_ROBOT = {e.name: e for e in input_effects([Drive("u", 1.0)])}
 
 
 def currents() -> np.ndarray:
     return np.repeat(np.random.default_rng(0).normal(0.7, 0.2, (12, 8)), 5, axis=0)
+
+
+def stepwise(mean: np.ndarray, moment: np.ndarray) -> np.ndarray:
+    """What a model is given that has mean and moment of a signal, each moment a step later."""
+    return mean - moment + np.concatenate([[0.0], moment[:-1]])
 
 
 def by_brute_force(fine: np.ndarray) -> np.ndarray:
@@ -20,19 +27,35 @@ def by_brute_force(fine: np.ndarray) -> np.ndarray:
     return stepwise(fine.mean(axis=1), (fine * middle).mean(axis=1))
 
 
+def filtered(effect, u: np.ndarray, values: dict, things=("1",)) -> np.ndarray:
+    """An input after one effect, shape (steps, nu)."""
+    every = {name: 0.0 for thing in things for parts in effect.parameters_at(thing)
+             for name in parts} | values  # fmt: skip
+    return changed_inputs([effect], things, every, u, STEP, 1).reshape(u.shape)
+
+
+def at_taus(effect, u: np.ndarray, before: float) -> np.ndarray:
+    """Currents of eight drives, each with a time of its own."""
+    drives = [str(k) for k in range(1, 9)]
+    values = {f"{effect.name}.tau@{k}": tau for k, tau in zip(drives, TAUS, strict=True)}
+    return filtered(effect, u, {**values, f"{effect.name}.before": before}, drives)
+
+
 def test_impulse_and_moment_of_the_whole_are_kept():
-    rng = np.random.default_rng(1)
-    mean, moment = rng.normal(size=9), rng.normal(size=9)
-    moment[-1] = 0.0  # it would go on to a step that is not there
-    out = stepwise(mean, moment)
-    assert out.sum() == pytest.approx(mean.sum())
-    assert np.arange(9) @ out == pytest.approx(np.arange(9) @ mean + moment.sum())
+    """A delay within one step: the input's sum and first moment are those of the late input."""
+    u = np.zeros((9, 1))
+    u[2:5, 0] = 1.0, -2.0, 0.5
+    tau = 0.3e-3
+    out = filtered(ANY_ROBOT["delay"], u, {"delay.tau@u": tau}, ("u",))[:, 0]
+    assert out.sum() == pytest.approx(u.sum())
+    steps = np.arange(9)
+    assert steps @ out == pytest.approx(steps @ u[:, 0] + u.sum() * tau / STEP)
 
 
 @pytest.mark.parametrize("before", [0.0, 1.0])
 def test_lag(before):
     u = currents()
-    out = BY_NAME["current_lag"].inputs(u, STEP, np.array([TAUS, [before] * 8]))
+    out = at_taus(BY_NAME["current_lag"], u, before)
     for k, tau in enumerate(TAUS):
         i, fine = before * u[0, k], []
         h = STEP / FINE
@@ -51,7 +74,7 @@ def test_lag(before):
 @pytest.mark.parametrize("before", [0.0, 1.0])
 def test_delay(before):
     u = currents()
-    out = BY_NAME["delay"].inputs(u, STEP, np.array([TAUS, [before] * 8]))
+    out = at_taus(BY_NAME["delay"], u, before)
     fine = np.repeat(u, FINE, axis=0)
     t = (np.arange(len(fine)) + 0.5) * STEP / FINE
     for k, tau in enumerate(TAUS):
@@ -61,6 +84,36 @@ def test_delay(before):
         assert out[:, k] == pytest.approx(expected, abs=3 / FINE), tau
     assert np.array_equal(out[:, 0], u[:, 0])
     assert np.array_equal(out[:, -1], np.full(len(u), before * u[0, -1]))  # 10 s: nothing arrived
+
+
+@pytest.mark.parametrize(("one", "other"), [("delay", "delay"), ("current_lag", "lag")])
+def test_lag_and_delay_are_those_of_any_robot(one, other):
+    u = currents()[:, :1]
+    mine = filtered(BY_NAME[one], u, {f"{one}.tau@1": 1.7e-3, f"{one}.before": 1.0})
+    values = {f"{other}.tau@u": 1.7e-3, f"{other}.before": 1.0}
+    assert np.array_equal(mine, filtered(ANY_ROBOT[other], u, values, ("u",)))
+    assert not np.array_equal(mine, u)
+
+
+def test_an_input_is_clipped_and_its_gain_drifts():
+    u = np.sin(np.arange(500) * 0.02)[:, None]
+    clipped = {"saturation.c@u": 1.0, "saturation.u_max": 0.5}
+    out = filtered(ANY_ROBOT["saturation"], u, clipped, ("u",))
+    np.testing.assert_array_equal(out, np.clip(u, -0.5, 0.5))
+    out = filtered(ANY_ROBOT["gain_drift"], u, {"gain_drift.alpha@u": 0.1}, ("u",))
+    middle = (np.arange(500)[:, None] + 0.5) * STEP
+    np.testing.assert_allclose(out, u * (1 - 0.1 * middle), rtol=1e-14)
+
+
+def test_an_input_passes_the_effects_in_their_order():
+    """What is clipped after a delay of two steps is the clipped input two steps later."""
+    u = np.sin(np.arange(50) * 0.2)[:, None]
+    values = {"delay.tau@u": 2 * STEP, "delay.before": 0.0, "saturation.c@u": 1.0,
+              "saturation.u_max": 0.5}  # fmt: skip
+    effects = [ANY_ROBOT["delay"], ANY_ROBOT["saturation"]]
+    (out,) = changed_inputs(effects, ("u",), values, u, STEP, 1)
+    np.testing.assert_array_equal(out[2:], np.clip(u, -0.5, 0.5)[:-2])
+    assert not out[:2].any()
 
 
 @pytest.mark.parametrize("name", ["current_lag", "delay"])

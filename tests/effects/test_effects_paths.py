@@ -10,7 +10,7 @@ from effect_cases import BY_NAME, bare, drive, forward, full, moving
 from inca_mj.robot import law
 from inca_mj.twin.twin import build_twin
 
-PULLEY, ANCHOR = (BY_NAME[n].path.py_func for n in ("pulley_radius", "anchor_offset"))
+PULLEY, ANCHOR = (BY_NAME[n].hooks["path"].py_func for n in ("pulley_radius", "anchor_offset"))
 SPANS = [(1.2, -1.4, 1.3), (-1.5, 1.5, -1.6), (0.4, 1.9, 0.2), (0.05, 0.3, -2.0)]
 
 

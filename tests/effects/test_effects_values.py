@@ -7,18 +7,17 @@ from numba import njit
 
 from identification.effects.effect import Effect, Size
 from identification.model.rollout import rollout
-from inca_mj.effects.hooks import DriveEffect
-from inca_mj.effects.places import DRIVES_EACH
+from inca_mj.effects.hooks import DRIVES_EACH
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.twin import build_twin
 
-MODEL = [e for e in CATALOGUE if e.inputs is None and e.name != "current_saturation"]
+MODEL = [e for e in CATALOGUE if "input" not in e.hooks and e.name != "current_saturation"]
 
 
 def some_of_everything() -> dict[str, float]:
     out = {"cogging.n": 7.0, "torque_constant_drift.kind": 1.0, "cable_creep.tau": 2.0}
     for effect in MODEL:
-        out |= probes(effect, list(effect.effect.places)[-1], 0.5)
+        out |= probes(effect, list(effect.places)[-1], 0.5)
     return out
 
 
@@ -45,10 +44,10 @@ def torque(s, p):
     return -p[0]
 
 
-STUCK = DriveEffect(
-    Effect("stuck_brake", "-f", (Size("f", "N m", 0.01, 1e-3),), places=DRIVES_EACH),
-    torque=torque,
-)
+STUCK = Effect(
+    "stuck_brake", "-f", (Size("f", "N m", 0.01, 1e-3),), places=DRIVES_EACH,
+    hooks={"torque": torque},
+)  # fmt: skip
 
 
 def test_an_effect_of_a_users_own():

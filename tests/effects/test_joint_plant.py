@@ -12,12 +12,12 @@ from joint_cases import (
     run,
     slider,
     slider_log,
+    smooth,
     steps,
 )
 
 from identification import InputError, Parameter
 from identification.effects.axes import SMOOTH, Axis, axes
-from identification.effects.inputs import clipped, delayed, drifting, lagged
 from identification.effects.joint_catalogue import joint_effects
 from identification.effects.joint_plant import candidates, joint_plant
 from identification.estimation.window_error import window_error
@@ -26,9 +26,9 @@ from identification.estimation.window_estimate import estimate_windows
 
 def test_a_single_joint_has_one_place_and_two_have_a_common_one():
     (effect,) = [e for e in slider().effects if e.name == "stiffness"]
-    assert effect.effect.places == {"joint slide": "@slide"}
+    assert effect.places == {"joint slide": "@slide"}
     (effect,) = [e for e in arm().effects if e.name == "stiffness"]
-    assert list(effect.effect.places.values()) == ["", "@shoulder", "@elbow"]
+    assert list(effect.places.values()) == ["", "@shoulder", "@elbow"]
     assert all(p.value == 0 for p in arm().parameters if "." in p.name and p.lower <= 0)
 
 
@@ -55,16 +55,15 @@ def test_axes_are_read_off_the_log_and_hinges_apart_from_slides():
     u = 0.5 * np.ones((200, 1))
     t = np.arange(200) * STEP
     plant = joint_plant(SLIDER, (), slider_log(u, 0.2 * np.sin(3 * t)[:, None]))
-    smooth = plant.model.jnt_user[0, 1]
-    assert smooth == pytest.approx(SMOOTH * 0.6, rel=1e-3)
-    (size,) = next(e for e in plant.effects if e.name == "offset").effect.sizes
+    assert smooth(plant, "slide") == pytest.approx(SMOOTH * 0.6, rel=1e-3)
+    (size,) = next(e for e in plant.effects if e.name == "offset").sizes
     assert size.largest == pytest.approx(0.2 * 2.5)
     assert size.unit == "N"
     mixed = joint_effects((Axis("h", "hinge", 1, 1, 1), Axis("s", "slide", 1, 1, 1, plain=False)))
     names = {e.name: e for e in mixed}
     assert len(names) == len(mixed)
-    assert names["slide_offset"].effect.sizes[0].unit == "N"
-    assert names["offset"].effect.sizes[0].unit == "N m"
+    assert names["slide_offset"].sizes[0].unit == "N"
+    assert names["offset"].sizes[0].unit == "N m"
     assert "slide_load_dependent_friction" not in names
 
 
@@ -85,25 +84,6 @@ def test_what_cannot_be_is_refused():
         joint_plant("no/such/file.xml", (), slider_log(steps(50)))
     with pytest.raises(InputError, match="unknown parameter"):
         run(slider(), slider_log(steps(50)), **{"coulomb.f": 1.0})
-
-
-def test_inputs_come_late_lag_clip_and_drift():
-    u, h = np.sin(np.arange(500) * 0.02), 0.001
-    np.testing.assert_array_equal(delayed(u, h, 0.004), np.concatenate([np.zeros(4), u[:-4]]))
-    np.testing.assert_allclose(delayed(u, h, 0.0025)[9:], (u[7:-2] + u[6:-3]) / 2)
-    fine = np.repeat(u, 1000)  # the slow obvious way: Euler, a thousand steps a step
-    x, means = 0.0, []
-    for block in fine.reshape(-1, 1000):
-        total = 0.0
-        for value in block:
-            total += x
-            x += h / 1000 * (value - x) / 0.02
-        means.append(total / 1000)
-    np.testing.assert_allclose(lagged(u, h, 0.02), means, atol=1e-4)
-    np.testing.assert_array_equal(clipped(u, h, 1.0, 0.5), np.clip(u, -0.5, 0.5))
-    np.testing.assert_allclose(drifting(u, h, 0.1), u * (1 - 0.1 * (np.arange(500) + 0.5) * h))
-    for change in (delayed, lagged, drifting):
-        np.testing.assert_array_equal(change(u, h, 0.0), u)
 
 
 def test_an_effect_of_an_input_is_that_input_changed():
@@ -147,7 +127,7 @@ def test_the_periods_of_a_motor_that_is_known_are_tried_on_hinges_only():
     hinge, slide = Axis("h", "hinge", 1.0, 1.0, 1.0), Axis("s", "slide", 1.0, 1.0, 1.0)
 
     def grids(*given):
-        return {e.name: e.effect.shapes[0].grid for e in joint_effects((hinge, slide), *given)
+        return {e.name: e.shapes[0].grid for e in joint_effects((hinge, slide), *given)
                 if e.name.endswith("cogging")}  # fmt: skip
 
     assert grids((7.0, 84.0))["cogging"] == (7.0, 84.0)
@@ -159,7 +139,7 @@ def test_what_repeats_on_a_slide_is_seen_to_repeat():
     travel = 0.3
     effects = {e.name: e for e in joint_effects((Axis("s", "slide", 1.0, 1.0, travel),))}
     for name in ("cogging", "periodic_friction"):
-        (shape,) = effects[name].effect.shapes
+        (shape,) = effects[name].shapes
         assert shape.lower == shape.grid[0] == pytest.approx(2 * np.pi / travel)
         assert np.array(shape.grid) == pytest.approx(shape.grid[0] * np.array([1, 2, 4, 8, 16]))
         assert shape.grid[-1] < shape.upper
@@ -191,7 +171,7 @@ def test_a_friction_that_the_data_do_not_want_goes_to_nothing_and_no_search_fail
 
 def test_what_grows_along_the_way_may_take_its_share_of_the_drive_at_the_end_of_a_swing():
     axis = Axis("s", "slide", 16.7, 1.0, 0.55)
-    effects = {e.name: e.effect for e in joint_effects((axis,))}
+    effects = {e.name: e for e in joint_effects((axis,))}
     A, share = axis.travel / 2, 0.3 * axis.force
     (k,), (k_3,) = effects["stiffness"].sizes, effects["hardening"].sizes
     assert k.largest * A == pytest.approx(share)

@@ -51,7 +51,7 @@ def bare():
 def test_both_move_alike(name, other):
     drawn = settled(draw_effect(name, SEED, other_shape=other))
     log, truth = world(SEED, [drawn], setting=SETTING)
-    effect = next(e.effect for e in CATALOGUE if e.name == name)
+    effect = next(e for e in CATALOGUE if e.name == name)
     values = {n: v for n, v in truth.parameters.items() if n in twin().parameters.values()}
     where = drawn.where if drawn.where in effect.places else next(iter(effect.places))
     known = {

@@ -1,0 +1,82 @@
+"""Where the parameters of a set of effects stand in the rows of what they act on.
+
+    row of a thing = (…, parameters of effect 1, parameters of effect 2, …)
+
+Sizes come first, shapes follow. The key of a set says which compiled law its rows are made for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from zlib import crc32
+
+from identification.effects.effect import Effect
+from identification.errors import InputError
+from identification.native.element import Element, Term
+
+
+def terms_of(
+    effects: Sequence[Effect], element: Element, *, first: int = 0, own: str = ""
+) -> tuple[Term, ...]:
+    """The effects of one element, and where in its row their parameters stand.
+
+    Args:
+        effects: a set; those that act on other elements are passed over.
+        element: what they act on.
+        first: column of the first parameter.
+        own: the hook that an effect with a state of its own has, "" where none can have one.
+    """
+    out: list[Term] = []
+    column, states = first, 0
+    for effect in effects:
+        if not _acts_on(effect, element):
+            continue
+        states += own in effect.hooks
+        out.append(
+            Term(
+                effect=effect.name,
+                functions=tuple(effect.hooks.items()),
+                names=effect.names,
+                sizes=len(effect.sizes),
+                column=column,
+                state=states if own in effect.hooks else 0,
+            )
+        )
+        column += len(effect.names)
+    return tuple(out)
+
+
+def key_of(effects: Sequence[Effect]) -> float:
+    """The number that tells a set of effects from others."""
+    return float(crc32(repr([(e.name, e.names, e.law) for e in effects]).encode()))
+
+
+def refuse_misplaced(effects: Sequence[Effect], elements: Sequence[Element]) -> None:
+    """Refuse effects that a robot cannot have.
+
+    Args:
+        effects: the set.
+        elements: what a robot has that effects may act on.
+
+    Raises:
+        InputError: two effects have one name, or the hooks of one are not those of one element.
+    """
+    names = [e.name for e in effects]
+    twice = sorted({n for n in names if names.count(n) > 1})
+    if twice:
+        raise InputError(f"two effects are called {twice[0]!r}; rename one")
+    for effect in effects:
+        if sum(_acts_on(effect, element) for element in elements) != 1:
+            own = f"the hooks {', '.join(effect.hooks)}" if effect.hooks else "no hook"
+            known = "; ".join(
+                f"{element.name}: {', '.join(hook.name for hook in element.hooks)}"
+                for element in elements
+            )
+            raise InputError(
+                f"effect {effect.name!r} has {own}; give it hooks of one of the things that this"
+                f" robot has ({known})"
+            )
+
+
+def _acts_on(effect: Effect, element: Element) -> bool:
+    return bool(effect.hooks) and effect.hooks.keys() <= {hook.name for hook in element.hooks}

@@ -1,0 +1,109 @@
+"""Values of effects at the things they act on.
+
+a thing gets    size(all) + size@thing          shapes are the same for all
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from identification.effects.effect import Effect
+from identification.effects.layout import terms_of
+from identification.native.element import Term
+from identification.native.input_filter import INPUT, input_filter
+
+Values = Mapping[str, float | np.ndarray]  # by name of the parameter, one or n of each
+
+
+def merged(own: Mapping[str, float], names: Sequence[str], values: np.ndarray) -> Values:
+    """The values of all parameters where some differ.
+
+    Args:
+        own: values of all parameters.
+        names: parameters that differ, p of them.
+        values: theirs in n value sets, shape (n, p).
+    """
+    return {**own, **dict(zip(names, values.T, strict=True))}
+
+
+def numbers_at(effect: Effect, thing: str, values: Values) -> list[float | np.ndarray]:
+    """Sizes and shapes of an effect at one thing; zeros where it cannot act on it."""
+    parts = effect.parameters_at(thing)
+    return [sum(values[name] for name in some) for some in parts] or [0.0] * len(effect.names)
+
+
+def table_at(effects: Sequence[Effect], thing: str, values: Values, n: int) -> np.ndarray:
+    """The rows of some effects at one thing for n value sets, shape (n, columns)."""
+    columns = [x for e in effects for x in numbers_at(e, thing, values)]
+    return np.array([np.broadcast_to(x, n) for x in columns]).reshape(len(columns), n).T.copy()
+
+
+def is_present(effect: Effect, things: Sequence[str], values: Values) -> bool:
+    """Whether any size of an effect is not zero at any of some things."""
+    sizes = len(effect.sizes)
+    return any(_is_some(x) for thing in things for x in numbers_at(effect, thing, values)[:sizes])
+
+
+def _is_some(x: float | np.ndarray) -> bool:
+    return bool(x.any()) if isinstance(x, np.ndarray) else x != 0.0
+
+
+def changed_columns(
+    effects: Sequence[Effect], terms: Sequence[Term], thing: str, names: Sequence[str],
+    values: Values,
+) -> Iterator[tuple[int, float | np.ndarray]]:  # fmt: skip
+    """The entries of a thing's row that some parameters change: column, and its values.
+
+    Args:
+        effects: the set.
+        terms: the effects that have numbers in such rows.
+        thing: name of the thing.
+        names: the parameters.
+        values: of all parameters.
+    """
+    by_name, touched = {e.name: e for e in effects}, set(names)
+    for term in terms:
+        effect = by_name[term.effect]
+        numbers = numbers_at(effect, thing, values)
+        for k, parts in enumerate(effect.parameters_at(thing)):
+            if touched & set(parts):
+                yield term.column + k, numbers[k]
+
+
+def changed_inputs(
+    effects: Sequence[Effect], things: Sequence[str], values: Values, held: np.ndarray,
+    timestep: float, n: int,
+) -> np.ndarray:  # fmt: skip
+    """What the effects of inputs make of them, for n value sets.
+
+    Args:
+        effects: a set; those that act on other things are passed over.
+        things: names of the inputs.
+        values: of all parameters, one or n of each.
+        held: inputs at the steps of the simulation, shape (steps, nu).
+        timestep: of the simulation [s].
+        n: how many value sets.
+
+    Returns:
+        `held` itself where no such effect is there, else shape (n, steps, nu).
+
+    Raises:
+        InputError: a function of an effect cannot be compiled.
+    """
+    acting = [e for e in effects if "input" in e.hooks]
+    if not any(is_present(e, things, values) for e in acting):
+        return held
+    run = input_filter(terms_of(acting, INPUT))
+    out = np.repeat(held[None], n, axis=0)
+    signals = np.empty((1 + len(acting), len(held)))
+    for i, thing in enumerate(things):
+        if not any(is_present(e, [thing], values) for e in acting):
+            continue
+        rows = table_at(acting, thing, values, n)
+        for k, row in enumerate(rows):
+            signals[0] = held[:, i]
+            run(signals.ctypes.data, len(held), timestep, row.ctypes.data)
+            out[k, :, i] = signals[-1]
+    return out

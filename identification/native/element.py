@@ -1,0 +1,96 @@
+"""What effects act on, such as a joint or a drive: what they know of it, where they add to its law.
+
+A hook is one place of a law where effects may add. Its function takes the element's state and the
+effect's parameters, sizes first, and returns one number or a tuple of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from numba import types
+
+Function = Callable[..., Any]
+
+
+@dataclass(frozen=True)
+class Hook:
+    """A place of a law where effects may add.
+
+    Attributes:
+        name: what an effect calls it, e.g. "torque".
+        returns: the numbers that a function for it returns, each with its unit in brackets.
+    """
+
+    name: str
+    returns: tuple[str, ...]
+
+    @property
+    def zero(self) -> float | tuple[float, ...]:
+        """What it adds where no effect is."""
+        return 0.0 if len(self.returns) == 1 else (0.0,) * len(self.returns)
+
+    @property
+    def type(self) -> Any:
+        """What its functions return, as numba's type."""
+        count = len(self.returns)
+        return types.float64 if count == 1 else types.UniTuple(types.float64, count)
+
+    def __str__(self) -> str:
+        count = len(self.returns)
+        return f"{count} number{'s' * (count > 1)}, {', '.join(self.returns)}"
+
+
+@dataclass(frozen=True)
+class Element:
+    """A kind of thing that effects act on.
+
+    Attributes:
+        name: in words, e.g. "joint".
+        state: class of the named tuple that the hooks' functions see. Where an effect may have a
+            state of its own, it is the field `x`.
+        hooks: the places of its law.
+        integers: fields of `state` that are whole numbers; all others are doubles.
+    """
+
+    name: str
+    state: Any
+    hooks: tuple[Hook, ...]
+    integers: tuple[str, ...] = ()
+
+    @property
+    def type(self) -> Any:
+        """Its state as numba's type."""
+        fields = [types.int64 if f in self.integers else types.float64 for f in self.state._fields]
+        return types.BaseTuple.from_types(fields, self.state)
+
+    def hook(self, name: str) -> Hook:
+        """The hook of a name that is one of its own."""
+        return next(hook for hook in self.hooks if hook.name == name)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Term:
+    """An effect in the law of an element: its functions, and where its numbers stand in a row.
+
+    Attributes:
+        effect: its name.
+        functions: name of a hook and its njit function, in pairs.
+        names: its parameters, sizes first.
+        sizes: how many of them are sizes; where all sizes are zero, the effect is absent.
+        column: where the first of its parameters stands in the row.
+        state: which of the element's states is its own, counted from 1; 0 where it has none.
+    """
+
+    effect: str
+    functions: tuple[tuple[str, Function], ...]
+    names: tuple[str, ...]
+    sizes: int
+    column: int
+    state: int = 0
+
+    def function(self, hook: str) -> Function | None:
+        """Its function for a hook, None where it adds nothing there."""
+        return dict(self.functions).get(hook)

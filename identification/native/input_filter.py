@@ -1,0 +1,120 @@
+"""The effects of inputs: what becomes of a signal, step by step, on its way to the model.
+
+    m_k = (1/h) ∫ u' dt,    D_k = (1/h²) ∫ (t - t_mid) u' dt          over step k of length h
+    u_k = m_k - D_k + D_(k-1)                                         what the model is given
+
+An effect changes the input u into u', which may move within a step: its hook `input` returns mean
+and moment of u' over the step. The mean keeps the impulse of the step; passing D on to the next
+step keeps its moment too, so that what is lost is of third order in h. An effect may have a state
+x of its own: `start` says where it begins, `next` what it is after the step.
+"""
+
+from __future__ import annotations
+
+from collections import namedtuple
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+from numba import types
+
+from identification.native.compiler import compiled
+from identification.native.compose import is_absent
+from identification.native.decorators import internal
+from identification.native.element import Element, Function, Hook, Term
+from identification.native.hook_checks import refuse_unfit_functions
+from identification.native.memory import load_double, store_double
+from identification.native.tuples import loader
+
+# What an effect sees of an input at step k.
+#   k; step h [s]; u: the input, held over the step; x: the effect's own state
+#   signal: address of the input of all steps, which `past` reads
+Input: Any = namedtuple("Input", "k step u x signal")
+
+INPUT = Element(
+    "input",
+    Input,
+    (
+        Hook("input", ("mean of the input over the step", "its moment, zero where it is held")),
+        Hook("start", ("own state before the first step",)),
+        Hook("next", ("own state after the step",)),
+    ),
+    integers=("k", "signal"),
+)
+
+_SIGNATURE = types.void(types.int64, types.int64, types.float64, types.int64)
+
+
+@internal
+def past(s, n, before):  # type: ignore[no-untyped-def]
+    """The input n steps ago; before the first step it was `before` times the first input."""
+    n = min(n, s.k + 1.0)  # a delay may be longer than any whole number
+    if n > s.k:
+        return before * load_double(s.signal)
+    return load_double(s.signal + 8 * (s.k - int(n)))
+
+
+@internal
+def _zero(s, p):  # type: ignore[no-untyped-def]
+    return 0.0
+
+
+def _link(rest: Function, term: Term, place: int) -> Function:
+    """One more effect on a chain: it reads signal `place` and writes the next one."""
+    change = term.function("input")
+    start, after = term.function("start") or _zero, term.function("next") or _zero
+    load, at, sizes = loader(len(term.names)), 8 * term.column, term.sizes
+
+    @internal
+    def changed(signals, steps, step, row):  # type: ignore[no-untyped-def]
+        rest(signals, steps, step, row)
+        signal = signals + 8 * steps * place
+        out, p = signal + 8 * steps, load(row + at)
+        if is_absent(p, sizes):
+            for k in range(steps):
+                store_double(out + 8 * k, load_double(signal + 8 * k))
+            return
+        x = float(start(Input(k=0, step=step, u=load_double(signal), x=0.0, signal=signal), p))
+        last = 0.0
+        for k in range(steps):
+            s = Input(k=k, step=step, u=load_double(signal + 8 * k), x=x, signal=signal)
+            mean, moment = change(s, p)
+            store_double(out + 8 * k, mean - moment + last)
+            x, last = float(after(s, p)), float(moment)
+
+    return changed
+
+
+@cache
+def input_filter(terms: Sequence[Term]) -> Any:
+    """The compiled effects of an input.
+
+    Args:
+        terms: the effects, in the order in which the input passes them.
+
+    Returns:
+        (signals, steps, step, row): a ctypes function. `signals` is the address of an array of
+        shape (effects + 1, steps), the first row being the input; what each effect makes of the
+        row above it is written to the next, so that the last row is what the model is given.
+        `step` is their length [s], `row` the address of the effects' parameters.
+
+    Raises:
+        InputError: a function of an effect cannot be compiled.
+    """
+
+    @internal
+    def nothing(signals, steps, step, row):  # type: ignore[no-untyped-def]
+        return None
+
+    chain: Function = nothing
+    for place, term in enumerate(terms):
+        chain = _link(chain, term, place)
+
+    def inputs(signals, steps, step, row):  # type: ignore[no-untyped-def]
+        chain(signals, steps, step, row)
+
+    try:
+        return compiled("inputs", inputs, _SIGNATURE)
+    except Exception:
+        refuse_unfit_functions(INPUT, terms)
+        raise

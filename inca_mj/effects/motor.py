@@ -1,0 +1,136 @@
+"""Motors and their currents.
+
+    cogging                    Δτ = a cos(n φ) + b sin(n φ)     the rotor's magnets prefer angles
+    current lag                τ i̇ = u - i                      the current loop is a filter
+    delay                      i(t) = u(t - τ)                  the current arrives late
+    saturation                 i clipped at ±i_max, or i_max tanh(i/i_max)
+    torque constant drift      K_t (1 - α t)                    kind 0: warms with time
+                               K_t (1 - α ∫(i/1 A)² dt)         kind 1: warms with its losses
+    torque constant mismatch   K_t (1 + δ) on one drive
+
+Lag and delay act on the currents before they reach the model; their laws are those of any robot
+(`identification.effects.input_laws`). A limit has no size that is zero when it is absent, so that
+the size of the saturation is a share of the clipping: 0 is none, 1 is a real limit.
+"""
+
+from math import cos, sin, tanh
+
+from numba import njit
+
+from identification.effects.effect import BEFORE, Effect, Shape, Size
+from identification.effects.input_laws import DELAY as DELAYED
+from identification.effects.input_laws import LAG as LAGGED
+from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
+
+# Limits to try [A]: dense where a log of the thesis has its currents, then by a factor of 1.4.
+GRID = (0.55, 0.65, 0.75, 0.85, 0.95, 1.2, 1.7, 2.4, 3.4, 4.8)
+
+
+@njit
+def cogging(s, p):  # type: ignore[no-untyped-def]
+    """Δτ = a cos(n φ) + b sin(n φ) [N m]."""
+    a, b, n = p
+    return a * cos(n * s.phi) + b * sin(n * s.phi)
+
+
+@njit
+def current_saturation(s, p):  # type: ignore[no-untyped-def]
+    """Δi = c (clip(i, ±i_max) - i), or with i_max tanh(i/i_max) where soft [A]."""
+    c, i_max, soft = p
+    limited = i_max * tanh(s.i / i_max) if soft else max(-i_max, min(i_max, s.i))
+    return c * (limited - s.i)
+
+
+@njit
+def torque_constant_drift(s, p):  # type: ignore[no-untyped-def]
+    """Δi = -α t i, or -α x i with x the heat [A]."""
+    alpha, kind = p
+    return -alpha * (s.time if kind == 0.0 else s.x) * s.i
+
+
+@njit
+def heat_rate(s, p):  # type: ignore[no-untyped-def]
+    """ẋ = i²: heat, in seconds at 1 A."""
+    return s.i * s.i
+
+
+@njit
+def torque_constant_mismatch(s, p):  # type: ignore[no-untyped-def]
+    """Δi = δ i [A]: K_t (1 + δ) in all."""
+    return p[0] * s.i
+
+
+COGGING = Effect(
+    "cogging",
+    "a cos(n φ) + b sin(n φ)",
+    (
+        Size("a", "N m", 0.02, 1e-4, about="cosine part of the torque"),
+        Size("b", "N m", 0.02, 1e-4, about="sine part of the torque"),
+    ),
+    (Shape("n", "", tuple(map(float, range(1, 25))), 1.0, 400.0, free=False, about="harmonic"),),
+    places=DRIVES_EACH,
+    phrase="motor: cogging torque",
+    reference="Holtz, Springob 1996",
+    hooks={"torque": cogging},
+)
+CURRENT_LAG = Effect(
+    "current_lag",
+    "first-order lag τ of the current loop",
+    (Size("tau", "s", 0.01, 5e-4, sign=1, about="time constant"),),
+    (BEFORE,),
+    places=DRIVES_EACH,
+    phrase="motor: current lags",
+    reference="Krishnan 2010",
+    probes=(1.0, 20**0.5, 20.0),  # to the largest: the outputs follow it only nearly
+    hooks=LAGGED,
+)
+DELAY = Effect(
+    "delay",
+    "pure delay of the input",
+    (Size("tau", "s", 0.02, 5e-4, sign=1, about="delay"),),
+    (BEFORE,),
+    places=DRIVES_EACH,
+    phrase="motor: current comes late",
+    reference="Åström, Hägglund 2006",
+    probes=(1.0, 40**0.5, 40.0),  # to the largest: the outputs follow it only nearly
+    hooks=DELAYED,
+)
+CURRENT_SATURATION = Effect(
+    "current_saturation",
+    "i clipped at ±i_max, or i_max tanh(i/i_max)",
+    (
+        Size("c", "", 1.0, 0.02, sign=1, present=1.0,
+             about="share of the clipping, 1 when there is a limit"),
+    ),
+    (
+        Shape("i_max", "A", GRID, 0.05, 20.0, about="the limit"),
+        Shape("soft", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
+              about="1: it bends, does not clip"),
+    ),
+    places=DRIVES_EACH,
+    phrase="motor: current clipped",
+    reference="data sheet of the amplifier",
+    hooks={"current": current_saturation},
+)  # fmt: skip
+TORQUE_CONSTANT_DRIFT = Effect(
+    "torque_constant_drift",
+    "K_t (1 - α t), or with heat ∫i² dt for t",
+    (Size("alpha", "1/s", 0.01, 2e-4, sign=1, about="relative loss a second, or at 1 A"),),
+    (
+        Shape("kind", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
+              about="0 with time, 1 with heat"),
+    ),
+    places=DRIVES_EACH,
+    phrase="motor: torque constant drifts",
+    reference="Krishnan 2010, -0.1 to -0.2 %/K of magnets",
+    hooks={"current": torque_constant_drift, "rate": heat_rate},
+)  # fmt: skip
+TORQUE_CONSTANT_MISMATCH = Effect(
+    "torque_constant_mismatch",
+    "K_t (1 + δ) on one drive",
+    (Size("delta", "", 0.2, 1e-3, about="relative excess of the torque constant"),),
+    places=ONE_DRIVE,
+    phrase="motor: one torque constant differs",
+    reference="thesis Table 3.2",
+    hooks={"current": torque_constant_mismatch},
+)
