@@ -14,7 +14,6 @@ second order in h.
 from __future__ import annotations
 
 import numpy as np
-from scipy.signal import lfilter
 
 
 def delayed(u: np.ndarray, step: float, tau: float, before: float = 0.0) -> np.ndarray:
@@ -29,6 +28,8 @@ def lagged(u: np.ndarray, step: float, tau: float, before: float = 0.0) -> np.nd
     """The input through a first-order filter, shape (steps,)."""
     if tau <= 0:
         return u
+    from scipy.signal import lfilter  # slow to import
+
     s, keep = tau / step, np.exp(-step / tau)
     begun, _ = lfilter([0.0, 1 - keep], [1.0, -keep], u, zi=[before * u[0]])
     return u + (begun - u) * s * (1 - keep)

@@ -10,10 +10,11 @@ from functools import cache
 from typing import Any
 
 import mujoco
-from numba import cfunc, types
+from numba import types
 
 from identification.errors import InputError
 from identification.native import structs
+from identification.native.cache import compile_once
 from identification.native.joint_callback import FIELDS, add_joint_forces
 
 _PROBE = """<mujoco>
@@ -38,7 +39,7 @@ def carries(callback: Any) -> bool:
 
 @cache
 def _compiled() -> Any:
-    """The callback, compiled once a process: a disk cache would outlive a MuJoCo upgrade."""
+    """The callback, for this process."""
     model = mujoco.MjModel.from_xml_string(_PROBE)
     data = mujoco.MjData(model)
     mujoco.mj_step(model, data)
@@ -53,7 +54,7 @@ def _compiled() -> Any:
         add_joint_forces(m, d)
 
     signature = types.void(types.int64, types.int64)
-    return carry(cfunc(signature, error_model="numpy")(passive).ctypes)
+    return carry(compile_once(passive, signature))
 
 
 def install() -> None:

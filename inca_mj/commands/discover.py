@@ -50,7 +50,6 @@ class Discover:
         else:
             do_not_draw()
         from identification.files import whole_folder
-        from identification.report.discovery_text import discovery_text
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.discovery import discover
 
@@ -60,6 +59,8 @@ class Discover:
         out = self.output.out
         refuse_folder(out)
         found = discover(log, parameters, place, progress=note, settled=self.settled)
+        from identification.report.discovery_text import discovery_text  # slow to import
+
         if not self.output.json:
             say(discovery_text(found))
         files: dict[str, Path] = {}

@@ -9,7 +9,6 @@ u is constant over a step, so mean and moment of i over it (see `impulse`) are e
 """
 
 import numpy as np
-from scipy.signal import lfilter
 
 from identification.effects.effect import BEFORE, Effect, Size
 from inca_mj.effects.hooks import DriveEffect
@@ -19,6 +18,8 @@ from inca_mj.effects.places import DRIVES_EACH
 
 def inputs(currents: np.ndarray, step: float, p: np.ndarray) -> np.ndarray:
     """Lagged current of every step [A], shape (steps, 8)."""
+    from scipy.signal import lfilter  # slow to import
+
     out = currents.copy()
     for k, tau in enumerate(p[0]):
         if tau > 0:

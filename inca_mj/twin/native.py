@@ -10,10 +10,10 @@ from functools import cache
 from typing import Any
 
 import mujoco
-from numba import cfunc
 
 from identification.errors import InputError
 from identification.native import structs
+from identification.native.cache import compile_once
 from identification.native.installer import carries, carry
 from inca_mj.effects.layout import Layout
 from inca_mj.twin.callbacks import SIGNATURES, callbacks
@@ -49,10 +49,10 @@ def _check_structs() -> None:
 
 @cache
 def _compiled(layout: Layout) -> dict[str, Any]:
-    """The callbacks, compiled once a process: a disk cache would outlive a MuJoCo upgrade."""
+    """The callbacks of a set of effects, for this process."""
     _check_structs()
     return {
-        name: _keep(name, cfunc(SIGNATURES[name], error_model="numpy")(function).ctypes)
+        name: _keep(name, compile_once(function, SIGNATURES[name]))
         for name, function in callbacks(layout).items()
     }
 
