@@ -1,5 +1,6 @@
 # `make setup` once, then .venv/bin/inca. Nothing outside this folder changes, but for the system
-# packages that drawing needs (scripts/system-packages.sh). ARGS="..." goes to the program run.
+# packages that drawing needs (scripts/system-packages.sh), and the compiled laws of the robot in
+# your cache folder (docs/dependencies.md). ARGS="..." goes to the program run.
 PYTHON_OF_VENV := .venv/bin/python
 INSTALL := -m pip install -qq --disable-pip-version-check --no-input --no-deps --no-build-isolation
 

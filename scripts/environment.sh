@@ -28,6 +28,13 @@ fi
 echo "Installing the packages of $lock with $("$python" --version) into $folder ..."
 rm -rf "$folder"
 "$python" -m venv "$folder"
-# Bytecode is written at first import: compiling all of it here would double the time.
+# Compiling the bytecode of everything would double the time.
 "$folder/bin/python" -m pip install -qq --disable-pip-version-check --no-input --no-compile \
     --no-deps --only-binary :all: --require-hashes -r "$lock"
+
+# Python writes bytecode at first import, unless PYTHONDONTWRITEBYTECODE forbids it, as in many
+# containers: then every start would compile the same sources again, which takes longer than all
+# else. So the bytecode of the packages that commands import is written here.
+MUJOCO_GL=disable PYTHONDONTWRITEBYTECODE= "$folder/bin/python" -c '
+import mujoco.batch, mujoco.introspect.structs, numba, scipy.optimize, scipy.signal, scipy.stats, tyro
+numba.njit(lambda x: x)(0)  # it imports the rest of numba'

@@ -18,7 +18,7 @@ from typing import Any
 
 from numba import types
 
-from identification.native.compiler import compiled
+from identification.native.cache import compile_once
 from identification.native.compose import is_absent
 from identification.native.decorators import internal
 from identification.native.element import Element, Function, Hook, Term
@@ -114,7 +114,7 @@ def input_filter(terms: Sequence[Term]) -> Any:
         chain(signals, steps, step, row)
 
     try:
-        return compiled("inputs", inputs, _SIGNATURE)
+        return compile_once(inputs, _SIGNATURE)
     except Exception:
         refuse_unfit_functions(INPUT, terms)
         raise

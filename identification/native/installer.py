@@ -13,7 +13,7 @@ from functools import cache
 from typing import Any
 
 from identification.native import structs, trampolines
-from identification.native.compiler import compiled
+from identification.native.cache import compile_once
 from identification.native.element import Function
 from identification.native.table import enter
 
@@ -62,7 +62,7 @@ def _compiled(law: Law) -> Mapping[str, Any]:
     structs.require(law.fields)
     try:
         return {
-            kind: compiled(f"{law.name}.{kind}", function, trampolines.SIGNATURES[kind])
+            kind: compile_once(function, trampolines.SIGNATURES[kind])
             for kind, function in law.functions.items()
         }
     except Exception:

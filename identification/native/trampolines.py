@@ -16,7 +16,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from identification.errors import InputError
-from identification.native.compiler import compiled
+from identification.native.cache import compile_once
 from identification.native.element import Function
 from identification.native.memory import load_word
 from identification.native.table import KINDS, callback, table
@@ -76,7 +76,7 @@ def _function(kind: str) -> Function:
 
 @cache
 def _trampoline(kind: str) -> Any:
-    return compiled(f"trampoline.{kind}", _function(kind), SIGNATURES[kind])
+    return compile_once(_function(kind), SIGNATURES[kind])
 
 
 _OURS: dict[str, Any] = {}  # kind -> its trampoline, once compiled

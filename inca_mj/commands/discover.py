@@ -53,7 +53,6 @@ class Discover:
             do_not_draw()
         from identification.discovery.options import read_options
         from identification.files import whole_folder
-        from identification.report.discovery_text import discovery_text
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.discovery import discover
 
@@ -66,6 +65,8 @@ class Discover:
         found = discover(
             log, parameters, place, progress=note, settled=self.settled, options=options
         )
+        from identification.report.discovery_text import discovery_text  # slow to import
+
         if not self.output.json:
             say(discovery_text(found))
         files: dict[str, Path] = {}

@@ -12,7 +12,6 @@ refused only where another sign, or another drive's motion, explains it far bett
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from identification import Log, Predictor
 from identification.errors import DivergenceError, InputError
@@ -56,6 +55,8 @@ def refuse_miswired(log: Log, plant: Twin) -> None:
     back = np.flatnonzero(1 + own < NEARER * (1 - own))
     if len(back) == len(size):
         raise InputError("all angles, or all currents, have the wrong sign" + ADVICE)
+    from scipy.optimize import linear_sum_assignment  # slow to import
+
     _, best = linear_sum_assignment(1 - c)
     moved = np.flatnonzero(best != np.arange(len(best)))
     if len(moved) and (1 - c[moved, best[moved]] < NEARER * (1 - own[moved])).all():

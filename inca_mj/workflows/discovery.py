@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from identification import Log
-from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.result import Discovery
-from identification.discovery.search import discover as search
-from identification.discovery.search import refuse_unfit
 from identification.effects.effect import Effect
 from identification.model.parameter import ParameterSet
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.robot.geometry import INCA, Geometry
+from inca_mj.twin.logs import POSE
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import timestep_for
-from inca_mj.workflows.identification import POSE
-from inca_mj.workflows.look_alikes import told
+
+if TYPE_CHECKING:
+    from identification.discovery.result import Discovery
 
 TIMESTEP = 2e-3  # [s]; RK4 errs by 0.03 mrad, a twentieth of an encoder's noise, at half the price
 
@@ -59,12 +58,19 @@ def discover(
             pretension.
         DivergenceError: the nominal model cannot be simulated.
     """
-    options = options or DiscoveryOptions()
-    refuse_unfit(log, options)
     step = timestep_for(log.sampling_time, timestep)
     refuse_miswired(log, build_twin(parameters, geometry, timestep=step, visual=False))
+
+    # Slow to import: a log that is refused above has not waited for them.
+    from identification.discovery.nominal_model import NominalModel
+    from identification.discovery.search import discover as search
+    from identification.discovery.search import refuse_unfit
+    from inca_mj.workflows.look_alikes import told
+
+    options = options or DiscoveryOptions()
+    refuse_unfit(log, options)
     if progress is not None:
-        progress(f"compiling the law of the cables with {len(effects)} effects")
+        progress(f"preparing the law of the cables with {len(effects)} effects")
     plant = build_twin(
         parameters, geometry, timestep=step, effects=effects, settled=settled, visual=False
     )
