@@ -18,8 +18,6 @@ from identification.commands.robots import OnRobot
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery
 
-WITHOUT = "without what is named", "with it"
-
 
 @dataclass(frozen=True)
 class Discover(OnRobot):
@@ -28,23 +26,17 @@ class Discover(OnRobot):
     def run(self) -> int:
         """Discover, confirm, say, keep."""
         from identification.discovery.final_values import final_values
-        from identification.discovery.search import discover
         from identification.files import whole_folder
         from identification.report.discovery_json import discovery_to_json
         from identification.report.discovery_text import discovery_text, finite
-        from identification.robot.checks import refuse_search_horizon, refuse_start
-        from identification.robot.confirmation import confirmed
+        from identification.robot.confirmation import confirm
+        from identification.robot.discovery import discover
         from identification.robot.write import write_robot
 
         refuse_folder(self.output.out)
-        robot, records = self.read()
-        refuse_search_horizon(robot.file, robot.log)
-        refuse_start(robot.file, robot.plant.model, robot.log)
-        found = discover(robot.base, robot.log, robot.candidates, note)
-        before, after = found.nominal.point.values, final_values(found)
-        # with nothing named, the fitted model beside the one that the file describes
-        compared = (before, after, WITHOUT) if found.named else ({}, after)
-        pairs = [confirmed(robot, log, *compared) for log in records]
+        robot = self.read()
+        found = discover(robot, progress=note)
+        pairs = confirm(robot, found)
         record: dict[str, Any] = finite(discovery_to_json(found))
         record = {**record, "confirm": [vars(c) for c in pairs]}
         if self.output.json:
@@ -59,7 +51,9 @@ class Discover(OnRobot):
                     for named in found.named
                     for n in (*named.candidate.sizes, *named.candidate.fixed)
                 }
-                values = {n: v for n, v in after.items() if n in (*robot.file.free, *has)}
+                values = {
+                    n: v for n, v in final_values(found).items() if n in (*robot.file.free, *has)
+                }
                 write_robot(robot, values, out / "robot.toml", self.output.out)
                 write_result(out / "result.json", self, record)
         return 0
