@@ -11,11 +11,17 @@ from math import tanh
 import numpy as np
 from numba import njit
 
-from identification.effects.effect import Effect, Size
-from inca_mj import build_twin, make_input, run_to_log, simulate
-from inca_mj.effects.catalogue import CATALOGUE
-from inca_mj.effects.hooks import DriveEffect
-from inca_mj.effects.places import DRIVES_EACH
+from identification import Effect, Size, discovery_text
+from inca_mj import (
+    CATALOGUE,
+    DRIVES_EACH,
+    DriveEffect,
+    build_twin,
+    discover,
+    make_input,
+    run_to_log,
+    simulate,
+)
 
 
 @njit
@@ -52,12 +58,8 @@ def log_with_it(seconds=10.0, c=5e-4, noise=5e-4):
 
 def find(log, effects=(*CATALOGUE, WINDING_FRICTION)):
     """What the nominal model lacks of a log, the own effect among the candidates."""
-    from inca_mj.workflows.discovery import discover
-
     return discover(log, effects=effects)
 
 
 if __name__ == "__main__":
-    from identification.report.discovery_text import discovery_text
-
     print(discovery_text(find(log_with_it())))

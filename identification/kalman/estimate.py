@@ -44,7 +44,7 @@ class InnovationsFit:
         fit: values; std, correlation and tests are those of the innovations, residual and fit
             percentages those of a free run.
         level: the noise of sensors and inputs.
-        innovations: of the whole log, scaled to the sensors' noise, shape (N, ny).
+        innovations: of the whole log, in units of the sensors' noise, shape (N, ny).
         first: first sample that was not fitted.
     """
 

@@ -30,11 +30,11 @@ class Log:
 
     Attributes:
         time: time stamps (n,) [s], evenly spaced.
-        inputs: what was commanded (n, nu).
-        outputs: what was measured (n, ny).
+        inputs: what was commanded, shape (n, nu), each column in its unit.
+        outputs: what was measured, shape (n, ny), each column in its unit.
         input_names: names of the actuators (nu).
         output_names: names of the sensors (ny).
-        extras: optional columns by name, each (n,), such as a measured pose.
+        extras: optional columns by name, each of shape (n,) in its unit, such as a measured pose.
         units: SI unit by column name, where known.
         name: what to call the log in a report.
         notes: what its author says of it.

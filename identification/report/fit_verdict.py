@@ -19,7 +19,7 @@ GROWN = 10.0  # times the fitted residual; a free run that loses itself confirms
 LEVEL = 0.01  # of the residual's tests: one false alarm in a hundred
 
 
-def verdict(fit: Fit) -> list[str]:
+def fit_verdict(fit: Fit) -> list[str]:
     """Sentences: did it converge, what can be known, is the model enough, does it hold unseen."""
     if fit.estimate.status == "stopped":  # what was not found says nothing of the model
         return search_sentences(fit)

@@ -15,10 +15,10 @@ from identification.model.parameter import ParameterSet
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.effects.hooks import DriveEffect
 from inca_mj.robot.geometry import INCA, Geometry
+from inca_mj.twin.logs import POSE
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import timestep_for
-from inca_mj.workflows.identification import POSE
 from inca_mj.workflows.look_alikes import told
 
 TIMESTEP = 2e-3  # [s]; RK4 errs by 0.03 mrad, a twentieth of an encoder's noise, at half the price
@@ -34,6 +34,7 @@ def discover(
     log: Log,
     parameters: ParameterSet | None = None,
     geometry: Geometry = INCA,
+    *,
     effects: Sequence[DriveEffect] = CATALOGUE,
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,

@@ -7,11 +7,11 @@ from joint_cases import SLIDER
 from robot_cases import TOML, refused, simulated
 
 from identification import write_log
-from identification.commands.fit import _far
 from identification.effects.axes import Axis
 from identification.effects.joint_catalogue import TURNS, joint_effects
 from identification.effects.named import unknown_number
 from identification.robot.file import read_robot_file
+from identification.robot.fit_json import _far
 from identification.robot.robot import read_robot_log
 
 
