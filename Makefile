@@ -21,10 +21,11 @@ test: system-packages .venv/.complete  ## run the tests
 test-mujoco4: system-packages .venv-mujoco4/.complete  ## run the tests with MuJoCo 4
 	@.venv-mujoco4/bin/python -m pytest $(ARGS)
 
-lint: .venv/.complete  ## check style, format and types
+lint: .venv/.complete  ## check style, format, types and layers
 	@.venv/bin/ruff check $(ARGS)
 	@.venv/bin/ruff format --check
 	@.venv/bin/mypy
+	@.venv/bin/lint-imports --no-cache --no-logo
 
 bench: .venv/.complete  ## measure the speed of the twin
 	@$(PYTHON_OF_VENV) benchmarks/twin.py $(ARGS)

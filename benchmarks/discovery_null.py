@@ -33,10 +33,10 @@ def null_robot(seed: int, draws: int, coloured: bool, duration: float) -> list[d
     from inca_mj.twin.twin import build_twin
     from inca_mj.workflows.comparison import timestep_for
     from inca_mj.workflows.discovery import KNOWN, TIMESTEP
-    from inca_mj.worlds import Setting, world
+    from inca_mj.worlds import HiddenSetting, world
 
     begin = time.perf_counter()
-    whole = world(seed, setting=Setting(duration=duration)).log
+    whole = world(seed, setting=HiddenSetting(duration=duration)).log
     plant = build_twin(timestep=timestep_for(whole.sampling_time, TIMESTEP), effects=CATALOGUE)
     options = DiscoveryOptions()
     nominal_model = NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()]))

@@ -71,7 +71,7 @@ def world_tasks(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
     """Worlds with effects drawn by chance: one in six has none, one in six an unlisted one."""
     import numpy as np
 
-    from inca_mj.worlds import CATALOGUE, SHAPES, UNLISTED
+    from inca_mj.worlds import HIDDEN_EFFECTS, SHAPES, UNLISTED
 
     for k in range(options.worlds):
         seed = options.seed + k
@@ -79,7 +79,7 @@ def world_tasks(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
         kind = "null" if options.null or k % 6 == 0 else "unknown" if k % 6 == 3 else "single"
         if options.pairs and kind == "single":
             kind = "pair"
-        known = [*CATALOGUE] if kind != "unknown" else [*UNLISTED]
+        known = [*HIDDEN_EFFECTS] if kind != "unknown" else [*UNLISTED]
         count = {"null": 0, "pair": 2}.get(kind, 1)
         names = [str(n) for n in rng.choice(known, count, replace=False)]
         yield {
@@ -98,14 +98,14 @@ def log_of(task: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         from inca_mj.twin.logs import read_inca_log
 
         return read_inca_log(task["practice"]), task["truth"]
-    from inca_mj.worlds import Setting, draw_effect, world
+    from inca_mj.worlds import HiddenSetting, draw_effect, world
 
     effects = [
         draw_effect(name, task["seed"], other_shape=other)
         for name, other in zip(task["names"], task["other_shape"], strict=True)
     ]  # of a robot that stands with them, as all effects on its geometry do
     effects = [replace(e, balanced=True) if hasattr(e, "balanced") else e for e in effects]
-    setting = Setting(
+    setting = HiddenSetting(
         input="multisine" if task["seed"] % 2 else "prbs", duration=task["duration"],
         error_rms=5e-4 if task["coloured"] else 0.0,
     )  # fmt: skip

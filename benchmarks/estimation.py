@@ -28,11 +28,12 @@ from identification.model import predictor
 from identification.model.rollout import rollout, threads
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
-from inca_mj.twin.logs import run_to_log
+from inca_mj.twin.logs import POSE, run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import Twin, build_twin
-from inca_mj.workflows.identification import MECHANICS, POSE
-from inca_mj.workflows.trials import TRIALS, run_trial
+from inca_mj.workflows.identification import MECHANICS
+from inca_mj.workflows.thesis import TRIALS
+from inca_mj.workflows.trials import run_trial
 
 FREE = (*MECHANICS, *POSE)
 DURATION, NOISE = 10.0, 6.7e-4  # [s], [rad]

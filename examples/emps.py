@@ -13,17 +13,22 @@ from pathlib import Path
 import numpy as np
 from scipy.io import loadmat
 
-from identification import Log, Parameter, Predictor
-from identification.discovery.nominal_model import NominalModel
-from identification.discovery.search import discover
-from identification.effects.joint_plant import candidates, joint_plant
-from identification.estimation.estimation import estimate
-from identification.estimation.window_error import window_error
-from identification.estimation.window_estimate import estimate_windows
-from identification.logs.decimation import decimate
-from identification.report.effect_words import describe_rejected
-from identification.report.style import save_png
-from identification.report.windows_figure import windows_figure
+from identification import (
+    Log,
+    NominalModel,
+    Parameter,
+    Predictor,
+    candidates,
+    decimate,
+    describe_rejected,
+    discover,
+    estimate,
+    estimate_windows,
+    joint_plant,
+    save_png,
+    window_error,
+    windows_figure,
+)
 
 MODEL = Path(__file__).parents[1] / "models" / "emps.xml"
 F_C, F_0 = "coulomb_friction.f_c@slide", "offset.f_0@slide"

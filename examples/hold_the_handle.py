@@ -9,16 +9,22 @@ Run it: python examples/hold_the_handle.py
 
 import numpy as np
 
-from inca_mj.robot import law
-from inca_mj.robot.geometry import INCA
-from inca_mj.robot.kinematics import euler, length_jacobian, rotation
-from inca_mj.robot.parameters import GRAVITY, parameter_set
-from inca_mj.twin.control import CONTROL_TIMESTEP, load
-from inca_mj.twin.statics import start
+from inca_mj import (
+    CONTROL_TIMESTEP,
+    GRAVITY,
+    INCA,
+    build_twin,
+    euler,
+    length_jacobian,
+    load_environment,
+    parameter_set,
+    rotation,
+    spring_force,
+)
 
 p = parameter_set().values()
 WEIGHT = np.array([0, 0, p["m"] * GRAVITY, 0, 0, 0])
-SPRING_BALANCE = start(parameter_set(), INCA).tension  # T(0) of the drum springs [N]
+SPRING_BALANCE = build_twin().start.tension  # T(0) of the drum springs [N]
 T_0 = 7.0  # tension to stay near to [N]: above the springs' 4 N, so that all motors pull
 K_P = np.array([150.0] * 3 + [0.5] * 3)  # [N/m, N m/rad]
 K_I = np.array([250.0] * 3 + [0.5] * 3)  # [N/(m s), N m/(rad s)]
@@ -41,7 +47,7 @@ class Controller:
         wrench = K_P * error + K_I * self.sum - K_D * velocity + WEIGHT
         tension = T_0 + np.linalg.pinv(-J.T) @ (wrench + J.T @ np.full(8, T_0))
         spring = [
-            law.spring_force(phi, p["R"], p["R_s"], p["k_s"], T)
+            spring_force(phi, p["R"], p["R_s"], p["k_s"], T)
             for phi, T in zip(seen["motor_angle"], SPRING_BALANCE, strict=True)
         ]
         return (p["R"] * tension - p["R_s"] * np.array(spring)) / p["K_t"]
@@ -49,7 +55,7 @@ class Controller:
 
 def hold(seconds=5.0, seed=0, task="hold"):
     """Distance of the handle from its target [m] and reward, one each control step."""
-    env = load(task, random=seed)
+    env = load_environment(task, random=seed)
     control, step, history = Controller(), env.reset(), []
     for _ in range(round(seconds / CONTROL_TIMESTEP)):
         step = env.step(control(step.observation))

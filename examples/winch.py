@@ -27,17 +27,22 @@ from winch_strokes import (
     without_load,
 )  # fmt: skip
 
-from identification import Log, Parameter
-from identification.discovery.nominal_model import NominalModel
-from identification.discovery.search import discover
-from identification.effects.axes import axes
-from identification.effects.input_effects import drives, input_effects
-from identification.effects.joint_catalogue import joint_effects
-from identification.effects.joint_plant import candidates, joint_plant
-from identification.effects.rows import read_model
-from identification.estimation.window_estimate import estimate_windows
-from identification.logs.irregular import on_a_grid
-from identification.report.finding_words import describe_finding
+from identification import (
+    Log,
+    NominalModel,
+    Parameter,
+    axes,
+    candidates,
+    describe_finding,
+    discover,
+    drives,
+    estimate_windows,
+    input_effects,
+    joint_effects,
+    joint_plant,
+    on_a_grid,
+    read_model,
+)
 
 MODEL = Path(__file__).parents[1] / "models" / "winch.xml"
 ROTOR = 3e-4  # [kg m^2], a guess for an outrunner of this size; the load has m r^2

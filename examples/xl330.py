@@ -15,16 +15,21 @@ import mujoco
 import numpy as np
 from xl330_log import read_all
 
-from identification import Log, Parameter
-from identification.discovery.nominal_model import NominalModel
-from identification.discovery.search import discover
-from identification.effects.axes import axes
-from identification.effects.joint_plant import JointPlant, candidates, joint_plant
-from identification.estimation.joined import joined
-from identification.estimation.window_error import window_error
-from identification.estimation.window_estimate import estimate_windows
-from identification.report.style import save_png
-from identification.report.windows_figure import windows_figure
+from identification import (
+    JointPlant,
+    Log,
+    NominalModel,
+    Parameter,
+    axes,
+    candidates,
+    discover,
+    estimate_windows,
+    joined,
+    joint_plant,
+    save_png,
+    window_error,
+    windows_figure,
+)
 
 MODEL = Path(__file__).parents[1] / "models" / "xl330.xml"
 F_C, F_0 = "coulomb_friction.f_c@hinge", "offset.f_0@hinge"

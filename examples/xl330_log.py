@@ -6,8 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from identification import Log
-from identification.logs.irregular import on_a_grid
+from identification import Log, on_a_grid
 
 STEP, WIDEST = 0.01, 0.02  # of the grid, and a gap that is still bridged [s]
 FULL = 885  # a load of 100 %

@@ -15,8 +15,6 @@ from identification.commands.common import (
 )
 from identification.commands.robots import OnRobot
 
-WITHOUT = "without what is named", "with it"
-
 
 @dataclass(frozen=True)
 class Discover(OnRobot):
@@ -29,25 +27,19 @@ class Discover(OnRobot):
         """Discover, confirm, say, keep."""
         from identification.discovery.final_values import collect_final_values
         from identification.discovery.options import read_options
-        from identification.discovery.search import discover
         from identification.files import whole_folder
         from identification.report.discovery_json import discovery_to_json
         from identification.report.discovery_report import write_discovery_report
         from identification.report.discovery_text import discovery_text
-        from identification.robot.checks import refuse_search_horizon, refuse_start
-        from identification.robot.confirmation import confirmed
+        from identification.robot.confirmation import confirm
+        from identification.robot.discovery import discover
         from identification.robot.write import write_robot
 
         refuse_folder(self.output.out)
         options = None if self.options is None else read_options(self.options)
-        robot, records = self.read()
-        refuse_search_horizon(robot.file, robot.log)
-        refuse_start(robot.file, robot.plant.model, robot.log)
-        found = discover(robot.nominal_model, robot.log, robot.candidates, note, options)
-        before, after = found.nominal.point.values, collect_final_values(found)
-        # Where nothing is named, the fitted model is compared with the one of the file.
-        compared = (before, after, WITHOUT) if found.named else ({}, after)
-        pairs = [confirmed(robot, log, *compared) for log in records]
+        robot = self.read()
+        found = discover(robot, progress=note, options=options)
+        pairs = confirm(robot, found)
         record: dict[str, Any] = discovery_to_json(found)
         record = {**record, "confirm": [vars(c) for c in pairs]}
         if self.output.json:
@@ -62,7 +54,11 @@ class Discover(OnRobot):
                     for named in found.named
                     for n in (*named.candidate.sizes, *named.candidate.fixed)
                 }
-                values = {n: v for n, v in after.items() if n in (*robot.file.free, *has)}
+                values = {
+                    n: v
+                    for n, v in collect_final_values(found).items()
+                    if n in (*robot.file.free, *has)
+                }
                 write_robot(robot, values, out / "robot.toml", self.output.out)
                 write_result(out / "result.json", self, record)
         return 0

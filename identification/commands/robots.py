@@ -11,7 +11,6 @@ import tyro
 from identification.commands.common import Output, output_field
 
 if TYPE_CHECKING:
-    from identification.logs.log import Log
     from identification.robot.robot import Robot
 
 
@@ -27,25 +26,12 @@ class OnRobot:
     """Records to which nothing is fitted."""
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
-    def read(self) -> tuple[Robot, tuple[Log, ...]]:
-        """The robot compiled for its log, and the records that confirm.
+    def read(self) -> Robot:
+        """The robot, compiled for its log, with the records that confirm.
 
         Raises:
-            InputError: a file cannot be what it should be, the model's steps are too coarse, or a
-                log is not wired as the model is.
+            InputError: as `identification.read_robot`.
         """
-        from identification.effects.axes import axes
-        from identification.robot.file import read_robot
-        from identification.robot.robot import read_robot_log, robot_of
-        from identification.robot.step_error import refuse_coarse_steps
-        from identification.robot.wiring import refuse_miswired
+        from identification.robot.reading import read_robot
 
-        file = read_robot(self.robot)
-        records = tuple(read_robot_log(file, path) for path in self.confirm)
-        robot = robot_of(file, read_robot_log(file, self.log))
-        refuse_coarse_steps(robot)
-        for log in records:
-            axes(robot.plant.model, log)  # a sensor that froze confirms nothing
-        for log in (robot.log, *records):
-            refuse_miswired(robot, log)
-        return robot, records
+        return read_robot(self.robot, self.log, self.confirm)

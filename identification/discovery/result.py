@@ -37,8 +37,9 @@ class Discovery:
         after: the gap of the model with the named effects.
         nominal: the fit without effects.
         final: the fit with the named effects.
-        predicted_before: free run of the nominal fit over the whole log, shape (N, ny).
-        predicted_after: free run of the final fit, shape (N, ny).
+        predicted_before: free run of the nominal fit over the whole log, shape (N, ny), in the
+            outputs' units.
+        predicted_after: free run of the final fit, shape (N, ny), in the outputs' units.
         scores: of all candidates on the nominal fit, the best first.
         remaining: of the other candidates on the final fit, the best first.
         detectable: the smallest effects that this log would have shown.

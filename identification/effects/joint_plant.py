@@ -187,6 +187,11 @@ def joint_plant(
 
 
 def candidates(plant: JointPlant, names: Iterable[str]) -> tuple[Effect, ...]:
-    """The effects of a plant of which no parameter is among its free ones."""
+    """The effects of a plant that may be missing: those of which no parameter is free already.
+
+    Args:
+        plant: of `joint_plant`.
+        names: its free parameters.
+    """
     free = {name.partition(".")[0] for name in names}
     return tuple(e for e in plant.effects if e.name not in free)

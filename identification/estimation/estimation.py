@@ -39,9 +39,9 @@ class Estimate:
     Attributes:
         predictor: the plant, the log and the names of the free parameters.
         space: their coordinates.
-        start: starting values, shape (p,).
-        q: the estimate, shape (p,).
-        whitener: C of the criterion, shape (ny, ny).
+        start: starting values, shape (p,), in their units.
+        q: the estimate, shape (p,), in the coordinates of `space`.
+        whitener: C of the criterion, shape (ny, ny), in one over the outputs' units.
         weight: of each residual where the noise is relative, shape (n, ny); else ones.
         options: how it was searched.
         evaluations: how often the outputs were simulated.
@@ -93,7 +93,8 @@ def estimate(
         start: starting values by name; the plant's own where not given.
         options: how to search.
         progress: is told one line per accepted step.
-        whitener: C of the `trace` criterion, shape (ny, ny); I/σ, σ the noise floor, when None.
+        whitener: C of the `trace` criterion, shape (ny, ny), in one over the outputs' units; I/σ,
+            σ the noise floor, when None.
 
     Raises:
         InputError: a name is unknown or has no effect on the outputs, or a start is out of bounds.

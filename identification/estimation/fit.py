@@ -40,18 +40,19 @@ class Fit:
 
     Attributes:
         estimate: where the search ended.
-        std: of the values, infinite where neither log nor prior can say, shape (p,).
-        correlation: of the estimates, shape (p, p).
-        at_bound: which values lie on a bound, shape (p,).
+        std: of the values, in their units, infinite where neither log nor prior can say, shape
+            (p,).
+        correlation: of the estimates, shape (p, p), without unit.
+        at_bound: true where a value lies on a bound, shape (p,).
         found: the directions that the log shows.
         combinations: what can be known of parameters that cannot, with value and std.
-        residual: y - ŷ, shape (n, ny).
+        residual: y - ŷ, shape (n, ny), in the outputs' units.
         fit_percent: on the log, shape (ny,) [%].
         validation_fit_percent: on data that the fit has not seen, shape (ny,) [%], or None.
         validation_rms: there, over all outputs, or None.
         validation_expected: there, if the model is right: the fitted residual and what the
             uncertainty of the parameters makes of it there, or None.
-        floor: noise seen in the measurement alone, shape (ny,).
+        floor: std of the noise seen in the measurement alone, shape (ny,), in the outputs' units.
         tests: of the residual.
         information: what the log says of the parameters at the estimate, for white noise.
     """
@@ -89,6 +90,10 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
         estimate: where a search ended.
         validation: the whole log of which the estimation used the beginning; what lies beyond is
             data that the fit has not seen. None when there is none.
+
+    Raises:
+        InputError: the values that were estimated admit no start.
+        DivergenceError: a simulation beside the estimate left the finite numbers.
     """
     predictor, space, q = estimate.predictor, estimate.space, estimate.q
     log = predictor.log

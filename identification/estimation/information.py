@@ -34,8 +34,8 @@ class Information:
     Attributes:
         names: the parameters that are asked for, then the nuisances.
         asked: how many are asked for.
-        logarithmic: which have q = ln(value), shape (p,).
-        root: upper triangular, rootᵀ root = F of all, shape (p, p).
+        logarithmic: true where q = ln(value), shape (p,).
+        root: upper triangular, rootᵀ root = F of all, shape (p, p), in the coordinates q.
     """
 
     names: tuple[str, ...]

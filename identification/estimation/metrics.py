@@ -15,8 +15,8 @@ def fit_percent(y: FloatArray, y_hat: FloatArray) -> FloatArray:
     channel that never moves has no scale to compare with: its fit is NaN.
 
     Args:
-        y: measured outputs (n, ny).
-        y_hat: simulated outputs (n, ny).
+        y: measured outputs, shape (n, ny), each column in a unit of its own.
+        y_hat: simulated outputs, shape (n, ny), in the same units.
 
     Returns:
         Fit (ny,) [%].
@@ -64,7 +64,9 @@ def rms(residual: FloatArray) -> FloatArray:
 
 
 def loss(residual: FloatArray) -> float:
-    """The quadratic loss (1/N) Σ_k ε_kᵀ ε_k of a residual ε (N, ny): thesis, eq. 3.5.
+    """The quadratic loss (1/N) Σ_k ε_kᵀ ε_k of a residual ε, shape (N, ny): thesis, eq. 3.5.
+
+    All outputs must be in one unit; the loss is in its square.
 
     Raises:
         InputError: the residual is not (n, ny).

@@ -29,8 +29,9 @@ class Starts:
 
     Attributes:
         best: the search that explains the log best.
-        rms: of the residual of each search, infinite where it diverged, in order of the starts.
-        values: starting values, shape (n, p).
+        rms: of the residual of each search, infinite where it diverged, in order of the starts,
+            shape (n,), in the outputs' unit.
+        values: starting values, shape (n, p), in their units.
     """
 
     best: Estimate

@@ -35,9 +35,9 @@ class Profile:
     Attributes:
         name: the parameter.
         estimate: its estimated value.
-        values: where it was held, ascending, shape (k,).
+        values: where it was held, ascending, shape (k,), in its unit.
         rise: V_p - V(q̂) in units of s_j², infinite where no simulation was possible, shape (k,).
-        others: the other parameters there, by name, each (k,).
+        others: the other parameters there, by name, each of shape (k,) in its unit.
         interval: 95 % interval of the value; an end that the profile does not reach is infinite.
     """
 

@@ -22,9 +22,9 @@ class ResidualTests:
     """p-values per output; a small one contradicts the hypothesis.
 
     Attributes:
-        white: that the residual is white, shape (ny,).
+        white: that the residual is white, shape (ny,), without unit.
         independent: that it does not depend on any past input, corrected for the number of inputs
-            and lags, shape (ny,).
+            and lags, shape (ny,), without unit.
     """
 
     white: np.ndarray
@@ -32,7 +32,13 @@ class ResidualTests:
 
 
 def residual_tests(residual: np.ndarray, inputs: np.ndarray, lags: int = LAGS) -> ResidualTests:
-    """Test a residual (n, ny) against itself and against the inputs (n, nu)."""
+    """Test a residual against its own past and against the inputs.
+
+    Args:
+        residual: y - ŷ, shape (n, ny), each column in a unit of its own.
+        inputs: of the same samples, shape (n, nu), each column in a unit of its own.
+        lags: how many samples back.
+    """
     return ResidualTests(_whiteness(residual, lags), _independence(residual, inputs, lags))
 
 

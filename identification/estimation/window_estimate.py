@@ -38,11 +38,11 @@ class WindowEstimate:
 
     Attributes:
         values: the estimates by name.
-        std: for white noise, infinite where the windows cannot say, shape (p,).
-        start: starting values, shape (p,).
-        at_bound: which values lie on a bound, shape (p,).
+        std: for white noise, infinite where the windows cannot say, shape (p,), in their units.
+        start: starting values, shape (p,), in their units.
+        at_bound: true where a value lies on a bound, shape (p,).
         found: the directions that the windows show.
-        residual: y - ŷ of all windows, shape (W, L, ny).
+        residual: y - ŷ of all windows, shape (W, L, ny), in the outputs' units.
         states: where each window began, W rows.
         length: of a window [s].
         converged: whether the search ended by itself.

@@ -46,7 +46,7 @@ class InnovationsFit:
         fit: the values; std, correlation and tests are those of the innovations, residual and fit
             percentages those of a free run.
         level: the noise of sensors and inputs.
-        innovations: of the whole log, of the std of the sensors' noise each, shape (N, ny).
+        innovations: of the whole log, in units of the sensors' noise, shape (N, ny).
         first: first sample that was not fitted.
     """
 

@@ -27,7 +27,7 @@ def on_a_grid(
 
     Args:
         time: stamps, shape (n,) [s]; rows with equal stamps are one another's neighbours.
-        channels: by name, shape (n,); NaN where nothing arrived.
+        channels: by name, shape (n,), each in a unit of its own; NaN where nothing arrived.
         step: of the grid [s].
         widest: gap between two samples of a channel that is still bridged [s].
 

@@ -10,8 +10,16 @@ from typing import Any
 import numpy as np
 
 from identification.errors import InputError, unknown_name
-from identification.logs.log_checks import check_log
-from identification.logs.sampling import MIN_ROWS, FloatArray, rows_between, sampling_time
+from identification.logs.log_checks import HOLDS, check_array, check_splits
+from identification.logs.names import check_column_names
+from identification.logs.sampling import (
+    MIN_ROWS,
+    FloatArray,
+    check_time,
+    rows_between,
+    sampling_time,
+)
+from identification.logs.units import check_si
 
 Splits = Mapping[str, tuple[float, float]]
 
@@ -22,11 +30,11 @@ class Log:
 
     Attributes:
         time: time stamps (n,) [s], evenly spaced.
-        inputs: what was commanded (n, nu).
-        outputs: what was measured (n, ny).
+        inputs: what was commanded, shape (n, nu), each column in its unit.
+        outputs: what was measured, shape (n, ny), each column in its unit.
         input_names: names of the actuators (nu).
         output_names: names of the sensors (ny).
-        extras: optional columns by name, each (n,), such as a measured pose.
+        extras: optional columns by name, each of shape (n,) in its unit, such as a measured pose.
         units: SI unit by column name, where known.
         name: what to call the log in a report.
         notes: what its author says of it.
@@ -61,7 +69,28 @@ class Log:
         put("extras", MappingProxyType({k: _frozen(v) for k, v in self.extras.items()}))
         put("units", MappingProxyType(dict(self.units)))
         put("splits", MappingProxyType({k: (a, b) for k, (a, b) in self.splits.items()}))
-        check_log(self)
+        self._check()
+
+    def _check(self) -> None:
+        """Refuse what breaks a promise of the class."""
+        names = (*self.input_names, *self.output_names, *self.extras)
+        check_column_names(names)
+        if not (self.input_names or self.output_names):
+            raise InputError(f"log {self.name!r} has no columns; name its inputs or outputs")
+        n = self.time.shape[0] if self.time.ndim == 1 else -1
+        check_array(self.name, "time", self.time, (n,))
+        check_array(self.name, "inputs", self.inputs, (n, len(self.input_names)))
+        check_array(self.name, "outputs", self.outputs, (n, len(self.output_names)))
+        for name, column in self.extras.items():
+            check_array(self.name, name, column, (n,))
+        check_time(self.time, lambda row: f"row {row} of log {self.name!r}")
+        for name, unit in self.units.items():
+            if name not in names:
+                raise unknown_name("column with a unit", name, names)
+            check_si(unit)
+        if self.hold not in HOLDS:
+            raise unknown_name("hold of the input", self.hold, HOLDS)
+        check_splits(self.name, self.time, self.splits)
 
     def __len__(self) -> int:
         return len(self.time)

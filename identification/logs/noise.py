@@ -18,10 +18,17 @@ KEPT = 0.7  # share of the differences that counts
 
 
 def noise_floor(y: np.ndarray, order: int = ORDER) -> np.ndarray:
-    """Std of the white noise on each channel, shape (n, ny) -> (ny,), in the unit of `y`.
+    """Std of the white noise on each channel of a measurement.
 
     An upper bound where the signal itself is rough at the sampling rate; encoder steps Δ count as
     noise of Δ/√12 as long as the signal crosses some of them.
+
+    Args:
+        y: measured outputs, shape (n, ny), each in a unit of its own.
+        order: n of the differences.
+
+    Returns:
+        Shape (ny,), in the units of `y`.
     """
     rough = np.sort(np.diff(y, n=min(order, len(y) - 1), axis=0) ** 2, axis=0)
     kept = rough[: max(1, round(KEPT * len(rough)))].mean(axis=0)

@@ -21,14 +21,14 @@ FARTHEST = 700.0  # of a logarithm: beyond, exp overflows
 
 @dataclass(frozen=True)
 class Coordinates:
-    """A change of variables for p parameters.
+    """A change of variables for p parameters: values in their units, q without units.
 
     Attributes:
         names: the parameters, p of them.
-        logarithmic: which have q = ln(value), shape (p,).
-        lower: bounds of q, shape (p,).
-        upper: bounds of q, shape (p,).
-        scale: of those that are not logarithmic, shape (p,).
+        logarithmic: true where q = ln(value), shape (p,).
+        lower: smallest q, without unit, shape (p,).
+        upper: largest q, without unit, shape (p,).
+        scale: value of q = 1 of those that are not logarithmic, in their units, shape (p,).
     """
 
     names: tuple[str, ...]
@@ -75,7 +75,7 @@ def coordinates(
     Args:
         parameters: the set.
         names: which are free.
-        start: their values, shape (p,).
+        start: their values, shape (p,), in their units.
         linear: those of them that are not logarithmic though they are positive.
 
     Raises:

@@ -73,6 +73,10 @@ class Parameter:
 class ParameterSet:
     """Parameters by name, in a fixed order; `with_values` returns a new set.
 
+    Attributes:
+        name: of the set.
+        records: the parameters, each name once.
+
     Raises:
         InputError: a name occurs twice.
     """

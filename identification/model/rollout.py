@@ -40,9 +40,9 @@ class State:
     """Where simulations begin: one row each, or one row for all.
 
     Attributes:
-        qpos: shape (n, nq) or (nq,).
-        qvel: shape (n, nv) or (nv,).
-        act: shape (n, na) or (na,).
+        qpos: positions, shape (n, nq) or (nq,) [m, rad, quaternions].
+        qvel: velocities, shape (n, nv) or (nv,) [m/s, rad/s].
+        act: activations, shape (n, na) or (na,), in the units of their actuators.
     """
 
     qpos: np.ndarray

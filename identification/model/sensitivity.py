@@ -29,7 +29,22 @@ def sensitivity(
     samples: int | None = None,
     step: float = STEP,
 ) -> np.ndarray:
-    """∂ŷ/∂q, shape (samples, ny, p), from 2 p simulations."""
+    """∂ŷ/∂q of the predicted outputs by central differences, from 2 p simulations.
+
+    Args:
+        predictor: of the outputs.
+        space: coordinates of the p free parameters; see `coordinates`.
+        q: where, shape (p,), in these coordinates.
+        samples: how many of the log's samples are predicted; all when None.
+        step: h, of q.
+
+    Returns:
+        Shape (samples, ny, p), in the outputs' units per unit of q.
+
+    Raises:
+        InputError: a start of one of the simulations is none that the plant can have.
+        DivergenceError: a simulation left the finite numbers.
+    """
     moves = step * np.eye(len(q))
     values = space.decode(np.concatenate([q + moves, q - moves]))
     ahead, behind = np.split(predictor.predict(values, samples), 2)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from identification.estimation.fit import Fit
-from identification.report.fit_verdict import verdict
+from identification.report.fit_verdict import fit_verdict
 
 
 def fit_to_json(fit: Fit) -> dict[str, Any]:
@@ -43,7 +43,7 @@ def fit_to_json(fit: Fit) -> dict[str, Any]:
         "evaluations": e.evaluations,
         "seconds": e.seconds,
         "status": e.status,
-        "verdict": verdict(fit),
+        "verdict": fit_verdict(fit),
     }
 
 

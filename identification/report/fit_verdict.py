@@ -20,7 +20,7 @@ GROWN = 10.0  # a free run that errs by more than this multiple of the fitted re
 LEVEL = 0.01  # significance of the tests of the residual: one false alarm in a hundred
 
 
-def verdict(fit: Fit) -> list[str]:
+def fit_verdict(fit: Fit) -> list[str]:
     """Sentences: did it converge, what can be known, is the model enough, does it hold unseen."""
     if fit.estimate.status == "stopped":  # a search that was stopped says nothing of the model
         return search_sentences(fit)

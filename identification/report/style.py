@@ -43,6 +43,14 @@ STYLE: Any = {
 def save_png(figure: Figure, path: str | Path, dpi: float = 150) -> Path:
     """Write a figure as PNG, whole or not at all.
 
+    Args:
+        figure: of matplotlib, such as that of `windows_figure`.
+        path: where to write.
+        dpi: pixels per inch.
+
+    Returns:
+        The path.
+
     Raises:
         InputError: the file cannot be written.
     """

@@ -1,97 +1,38 @@
-"""How far two sets of values are off on a record, over the same horizon: what confirms a model."""
+"""What was found, on records to which nothing was fitted."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-
-import numpy as np
-
-from identification.estimation.window_error import window_error
-from identification.logs.log import Log
-from identification.model.predictor import Predictor
-from identification.quantities import alike
+from identification.discovery.final_values import collect_final_values
+from identification.discovery.result import Discovery
+from identification.robot.fitting import RobotFit
+from identification.robot.record_error import Confirmation, compare_values
 from identification.robot.robot import Robot
 
-AS_WRITTEN, FITTED = "with the values of the robot's file", "with those that were fitted"
+WITHOUT = "without what is named", "with it"
 
 
-@dataclass(frozen=True)
-class Confirmed:
-    """Two models on one record.
+def confirm(robot: Robot, found: RobotFit | Discovery) -> tuple[Confirmation, ...]:
+    """Compare two models on every record of a robot to which nothing was fitted.
 
-    Attributes:
-        log: name of the record.
-        before: rms error of the first, over all outputs.
-        after: of the second.
-        unit: of the errors, empty where the outputs have several.
-        models: what the two are, in words.
-    """
-
-    log: str
-    before: float
-    after: float
-    unit: str
-    models: tuple[str, str]
-
-    def __str__(self) -> str:
-        change = 100 * ((self.after / self.before) ** 2 - 1) if self.before else 0.0
-        before, after = alike([self.before, self.after], self.unit)
-        first, second = self.models
-        return (
-            f"On {self.log}: {before} rms {first}, {after} {second}; mean square {change:+.0f} %."
-        )
-
-
-def confirmed(
-    robot: Robot,
-    log: Log,
-    before: Mapping[str, float],
-    after: Mapping[str, float],
-    models: tuple[str, str] = (AS_WRITTEN, FITTED),
-) -> Confirmed:
-    """Two sets of values on a record: over the robot's horizon, or in a free run of all of it.
+    Of a fit: the values of the robot's file beside the fitted ones. Of a discovery that names
+    something: the fitted model without it beside the one with it; of another discovery the values
+    of the robot's file beside the fitted ones.
 
     Args:
-        robot: whose plant and horizon.
-        log: the record; it starts where it measured.
-        before: values that are not the plant's own.
-        after: likewise.
-        models: what the two are, in words.
+        robot: whose `records`; of `read_robot`.
+        found: of `fit` or of `discover`.
+
+    Returns:
+        One for each record: the rms errors over the robot's horizon, or of a free run.
 
     Raises:
-        InputError: the windows do not fit the record.
+        InputError: windows of the robot's horizon do not fit a record.
         DivergenceError: one of the models cannot be simulated.
     """
-    a, b = (_rms(robot, log, values) for values in (before, after))
-    return Confirmed(log.name, a, b, log.output_unit, models)
-
-
-def unseen(robot: Robot, before: Mapping[str, float], after: Mapping[str, float]) -> Confirmed:
-    """Two sets of values on the part of the robot's own log that confirms.
-
-    Raises:
-        InputError: the windows do not fit that part.
-        DivergenceError: one of the models cannot be simulated.
-    """
-    log = robot.log
-    part = log.part("validation")
-    if robot.file.horizon is not None:
-        return confirmed(robot, part, before, after)
-    rows = np.isin(log.time, part.time)
-    a, b = (float(np.sqrt(np.mean(_free_run(robot, log, v)[rows] ** 2))) for v in (before, after))
-    return Confirmed(part.name, a, b, part.output_unit, (AS_WRITTEN, FITTED))
-
-
-def _rms(robot: Robot, log: Log, values: Mapping[str, float]) -> float:
-    horizon, here = robot.file.horizon, {**values, **robot.started(log)}
-    if horizon is None:
-        error = _free_run(robot, log, here)
-    else:
-        error = window_error(robot.plant, log, horizon, here)
-    return float(np.sqrt(np.mean(error**2)))
-
-
-def _free_run(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
-    predictor = Predictor(robot.plant, log, (), dict(values))
-    return np.asarray(log.outputs - predictor.predict(np.empty((1, 0)))[0])
+    if isinstance(found, RobotFit):
+        return tuple(compare_values(robot, log, {}, found.values) for log in robot.records)
+    after = collect_final_values(found)
+    if not found.named:
+        return tuple(compare_values(robot, log, {}, after) for log in robot.records)
+    before = found.nominal.point.values
+    return tuple(compare_values(robot, log, before, after, WITHOUT) for log in robot.records)

@@ -94,7 +94,7 @@ class RobotFile:
     turns: tuple[float, ...] = ()
 
 
-def read_robot(path: str | Path) -> RobotFile:
+def read_robot_file(path: str | Path) -> RobotFile:
     """Read such a file.
 
     Raises:

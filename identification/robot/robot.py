@@ -34,19 +34,22 @@ from identification.robot.parameters import free_parameter, measured_start, unit
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot and the log that it is to explain.
+    """A robot and the log that it is to explain; `read_robot` makes one.
 
     Attributes:
         file: what its TOML says.
-        log: thinned, if so wished.
+        log: what was measured; every n-th sample of it, where the file says so.
         plant: its model with the effects.
-        std: what is known of its free parameters, in the search's coordinates, shape (p,).
+        std: what is known of its free parameters before the log speaks, shape (p,): relative
+            where a parameter must be positive, else in its unit.
+        records: logs to which nothing is fitted: on these a model is confirmed.
     """
 
     file: RobotFile
     log: Log
     plant: JointPlant
     std: np.ndarray
+    records: tuple[Log, ...] = ()
 
     @property
     def nominal_model(self) -> NominalModel:

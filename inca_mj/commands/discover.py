@@ -119,18 +119,12 @@ def _film(found: Discovery, robot: Twin, run: Run, out: Path) -> Path | None:
     """The final twin over the start of the log; None, and a sentence, where it cannot be."""
     from identification.errors import GraphicsError, InputError
     from inca_mj.rendering.film import film
+    from inca_mj.rendering.scene import Scene
     from inca_mj.twin.logs import pose_of
 
-    shown = run.until(min(FILMED, float(run.time[-1])))
-    n, pose = len(shown.time), pose_of(found.log)
+    scene = Scene(run, found.log.outputs, pose_of(found.log))
     try:
-        return film(
-            shown,
-            out / "film.mp4",
-            measured=found.log.outputs[:n],
-            measured_pose=None if pose is None else pose[:n],
-            progress=bar("film"),
-        )
+        return film(scene, out / "film.mp4", seconds=FILMED, progress=bar("film"))
     except (GraphicsError, InputError) as error:
         note(f"no film: {error}")
         return None

@@ -61,17 +61,30 @@ class Excite:
         from inca_mj.twin.twin import build_twin
         from inca_mj.workflows.bench import SAMPLING
         from inca_mj.workflows.comparison import timestep_for
-        from inca_mj.workflows.excitation import design
+        from inca_mj.workflows.excitation import excite
         from inca_mj.workflows.limits import Limits
 
-        limits = Limits(*self.current, self.margin, self.reach, radians(self.turn))
+        limits = Limits(
+            low=self.current[0],
+            high=self.current[1],
+            margin=self.margin,
+            reach=self.reach,
+            turn=radians(self.turn),
+        )
         robot = build_twin(
             self.robot.parameters(),
             self.robot.place(),
             timestep=timestep_for(SAMPLING, self.robot.step),
         )
-        result = design(
-            robot, self.duration, self.noise, self.free, limits, self.budget, self.seed, note
+        result = excite(
+            robot,
+            self.duration,
+            noise=self.noise,
+            free=self.free,
+            limits=limits,
+            budget=self.budget,
+            seed=self.seed,
+            progress=note,
         )
         record = design_json(result)
         if self.output.out is not None:

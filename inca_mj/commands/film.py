@@ -12,9 +12,7 @@ from identification.commands.common import Output, bar, say, say_json
 from inca_mj.commands.common import Robot, cannot_draw, robot_field
 
 if TYPE_CHECKING:
-    import numpy as np
-
-    from inca_mj.twin.run import Run
+    from inca_mj.rendering.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -49,52 +47,39 @@ class Film:
         from identification.files import whole_folder
         from inca_mj.rendering.film import film, stills
 
-        run, measured, pose = self._scene()
-        late = [t for t in self.still if not 0 <= t <= run.time[-1]]
+        scene = self._scene()
+        end = float(scene.run.time[-1])
+        late = [t for t in self.still if not 0 <= t <= end]
         if late:
-            raise InputError(f"no still at {late[0]:g} s: the run ends at {run.time[-1]:g} s")
+            raise InputError(f"no still at {late[0]:g} s: the run ends at {end:g} s")
         out = self.output.out or Path("out/film")
         with whole_folder(out) as draft:
             path = film(
-                run,
+                scene,
                 draft / "film.mp4",
-                measured=measured,
-                measured_pose=pose,
                 camera=self.camera,
                 plots=self.plots,
                 speed=self.speed,
                 progress=bar("film"),
             )
-            pictures = stills(
-                run,
-                draft,
-                self.still,
-                measured=measured,
-                measured_pose=pose,
-                camera=self.camera,
-                plots=self.plots,
-            )
+            pictures = stills(scene, draft, self.still, camera=self.camera, plots=self.plots)
         files = [str(out / p.name) for p in (path, *pictures)]
         if self.output.json:
-            say_json({"film": files[0], "stills": files[1:], "seconds": float(run.time[-1])})
+            say_json({"film": files[0], "stills": files[1:], "seconds": end})
         else:
             say("\n".join(files))
         return 0
 
-    def _scene(self) -> tuple[Run, np.ndarray | None, np.ndarray | None]:
-        """The run to film, and the measured angles and pose of a log."""
-        from identification.errors import InputError
-        from inca_mj.twin.logs import pose_of, read_inca_log
-        from inca_mj.twin.run import load_run
+    def _scene(self) -> Scene:
+        """What to film: a saved run, or a log beside the twin with the values that were asked."""
+        from inca_mj.rendering.scene import make_scene
+        from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.comparison import compare
 
-        end = float("inf") if self.seconds is None else self.seconds
-        if not end > 0:
-            raise InputError(f"cannot film {end:g} s; give --seconds a positive number")
         if self.source.suffix == ".npz":
-            return load_run(self.source).until(end), None, None
+            return make_scene(self.source, self.seconds)
         log = read_inca_log(self.source)
-        if end < log.duration:
-            log = log.between(float("-inf"), float(log.time[0]) + end)
+        if self.seconds is not None and 0 < self.seconds < log.duration:
+            log = log.between(float("-inf"), float(log.time[0]) + self.seconds)
         result = compare(log, self.robot.parameters(), self.robot.place(), timestep=self.robot.step)
-        return result.run, log.outputs, pose_of(log)
+        return make_scene(result, self.seconds)

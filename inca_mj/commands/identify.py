@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import tyro
 
@@ -107,7 +107,12 @@ class Identify:
                 " leave it out for the two steps"
             )
         free = self.free or ()
-        options = Options(self.method, self.criterion, self.loss, self.horizons)
+        options = Options(
+            method=self.method,
+            criterion=self.criterion,
+            loss=self.loss,
+            horizons=self.horizons,
+        )
         alone = "--windows" if self.windows is not None else "--innovations"
         if (self.windows is not None or self.innovations) and (
             options != Options() or self.starts != 1 or self.profile
@@ -121,12 +126,11 @@ class Identify:
         log, parameters, place = (
             read_inca_log(self.log), self.robot.parameters(), self.robot.place()
         )  # fmt: skip
+        common: Any = {"free": free, "progress": note, "timestep": self.robot.step}
         if self.windows is not None:
-            return identify_windows(
-                log, parameters, self.windows, place, free, note, self.robot.step
-            )
+            return identify_windows(log, self.windows, parameters, place, **common)
         if self.innovations:
-            return identify_innovations(log, parameters, place, free, note, self.robot.step)
+            return identify_innovations(log, parameters, place, **common)
         estimated = free or (*MECHANICS, *POSE)
         for name in self.profile:
             if name not in estimated:
@@ -134,15 +138,14 @@ class Identify:
                     f"{name!r} is not estimated; profile one of {', '.join(estimated)}"
                 )
         return identify(
-            log, parameters, place, free, options, note, self.robot.step, self.starts,
-            self.seed,
-        )  # fmt: skip
+            log, parameters, place, options=options, starts=self.starts, seed=self.seed, **common
+        )
 
 
 def summary(result: Identification, fit: Fit) -> str:
     """A fit as a text table and its verdict."""
     from identification.estimation.metrics import mean_fit
-    from identification.report.fit_verdict import verdict
+    from identification.report.fit_verdict import fit_verdict
     from inca_mj.report.identification_json import identification_verdict, rows
 
     cells = [
@@ -154,7 +157,7 @@ def summary(result: Identification, fit: Fit) -> str:
     return (
         table(("parameter", "value", "std", "unit", "start", ""), cells)
         + f"\nfit {mean_fit(fit.fit_percent)}, {seconds:.1f} s\n"
-        + "\n".join(identification_verdict(result) if fit is result.fit else verdict(fit))
+        + "\n".join(identification_verdict(result) if fit is result.fit else fit_verdict(fit))
     )
 
 

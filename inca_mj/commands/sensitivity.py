@@ -12,8 +12,6 @@ from identification.commands.common import Output, output_field, say, say_json, 
 from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from identification.estimation.information import Information
 
 
@@ -37,23 +35,26 @@ class Sensitivity:
     def run(self) -> int:
         """Analyse, say, keep."""
         do_not_draw()
-        from identification.estimation.experiment import Experiment, information
         from identification.files import whole_folder
         from inca_mj.report.sections_information import information_json, information_verdict
-        from inca_mj.twin.logs import ANGLES
-        from inca_mj.twin.twin import build_twin
-        from inca_mj.workflows.comparison import timestep_for
-        from inca_mj.workflows.identification import POSE
+        from inca_mj.twin.logs import read_inca_log
+        from inca_mj.workflows.sensitivity import planned_experiment, robot_information
 
-        currents, sampling, hold, sigma, about = self._experiment()
-        robot = build_twin(
+        log = None if self.log is None else read_inca_log(self.log)
+        trial = planned_experiment(
+            log,
             self.robot.parameters(),
             self.robot.place(),
-            timestep=timestep_for(sampling, self.robot.step),
+            noise=self.noise,
+            duration=self.duration,
+            timestep=self.robot.step,
         )
-        trial = Experiment(robot, currents, sampling, ANGLES, sigma, hold)
-        found = information(trial, self.free, [n for n in POSE if n not in self.free])
-        record = {"noise": sigma, **information_json(found)}
+        found = robot_information(trial, self.free)
+        what = f"{self.duration:g} s of the thesis' PRBS"
+        if log is not None:
+            what = f"The currents of {log.name}, {log.duration:g} s"
+        about = f"{what}, noise {trial.sigma:.3g} rad."
+        record = {"noise": trial.sigma, **information_json(found)}
         if self.output.out is not None:
             with whole_folder(self.output.out) as out:
                 keep(found, about, out)
@@ -63,24 +64,6 @@ class Sensitivity:
         else:
             say(summary(found) + "\n" + "\n".join([about, *information_verdict(found)]))
         return 0
-
-    def _experiment(self) -> tuple[np.ndarray, float, str, float, str]:
-        """Currents, sampling time [s], hold, noise [rad], and what they are in words."""
-        import numpy as np
-
-        from identification.logs.noise import noise_floor
-        from inca_mj.robot.inputs import make_input
-        from inca_mj.twin.logs import read_inca_log
-
-        if self.log is None:
-            sigma = 6.7e-4 if self.noise is None else self.noise
-            about = f"{self.duration:g} s of the thesis' PRBS, noise {sigma:.3g} rad."
-            return make_input("prbs", self.duration), 0.01, "zoh", sigma, about
-        log = read_inca_log(self.log)
-        floor = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2)))
-        sigma = floor if self.noise is None else self.noise
-        about = f"The currents of {log.name}, {log.duration:g} s, noise {sigma:.3g} rad."
-        return log.inputs, log.sampling_time, log.hold, sigma, about
 
 
 def summary(found: Information) -> str:

@@ -39,21 +39,12 @@ class Trials:
     def run(self) -> int:
         """Run, say, keep."""
         do_not_draw()
-        from identification.errors import unknown_name
         from identification.estimation.estimation import Options
         from identification.files import whole_folder
-        from inca_mj.workflows.trials import TRIALS, monte_carlo, run_trial
+        from inca_mj.workflows.trials import monte_carlo, trials
 
-        for number in self.trial:
-            if number not in range(1, len(TRIALS) + 1):
-                raise unknown_name("trial", str(number), map(str, range(1, len(TRIALS) + 1)))
         options = Options(horizons=(1.0,)) if self.single else None
-        results = []
-        for number in self.trial:
-            note(f"trial {number}")
-            results.append(
-                run_trial(TRIALS[number - 1], seed=self.seed, options=options, progress=note)
-            )
+        results = trials(self.trial, seed=self.seed, options=options, progress=note)
         record: dict[str, object] = {"trials": [r.to_json() for r in results]}
         if self.monte_carlo:
             record["monte_carlo"] = monte_carlo(self.monte_carlo, progress=note)
@@ -71,7 +62,7 @@ class Trials:
 
 def summary(result: TrialResult) -> str:
     """A trial as the thesis' table with a column of ours."""
-    from identification.report.fit_verdict import verdict
+    from identification.report.fit_verdict import fit_verdict
 
     shown = result.to_json()
     rows = [
@@ -91,5 +82,5 @@ def summary(result: TrialResult) -> str:
         f" {result.fit.estimate.seconds:.1f} s\n"
         + table(("parameter", "true", "start", "thesis", "ours", "fit [%]"), rows)
         + "\n"
-        + "\n".join(verdict(result.fit))
+        + "\n".join(fit_verdict(result.fit))
     )

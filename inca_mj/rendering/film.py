@@ -16,6 +16,7 @@ from inca_mj.rendering.encoder import encoder
 from inca_mj.rendering.ghost import ghost_positions
 from inca_mj.rendering.panel import Panel
 from inca_mj.rendering.picture import BACKGROUND, Layout, Lettering, layout, paste
+from inca_mj.rendering.scene import Scene, Source, make_scene
 from inca_mj.rendering.view import View, view
 from inca_mj.twin.run import Run
 
@@ -26,11 +27,10 @@ _CABLE_FAR, _CABLE_NEAR = 0.008, 0.0018
 
 
 def film(
-    run: Run,
+    source: Source,
     path: str | Path,
     *,
-    measured: np.ndarray | None = None,
-    measured_pose: np.ndarray | None = None,
+    seconds: float | None = None,
     camera: str = "front",
     size: tuple[int, int] = (1280, 720),
     fps: float = 30,
@@ -38,15 +38,13 @@ def film(
     speed: float = 1.0,
     progress: Progress | None = None,
 ) -> Path:
-    """Write a run as an mp4 film, whole or not at all.
+    """Write a log or a run as an mp4 film, whole or not at all.
 
     Args:
-        run: what the twin did.
+        source: a log, which is laid over the twin's prediction of it; a comparison, a run, or a
+            `Scene` made of one by hand; or the path of a log or of a saved run.
         path: where to write; the name ends in .mp4.
-        measured: motor angles of the real robot at `run.time`, shape (N, 8) [rad]; its pose
-            follows from the cable lengths (see `inca_mj.rendering.ghost`).
-        measured_pose: x, y, z [m], roll, pitch, yaw [rad] of the real robot where they were
-            measured too, shape (N, 6).
+        seconds: only so many from the start [s]; all of it when None.
         camera: "front", "side" or "handle".
         size: width and height of the film, even numbers [px].
         fps: frames per second of the film.
@@ -54,8 +52,12 @@ def film(
         speed: seconds of the run in a second of film; 0.25 is slow motion.
         progress: told the frames done and the frames in all.
 
+    Returns:
+        The path.
+
     Raises:
-        InputError: an argument makes no sense, or the file cannot be written.
+        InputError: an argument makes no sense, or a file cannot be read or written.
+        DivergenceError: the twin cannot be simulated under a log's currents.
         GraphicsError: no OpenGL context can be made here.
     """
     path = Path(path)
@@ -63,11 +65,13 @@ def film(
         raise InputError(f"a film is written as .mp4, not {path.name!r}; change its ending")
     if not (np.isfinite([fps, speed]).all() and fps > 0 and speed > 0):
         raise InputError(f"fps {fps:g} and speed {speed:g} must be positive")
+    scene = make_scene(source, seconds)
+    run = scene.run
     duration = run.time[-1] - run.time[0]
     # The small part of a frame keeps the last one when the division is not exact.
     times = run.time[0] + np.arange(int(duration * fps / speed + 1e-6) + 1) * speed / fps
     with (
-        _stage(run, measured, measured_pose, camera, size, plots) as stage,
+        _stage(scene, camera, size, plots) as stage,
         whole_file(path) as draft,
         encoder(draft, size, fps) as send,
     ):
@@ -79,29 +83,37 @@ def film(
 
 
 def stills(
-    run: Run,
+    source: Source,
     folder: str | Path,
     times: Sequence[float],
     *,
-    measured: np.ndarray | None = None,
-    measured_pose: np.ndarray | None = None,
     camera: str = "front",
     size: tuple[int, int] = (1280, 720),
     plots: bool = True,
 ) -> list[Path]:
-    """Write frames of the film at some times [s] as PNG files; see `film`.
+    """Write frames of the film at some times as PNG files.
+
+    Args:
+        source: as of `film`.
+        folder: where to write.
+        times: of the pictures [s].
+        camera: "front", "side" or "handle".
+        size: width and height of a picture, even numbers [px].
+        plots: show the motor angles beside the robot.
 
     Returns:
         The files, `<camera>_<time>s.png`, in the order of the times.
 
     Raises:
-        InputError: an argument makes no sense, or a file cannot be written.
+        InputError: an argument makes no sense, or a file cannot be read or written.
+        DivergenceError: the twin cannot be simulated under a log's currents.
         GraphicsError: no OpenGL context can be made here.
     """
     from PIL import Image
 
-    paths = []
-    with _stage(run, measured, measured_pose, camera, size, plots) as stage:
+    scene = make_scene(source)
+    run, paths = scene.run, []
+    with _stage(scene, camera, size, plots) as stage:
         for time in times:
             if not run.time[0] <= time <= run.time[-1]:
                 raise InputError(
@@ -113,7 +125,7 @@ def stills(
     return paths
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class _Stage:
     """Everything that frames of one run share."""
 
@@ -143,24 +155,12 @@ class _Stage:
 
 
 @contextmanager
-def _stage(
-    run: Run,
-    measured: np.ndarray | None,
-    measured_pose: np.ndarray | None,
-    camera: str,
-    size: tuple[int, int],
-    plots: bool,
-) -> Iterator[_Stage]:
+def _stage(shown: Scene, camera: str, size: tuple[int, int], plots: bool) -> Iterator[_Stage]:
     width, height = size
     if width % 2 or height % 2 or not (160 <= width <= 7680 and 120 <= height <= 4320):
         raise InputError(f"a film of {width} x {height} pixels: give even numbers from 160 x 120")
-    if measured is None and measured_pose is not None:
-        raise InputError("a measured pose needs the measured motor angles beside it")
-    ghost = None
-    if measured is not None:
-        if len(measured) != len(run.time):
-            raise InputError(f"{len(measured)} measured samples for {len(run.time)} simulated ones")
-        ghost = ghost_positions(run.twin, measured, measured_pose)
+    run, measured = shown.run, shown.angles
+    ghost = None if measured is None else ghost_positions(run.twin, measured, shown.pose)
     boxes, scale = layout(size, camera, plots), tension_scale(run.tension)
     panel = None
     if boxes.plots is not None:
@@ -176,10 +176,16 @@ def _stage(
                 view(model, "handle", *boxes.handle[2:], cable=_CABLE_NEAR)
             )
         yield _Stage(
-            run, ghost, scale, boxes, scene, handle, panel,
-            Lettering(size, boxes, scale, ghost is not None, assumed),
-            np.full((height, width, 3), BACKGROUND, np.uint8),
-        )  # fmt: skip
+            run=run,
+            ghost=ghost,
+            scale=scale,
+            boxes=boxes,
+            scene=scene,
+            handle=handle,
+            panel=panel,
+            lettering=Lettering(size, boxes, scale, ghost is not None, assumed),
+            canvas=np.full((height, width, 3), BACKGROUND, np.uint8),
+        )
 
 
 def _between(time: np.ndarray, values: np.ndarray, at: float) -> np.ndarray:

@@ -15,12 +15,13 @@ from identification.report.fit_json import fit_to_json
 from identification.report.fit_verdict import (
     HOLDS,
     coloured_outputs,
+    fit_verdict,
     identifiable_sentences,
     search_sentences,
-    verdict,
     window_sentences,
 )
-from inca_mj.workflows.identification import POSE, Identification
+from inca_mj.twin.logs import POSE
+from inca_mj.workflows.identification import Identification
 
 # name, value, std, unit, start, on a bound
 Row = tuple[str, float, float, str, float, bool]
@@ -64,7 +65,7 @@ def identification_verdict(result: Identification) -> list[str]:
         return innovations_verdict(result.innovations)
     if result.windows is not None:
         return windows_verdict(result.windows, result.fit)
-    said = verdict(result.fit)
+    said = fit_verdict(result.fit)
     if held := held_sentence(result.fit):
         said.append(held)
     if result.starts:

@@ -6,7 +6,7 @@ import numpy as np
 
 from identification.estimation.fit import Fit
 from identification.estimation.profiles import Profile
-from identification.report.fit_verdict import verdict
+from identification.report.fit_verdict import fit_verdict
 from identification.report.page import Section, Table
 from identification.report.profile_figure import profile_figure
 from inca_mj.report.identification_json import (
@@ -19,7 +19,7 @@ from inca_mj.workflows.identification import Identification
 
 def fit_section(result: Identification, fit: Fit, title: str) -> Section:
     """Parameters with uncertainty, and the fit's verdict."""
-    said = identification_verdict(result) if fit is result.fit else verdict(fit)
+    said = identification_verdict(result) if fit is result.fit else fit_verdict(fit)
     return Section(
         title,
         "\n\n".join(said),

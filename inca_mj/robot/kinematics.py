@@ -18,7 +18,16 @@ Array = np.ndarray
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> Array:
-    """Rotation ᴬR_B of the platform, shape (3, 3), from its angles [rad] (thesis 2.1)."""
+    """Rotation ᴬR_B = Rz Ry Rx of the platform (thesis 2.1).
+
+    Args:
+        roll: about x [rad].
+        pitch: about y [rad].
+        yaw: about z [rad].
+
+    Returns:
+        Shape (3, 3), without unit.
+    """
     (cr, cp, cy), (sr, sp, sy) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
     return np.array(
         [
@@ -59,7 +68,16 @@ def cables(position: Array, R: Array, geometry: Geometry) -> tuple[Array, Array]
 
 
 def length_jacobian(position: Array, R: Array, geometry: Geometry) -> Array:
-    """∂ḋ/∂(v, ω) with v, ω in O, shape (8, 6) [-, m] (thesis 2.15)."""
+    """∂ḋ/∂(v, ω), d the cable lengths and v, ω in O (thesis 2.15).
+
+    Args:
+        position: of the platform in O, shape (3,) [m].
+        R: rotation of the platform, shape (3, 3), without unit; see `rotation`.
+        geometry: anchors of the cables.
+
+    Returns:
+        Shape (8, 6) [-, m].
+    """
     _, s = cables(position, R, geometry)
     return np.hstack([s, np.cross(geometry.B @ R.T, s)])
 

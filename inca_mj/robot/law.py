@@ -53,7 +53,15 @@ def tension(
 
 @njit
 def spring_force(phi: float, R: float, R_s: float, k_s: float, T_0: float) -> float:
-    """Force of the drum spring F_s [N]; T_0 is the tension that it balances at φ = 0 [N]."""
+    """Force of the drum spring F_s [N].
+
+    Args:
+        phi: motor angle φ, positive winds in [rad].
+        R: radius of the roller [m].
+        R_s: radius of the spring drum [m].
+        k_s: spring constant [N/m].
+        T_0: tension that it balances at φ = 0 [N].
+    """
     F_s = R / R_s * T_0 - k_s * R_s * phi
     return 0.0 if F_s < 0.0 else F_s
 

@@ -1,6 +1,6 @@
 """The robot as a dm_control environment: eight currents in, angles, pose and tensions out.
 
-    env = inca_mj.twin.control.load("hold", random=0)
+    env = inca_mj.load_environment("hold", random=0)
 
 Tasks: `hold` keeps the handle where it starts while a hand pulls at it with a constant force
 that is not observed; `reach` brings it to a target. Needs dm_control: pip install inca-mj[control].
@@ -177,7 +177,7 @@ class Reach(Handle):
 TASKS = {"hold": Hold, "reach": Reach}
 
 
-def load(
+def load_environment(
     task: str = "hold",
     random: int | np.random.Generator | None = None,
     time_limit: float = TIME_LIMIT,

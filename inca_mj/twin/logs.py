@@ -68,7 +68,13 @@ def pose_of(log: Log) -> np.ndarray | None:
 
 
 def run_to_log(run: Run, name: str = "run", notes: str = "") -> Log:
-    """A run as a log, with pose, velocities, tensions and no-load lengths as optional columns."""
+    """A run as a log, with pose, velocities, tensions and no-load lengths as optional columns.
+
+    Args:
+        run: of `simulate`.
+        name: what to call the log in a report.
+        notes: what to say of it.
+    """
     extras = {
         **dict(zip(POSE, np.hstack([run.position, run.angles]).T, strict=True)),
         **dict(zip(_each("tension"), run.tension.T, strict=True)),

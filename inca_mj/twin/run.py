@@ -130,7 +130,18 @@ def readings(robot: Twin, at: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def save_run(run: Run, path: str | Path) -> Path:
-    """Write a run to one .npz file: arrays, and the robot's values and geometry as JSON."""
+    """Write a run to one .npz file: arrays, and the robot's values and geometry as JSON.
+
+    Args:
+        run: of `simulate`.
+        path: where to write; the name ends in .npz.
+
+    Returns:
+        The path.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
     header = {
         "values": run.twin.parameters.values(),
         "set": run.twin.parameters.name,

@@ -34,6 +34,10 @@ _ARRAYS = (
 def save_twin(robot: Twin, folder: str | Path) -> tuple[Path, Path]:
     """Write model.xml and effects.json into a folder; returns their paths.
 
+    Args:
+        robot: the twin.
+        folder: where to write; it must exist.
+
     Raises:
         InputError: the folder does not exist or cannot be written to.
     """

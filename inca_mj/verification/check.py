@@ -50,6 +50,7 @@ def crosscheck(
     Raises:
         InputError: a case is unknown, a step does not divide 10 ms, the duration is less than
             two samples, fewer than one state is asked for, or the start admits no rest.
+        DivergenceError: the reference cannot be integrated.
     """
     parameters = parameters or parameter_set()
     if states < 1:

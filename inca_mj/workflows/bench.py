@@ -7,15 +7,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.errors import DivergenceError
-from identification.estimation.experiment import Experiment, information
+from identification.estimation.experiment import Experiment
 from identification.estimation.information import Information
 from inca_mj.robot.inputs import multisine, prbs, step
 from inca_mj.twin.logs import ANGLES
 from inca_mj.twin.run import Run, simulate
 from inca_mj.twin.twin import Twin
-from inca_mj.workflows.identification import POSE
 from inca_mj.workflows.limits import Extent, Limits, extent
 from inca_mj.workflows.recipes import Recipe
+from inca_mj.workflows.sensitivity import robot_information
 
 SAMPLING = 0.01  # of the robot [s]
 SCALES = (1.0, 0.7, 0.5, 0.35, 0.2)  # of a swing that breaks a limit
@@ -58,11 +58,10 @@ class Bench:
 
     def attempt(self, name: str, run: Run) -> Tried:
         """What a run is worth, from 2 p simulations."""
-        pose = [n for n in POSE if n not in self.names]
         sampling = float(run.time[1] - run.time[0])
         trial = Experiment(self.robot, run.currents, sampling, ANGLES, self.sigma)
         far = extent(run)
-        return Tried(name, run, far, information(trial, self.names, pose), far.within(self.limits))
+        return Tried(name, run, far, robot_information(trial, self.names), far.within(self.limits))
 
     def fitted(self, recipe: Recipe, n: int) -> tuple[Recipe, Run] | None:
         """The recipe with as much swing as the limits let it have, and its run."""

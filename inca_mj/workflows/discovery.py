@@ -34,6 +34,7 @@ def discover(
     log: Log,
     parameters: ParameterSet | None = None,
     geometry: Geometry = INCA,
+    *,
     effects: Sequence[Effect] = CATALOGUE,
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,

@@ -12,20 +12,22 @@ from identification.estimation.window_estimate import estimate_windows
 from identification.kalman.estimate import estimate_innovations
 from identification.model.parameter import ParameterSet
 from inca_mj.robot.geometry import INCA, Geometry
+from inca_mj.twin.logs import POSE
 from inca_mj.twin.mjcf import TIMESTEP
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import timestep_for
-from inca_mj.workflows.identification import MECHANICS, POSE, UNKNOWN, Identification
+from inca_mj.workflows.identification import MECHANICS, UNKNOWN, Identification
 
 FIRST = 4  # windows that a free run explains first, to start the search over all of them near
 
 
 def identify_windows(
     log: Log,
-    parameters: ParameterSet,
     length: float,
+    parameters: ParameterSet | None = None,
     geometry: Geometry = INCA,
+    *,
     free: Sequence[str] = (),
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
@@ -40,8 +42,8 @@ def identify_windows(
 
     Args:
         log: what was measured; its split `estimation`, or its first half, is fitted.
-        parameters: nominal values, where the search begins.
         length: of a window [s].
+        parameters: nominal values, where the search begins; the thesis' Table 3.2 when None.
         geometry: anchors of the cables.
         free: parameters to estimate; those of drives, cables and platform mass when empty.
         progress: is told one line per accepted step.
@@ -73,8 +75,9 @@ def identify_windows(
 
 def identify_innovations(
     log: Log,
-    parameters: ParameterSet,
+    parameters: ParameterSet | None = None,
     geometry: Geometry = INCA,
+    *,
     free: Sequence[str] = (),
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
@@ -83,7 +86,7 @@ def identify_innovations(
 
     Args:
         log: what was measured; its split `estimation`, or its first half, is fitted.
-        parameters: nominal values, where the search begins.
+        parameters: nominal values, where the search begins; the thesis' Table 3.2 when None.
         geometry: anchors of the cables.
         free: parameters to estimate; all and the pose when empty.
         progress: is told one line per accepted step.

@@ -18,11 +18,12 @@ import numpy as np
 from identification.errors import InputError
 from identification.estimation.information import determinable
 from inca_mj.twin.run import simulate
-from inca_mj.twin.twin import Twin
+from inca_mj.twin.twin import Twin, build_twin
 from inca_mj.workflows.bench import SAMPLING, Bench, Tried, standard_inputs
 from inca_mj.workflows.identification import UNKNOWN
 from inca_mj.workflows.limits import Limits
 from inca_mj.workflows.recipes import Recipe, changed, draw
+from inca_mj.workflows.sensitivity import DURATION, NOISE
 
 MOVES = ((0.3, 0.1), (0.1, 0.1), (0.1, 0.3), (0.03, 0.5))  # size, and share of the numbers
 TRIES = 20  # cheap runs that a search may spend per evaluation of the information
@@ -30,7 +31,7 @@ TRIES = 20  # cheap runs that a search may spend per evaluation of the informati
 Progress = Callable[[str], None]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Design:
     """A designed input beside the thesis' PRBS and other standard inputs.
 
@@ -63,24 +64,25 @@ class Design:
         return float(np.sqrt(self.best.found.e_value / self.prbs.found.e_value))
 
 
-def design(
-    robot: Twin,
-    duration: float = 5.0,
-    sigma: float = 6.7e-4,
-    names: Sequence[str] = UNKNOWN,
+def excite(
+    robot: Twin | None = None,
+    duration: float = DURATION,
+    *,
+    noise: float = NOISE,
+    free: Sequence[str] = UNKNOWN,
     limits: Limits | None = None,
     budget: int = 60,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Design:
-    """Design an input.
+    """Design the input of an experiment.
 
     Args:
-        robot: the twin, at the values known before the experiment.
+        robot: the twin, at the values known before the experiment; the thesis' Table 3.2 when None.
         duration: of the experiment [s].
-        sigma: std of the noise on each angle [rad].
-        names: parameters to determine.
-        limits: what the input may do.
+        noise: std of the noise on each angle [rad].
+        free: parameters to determine; the start pose is unknown too.
+        limits: what the input may do; the usual `Limits` when None.
         budget: evaluations of the information by the search, 2 p simulations each.
         seed: of the search.
         progress: is told of each improvement.
@@ -88,13 +90,14 @@ def design(
     Raises:
         InputError: a name, the noise, the duration or a limit is bad, or nothing that was tried
             keeps the limits.
+        DivergenceError: the twin cannot be simulated under the thesis' PRBS.
     """
-    limits = limits or Limits()
+    robot, limits = robot or build_twin(), limits or Limits()
     n = _samples(duration)
     if budget < 1:
         raise InputError(f"a budget of {budget} evaluations finds nothing; give at least 1")
     _refuse_start(robot, limits)
-    bench = Bench(robot, sigma, tuple(names), limits)
+    bench = Bench(robot, noise, tuple(free), limits)
     first, *rest = standard_inputs(n)
     baseline = bench.attempt(first[0], simulate(robot, first[1], SAMPLING))
     kept, held = determinable(baseline.found)
@@ -118,7 +121,15 @@ def design(
             "no input that was tried keeps the limits; allow a smaller tension margin, more"
             " workspace or more current"
         )
-    return Design(best, thesis, tried, held, limits, settings, budget)
+    return Design(
+        best=best,
+        prbs=thesis,
+        standard=tried,
+        held=held,
+        limits=limits,
+        settings=settings,
+        evaluations=budget,
+    )
 
 
 def _search(bench: Bench, n: int, budget: int, seed: int) -> Iterator[tuple[Recipe, Tried]]:

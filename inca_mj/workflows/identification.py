@@ -19,13 +19,13 @@ from identification.estimation.window_estimate import WindowEstimate
 from identification.kalman.estimate import InnovationsFit
 from identification.model.parameter import ParameterSet
 from inca_mj.robot.geometry import INCA, Geometry
+from inca_mj.twin.logs import POSE
 from inca_mj.twin.mjcf import TIMESTEP
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import timestep_for
 
 MECHANICS = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t", "m")
-POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 UNKNOWN = ("lambda", "b", "J", "b_v", "b_c", "beta")  # "arbitrary" or re-estimated in the thesis
 
 
@@ -37,7 +37,7 @@ class Identification:
         log: the whole log.
         fits: one, or the two steps.
         best: index of the fit with the smaller error on unseen data.
-        starts: rms of every start of each fit, where more than one was allowed.
+        starts: of each fit the rms of its starts [rad], shape (n,), where several were allowed.
         windows: what the windows found; the fit is then a free run with it, its pose free.
         innovations: where the fit is one of innovations.
     """
@@ -78,8 +78,9 @@ class Identification:
 
 def identify(
     log: Log,
-    parameters: ParameterSet,
+    parameters: ParameterSet | None = None,
     geometry: Geometry = INCA,
+    *,
     free: Sequence[str] = (),
     options: Options | None = None,
     progress: Callable[[str], None] | None = None,
@@ -91,7 +92,7 @@ def identify(
 
     Args:
         log: what was measured; its split `estimation`, or its first half, is fitted.
-        parameters: nominal values, where the search begins.
+        parameters: nominal values, where the search begins; the thesis' Table 3.2 when None.
         geometry: anchors of the cables.
         free: parameters to estimate in one step; the two-step procedure when empty.
         options: how to search.

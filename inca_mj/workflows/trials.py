@@ -1,78 +1,21 @@
-"""The four identification trials of the thesis, on data of its own model (Tables 3.3 to 3.6).
-
-Five seconds of PRBS at 100 Hz, simulated with Table 3.2. Trial 1 estimates everything from starts
-25 % off, trial 2 what no data sheet says from the same starts, trial 3 the same from 5 % off, trial
-4 the same with a random error of up to ±5 % of each sample of the outputs.
-"""
+"""The trials of the thesis (see `inca_mj.workflows.thesis`), run by our estimator."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from scipy.stats import norm
 
-from identification import Log
+from identification.errors import unknown_name
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import Fit, assess
 from identification.estimation.metrics import fit_percent, loss
-from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
-from inca_mj.twin.logs import run_to_log
-from inca_mj.twin.run import simulate
-from inca_mj.twin.twin import Twin, build_twin
-
-DURATION = 5.0  # of the data [s]
-NOISE = 0.05  # largest error of a sample, relative to it
-
-LARGE = {"lambda": 31250.0, "b": 16.0, "J": 1e-4, "b_v": 1.7e-4, "b_c": 0.004, "beta": 1.0}
-SMALL = {"lambda": 26250.0, "b": 7.2, "J": 8.4e-5, "b_v": 1.9e-4, "b_c": 0.00475, "beta": 0.84}
-ALL = {
-    "R": 0.0175, "R_s": 0.006, "k_s": 16.0, **LARGE, "K_t": 0.08, "m": 0.1725,
-    "x": 0.025, "y": 0.025, "z": 1.5,
-}  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Trial:
-    """A trial: which starts, with or without noise, and what the thesis found.
-
-    Attributes:
-        number: 1 to 4.
-        start: starting values of the free parameters.
-        noisy: whether the outputs carry noise.
-        thesis: the thesis' estimates.
-        thesis_fit: its mean output fit [%].
-    """
-
-    number: int
-    start: Mapping[str, float]
-    noisy: bool
-    thesis: Mapping[str, float]
-    thesis_fit: float
-
-
-TRIALS = (
-    Trial(1, ALL, False, {
-        "R": 0.0199, "R_s": 0.0070, "k_s": 17.189, "lambda": 36171.1, "b": 2.2650, "J": 1.1e-4,
-        "b_v": 2.7e-4, "b_c": 0.00697, "beta": 0.8075, "K_t": 0.1099, "m": 0.1725, "x": 0.003,
-        "y": 0.0, "z": 1.421,
-    }, 97.74),
-    Trial(2, LARGE, False, {
-        "lambda": 29177.9, "b": 13.35, "J": 7.79e-5, "b_v": 1.97e-4, "b_c": 0.00505,
-        "beta": 0.7396,
-    }, 97.82),
-    Trial(3, SMALL, False, {
-        "lambda": 25598.3, "b": 17.036, "J": 7.78e-5, "b_v": 1.97e-4, "b_c": 0.00506,
-        "beta": 0.7374,
-    }, 97.83),
-    Trial(4, SMALL, True, {
-        "lambda": 25392.6, "b": 19.0473, "J": 7.78e-5, "b_v": 1.97e-4, "b_c": 0.00506,
-        "beta": 0.741,
-    }, 97.85),
-)  # fmt: skip
+from inca_mj.twin.twin import build_twin
+from inca_mj.workflows.thesis import NOISE, TRIALS, Trial, trial_data, with_noise
 
 
 @dataclass(frozen=True)
@@ -121,17 +64,6 @@ class TrialResult:
         }
 
 
-def trial_data(robot: Twin, seed: int = 0) -> Log:
-    """The data of the trials, without noise: 5 s of the thesis' PRBS."""
-    return run_to_log(simulate(robot, make_input("prbs", DURATION, seed=seed)), "trial data")
-
-
-def with_noise(log: Log, seed: int) -> Log:
-    """Each output sample times 1 + e, e uniform in ±5 % (thesis, footnote of section 3.2.3)."""
-    error = np.random.default_rng(seed).uniform(-NOISE, NOISE, log.outputs.shape)
-    return replace(log, outputs=log.outputs * (1 + error))
-
-
 def run_trial(
     trial: Trial,
     *,
@@ -160,12 +92,49 @@ def run_trial(
     )
 
 
+def trials(
+    numbers: Sequence[int] = (1, 2, 3, 4),
+    *,
+    seed: int = 0,
+    options: Options | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> tuple[TrialResult, ...]:
+    """Run trials of the thesis from its own starts.
+
+    Args:
+        numbers: which, of 1 to 4.
+        seed: of the noise of trial 4.
+        options: how to search; `Options(horizons=(1.0,))` is the thesis' single free-run fit.
+        progress: is told which trial is run, and one line per accepted step.
+
+    Raises:
+        InputError: there is no trial of a number.
+    """
+    for number in numbers:
+        if number not in range(1, len(TRIALS) + 1):
+            raise unknown_name("trial", str(number), map(str, range(1, len(TRIALS) + 1)))
+    say = progress or (lambda line: None)
+    results = []
+    for number in numbers:
+        say(f"trial {number}")
+        results.append(run_trial(TRIALS[number - 1], seed=seed, options=options, progress=progress))
+    return tuple(results)
+
+
 def monte_carlo(seeds: int, progress: Callable[[str], None] | None = None) -> dict[str, Any]:
     """Trial 4 over many noises, which the thesis asked for and did not do.
+
+    Args:
+        seeds: how many.
+        progress: is told a line per seed.
 
     Returns:
         By parameter: relative bias and std of the estimates, the mean std that the fits claimed,
         and the share of seeds whose 95 % interval holds the truth.
+
+    Raises:
+        InputError: a noise leads the search to values that admit no start.
+        DivergenceError: a noise leads it to values that cannot be simulated.
     """
     true = parameter_set("trial").values()
     trial = TRIALS[3]

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from inca_mj.worlds import layout as at
-from inca_mj.worlds.effect import DriveEffect, Numbers
+from inca_mj.worlds.effect import HiddenDriveEffect, HiddenNumbers
 
 
 @dataclass(frozen=True, kw_only=True)
-class CableHardening(DriveEffect):
+class HiddenCableHardening(HiddenDriveEffect):
     """λ ε (1 + κ ε^n)."""
 
     name: ClassVar[str] = "cable_hardening"
@@ -28,14 +28,14 @@ class CableHardening(DriveEffect):
     kappa: float = 200.0
     exponent: float = 1.0
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write κ and n."""
         self.column(numbers, at.CABLE_HARD)[:] += self.kappa
         self.column(numbers, at.CABLE_POWER)[:] = self.exponent
 
 
 @dataclass(frozen=True, kw_only=True)
-class CableCreep(DriveEffect):
+class HiddenCableCreep(HiddenDriveEffect):
     """A spring of c λ in series with a dashpot, time constant τ [s], relaxed at the start."""
 
     name: ClassVar[str] = "cable_creep"
@@ -45,14 +45,14 @@ class CableCreep(DriveEffect):
     fraction: float = 0.1
     tau: float = 1.0
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write c and τ."""
         self.column(numbers, at.MAXWELL)[:] += self.fraction
         self.column(numbers, at.MAXWELL_TIME)[:] = self.tau
 
 
 @dataclass(frozen=True, kw_only=True)
-class CableWeight(DriveEffect):
+class HiddenCableWeight(HiddenDriveEffect):
     """ρ [kg/m]: half of each cable hangs on its connector, and sags where `sag` is True.
 
     Where `balanced` is False the pretension carries the platform alone and the weight acts from the
@@ -66,7 +66,7 @@ class CableWeight(DriveEffect):
     sag: bool = False
     balanced: bool = False
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write ρ and its options."""
         self.column(numbers, at.LINE_WEIGHT)[:] += self.rho
         self.column(numbers, at.SAG)[:] = self.sag

@@ -9,22 +9,42 @@ import numpy as np
 from identification.errors import unknown_name
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.worlds import cable, drum, friction, motor, place
-from inca_mj.worlds.effect import Effect, OneDriveEffect
+from inca_mj.worlds.effect import HiddenEffect, HiddenOneDriveEffect
 
-_KNOWN: tuple[type[Effect], ...] = (
-    friction.StribeckFriction, friction.AsymmetricFriction, friction.LoadDependentFriction,
-    friction.QuadraticFriction, friction.FrictionMismatch, motor.Cogging, motor.CurrentLag,
-    motor.Delay, motor.CurrentSaturation, motor.TorqueConstantDrift, motor.TorqueConstantMismatch,
-    drum.DrumEccentricity, drum.DrumLayering, drum.DrumRadiusMismatch, drum.Backlash,
-    drum.SpringHardening, drum.SpringHysteresis, cable.CableHardening, cable.CableCreep,
-    place.PulleyRadius, cable.CableWeight, place.AnchorOffset, place.ComOffset,
-    place.ExternalForce, place.AirDrag,
-)  # fmt: skip
-_UNLISTED: tuple[type[Effect], ...] = (
-    place.FrameVibration, friction.PositionDependentFriction, motor.TorqueRippleTime,
-)  # fmt: skip
+_KNOWN: tuple[type[HiddenEffect], ...] = (
+    friction.HiddenStribeckFriction,
+    friction.HiddenAsymmetricFriction,
+    friction.HiddenLoadDependentFriction,
+    friction.HiddenQuadraticFriction,
+    friction.HiddenFrictionMismatch,
+    motor.HiddenCogging,
+    motor.HiddenCurrentLag,
+    motor.HiddenDelay,
+    motor.HiddenCurrentSaturation,
+    motor.HiddenTorqueConstantDrift,
+    motor.HiddenTorqueConstantMismatch,
+    drum.HiddenDrumEccentricity,
+    drum.HiddenDrumLayering,
+    drum.HiddenDrumRadiusMismatch,
+    drum.HiddenBacklash,
+    drum.HiddenSpringHardening,
+    drum.HiddenSpringHysteresis,
+    cable.HiddenCableHardening,
+    cable.HiddenCableCreep,
+    place.HiddenPulleyRadius,
+    cable.HiddenCableWeight,
+    place.HiddenAnchorOffset,
+    place.HiddenComOffset,
+    place.HiddenExternalForce,
+    place.HiddenAirDrag,
+)
+_UNLISTED: tuple[type[HiddenEffect], ...] = (
+    place.HiddenFrameVibration,
+    friction.HiddenPositionDependentFriction,
+    motor.HiddenTorqueRippleTime,
+)
 
-CATALOGUE = {kind.name: kind for kind in _KNOWN}  # what a discovery may name
+HIDDEN_EFFECTS = {kind.name: kind for kind in _KNOWN}  # what a discovery may name
 UNLISTED = {kind.name: kind for kind in _UNLISTED}  # what it must call unknown
 
 # Sizes whose sign physics leaves open; the others keep that of their default.
@@ -45,18 +65,18 @@ SHAPES: dict[str, dict[str, float | bool]] = {
 }
 
 
-def effect(name: str, *, drive: int | None = None, other_shape: bool = False) -> Effect:
+def effect(name: str, *, drive: int | None = None, other_shape: bool = False) -> HiddenEffect:
     """An effect of its default size.
 
     Args:
-        name: canonical name, of `CATALOGUE` or `UNLISTED`.
+        name: canonical name, of `HIDDEN_EFFECTS` or `UNLISTED`.
         drive: 1 to 8, for an effect that has one; all drives (or drive 1) when not given.
-        other_shape: take the law of `SHAPES` instead of the catalogue's.
+        other_shape: take the law of `SHAPES` instead of the usual one.
 
     Raises:
         InputError: the name is unknown, or has no other shape.
     """
-    kinds = {**CATALOGUE, **UNLISTED}
+    kinds = {**HIDDEN_EFFECTS, **UNLISTED}
     if name not in kinds:
         raise unknown_name("effect", name, kinds)
     options: dict[str, float | bool | int] = {} if drive is None else {"drive": drive}
@@ -67,7 +87,7 @@ def effect(name: str, *, drive: int | None = None, other_shape: bool = False) ->
     return kinds[name](**options)
 
 
-def draw_effect(name: str, seed: int, *, other_shape: bool = False) -> Effect:
+def draw_effect(name: str, seed: int, *, other_shape: bool = False) -> HiddenEffect:
     """An effect with drive, signs, direction and frequency drawn by chance.
 
     Sizes are between half and twice the default; give `world` a ratio to choose them.
@@ -78,7 +98,7 @@ def draw_effect(name: str, seed: int, *, other_shape: bool = False) -> Effect:
     rng = np.random.default_rng([seed, 77])
     chosen = effect(name, other_shape=other_shape)
     new: dict[str, float | int] = {}
-    if isinstance(chosen, OneDriveEffect):
+    if isinstance(chosen, HiddenOneDriveEffect):
         new["drive"] = int(rng.integers(1, DRIVES + 1))
     have = {f.name for f in fields(chosen)}
     signed = [size for size in chosen.sizes if size in _SIGNED]

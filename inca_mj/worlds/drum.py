@@ -15,11 +15,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from inca_mj.worlds import layout as at
-from inca_mj.worlds.effect import DriveEffect, Numbers, OneDriveEffect
+from inca_mj.worlds.effect import HiddenDriveEffect, HiddenNumbers, HiddenOneDriveEffect
 
 
 @dataclass(frozen=True, kw_only=True)
-class DrumEccentricity(DriveEffect):
+class HiddenDrumEccentricity(HiddenDriveEffect):
     """R (1 + a cos φ + b sin φ)."""
 
     name: ClassVar[str] = "drum_eccentricity"
@@ -27,40 +27,40 @@ class DrumEccentricity(DriveEffect):
     a: float = 8e-4
     b: float = 8e-4
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write a and b."""
         self.column(numbers, at.ECC_COS)[:] += self.a
         self.column(numbers, at.ECC_SIN)[:] += self.b
 
 
 @dataclass(frozen=True, kw_only=True)
-class DrumLayering(DriveEffect):
+class HiddenDrumLayering(HiddenDriveEffect):
     """R + h φ; h [m/rad]."""
 
     name: ClassVar[str] = "drum_layering"
     sizes: ClassVar[tuple[str, ...]] = ("h",)
     h: float = 1e-5
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write h."""
         self.column(numbers, at.LAYER)[:] += self.h
 
 
 @dataclass(frozen=True, kw_only=True)
-class DrumRadiusMismatch(OneDriveEffect):
+class HiddenDrumRadiusMismatch(HiddenOneDriveEffect):
     """R (1 + δ) on one drive."""
 
     name: ClassVar[str] = "drum_radius_mismatch"
     sizes: ClassVar[tuple[str, ...]] = ("delta",)
     delta: float = 6e-3
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write δ."""
         self.column(numbers, at.RADIUS_ERROR)[:] += self.delta
 
 
 @dataclass(frozen=True, kw_only=True)
-class Backlash(DriveEffect):
+class HiddenBacklash(HiddenDriveEffect):
     """A dead zone of ±h [rad] between rotor and drum, which starts in its middle.
 
     From about 0.03 rad on, the robot's motion is chaotic: no two steps give the same 20 s.
@@ -70,13 +70,13 @@ class Backlash(DriveEffect):
     sizes: ClassVar[tuple[str, ...]] = ("h",)
     h: float = 0.01
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write h."""
         self.column(numbers, at.PLAY)[:] += self.h
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpringHardening(DriveEffect):
+class HiddenSpringHardening(HiddenDriveEffect):
     """k_s (1 + k₃ |s|^n), s = R_s φ [m]; k₃ [1/m^n]: n = 2 a cubic force, n = 1 a quadratic."""
 
     name: ClassVar[str] = "spring_hardening"
@@ -85,20 +85,20 @@ class SpringHardening(DriveEffect):
     k_3: float = 8.0
     exponent: float = 2.0
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write k₃ and n."""
         self.column(numbers, at.SPRING_HARD)[:] += self.k_3
         self.column(numbers, at.SPRING_POWER)[:] = self.exponent
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpringHysteresis(DriveEffect):
+class HiddenSpringHysteresis(HiddenDriveEffect):
     """F_s (1 + η tanh(βω))."""
 
     name: ClassVar[str] = "spring_hysteresis"
     sizes: ClassVar[tuple[str, ...]] = ("eta",)
     eta: float = -0.02
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write η."""
         self.column(numbers, at.SPRING_LOSS)[:] += self.eta

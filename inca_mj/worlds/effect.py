@@ -13,7 +13,7 @@ from inca_mj.robot.geometry import DRIVES
 from inca_mj.worlds import layout as at
 
 
-class Numbers:
+class HiddenNumbers:
     """The numbers of a plant while its effects write theirs.
 
     Attributes:
@@ -37,7 +37,7 @@ class Numbers:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Effect:
+class HiddenEffect:
     """A physical effect that the reference lacks.
 
     Raises:
@@ -71,13 +71,13 @@ class Effect:
         """The same effect with its sizes times `factor`; its shape stays."""
         return replace(self, **{name: factor * getattr(self, name) for name in self.sizes})
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write the effect's numbers where the equations read them."""
         raise NotImplementedError
 
 
 @dataclass(frozen=True, kw_only=True)
-class DriveEffect(Effect):
+class HiddenDriveEffect(HiddenEffect):
     """An effect on every drive (`drive` None) or on one of them (1 to 8)."""
 
     acts_on: ClassVar[str] = "all drives"
@@ -93,14 +93,14 @@ class DriveEffect(Effect):
         """All drives (cables), or the one drive."""
         return self.acts_on if self.drive is None else f"drive {self.drive}"
 
-    def column(self, numbers: Numbers, column: int) -> np.ndarray:
+    def column(self, numbers: HiddenNumbers, column: int) -> np.ndarray:
         """A view of one column of D, the rows of this effect's drives only."""
         rows = slice(None) if self.drive is None else slice(self.drive - 1, self.drive)
         return numbers.D[rows, column]
 
 
 @dataclass(frozen=True, kw_only=True)
-class OneDriveEffect(DriveEffect):
+class HiddenOneDriveEffect(HiddenDriveEffect):
     """An effect that tells one drive from the others."""
 
     drive: int | None = 1

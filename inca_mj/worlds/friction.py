@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from inca_mj.worlds import layout as at
-from inca_mj.worlds.effect import DriveEffect, Numbers, OneDriveEffect
+from inca_mj.worlds.effect import HiddenDriveEffect, HiddenNumbers, HiddenOneDriveEffect
 
 
 @dataclass(frozen=True, kw_only=True)
-class StribeckFriction(DriveEffect):
+class HiddenStribeckFriction(HiddenDriveEffect):
     """−f_s exp(−(|ω|/v_s)^n) tanh(βω); f_s [N m], v_s [rad/s]."""
 
     name: ClassVar[str] = "stribeck_friction"
@@ -28,7 +28,7 @@ class StribeckFriction(DriveEffect):
     v_s: float = 1.2
     exponent: float = 2.0
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write f_s, v_s and n."""
         self.column(numbers, at.STRIBECK)[:] += self.f_s
         self.column(numbers, at.STRIBECK_SPEED)[:] = self.v_s
@@ -36,33 +36,33 @@ class StribeckFriction(DriveEffect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class AsymmetricFriction(DriveEffect):
+class HiddenAsymmetricFriction(HiddenDriveEffect):
     """−f_a |tanh(βω)|; f_a [N m]."""
 
     name: ClassVar[str] = "asymmetric_friction"
     sizes: ClassVar[tuple[str, ...]] = ("f_a",)
     f_a: float = 0.002
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write f_a."""
         self.column(numbers, at.ASYMMETRY)[:] += self.f_a
 
 
 @dataclass(frozen=True, kw_only=True)
-class LoadDependentFriction(DriveEffect):
+class HiddenLoadDependentFriction(HiddenDriveEffect):
     """−μ R T tanh(βω)."""
 
     name: ClassVar[str] = "load_dependent_friction"
     sizes: ClassVar[tuple[str, ...]] = ("mu",)
     mu: float = 0.004
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write μ."""
         self.column(numbers, at.LOAD)[:] += self.mu
 
 
 @dataclass(frozen=True, kw_only=True)
-class QuadraticFriction(DriveEffect):
+class HiddenQuadraticFriction(HiddenDriveEffect):
     """−c ω |ω|^(n − 1); c [N m (s/rad)^n]."""
 
     name: ClassVar[str] = "quadratic_friction"
@@ -71,27 +71,27 @@ class QuadraticFriction(DriveEffect):
     c: float = 2e-6
     exponent: float = 2.0
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write c and n."""
         self.column(numbers, at.QUADRATIC)[:] += self.c
         self.column(numbers, at.QUADRATIC_POWER)[:] = self.exponent
 
 
 @dataclass(frozen=True, kw_only=True)
-class FrictionMismatch(OneDriveEffect):
+class HiddenFrictionMismatch(HiddenOneDriveEffect):
     """b_c (1 + δ) on one drive."""
 
     name: ClassVar[str] = "friction_mismatch"
     sizes: ClassVar[tuple[str, ...]] = ("delta",)
     delta: float = 0.1
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write δ."""
         self.column(numbers, at.COULOMB_ERROR)[:] += self.delta
 
 
 @dataclass(frozen=True, kw_only=True)
-class PositionDependentFriction(DriveEffect):
+class HiddenPositionDependentFriction(HiddenDriveEffect):
     """b_c (1 + a cos φ + b sin φ) for b_c: a bent shaft; in no catalogue."""
 
     name: ClassVar[str] = "position_dependent_friction"
@@ -99,7 +99,7 @@ class PositionDependentFriction(DriveEffect):
     a: float = 0.2
     b: float = 0.1
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write a and b."""
         self.column(numbers, at.ANGLE_COS)[:] += self.a
         self.column(numbers, at.ANGLE_SIN)[:] += self.b

@@ -14,11 +14,16 @@ from math import inf, pi, sqrt
 from typing import ClassVar, Self
 
 from inca_mj.worlds import layout as at
-from inca_mj.worlds.effect import DriveEffect, Effect, Numbers, OneDriveEffect
+from inca_mj.worlds.effect import (
+    HiddenDriveEffect,
+    HiddenEffect,
+    HiddenNumbers,
+    HiddenOneDriveEffect,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Cogging(DriveEffect):
+class HiddenCogging(HiddenDriveEffect):
     """+ a cos(nφ) + b sin(nφ) [N m]."""
 
     name: ClassVar[str] = "cogging"
@@ -28,7 +33,7 @@ class Cogging(DriveEffect):
     b: float = 4e-4
     n: float = 6.0
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write a, b and n."""
         self.column(numbers, at.COG_COS)[:] += self.a
         self.column(numbers, at.COG_SIN)[:] += self.b
@@ -36,20 +41,20 @@ class Cogging(DriveEffect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CurrentLag(DriveEffect):
+class HiddenCurrentLag(HiddenDriveEffect):
     """First-order lag τ [s] of the current loop, which starts at the first current."""
 
     name: ClassVar[str] = "current_lag"
     sizes: ClassVar[tuple[str, ...]] = ("tau",)
     tau: float = 1.5e-3
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write τ."""
         self.column(numbers, at.LAG)[:] += self.tau
 
 
 @dataclass(frozen=True, kw_only=True)
-class Delay(Effect):
+class HiddenDelay(HiddenEffect):
     """Pure delay [s] of all currents, zero before the first sample."""
 
     name: ClassVar[str] = "delay"
@@ -57,13 +62,13 @@ class Delay(Effect):
     sizes: ClassVar[tuple[str, ...]] = ("delay",)
     delay: float = 1.5e-3
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write Δ."""
         numbers.P[at.DELAY] += self.delay
 
 
 @dataclass(frozen=True, kw_only=True)
-class CurrentSaturation(DriveEffect):
+class HiddenCurrentSaturation(HiddenDriveEffect):
     """Clip at ±i_max [A], or i_max tanh(i/i_max) where soft.
 
     Its size grows as i_max falls below `onset`, the largest current [A]; none is an infinite i_max.
@@ -76,7 +81,7 @@ class CurrentSaturation(DriveEffect):
     soft: bool = False
     onset: float = 1.0
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write i_max and its shape."""
         self.column(numbers, at.CURRENT_LIMIT)[:] = self.i_max
         self.column(numbers, at.CURRENT_SOFT)[:] = self.soft
@@ -91,7 +96,7 @@ class CurrentSaturation(DriveEffect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class TorqueConstantDrift(DriveEffect):
+class HiddenTorqueConstantDrift(HiddenDriveEffect):
     """K_t (1 − α t), α [1/s]; settling with `settle` τ_d [s] where that is not zero.
 
     Where `heat` is True the drift is α ∫ i² dt instead, α [1/(A^2 s)].
@@ -103,27 +108,27 @@ class TorqueConstantDrift(DriveEffect):
     settle: float = 0.0
     heat: bool = False
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write α where the shape reads it, and τ_d."""
         self.column(numbers, at.HEAT_LOSS if self.heat else at.DRIFT)[:] += self.alpha
         self.column(numbers, at.DRIFT_TIME)[:] = self.settle
 
 
 @dataclass(frozen=True, kw_only=True)
-class TorqueConstantMismatch(OneDriveEffect):
+class HiddenTorqueConstantMismatch(HiddenOneDriveEffect):
     """K_t (1 + δ) on one drive."""
 
     name: ClassVar[str] = "torque_constant_mismatch"
     sizes: ClassVar[tuple[str, ...]] = ("delta",)
     delta: float = 0.01
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write δ."""
         self.column(numbers, at.GAIN_ERROR)[:] += self.delta
 
 
 @dataclass(frozen=True, kw_only=True)
-class TorqueRippleTime(DriveEffect):
+class HiddenTorqueRippleTime(HiddenDriveEffect):
     """A torque a sin(2πf t + φ₀) [N m] that no log shows; in no catalogue. f [Hz], φ₀ [rad]."""
 
     name: ClassVar[str] = "torque_ripple_time"
@@ -133,7 +138,7 @@ class TorqueRippleTime(DriveEffect):
     frequency: float = 3.7
     phase: float = 0.0
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write a, 2πf and φ₀."""
         self.column(numbers, at.RIPPLE)[:] += self.a
         self.column(numbers, at.RIPPLE_RATE)[:] = 2 * pi * self.frequency

@@ -15,11 +15,16 @@ from math import pi
 from typing import ClassVar
 
 from inca_mj.worlds import layout as at
-from inca_mj.worlds.effect import DriveEffect, Effect, Numbers, OneDriveEffect
+from inca_mj.worlds.effect import (
+    HiddenDriveEffect,
+    HiddenEffect,
+    HiddenNumbers,
+    HiddenOneDriveEffect,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
-class PulleyRadius(DriveEffect):
+class HiddenPulleyRadius(HiddenDriveEffect):
     """A swivelling pulley of radius r_p [m] at A_i."""
 
     name: ClassVar[str] = "pulley_radius"
@@ -27,13 +32,13 @@ class PulleyRadius(DriveEffect):
     sizes: ClassVar[tuple[str, ...]] = ("r_p",)
     r_p: float = 0.01
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write r_p."""
         self.column(numbers, at.PULLEY)[:] += self.r_p
 
 
 @dataclass(frozen=True, kw_only=True)
-class AnchorOffset(OneDriveEffect):
+class HiddenAnchorOffset(HiddenOneDriveEffect):
     """A_k moved by (x, y, z) [m]."""
 
     name: ClassVar[str] = "anchor_offset"
@@ -42,14 +47,14 @@ class AnchorOffset(OneDriveEffect):
     y: float = -0.01
     z: float = 0.0
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Move A_k."""
         if self.drive is not None:
             numbers.A[self.drive - 1] += (self.x, self.y, self.z)
 
 
 @dataclass(frozen=True, kw_only=True)
-class FrameVibration(OneDriveEffect):
+class HiddenFrameVibration(HiddenOneDriveEffect):
     """A_k moved by (x, y, z) sin(2πf t + φ₀) [m]; f [Hz], φ₀ [rad]. In no catalogue."""
 
     name: ClassVar[str] = "frame_vibration"
@@ -61,7 +66,7 @@ class FrameVibration(OneDriveEffect):
     frequency: float = 6.3
     phase: float = 0.0
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write the motion of A_k."""
         for column, value in zip(
             (at.SHAKE_X, at.SHAKE_Y, at.SHAKE_Z), (self.x, self.y, self.z), strict=True
@@ -72,7 +77,7 @@ class FrameVibration(OneDriveEffect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ComOffset(Effect):
+class HiddenComOffset(HiddenEffect):
     """Centre of mass at (x, y, z) of the platform frame [m]; its inertia is about that point."""
 
     name: ClassVar[str] = "com_offset"
@@ -82,14 +87,14 @@ class ComOffset(Effect):
     y: float = 0.0
     z: float = -3e-3
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Move the centre; the connectors move the other way."""
         numbers.centre += (self.x, self.y, self.z)
         numbers.B -= (self.x, self.y, self.z)
 
 
 @dataclass(frozen=True, kw_only=True)
-class ExternalForce(Effect):
+class HiddenExternalForce(HiddenEffect):
     """A constant force (x, y, z) [N] in O; the pretension carries it where `balanced`."""
 
     name: ClassVar[str] = "external_force"
@@ -100,7 +105,7 @@ class ExternalForce(Effect):
     z: float = 0.0
     balanced: bool = False
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write the force."""
         numbers.force += (self.x, self.y, self.z)
         if self.balanced:
@@ -108,7 +113,7 @@ class ExternalForce(Effect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class AirDrag(Effect):
+class HiddenAirDrag(HiddenEffect):
     """−c |v|^(n−1) v on the centre of mass; c [N (s/m)^n]."""
 
     name: ClassVar[str] = "air_drag"
@@ -118,7 +123,7 @@ class AirDrag(Effect):
     c: float = 0.15
     exponent: float = 2.0
 
-    def put(self, numbers: Numbers) -> None:
+    def put(self, numbers: HiddenNumbers) -> None:
         """Write c and n."""
         numbers.P[at.DRAG] += self.c
         numbers.P[at.DRAG_POWER] = self.exponent

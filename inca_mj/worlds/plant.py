@@ -21,13 +21,13 @@ from inca_mj.reference import layout as base
 from inca_mj.robot.geometry import DRIVES, Geometry
 from inca_mj.robot.parameters import GRAVITY, PRETENSION
 from inca_mj.worlds import layout as at
-from inca_mj.worlds.effect import Effect, Numbers
+from inca_mj.worlds.effect import HiddenEffect, HiddenNumbers
 from inca_mj.worlds.integrate import PLAY_STEP, STEP, trajectory
 from inca_mj.worlds.pulley import path
 
 
 @dataclass(frozen=True)
-class Plant:
+class HiddenPlant:
     """The numbers of one robot; its arrays are read-only.
 
     Attributes:
@@ -48,14 +48,14 @@ class Plant:
 
 
 def make_plant(
-    parameters: ParameterSet, geometry: Geometry, effects: Sequence[Effect] = ()
-) -> Plant:
+    parameters: ParameterSet, geometry: Geometry, effects: Sequence[HiddenEffect] = ()
+) -> HiddenPlant:
     """A robot at rest at the start pose of its parameters.
 
     Raises:
         InputError: no tensions that pull hold the platform there.
     """
-    n = Numbers(geometry.A, geometry.B)
+    n = HiddenNumbers(geometry.A, geometry.B)
     for effect in effects:
         effect.put(n)
     q = pack(parameters, geometry)
@@ -79,11 +79,11 @@ def make_plant(
     x[base.POSITION], x[base.EULER] = p, euler
     x[base.NO_LOAD] = (d + _sag(n.D, d, ds, T)) / (1 + ε)
     x[at.VISCOUS] = d / x[base.NO_LOAD] - 1
-    return Plant(q, n.D, n.P, x)
+    return HiddenPlant(q, n.D, n.P, x)
 
 
 def simulate_world(
-    plant: Plant, currents: np.ndarray, sampling_time: float = 0.01, step: float | None = None
+    plant: HiddenPlant, currents: np.ndarray, sampling_time: float = 0.01, step: float | None = None
 ) -> np.ndarray:
     """States of a plant at the samples, shape (n, 60).
 
@@ -116,7 +116,7 @@ def simulate_world(
 
 
 def _pretension(
-    n: Numbers, s: np.ndarray, arms: np.ndarray, d: np.ndarray, m: float, R_AB: np.ndarray
+    n: HiddenNumbers, s: np.ndarray, arms: np.ndarray, d: np.ndarray, m: float, R_AB: np.ndarray
 ) -> np.ndarray:
     if not np.isfinite(d).all():
         raise InputError(

@@ -18,7 +18,7 @@ from identification.model.parameter import ParameterSet
 from inca_mj.reference import layout as base
 from inca_mj.robot.geometry import Geometry
 from inca_mj.worlds import layout as at
-from inca_mj.worlds.effect import Effect
+from inca_mj.worlds.effect import HiddenEffect
 from inca_mj.worlds.plant import make_plant, simulate_world
 
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -27,7 +27,7 @@ NEAR = 0.02  # a ratio this near to the asked one, relative, is good enough
 ATTEMPTS = 12
 
 
-class Absorbed:
+class HiddenAbsorbed:
     """What the base parameters and the start pose of a robot can absorb, for one input."""
 
     def __init__(
@@ -60,20 +60,20 @@ class Absorbed:
         U, size, _ = np.linalg.svd(np.stack(columns, axis=1), full_matrices=False)
         self._basis = U[:, size > 1e-6 * size[0]]
 
-    def rms(self, effects: Sequence[Effect]) -> float:
+    def rms(self, effects: Sequence[HiddenEffect]) -> float:
         """Rms of what the base cannot absorb of these effects [rad]."""
         e = self._angles(self._robot[0], effects) - self._without
         e -= self._basis @ (self._basis.T @ e)
         return float(np.sqrt(np.mean(e**2)))
 
-    def _angles(self, parameters: ParameterSet, effects: Sequence[Effect]) -> np.ndarray:
+    def _angles(self, parameters: ParameterSet, effects: Sequence[HiddenEffect]) -> np.ndarray:
         _, geometry, currents, sampling_time = self._robot
         plant = make_plant(parameters, geometry, effects)
         step = None if plant.D[:, at.PLAY].any() else COARSE
         return simulate_world(plant, currents, sampling_time, step)[:, base.ANGLES].ravel()
 
 
-def sized(effect: Effect, absorbed: Absorbed, goal: float) -> Effect:
+def sized(effect: HiddenEffect, absorbed: HiddenAbsorbed, goal: float) -> HiddenEffect:
     """The effect with a size whose unabsorbed rms is `goal` [rad], to 2 %.
 
     Raises:

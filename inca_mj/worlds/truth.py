@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from identification.logs.log import Log
-from inca_mj.worlds.effect import Effect
+from inca_mj.worlds.effect import HiddenEffect
 
 
-@dataclass(frozen=True, eq=False)
-class Truth:
+@dataclass(frozen=True, eq=False, kw_only=True)
+class HiddenTruth:
     """The answer to a world.
 
     Attributes:
@@ -29,7 +29,7 @@ class Truth:
     """
 
     seed: int
-    effects: tuple[Effect, ...]
+    effects: tuple[HiddenEffect, ...]
     ratios: tuple[float, ...]
     parameters: Mapping[str, float]
     noise_rms: float
@@ -71,8 +71,8 @@ class Truth:
         }
 
 
-class World(NamedTuple):
+class HiddenWorld(NamedTuple):
     """A log, and the truth about it."""
 
     log: Log
-    truth: Truth
+    truth: HiddenTruth

@@ -14,11 +14,11 @@ from inca_mj.reference import layout as base
 from inca_mj.robot.geometry import DRIVES, INCA, Geometry
 from inca_mj.robot.inputs import multisine, prbs
 from inca_mj.robot.parameters import parameter_set
-from inca_mj.worlds.effect import Effect
+from inca_mj.worlds.effect import HiddenEffect
 from inca_mj.worlds.measure import coloured, encode, noise_rms
 from inca_mj.worlds.plant import make_plant, simulate_world
-from inca_mj.worlds.ratio import Absorbed, sized
-from inca_mj.worlds.truth import Truth, World
+from inca_mj.worlds.ratio import HiddenAbsorbed, sized
+from inca_mj.worlds.truth import HiddenTruth, HiddenWorld
 
 VARIED = ("lambda", "b", "J", "b_v", "b_c", "K_t")  # what a user would estimate
 EVERY = ("R", "R_s", "k_s", *VARIED, "beta", "m", "I_x", "I_y", "I_z")
@@ -26,8 +26,8 @@ EVERY = ("R", "R_s", "k_s", *VARIED, "beta", "m", "I_x", "I_y", "I_z")
 _INPUTS = {"prbs": prbs, "multisine": multisine}
 
 
-@dataclass(frozen=True)
-class Setting:
+@dataclass(frozen=True, kw_only=True)
+class HiddenSetting:
     """How a world is made and measured.
 
     Attributes:
@@ -78,7 +78,7 @@ class Setting:
         return round(self.duration / self.sampling_time)
 
 
-def make_currents(seed: int, setting: Setting) -> np.ndarray:
+def make_currents(seed: int, setting: HiddenSetting) -> np.ndarray:
     """The commanded currents of a world, shape (n, 8) [A]."""
     n, T_s, low, high = setting.samples, setting.sampling_time, setting.low, setting.high
     if setting.input == "prbs":
@@ -88,12 +88,12 @@ def make_currents(seed: int, setting: Setting) -> np.ndarray:
 
 def world(
     seed: int,
-    effects: Sequence[Effect] = (),
+    effects: Sequence[HiddenEffect] = (),
     *,
     ratio: float | Sequence[float] | None = None,
-    setting: Setting | None = None,
+    setting: HiddenSetting | None = None,
     geometry: Geometry = INCA,
-) -> World:
+) -> HiddenWorld:
     """A log of a robot with these effects, and the truth about it.
 
     One seed gives one robot, input and noise, whatever the effects are.
@@ -112,7 +112,7 @@ def world(
             reached.
         DivergenceError: the effects are so large that the robot breaks.
     """
-    setting = setting or Setting()
+    setting = setting or HiddenSetting()
     places = [(e.name, e.where) for e in effects]
     if len(set(places)) < len(places):
         raise InputError("an effect is named twice in one place; give it once, with its size")
@@ -124,7 +124,7 @@ def world(
     noise = noise_rms(setting.counts, setting.noise)
     chosen, ratios = tuple(effects), _ratios(ratio, len(effects))
     if ratios:
-        absorbed = Absorbed(robot, geometry, u, setting.sampling_time, setting.varied)
+        absorbed = HiddenAbsorbed(robot, geometry, u, setting.sampling_time, setting.varied)
         chosen = tuple(sized(e, absorbed, r * noise) for e, r in zip(chosen, ratios, strict=True))
     error = coloured(
         u.shape, setting.sampling_time, setting.error_rms, setting.error_time,
@@ -133,11 +133,20 @@ def world(
     plant = make_plant(robot, geometry, chosen)
     angles = simulate_world(plant, u + error, setting.sampling_time)[:, base.ANGLES].copy()
     y = encode(angles, setting.counts, setting.noise, np.random.default_rng([seed, 3]))
-    truth = Truth(seed, chosen, ratios, robot.values(), noise, setting.error_rms, angles, error)
-    return World(_log(u, y, setting), truth)
+    truth = HiddenTruth(
+        seed=seed,
+        effects=chosen,
+        ratios=ratios,
+        parameters=robot.values(),
+        noise_rms=noise,
+        error_rms=setting.error_rms,
+        angles=angles,
+        error=error,
+    )
+    return HiddenWorld(_log(u, y, setting), truth)
 
 
-def _true_robot(rng: np.random.Generator, setting: Setting) -> ParameterSet:
+def _true_robot(rng: np.random.Generator, setting: HiddenSetting) -> ParameterSet:
     nominal = parameter_set("trial")
     # Every parameter is drawn, so that what varies does not change what another seed gives.
     factor = dict(zip(EVERY, 1 + setting.spread * rng.uniform(-1, 1, len(EVERY)), strict=True))
@@ -160,7 +169,7 @@ def _ratios(ratio: float | Sequence[float] | None, n: int) -> tuple[float, ...]:
     return ratios
 
 
-def _log(u: np.ndarray, y: np.ndarray, setting: Setting) -> Log:
+def _log(u: np.ndarray, y: np.ndarray, setting: HiddenSetting) -> Log:
     names = [tuple(f"{kind}_{k}" for k in range(1, DRIVES + 1)) for kind in ("current", "angle")]
     units = {**dict.fromkeys(names[0], "A"), **dict.fromkeys(names[1], "rad")}
     time = setting.sampling_time * np.arange(len(u), dtype=np.float64)

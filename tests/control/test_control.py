@@ -14,7 +14,7 @@ from inca_mj.twin.control import (
     REACH,
     START_SPREAD,
     TASKS,
-    load,
+    load_environment,
 )
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
@@ -31,7 +31,7 @@ def test_it_moves_in_lockstep_with_the_twin():
     seed, steps = 3, 100
     currents = np.random.default_rng(0).uniform(LOWEST_CURRENT, HIGHEST_CURRENT, (steps, 8))
     currents[: steps // 2] = 0.7
-    env = load("reach", random=seed)
+    env = load_environment("reach", random=seed)
     seen = [step.observation for step in drive(env, currents)]
 
     spread = np.random.default_rng(seed).uniform(-START_SPREAD, START_SPREAD)
@@ -52,7 +52,7 @@ def test_it_moves_in_lockstep_with_the_twin():
 
 @pytest.mark.parametrize("task", TASKS)
 def test_specs_describe_what_is_taken_and_given(task):
-    env = load(task, random=0)
+    env = load_environment(task, random=0)
     action = env.action_spec()
     assert action.shape == (8,)
     assert (action.minimum, action.maximum) == (LOWEST_CURRENT, HIGHEST_CURRENT)
@@ -70,7 +70,9 @@ def test_a_seed_decides_everything(task):
     currents = np.full((30, 8), 0.5)
 
     def positions(seed):
-        return np.array([s.observation["position"] for s in drive(load(task, seed), currents)])
+        return np.array(
+            [s.observation["position"] for s in drive(load_environment(task, seed), currents)]
+        )
 
     np.testing.assert_array_equal(positions(5), positions(5))
     assert np.abs(positions(5) - positions(6)).max() > 1e-4
@@ -78,7 +80,7 @@ def test_a_seed_decides_everything(task):
 
 @pytest.mark.parametrize("seed", range(5))
 def test_it_starts_at_rest_whatever_the_pose(seed):
-    env = load("reach", random=seed)  # no hand pulls
+    env = load_environment("reach", random=seed)  # no hand pulls
     begin = env.reset().observation
     step = [env.step(np.zeros(8)) for _ in range(100)][-1]
     np.testing.assert_allclose(step.observation["position"], begin["position"], atol=1e-9)
@@ -86,7 +88,7 @@ def test_it_starts_at_rest_whatever_the_pose(seed):
 
 
 def test_the_hand_pulls_in_hold_only_and_anew_each_episode():
-    env = load("hold", random=1)
+    env = load_environment("hold", random=1)
     forces = []
     for _ in range(2):
         env.reset()
@@ -94,22 +96,22 @@ def test_the_hand_pulls_in_hold_only_and_anew_each_episode():
     assert not np.array_equal(*forces)
     assert all(0.5 <= np.linalg.norm(f[:3]) <= 2.0 and not f[3:].any() for f in forces)
 
-    env = load("reach", random=1)
+    env = load_environment("reach", random=1)
     env.reset()
     assert not env.physics.data.xfrc_applied.any()
 
 
 def test_targets_are_the_start_or_within_reach():
-    begin = load("hold", random=0).reset().observation
+    begin = load_environment("hold", random=0).reset().observation
     np.testing.assert_allclose(begin["target"], begin["position"], atol=1e-12)
-    env = load("reach", random=0)
+    env = load_environment("reach", random=0)
     targets = np.array([env.reset().observation["target"] for _ in range(50)])
     assert (np.abs(targets - [0, 0, 1.43]) <= REACH).all()
     assert np.ptp(targets, axis=0).min() > 0.2
 
 
 def test_the_reward_is_one_at_the_target_and_falls_with_distance():
-    env = load("hold", random=0)
+    env = load_environment("hold", random=0)
     env.reset()
     rewards = []
     for shift in (0.0, 0.02, 0.05, 0.1):
@@ -123,21 +125,21 @@ def test_the_reward_is_one_at_the_target_and_falls_with_distance():
 
 def test_currents_are_cut_to_the_range_of_the_amplifiers():
     two = [
-        drive(load("reach", 0), np.full((10, 8), level))[-1].observation["motor_angle"]
+        drive(load_environment("reach", 0), np.full((10, 8), level))[-1].observation["motor_angle"]
         for level in (HIGHEST_CURRENT, 50.0)
     ]
     np.testing.assert_array_equal(*two)
 
 
 def test_an_episode_ends_at_its_time_limit():
-    env = load("reach", random=0, time_limit=0.05)
+    env = load_environment("reach", random=0, time_limit=0.05)
     steps = drive(env, np.zeros((5, 8)))
     assert [s.last() for s in steps] == [False] * 4 + [True]
 
 
 def test_a_current_that_is_no_number_is_refused_and_does_no_harm(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    env = load("hold", random=0)
+    env = load_environment("hold", random=0)
     env.reset()
     with pytest.raises(PhysicsError, match="finite"):
         env.step(np.full(8, np.nan))
@@ -147,4 +149,4 @@ def test_a_current_that_is_no_number_is_refused_and_does_no_harm(tmp_path, monke
 
 def test_an_unknown_task_names_the_known():
     with pytest.raises(InputError, match=r"did you mean 'hold'.*hold, reach"):
-        load("hodl")
+        load_environment("hodl")

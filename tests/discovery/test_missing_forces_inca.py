@@ -10,11 +10,11 @@ from identification.report.finding_words import describe_finding
 from inca_mj.effects.motor import DELAY
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.discovery import KNOWN
-from inca_mj.worlds import Setting, effect, world
+from inca_mj.worlds import HiddenSetting, effect, world
 
 
 def test_both_places_have_forces_in_their_units_and_sentences():
-    log, _ = world(4, [effect("cogging")], ratio=20.0, setting=Setting(duration=4.0))
+    log, _ = world(4, [effect("cogging")], ratio=20.0, setting=HiddenSetting(duration=4.0))
     plant = build_twin(timestep=2e-3, effects=(DELAY,))
     nominal_model, options = (
         NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()])), DiscoveryOptions()

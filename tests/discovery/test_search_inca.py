@@ -7,11 +7,11 @@ import pytest
 
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.workflows.discovery import discover
-from inca_mj.worlds import Setting, effect, world
+from inca_mj.worlds import HiddenSetting, effect, world
 
 FEW = ("load_dependent_friction", "stribeck_friction", "air_drag", "external_force", "com_offset")
 FIVE = tuple(e for e in CATALOGUE if e.name in FEW)
-SHORT = Setting(duration=6.0)
+SHORT = HiddenSetting(duration=6.0)
 
 
 def test_load_dependent_friction_is_named():

@@ -12,7 +12,7 @@ from identification.discovery.selection.shapes import improve_shape
 from identification.effects.effect import Candidate, Effect, Shape, Size
 from inca_mj.effects.motor import CURRENT_SATURATION
 from inca_mj.workflows.discovery import discover
-from inca_mj.worlds import Setting, effect, world
+from inca_mj.worlds import HiddenSetting, effect, world
 
 BARE = OPTIONS.bare_bic
 KINDS = Effect(
@@ -73,7 +73,7 @@ def test_where_structure_is_left_the_next_kind_is_tried_and_the_likelier_kept(mo
 
 
 def test_a_limit_that_two_levels_of_current_reach_alike_is_a_hard_one():
-    setting = Setting(duration=4.5)  # PRBS: 0.5 and 1 A
+    setting = HiddenSetting(duration=4.5)  # PRBS: 0.5 and 1 A
     log, truth = world(71, [replace(effect("current_saturation"), i_max=0.9)], setting=setting)
     assert np.unique(log.inputs).size == 2
     answer = discover(log, effects=(CURRENT_SATURATION,))

@@ -11,7 +11,7 @@ from identification import DivergenceError, InputError, Parameter, ParameterSet
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import assess
 from identification.model.plant import ModelPlant
-from identification.report.fit_verdict import verdict
+from identification.report.fit_verdict import fit_verdict
 
 ALL = ("mass", "damping", "stiffness", "gear")
 OFF = {"mass": 2.4, "damping": 2.5, "stiffness": 17.0, "gear": 6.0}
@@ -33,7 +33,7 @@ def test_a_common_factor_of_all_forces_is_named_as_quotients():
         assert sum(combination.exponents.values()) == 0
         assert sorted(combination.exponents.values()) == [-1, 1]
         assert abs(value - combination.value(truth)) < 4 * std
-    said = " ".join(verdict(fit))
+    said = " ".join(fit_verdict(fit))
     assert "3 of 4 directions are felt" in said
     assert "trade off along" in said
     assert "can be known from this log" in said
@@ -48,7 +48,7 @@ def test_a_product_is_named_where_a_product_counts():
     ((combination, value, std),) = fit.combinations
     assert str(combination) in ("gain gear", "gear gain")
     assert abs(value - 5.0) < 4 * std
-    assert "only" in " ".join(verdict(fit))
+    assert "only" in " ".join(fit_verdict(fit))
 
 
 def test_round_off_does_not_carry_a_search_along_what_is_not_felt():
@@ -93,7 +93,7 @@ def test_a_value_at_its_bound_is_reported():
     for method in ("trf", "dogbox"):
         fit = assess(estimate(plant, LOG, ("stiffness",), options=Options(method=method)))
         assert fit.at_bound.all(), method
-        assert "At a bound: stiffness" in " ".join(verdict(fit))
+        assert "At a bound: stiffness" in " ".join(fit_verdict(fit))
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def test_what_unseen_data_say_depends_on_what_they_could(unseen, expected, said)
     judged = replace(
         fit, validation_rms=unseen * fit.rms, validation_expected=expected * fit.rms
     )  # fmt: skip
-    assert said in verdict(judged)[-1]
+    assert said in fit_verdict(judged)[-1]
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0])

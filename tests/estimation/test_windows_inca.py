@@ -10,12 +10,11 @@ from identification.estimation.window_estimate import estimate_windows
 from identification.estimation.windows import apart, moved
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
-from inca_mj.twin.logs import run_to_log
+from inca_mj.twin.logs import POSE, run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.disturbed import identify_windows
-from inca_mj.workflows.identification import POSE
-from inca_mj.workflows.trials import SMALL
+from inca_mj.workflows.thesis import SMALL
 
 NOISE = 2e-4  # [rad]
 OFF = {"x": 0.002, "y": -0.002, "z": 1.433}  # where the platform begins, and no angle says so
@@ -53,4 +52,4 @@ def test_steps_between_states_undo_each_other(measured):
 
 def test_windows_need_a_parameter_of_the_robot(measured):
     with pytest.raises(InputError, match="windows cannot find x, z alone"):
-        identify_windows(measured, parameter_set(), 0.2, free=("x", "z"))
+        identify_windows(measured, 0.2, parameter_set(), free=("x", "z"))

@@ -13,7 +13,7 @@ from inca_mj.cli import main
 from inca_mj.robot.inputs import prbs
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import Twin, build_twin
-from inca_mj.workflows.excitation import design
+from inca_mj.workflows.excitation import excite
 from inca_mj.workflows.limits import Limits, extent
 from inca_mj.workflows.recipes import changed, draw
 
@@ -27,7 +27,7 @@ def robot() -> Twin:
 
 def test_the_design_keeps_its_limits_and_repeats(robot: Twin) -> None:
     limits = Limits(0.2, 1.2, 2.0, 0.1, 0.3)
-    one, two = (design(robot, 0.3, names=NAMES, limits=limits, budget=3, seed=4) for _ in range(2))
+    one, two = (excite(robot, 0.3, free=NAMES, limits=limits, budget=3, seed=4) for _ in range(2))
     assert np.array_equal(one.best.run.currents, two.best.run.currents)
     assert one.best.found.e_value == two.best.found.e_value
     again = simulate(robot, one.best.run.currents)
@@ -84,12 +84,12 @@ def test_bad_designs_are_refused(robot: Twin) -> None:
         ({"duration": 0.01}, "cannot be designed"),
         ({"budget": 0}, "budget"),
         ({"limits": Limits(margin=50.0)}, "rests with"),
-        ({"names": ("lamda",), "duration": 0.3}, "did you mean"),
+        ({"free": ("lamda",), "duration": 0.3}, "did you mean"),
     ):
         with pytest.raises(InputError, match=word):
-            design(robot, **keywords)
+            excite(robot, **keywords)
     with pytest.raises(InputError, match="keeps the limits"):
-        design(robot, 0.3, names=("J",), limits=Limits(reach=1e-9), budget=1)
+        excite(robot, 0.3, free=("J",), limits=Limits(reach=1e-9), budget=1)
 
 
 def test_excite_writes_what_simulate_replays(tmp_path: Path, capsys) -> None:

@@ -1,19 +1,57 @@
-"""The public lists: every name is there, and none is a module's too."""
+"""The public lists: every name is there, for Python and for type checkers, and says what it is."""
 
+import ast
 from importlib import import_module
 from pkgutil import iter_modules
 
 import pytest
 
+PACKAGES = ("identification", "inca_mj")
+OPTIONAL = {"load_environment": "dm_control", "CONTROL_TIMESTEP": "dm_control"}
 
-@pytest.mark.parametrize("package", ["identification", "inca_mj"])
-def test_public_names(package):
+
+def public(package):
+    """Every public name of a package that can be had here, and what it names."""
     module = import_module(package)
-    assert module.__all__
-    assert dir(module) == sorted(module.__all__)
     for name in module.__all__:
-        assert getattr(module, name) is not None
+        if name in OPTIONAL:
+            try:
+                import_module(OPTIONAL[name])
+            except ImportError:
+                continue
+        yield name, getattr(module, name)
+
+
+def static_names(package):
+    """What a type checker sees: `from MODULE import X as X` below `if TYPE_CHECKING`."""
+    with open(import_module(package).__file__, encoding="utf-8") as source:
+        tree = ast.parse(source.read())
+    (block,) = (n for n in tree.body if isinstance(n, ast.If))
+    for node in block.body:
+        for alias in node.names:
+            assert alias.asname == alias.name
+            yield alias.name, node.module.removeprefix(f"{package}.")
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_names_are_there_and_no_module_takes_their_place(package):
+    module = import_module(package)
+    assert dir(module) == sorted(module.__all__)
+    assert all(thing is not None for _, thing in public(package))
     # a module of the same name would take the name's place, or not, by the order of imports
     assert not {m.name for m in iter_modules(module.__path__)} & set(module.__all__)
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         _ = module.nonsense
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_type_checkers_see_the_same_list(package):
+    assert dict(static_names(package)) == import_module(package)._PUBLIC
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_name_comes_from_the_module_that_defines_it(package):
+    module = import_module(package)
+    for name, thing in public(package):
+        if hasattr(thing, "__module__"):
+            assert thing.__module__ == f"{package}.{module._PUBLIC[name]}"

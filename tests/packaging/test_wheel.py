@@ -57,6 +57,8 @@ def package_files():
 
 def test_the_wheel_holds_the_packages_and_the_model_and_nothing_else(wheel):
     assert names(wheel) == package_files() | {"inca_mj/models/inca6d.xml"}
+    # type checkers read our annotations only where this file says that they may
+    assert {f"{package}/py.typed" for package in PACKAGES} <= names(wheel)
 
 
 def test_the_wheel_says_what_it_is(wheel):

@@ -9,6 +9,7 @@ from identification.errors import InputError
 from identification.report.style import MEASURED
 from inca_mj.rendering.colours import tension_scale
 from inca_mj.rendering.film import film, stills
+from inca_mj.rendering.scene import Scene
 from inca_mj.rendering.view import view
 
 pytestmark = pytest.mark.usefixtures("opengl")
@@ -132,8 +133,7 @@ def test_an_ffmpeg_that_does_not_work_is_one_sentence(tmp_path, short_run, monke
         ({"size": (32, 18)}, "even numbers"),
         ({"fps": 0}, "positive"),
         ({"speed": float("nan")}, "positive"),
-        ({"measured": np.zeros((3, 8))}, "3 measured samples for 101"),
-        ({"measured_pose": np.zeros((101, 6))}, "motor angles beside"),
+        ({"seconds": 0.0}, "positive number of seconds"),
     ],
 )
 def test_a_film_that_makes_no_sense_is_refused(tmp_path, short_run, how, says):
@@ -141,6 +141,18 @@ def test_a_film_that_makes_no_sense_is_refused(tmp_path, short_run, how, says):
     with pytest.raises(InputError, match=says):
         film(short_run, tmp_path / how.pop("path", "run.mp4"), **how)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("measured", "says"),
+    [
+        ({"angles": np.zeros((3, 8))}, "3 measured samples for 101"),
+        ({"pose": np.zeros((101, 6))}, "motor angles beside"),
+    ],
+)
+def test_a_scene_that_makes_no_sense_is_refused(short_run, measured, says):
+    with pytest.raises(InputError, match=says):
+        Scene(short_run, **measured)
 
 
 def test_a_picture_outside_the_run_is_refused(tmp_path, short_run):

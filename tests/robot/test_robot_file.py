@@ -5,13 +5,13 @@ import json
 import pytest
 from robot_cases import NAMES, TOML, refused, run
 
-from identification.robot.file import read_robot
+from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log, robot_of
 from identification.robot.write import write_robot
 
 
 def test_what_the_file_leaves_out_comes_from_the_model_and_the_log(folder):
-    file = read_robot(folder / "robot.toml")
+    file = read_robot_file(folder / "robot.toml")
     log = read_robot_log(file, str(folder / "other.csv"))
     robot = robot_of(file, log)
     at = robot.plant.parameters
@@ -56,7 +56,7 @@ def test_a_discovery_names_what_is_hidden_and_writes_a_report(folder, tmp_path, 
     assert effect["name"] == "asymmetric_viscous_friction"
     assert effect["parameters"]["d_a"]["value"] == pytest.approx(0.9, rel=0.1)
     assert "Missing from the model" in (out / "report.html").read_text()
-    again = read_robot(out / "robot.toml")
+    again = read_robot_file(out / "robot.toml")
     robot = robot_of(again, read_robot_log(again, str(folder / "hidden.csv")))
     name = "asymmetric_viscous_friction.d_a@slide"
     assert again.free == (*NAMES, name)
@@ -78,11 +78,11 @@ def test_options_of_a_file_decide(folder, tmp_path, capsys):
 
 
 def test_a_robot_with_an_effect_reads_back_to_the_bit(folder, tmp_path):
-    file = read_robot(folder / "robot.toml")
+    file = read_robot_file(folder / "robot.toml")
     robot = robot_of(file, read_robot_log(file, str(folder / "hidden.csv")))
     values = {"mass": 1.8123456789012345, "stribeck_friction.f_s@slide": 0.1 / 3,
               "stribeck_friction.v_s": 0.07 / 3}  # fmt: skip
-    again = read_robot(write_robot(robot, values, tmp_path / "r.toml", tmp_path))
+    again = read_robot_file(write_robot(robot, values, tmp_path / "r.toml", tmp_path))
     back = robot_of(again, robot.log).plant.parameters
     assert {n: back[n].value for n in values} == values
     assert again.fixed == {"stribeck_friction.v_s": 0.07 / 3}

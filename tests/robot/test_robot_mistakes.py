@@ -7,11 +7,11 @@ from joint_cases import SLIDER
 from robot_cases import TOML, refused, simulated
 
 from identification import write_log
-from identification.commands.fit import _far
 from identification.effects.axes import Axis
 from identification.effects.joint_catalogue import TURNS, joint_effects
 from identification.effects.named import unknown_number
-from identification.robot.file import read_robot
+from identification.robot.file import read_robot_file
+from identification.robot.fit_json import _far
 from identification.robot.robot import read_robot_log
 
 
@@ -92,7 +92,7 @@ def test_how_much_a_log_may_be_thinned_is_told(folder, capsys):
     assert f"every in {path} is 240" in said
     assert said.endswith("it may be 239 at most\n")
     path.write_text("every = 239\n" + TOML)
-    assert len(read_robot_log(read_robot(path), folder / "plain.csv")) == 6
+    assert len(read_robot_log(read_robot_file(path), folder / "plain.csv")) == 6
     (folder / "lines.toml").write_text('hold = "foh"')
     (folder / "lines.csv").write_text((folder / "plain.csv").read_text())
     assert "leave every out" in refused(capsys, "fit", path, folder / "lines.csv")
@@ -117,7 +117,7 @@ def test_time_in_milliseconds_is_asked_for_and_converted(folder, capsys):
     assert "is sampled every 10 s, 5000 steps of" in said
     assert f'in ms? then write time = "ms" under [units] in {folder / "slow.toml"}' in said
     (folder / "slow.toml").write_text('units.time = "ms"')
-    read = read_robot_log(read_robot(folder / "robot.toml"), folder / "slow.csv")
+    read = read_robot_log(read_robot_file(folder / "robot.toml"), folder / "slow.csv")
     assert read.sampling_time == pytest.approx(0.01)
 
 

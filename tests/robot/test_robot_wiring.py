@@ -11,7 +11,7 @@ from identification import Log, write_log
 from identification.__main__ import main
 from identification.errors import InputError
 from identification.logs.units import UNITS
-from identification.robot.file import read_robot
+from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log, robot_of
 from identification.robot.wiring import refuse_miswired
 
@@ -33,7 +33,7 @@ def robot(folder, model, log, free, horizon=""):
     (folder / "robot.xml").write_text(model)
     (folder / "robot.toml").write_text(f'{horizon}\nmodel = "robot.xml"\nfree = ["{free}"]\n')
     write_log(log, folder / "log.csv")
-    file = read_robot(folder / "robot.toml")
+    file = read_robot_file(folder / "robot.toml")
     read = read_robot_log(file, folder / "log.csv")
     return robot_of(file, read), read
 

@@ -15,12 +15,12 @@ from inca_mj.reference import derivative, pack, simulate_reference
 from inca_mj.reference import layout as base
 from inca_mj.robot.geometry import INCA
 from inca_mj.worlds import (
-    AnchorOffset,
-    CableHardening,
-    ComOffset,
-    ExternalForce,
-    PulleyRadius,
-    StribeckFriction,
+    HiddenAnchorOffset,
+    HiddenCableHardening,
+    HiddenComOffset,
+    HiddenExternalForce,
+    HiddenPulleyRadius,
+    HiddenStribeckFriction,
     draw_effect,
     effect,
 )
@@ -72,19 +72,19 @@ def test_what_the_reference_can_say_it_says_the_same(moved):
     u, robot, geometry, force, effects = prbs(0.5), TRIAL, INCA, (0.0, 0.0, 0.0), ()
     if moved == "external_force":
         force = (0.1, -0.2, 0.3)
-        effects = (ExternalForce(x=0.1, y=-0.2, z=0.3),)
+        effects = (HiddenExternalForce(x=0.1, y=-0.2, z=0.3),)
     if moved == "anchor_offset":
         A = INCA.A
         A[2] += (0.01, 0.02, -0.03)
         geometry, effects = (
             replace(INCA, exits=A),
-            (AnchorOffset(drive=3, x=0.01, y=0.02, z=-0.03),),
+            (HiddenAnchorOffset(drive=3, x=0.01, y=0.02, z=-0.03),),
         )
     if moved == "com_offset":
         c = np.array([0.002, 0.001, -0.004])
         geometry = replace(INCA, connectors=INCA.B - c)
         robot = TRIAL.with_values({"x": c[0], "y": c[1], "z": 1.43 + c[2]})
-        effects = (ComOffset(x=c[0], y=c[1], z=c[2]),)
+        effects = (HiddenComOffset(x=c[0], y=c[1], z=c[2]),)
     time = np.arange(len(u)) * 0.01
     expected = simulate_reference(robot, geometry, time, u, force=force)
     X = simulate_world(plant(*effects), u)
@@ -111,26 +111,26 @@ def test_a_drawn_effect_is_one_that_a_robot_can_have(name):
 
 
 def test_a_drive_effect_can_act_on_one_drive():
-    p = plant(StribeckFriction(drive=4))
+    p = plant(HiddenStribeckFriction(drive=4))
     assert np.flatnonzero(p.D[:, at.STRIBECK]).tolist() == [3]
-    assert StribeckFriction(drive=4).where == "drive 4"
-    assert StribeckFriction().where == "all drives"
+    assert HiddenStribeckFriction(drive=4).where == "drive 4"
+    assert HiddenStribeckFriction().where == "all drives"
 
 
 def test_bad_effects_are_refused():
     with pytest.raises(InputError, match="did you mean 'backlash'"):
         effect("backlas")
     with pytest.raises(InputError, match="no drive 9"):
-        AnchorOffset(drive=9)
+        HiddenAnchorOffset(drive=9)
     with pytest.raises(InputError, match="name its drive"):
-        AnchorOffset(drive=None)
+        HiddenAnchorOffset(drive=None)
     with pytest.raises(InputError, match="v_s = 0 must be positive"):
-        StribeckFriction(v_s=0.0)
+        HiddenStribeckFriction(v_s=0.0)
     with pytest.raises(InputError, match="not a finite number"):
-        StribeckFriction(f_s=float("nan"))
+        HiddenStribeckFriction(f_s=float("nan"))
     with pytest.raises(InputError, match="no strain that carries"):
-        plant(CableHardening(kappa=-1e5))
+        plant(HiddenCableHardening(kappa=-1e5))
     with pytest.raises(InputError, match="inside its pulley"):
-        plant(PulleyRadius(r_p=3.0))
+        plant(HiddenPulleyRadius(r_p=3.0))
     with pytest.raises(InputError, match="hold the platform"):
-        plant(ComOffset(x=2.0))
+        plant(HiddenComOffset(x=2.0))

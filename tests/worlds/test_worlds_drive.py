@@ -6,25 +6,25 @@ from worlds_cases import FINE, angles, fine, plant, prbs, simulate
 
 from inca_mj.reference import layout as base
 from inca_mj.worlds import (
-    AsymmetricFriction,
-    Backlash,
-    Cogging,
-    CurrentLag,
-    CurrentSaturation,
-    Delay,
-    DrumEccentricity,
-    DrumLayering,
-    DrumRadiusMismatch,
-    FrictionMismatch,
-    LoadDependentFriction,
-    PositionDependentFriction,
-    QuadraticFriction,
-    SpringHardening,
-    SpringHysteresis,
-    StribeckFriction,
-    TorqueConstantDrift,
-    TorqueConstantMismatch,
-    TorqueRippleTime,
+    HiddenAsymmetricFriction,
+    HiddenBacklash,
+    HiddenCogging,
+    HiddenCurrentLag,
+    HiddenCurrentSaturation,
+    HiddenDelay,
+    HiddenDrumEccentricity,
+    HiddenDrumLayering,
+    HiddenDrumRadiusMismatch,
+    HiddenFrictionMismatch,
+    HiddenLoadDependentFriction,
+    HiddenPositionDependentFriction,
+    HiddenQuadraticFriction,
+    HiddenSpringHardening,
+    HiddenSpringHysteresis,
+    HiddenStribeckFriction,
+    HiddenTorqueConstantDrift,
+    HiddenTorqueConstantMismatch,
+    HiddenTorqueRippleTime,
 )
 from inca_mj.worlds import layout as at
 from inca_mj.worlds.equations import friction, motor, radius, spring
@@ -35,14 +35,14 @@ SAME = 1e-9  # two ways to one trajectory [rad]
 @pytest.mark.parametrize(
     "effect",
     [
-        StribeckFriction(),
-        StribeckFriction(exponent=1.0),
-        AsymmetricFriction(),
-        LoadDependentFriction(),
-        QuadraticFriction(),
-        QuadraticFriction(exponent=1.5),
-        FrictionMismatch(delta=-0.5),
-        PositionDependentFriction(a=0.5, b=0.5),
+        HiddenStribeckFriction(),
+        HiddenStribeckFriction(exponent=1.0),
+        HiddenAsymmetricFriction(),
+        HiddenLoadDependentFriction(),
+        HiddenQuadraticFriction(),
+        HiddenQuadraticFriction(exponent=1.5),
+        HiddenFrictionMismatch(delta=-0.5),
+        HiddenPositionDependentFriction(a=0.5, b=0.5),
     ],
 )
 def test_friction_takes_energy_and_never_gives(effect):
@@ -57,13 +57,13 @@ def test_each_friction_by_its_letters():
     ω, φ, RT, none = -3.0, 2.0, 0.05, plant()
     b_c, σ = none.q[7], np.tanh(none.q[8] * ω)
     for effect, more in (
-        (StribeckFriction(f_s=0.01, v_s=2.0), 0.01 * np.exp(-2.25) * σ),
-        (StribeckFriction(f_s=0.01, v_s=2.0, exponent=1.0), 0.01 * np.exp(-1.5) * σ),
-        (AsymmetricFriction(f_a=0.002), 0.002 * abs(σ)),
-        (LoadDependentFriction(mu=0.1), 0.1 * RT * σ),
-        (QuadraticFriction(c=1e-6), -1e-6 * ω**2),
-        (FrictionMismatch(delta=0.2), 0.2 * b_c * σ),
-        (PositionDependentFriction(a=0.2, b=0.1),
+        (HiddenStribeckFriction(f_s=0.01, v_s=2.0), 0.01 * np.exp(-2.25) * σ),
+        (HiddenStribeckFriction(f_s=0.01, v_s=2.0, exponent=1.0), 0.01 * np.exp(-1.5) * σ),
+        (HiddenAsymmetricFriction(f_a=0.002), 0.002 * abs(σ)),
+        (HiddenLoadDependentFriction(mu=0.1), 0.1 * RT * σ),
+        (HiddenQuadraticFriction(c=1e-6), -1e-6 * ω**2),
+        (HiddenFrictionMismatch(delta=0.2), 0.2 * b_c * σ),
+        (HiddenPositionDependentFriction(a=0.2, b=0.1),
          b_c * (0.2 * np.cos(φ) + 0.1 * np.sin(φ)) * σ),
     ):  # fmt: skip
         D = plant(effect).D[0]
@@ -73,7 +73,7 @@ def test_each_friction_by_its_letters():
 
 def test_a_delay_shifts_and_gives_nothing_before():
     u = prbs()
-    late, now = angles([Delay(delay=0.03)], u), angles([], u)
+    late, now = angles([HiddenDelay(delay=0.03)], u), angles([], u)
     np.testing.assert_allclose(late[3:], now[:-3], atol=SAME)
     np.testing.assert_allclose(late[:4], 0, atol=SAME)
 
@@ -83,16 +83,16 @@ def test_a_delay_inside_a_sample_is_exact():
     quarter = np.repeat(u, 4, axis=0)
     shifted = np.vstack([np.zeros((5, 8)), quarter[:-5]])  # 1.25 samples
     np.testing.assert_allclose(
-        angles([Delay(delay=0.0125)], u), angles([], shifted, 0.0025)[::4], atol=SAME
+        angles([HiddenDelay(delay=0.0125)], u), angles([], shifted, 0.0025)[::4], atol=SAME
     )
 
 
 def test_a_lagging_current_starts_at_the_first_and_rises_as_an_exponential():
     u = np.ones((40, 8))
-    steady = simulate(plant(CurrentLag(tau=5e-3)), u)[:, at.HEAT]
+    steady = simulate(plant(HiddenCurrentLag(tau=5e-3)), u)[:, at.HEAT]
     np.testing.assert_allclose(steady[:, 0], np.arange(40) * 0.01, rtol=1e-12)
     u[0], τ, t = 0.0, 5e-3, np.arange(39) * 0.01
-    heat = simulate(plant(CurrentLag(tau=τ)), u)[1:, at.HEAT]
+    heat = simulate(plant(HiddenCurrentLag(tau=τ)), u)[1:, at.HEAT]
     e = np.exp(-t / τ)
     expected = t - 2 * τ * (1 - e) + τ / 2 * (1 - e**2)  # ∫ (1 − e^(−t/τ))² dt
     np.testing.assert_allclose(heat[:, 2], expected, atol=1e-9)
@@ -100,17 +100,17 @@ def test_a_lagging_current_starts_at_the_first_and_rises_as_an_exponential():
 
 def test_saturation_is_another_input():
     u = prbs()
-    clipped = angles([CurrentSaturation(i_max=0.9)], u)
+    clipped = angles([HiddenCurrentSaturation(i_max=0.9)], u)
     assert np.array_equal(clipped, angles([], np.clip(u, -0.9, 0.9)))
-    soft = angles([CurrentSaturation(i_max=2.0, soft=True)], u)
+    soft = angles([HiddenCurrentSaturation(i_max=2.0, soft=True)], u)
     np.testing.assert_allclose(soft, angles([], 2.0 * np.tanh(u / 2.0)), atol=SAME)
-    assert CurrentSaturation(i_max=0.9).scaled(0.5).i_max == pytest.approx(0.95)
+    assert HiddenCurrentSaturation(i_max=0.9).scaled(0.5).i_max == pytest.approx(0.95)
 
 
 def test_a_mismatch_of_torque_is_another_input():
     u = prbs()
     more = u * (1 + 0.05 * (np.arange(8) == 2))
-    got = angles([TorqueConstantMismatch(drive=3, delta=0.05)], u)
+    got = angles([HiddenTorqueConstantMismatch(drive=3, delta=0.05)], u)
     np.testing.assert_allclose(got, angles([], more), atol=SAME)
 
 
@@ -118,35 +118,40 @@ def test_a_drift_is_an_input_that_fades():
     u, α = fine(prbs(0.5)), 0.1
     middle = (np.arange(len(u)) + 0.5)[:, None] * FINE
     for drift, loss in (
-        (TorqueConstantDrift(alpha=α), α * middle),
-        (TorqueConstantDrift(alpha=α, settle=0.2), α * 0.2 * (1 - np.exp(-middle / 0.2))),
+        (HiddenTorqueConstantDrift(alpha=α), α * middle),
+        (HiddenTorqueConstantDrift(alpha=α, settle=0.2), α * 0.2 * (1 - np.exp(-middle / 0.2))),
     ):
         got = angles([drift], u, FINE)
         np.testing.assert_allclose(got, angles([], u * (1 - loss), FINE), atol=1e-6)
     ones = np.ones((50, 8))
-    hot = angles([TorqueConstantDrift(alpha=α, heat=True)], 2 * ones)
-    np.testing.assert_allclose(hot, angles([TorqueConstantDrift(alpha=4 * α)], 2 * ones), atol=SAME)
+    hot = angles([HiddenTorqueConstantDrift(alpha=α, heat=True)], 2 * ones)
+    np.testing.assert_allclose(
+        hot, angles([HiddenTorqueConstantDrift(alpha=4 * α)], 2 * ones), atol=SAME
+    )
 
 
 def test_a_ripple_in_time_is_another_input():
     u = fine(prbs(0.5))
     middle = (np.arange(len(u)) + 0.5)[:, None] * FINE
     more = 2e-3 * np.sin(2 * np.pi * 5 * middle + 1) / plant().q[9]
-    got = angles([TorqueRippleTime(a=2e-3, frequency=5.0, phase=1.0)], u, FINE)
+    got = angles([HiddenTorqueRippleTime(a=2e-3, frequency=5.0, phase=1.0)], u, FINE)
     np.testing.assert_allclose(got, angles([], u + more, FINE), atol=1e-6)
 
 
 def test_cogging_by_its_letters():
-    p = plant(Cogging(a=1e-3, b=2e-3, n=8.0))
+    p = plant(HiddenCogging(a=1e-3, b=2e-3, n=8.0))
     Γ = motor(0.0, 0.0, 0.0, 0.3, p.q, p.D[0])
     assert pytest.approx(1e-3 * np.cos(2.4) + 2e-3 * np.sin(2.4)) == Γ
 
 
 def test_radii_by_their_letters():
     for effect, expected in (
-        (DrumEccentricity(a=0.01, b=0.02), 0.0175 * (1 + 0.01 * np.cos(2) + 0.02 * np.sin(2))),
-        (DrumLayering(h=1e-5), 0.0175 + 2e-5),
-        (DrumRadiusMismatch(drive=1, delta=0.1), 0.01925),
+        (
+            HiddenDrumEccentricity(a=0.01, b=0.02),
+            0.0175 * (1 + 0.01 * np.cos(2) + 0.02 * np.sin(2)),
+        ),
+        (HiddenDrumLayering(h=1e-5), 0.0175 + 2e-5),
+        (HiddenDrumRadiusMismatch(drive=1, delta=0.1), 0.01925),
     ):
         assert radius(2.0, 0.0175, plant(effect).D[0]) == pytest.approx(expected, rel=1e-12)
 
@@ -154,7 +159,7 @@ def test_radii_by_their_letters():
 @pytest.mark.parametrize("h", [0.01, 0.1])
 def test_the_drum_plays_behind_the_rotor(h):
     u = fine(prbs())
-    X = simulate(plant(Backlash(h=h)), u, FINE, FINE)
+    X = simulate(plant(HiddenBacklash(h=h)), u, FINE, FINE)
     φ, ψ = X[:, base.ANGLES], np.zeros((len(u), 8))
     for k in range(1, len(u)):  # the play operator, sample by sample
         ψ[k] = np.clip(ψ[k - 1], φ[k] - h, φ[k] + h)
@@ -174,16 +179,16 @@ def test_the_drum_plays_behind_the_rotor(h):
 def test_springs_by_their_letters():
     φ, s, T_0 = 20.0, 0.006 * 20, 0.2
     for effect, expected in (
-        (SpringHardening(k_3=8.0), T_0 / 0.006 - 16 * s * (1 + 8 * s**2)),
-        (SpringHardening(k_3=2.0, exponent=1.0), T_0 / 0.006 - 16 * s * (1 + 2 * s)),
-        (SpringHysteresis(eta=-0.1), (T_0 / 0.006 - 16 * s) * (1 - 0.1 * np.tanh(0.8 * 3))),
+        (HiddenSpringHardening(k_3=8.0), T_0 / 0.006 - 16 * s * (1 + 8 * s**2)),
+        (HiddenSpringHardening(k_3=2.0, exponent=1.0), T_0 / 0.006 - 16 * s * (1 + 2 * s)),
+        (HiddenSpringHysteresis(eta=-0.1), (T_0 / 0.006 - 16 * s) * (1 - 0.1 * np.tanh(0.8 * 3))),
     ):
         p = plant(effect)
         assert spring(φ, 3.0, T_0, p.q, p.D[0]) == pytest.approx(expected, rel=1e-12)
 
 
 def test_a_spring_with_hysteresis_loses_what_a_loop_encloses():
-    p = plant(SpringHysteresis(eta=-0.1))
+    p = plant(HiddenSpringHysteresis(eta=-0.1))
     t = np.linspace(0, 2 * np.pi, 400, endpoint=False)
     work = sum(np.cos(a) * spring(np.sin(a), np.cos(a), 0.1, p.q, p.D[0]) for a in t)
     assert work < 0

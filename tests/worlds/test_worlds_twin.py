@@ -9,10 +9,10 @@ import pytest
 from identification.model.predictor import Predictor
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.twin.twin import build_twin
-from inca_mj.worlds import SHAPES, Setting, draw_effect, world
+from inca_mj.worlds import SHAPES, HiddenSetting, draw_effect, world
 
 SEED = 11
-SETTING = Setting(duration=2.0, noise=0.0, counts=0)
+SETTING = HiddenSetting(duration=2.0, noise=0.0, counts=0)
 RENAMED = {"delay": "tau", "fraction": "c", "heat": "kind"}  # sizes and shapes of the worlds here
 CHOSEN = {  # what the worlds do where the twin has a choice
     "current_lag": {"before": 1.0},

@@ -12,18 +12,18 @@ from inca_mj.robot.parameters import parameter_set
 from inca_mj.worlds import (
     EVERY,
     VARIED,
-    AnchorOffset,
-    Backlash,
-    Setting,
-    StribeckFriction,
-    TorqueConstantMismatch,
+    HiddenAnchorOffset,
+    HiddenBacklash,
+    HiddenSetting,
+    HiddenStribeckFriction,
+    HiddenTorqueConstantMismatch,
     make_currents,
     world,
 )
 from inca_mj.worlds.measure import coloured, encode, noise_rms
-from inca_mj.worlds.ratio import Absorbed
+from inca_mj.worlds.ratio import HiddenAbsorbed
 
-SHORT = Setting(duration=1.0)
+SHORT = HiddenSetting(duration=1.0)
 
 
 def test_seeds_reproduce_and_an_effect_leaves_robot_input_and_noise_alone():
@@ -31,14 +31,14 @@ def test_seeds_reproduce_and_an_effect_leaves_robot_input_and_noise_alone():
     assert np.array_equal(one.log.outputs, same.log.outputs)
     assert not np.array_equal(one.log.outputs, other.log.outputs)
     assert not np.array_equal(one.log.inputs, other.log.inputs)
-    more = world(3, [StribeckFriction()], setting=SHORT)
+    more = world(3, [HiddenStribeckFriction()], setting=SHORT)
     assert more.truth.parameters == one.truth.parameters
     assert np.array_equal(more.log.inputs, one.log.inputs)
     assert not np.array_equal(more.log.outputs, one.log.outputs)
 
 
 def test_the_log_holds_nothing_of_the_truth():
-    log, truth = world(5, [AnchorOffset(drive=4)], setting=SHORT)
+    log, truth = world(5, [HiddenAnchorOffset(drive=4)], setting=SHORT)
     assert log.inputs.shape == log.outputs.shape == (100, 8)
     assert not log.extras
     assert not log.notes
@@ -57,12 +57,12 @@ def test_the_log_holds_nothing_of_the_truth():
 def test_the_robot_is_near_the_trial_set():
     nominal = parameter_set("trial").values()
     for seed in range(5):
-        value = world(seed, setting=Setting(duration=0.1)).truth.parameters
+        value = world(seed, setting=HiddenSetting(duration=0.1)).truth.parameters
         for name in EVERY:
             change = abs(value[name] / nominal[name] - 1)
             assert (0 < change <= 0.1) == (name in VARIED)
         assert 0 < max(abs(value[n] - nominal[n]) for n in "xyz") <= 0.01
-    every = world(1, setting=Setting(duration=0.1, varied=EVERY, tilt=0.02)).truth.parameters
+    every = world(1, setting=HiddenSetting(duration=0.1, varied=EVERY, tilt=0.02)).truth.parameters
     assert all(every[name] != nominal[name] for name in (*EVERY, "roll", "pitch", "yaw"))
 
 
@@ -79,7 +79,10 @@ def test_the_current_error_is_coloured_and_not_logged():
     e = coloured((100000, 2), 0.01, 5e-4, 0.05, np.random.default_rng(0))
     assert e.std() == pytest.approx(5e-4, rel=0.05)
     assert np.mean(e[1:] * e[:-1]) / np.mean(e**2) == pytest.approx(np.exp(-0.2), abs=0.01)
-    quiet, loud = world(2, setting=SHORT), world(2, setting=Setting(duration=1.0, error_rms=5e-3))
+    quiet, loud = (
+        world(2, setting=SHORT),
+        world(2, setting=HiddenSetting(duration=1.0, error_rms=5e-3)),
+    )
     assert np.array_equal(quiet.log.inputs, loud.log.inputs)
     assert abs(quiet.truth.angles - loud.truth.angles).max() > 1e-3
     assert not quiet.truth.error.any()
@@ -87,7 +90,7 @@ def test_the_current_error_is_coloured_and_not_logged():
 
 @pytest.mark.parametrize("kind", ["prbs", "multisine"])
 def test_inputs_stay_between_their_levels(kind):
-    u = make_currents(7, Setting(input=kind, low=0.2, high=1.4))
+    u = make_currents(7, HiddenSetting(input=kind, low=0.2, high=1.4))
     assert u.shape == (2000, 8)
     assert u.min() == pytest.approx(0.2, abs=0.1)
     assert u.max() == pytest.approx(1.4, abs=0.1)
@@ -97,29 +100,29 @@ def test_inputs_stay_between_their_levels(kind):
 
 def test_what_the_base_can_say_is_absorbed():
     robot, u = parameter_set("trial"), make_currents(1, SHORT)
-    absorbed = Absorbed(robot, INCA, u, 0.01, VARIED)
-    all_drives = [TorqueConstantMismatch(drive=k, delta=1e-3) for k in range(1, 9)]
+    absorbed = HiddenAbsorbed(robot, INCA, u, 0.01, VARIED)
+    all_drives = [HiddenTorqueConstantMismatch(drive=k, delta=1e-3) for k in range(1, 9)]
     assert absorbed.rms(all_drives) < 1e-2 * absorbed.rms(all_drives[:1])
     assert absorbed.rms([]) == 0
 
 
-@pytest.mark.parametrize("effect", [TorqueConstantMismatch(drive=2), Backlash()])
+@pytest.mark.parametrize("effect", [HiddenTorqueConstantMismatch(drive=2), HiddenBacklash()])
 def test_a_ratio_is_reached(effect):
     log, truth = world(6, [effect], ratio=6.0, setting=SHORT)
     robot = parameter_set("trial").with_values(truth.parameters)
-    left = Absorbed(robot, INCA, log.inputs, 0.01, VARIED).rms(truth.effects)
+    left = HiddenAbsorbed(robot, INCA, log.inputs, 0.01, VARIED).rms(truth.effects)
     assert left / truth.noise_rms == pytest.approx(6.0, rel=0.02)
     assert truth.ratios == (6.0,)
 
 
 def test_bad_worlds_are_refused():
     with pytest.raises(InputError, match="unknown input"):
-        Setting(input="steps")
+        HiddenSetting(input="steps")
     with pytest.raises(InputError, match="must not be negative"):
-        Setting(noise=-1.0)
+        HiddenSetting(noise=-1.0)
     with pytest.raises(InputError, match="named twice"):
-        world(0, [Backlash(), Backlash(h=0.1)], setting=SHORT)
+        world(0, [HiddenBacklash(), HiddenBacklash(h=0.1)], setting=SHORT)
     with pytest.raises(InputError, match="1 positive ratios"):
-        world(0, [Backlash()], ratio=[1.0, 2.0], setting=SHORT)
+        world(0, [HiddenBacklash()], ratio=[1.0, 2.0], setting=SHORT)
     with pytest.raises(InputError, match="negative"):
         world(-1, setting=SHORT)

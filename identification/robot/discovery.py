@@ -1,0 +1,66 @@
+"""What a model lacks: of a robot that was read from its files, or of any nominal model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import overload
+
+from identification.discovery import search
+from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.result import Discovery
+from identification.effects.effect import Effect
+from identification.errors import InputError
+from identification.logs.log import Log
+from identification.robot.checks import refuse_search_horizon, refuse_start
+from identification.robot.robot import Robot
+
+
+@overload
+def discover(
+    model: Robot,
+    *,
+    progress: Callable[[str], None] | None = None,
+    options: DiscoveryOptions | None = None,
+) -> Discovery: ...
+@overload
+def discover(
+    model: NominalModel,
+    log: Log,
+    effects: Sequence[Effect],
+    progress: Callable[[str], None] | None = None,
+    options: DiscoveryOptions | None = None,
+) -> Discovery: ...
+def discover(
+    model: Robot | NominalModel,
+    log: Log | None = None,
+    effects: Sequence[Effect] | None = None,
+    progress: Callable[[str], None] | None = None,
+    options: DiscoveryOptions | None = None,
+) -> Discovery:
+    """Name what a model lacks to explain a log, and prove it on the part that was not fitted.
+
+    Args:
+        model: a robot of `read_robot`, which has its log and its candidates; or a nominal model
+            with every candidate effect compiled in, its free parameters and what is known of them.
+        log: beside a nominal model: its part `estimation` (or first half) is fitted, the rest
+            confirms.
+        effects: beside a nominal model: the candidates.
+        progress: is told a line per stage.
+        options: what is believed; the defaults of `DiscoveryOptions` when None.
+
+    Raises:
+        InputError: log and effects are given beside a robot, or are missing beside a nominal
+            model; the log is too short, the horizon does not fit into what is unseen, a free run
+            would begin elsewhere than the log does, or a free parameter has no effect.
+        DivergenceError: the nominal model cannot be simulated.
+    """
+    if isinstance(model, Robot):
+        if log is not None or effects is not None:
+            raise InputError("a robot has its own log and candidates; leave log and effects out")
+        refuse_search_horizon(model.file, model.log)
+        refuse_start(model.file, model.plant.model, model.log)
+        return search.discover(model.nominal_model, model.log, model.candidates, progress, options)
+    if log is None or effects is None:
+        raise InputError("discover needs a log and candidate effects beside a nominal model")
+    return search.discover(model, log, effects, progress, options)

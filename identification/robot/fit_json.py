@@ -1,0 +1,68 @@
+"""What a fit of a robot says: plain values for JSON, and sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from identification.estimation.fit import Fit
+from identification.estimation.window_estimate import WindowEstimate
+from identification.logs.noise import noise_floor
+from identification.report.fit_json import fit_to_json
+from identification.report.fit_verdict import window_sentences
+from identification.robot.fitting import RobotFit
+from identification.robot.record_error import Confirmation
+
+FARTHEST = 100.0  # factor from where a fit began that is hardly an estimate
+
+
+def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) -> dict[str, Any]:
+    """The numbers and the verdict of a fit; what is unknown or infinite is null.
+
+    Args:
+        result: of `fit`.
+        confirmed: of `confirm`.
+    """
+    found = result.found
+    if isinstance(found, Fit):
+        record = {**fit_to_json(found), "horizon": None}
+    else:
+        record = _windows(result, found)
+    verdict = [*_far(record["parameters"]), *record["verdict"], *map(str, confirmed)]
+    return {**record, "confirm": [vars(c) for c in confirmed], "verdict": verdict}
+
+
+def _windows(result: RobotFit, found: WindowEstimate) -> dict[str, Any]:
+    """Windows as plain values, with the keys of a fit."""
+    robot, unseen = result.robot, result.unseen
+    floor = float(np.sqrt(np.mean(noise_floor(robot.log.outputs) ** 2)))
+    rows = zip(found.values.items(), found.std, found.start, found.at_bound, strict=True)
+    said = [] if unseen is None else [str(unseen)]
+    return {
+        "parameters": {
+            name: {"value": value, "std": float(std) if np.isfinite(std) else None,
+                   "unit": robot.plant.parameters[name].unit, "initial": float(first),
+                   "at_bound": bool(bound)}
+            for (name, value), std, first, bound in rows
+        },
+        "rms": found.rms, "validation_rms": None if unseen is None else unseen.after,
+        "noise_floor": floor, "seconds": found.seconds, "horizon": found.length,
+        "verdict": [*window_sentences(found, floor), *said],
+    }  # fmt: skip
+
+
+def _far(parameters: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """A sentence on values that no robot has."""
+    far = [
+        n for n, p in parameters.items()
+        if p["initial"] and not 1 / FARTHEST < abs(p["value"] / p["initial"]) < FARTHEST
+        and p["initial"] * p["value"] > 0
+    ]  # fmt: skip
+    if not far:
+        return []
+    return [
+        f"{', '.join(far)}: more than {FARTHEST:g} times from where the fit began; the log's units"
+        " and signs must be those of the model (rad or m, s, and what its actuators take)."
+    ]

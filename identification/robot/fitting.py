@@ -1,0 +1,75 @@
+"""The free parameters of a robot, fitted to the first half of its log.
+
+Two ways: by the error of a free run, or, where the robot's file gives a horizon, by the errors of
+windows of that length that each begin at a state of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from identification.errors import InputError
+from identification.estimation.estimation import estimate
+from identification.estimation.fit import Fit, assess
+from identification.estimation.window_estimate import WindowEstimate, estimate_windows
+from identification.robot.checks import refuse_horizon, refuse_start
+from identification.robot.record_error import Confirmation, compare_unseen
+from identification.robot.robot import Robot
+
+FEWEST = 10  # values for each parameter
+
+
+@dataclass(frozen=True)
+class RobotFit:
+    """What `fit` found.
+
+    Attributes:
+        robot: what was fitted.
+        found: a fit by a free run, or an estimate over windows.
+        unseen: the values of the robot's file beside the fitted ones on the part of the log that
+            was not fitted; None for a fit by a free run, which says it itself.
+    """
+
+    robot: Robot
+    found: Fit | WindowEstimate
+    unseen: Confirmation | None = None
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The fitted values by name, in their units."""
+        return self.found.estimate.values if isinstance(self.found, Fit) else self.found.values
+
+    @property
+    def std(self) -> dict[str, float]:
+        """Their std by name, in the same units; inf where the log does not tell."""
+        return dict(zip(self.values, self.found.std.tolist(), strict=True))
+
+
+def fit(robot: Robot, progress: Callable[[str], None] | None = None) -> RobotFit:
+    """Estimate the free parameters of a robot on the part `estimation` of its log, or its half.
+
+    Args:
+        robot: of `read_robot`.
+        progress: is told one line per accepted step.
+
+    Raises:
+        InputError: the log is too short, the horizon does not fit into it, a free run would begin
+            elsewhere than the log does, or a free parameter has no effect.
+        DivergenceError: the model cannot be simulated at the values that it begins with.
+    """
+    file, log = robot.file, robot.log
+    part = log.part("estimation")
+    if part.outputs.size < FEWEST * len(file.free):
+        raise InputError(
+            f"the log has {part.outputs.size} values to fit {len(file.free)} parameters to; it"
+            f" needs {FEWEST} for each: record longer, or free fewer parameters"
+        )
+    refuse_horizon(file, log)
+    if file.horizon is None:
+        refuse_start(file, robot.plant.model, log)
+        estimated = estimate(robot.plant, part, file.free, progress=progress)
+        return RobotFit(robot, assess(estimated, log))
+    names = tuple(n for n in file.free if n not in robot.starts)
+    found = estimate_windows(robot.plant, part, names, float(file.horizon), progress=progress)
+    return RobotFit(robot, found, compare_unseen(robot, {}, found.values))

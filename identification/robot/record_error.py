@@ -1,0 +1,99 @@
+"""How far two models of a robot are off on a record, both judged over the same horizon."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.estimation.window_error import window_error
+from identification.logs.log import Log
+from identification.model.predictor import Predictor
+from identification.quantities import alike
+from identification.robot.robot import Robot
+
+AS_WRITTEN, FITTED = "with the values of the robot's file", "with those that were fitted"
+
+
+@dataclass(frozen=True)
+class Confirmation:
+    """Two models on one record.
+
+    Attributes:
+        log: name of the record.
+        before: rms error of the first, over all outputs.
+        after: of the second.
+        unit: of the errors, empty where the outputs have several.
+        models: what the two are, in words.
+    """
+
+    log: str
+    before: float
+    after: float
+    unit: str
+    models: tuple[str, str]
+
+    def __str__(self) -> str:
+        change = 100 * ((self.after / self.before) ** 2 - 1) if self.before else 0.0
+        before, after = alike([self.before, self.after], self.unit)
+        first, second = self.models
+        return (
+            f"On {self.log}: {before} rms {first}, {after} {second}; mean square {change:+.0f} %."
+        )
+
+
+def compare_values(
+    robot: Robot,
+    log: Log,
+    before: Mapping[str, float],
+    after: Mapping[str, float],
+    models: tuple[str, str] = (AS_WRITTEN, FITTED),
+) -> Confirmation:
+    """Two sets of values on a record: over the robot's horizon, or in a free run of all of it.
+
+    Args:
+        robot: whose plant and horizon.
+        log: the record; it starts where it measured.
+        before: values that are not the plant's own.
+        after: likewise.
+        models: what the two are, in words.
+
+    Raises:
+        InputError: the windows do not fit the record.
+        DivergenceError: one of the models cannot be simulated.
+    """
+    a, b = (_rms(robot, log, values) for values in (before, after))
+    return Confirmation(log.name, a, b, log.output_unit, models)
+
+
+def compare_unseen(
+    robot: Robot, before: Mapping[str, float], after: Mapping[str, float]
+) -> Confirmation:
+    """Two sets of values on the part of the robot's own log that confirms.
+
+    Raises:
+        InputError: the windows do not fit that part.
+        DivergenceError: one of the models cannot be simulated.
+    """
+    log = robot.log
+    part = log.part("validation")
+    if robot.file.horizon is not None:
+        return compare_values(robot, part, before, after)
+    rows = np.isin(log.time, part.time)
+    a, b = (float(np.sqrt(np.mean(_free_run(robot, log, v)[rows] ** 2))) for v in (before, after))
+    return Confirmation(part.name, a, b, part.output_unit, (AS_WRITTEN, FITTED))
+
+
+def _rms(robot: Robot, log: Log, values: Mapping[str, float]) -> float:
+    horizon, here = robot.file.horizon, {**values, **robot.started(log)}
+    if horizon is None:
+        error = _free_run(robot, log, here)
+    else:
+        error = window_error(robot.plant, log, horizon, here)
+    return float(np.sqrt(np.mean(error**2)))
+
+
+def _free_run(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
+    predictor = Predictor(robot.plant, log, (), dict(values))
+    return np.asarray(log.outputs - predictor.predict(np.empty((1, 0)))[0])

@@ -1,0 +1,87 @@
+"""What a film shows: a run of the twin, and the real robot under the same currents as a ghost."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.logs.log import Log
+from inca_mj.twin.logs import pose_of, read_inca_log
+from inca_mj.twin.run import Run, load_run
+from inca_mj.workflows.comparison import Comparison, compare
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A run, and what was measured at the same times, where something was.
+
+    Attributes:
+        run: what the twin did, N samples.
+        angles: motor angles of the real robot at `run.time`, shape (N, 8) [rad].
+        pose: x, y, z [m], roll, pitch, yaw [rad] of the real robot where they were measured too,
+            shape (N, 6); else its pose follows from the cable lengths (`inca_mj.rendering.ghost`).
+
+    Raises:
+        InputError: there are not N measured samples, or a pose without angles.
+    """
+
+    run: Run
+    angles: np.ndarray | None = None
+    pose: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        if self.angles is None and self.pose is not None:
+            raise InputError("a measured pose needs the measured motor angles beside it")
+        if self.angles is not None and len(self.angles) != len(self.run.time):
+            raise InputError(
+                f"{len(self.angles)} measured samples for {len(self.run.time)} simulated ones"
+            )
+
+    def until(self, end: float) -> Scene:
+        """The samples up to `end` [s].
+
+        Raises:
+            InputError: fewer than two samples are left.
+        """
+        run = self.run.until(end)
+        n = len(run.time)
+        return replace(
+            self,
+            run=run,
+            angles=None if self.angles is None else self.angles[:n],
+            pose=None if self.pose is None else self.pose[:n],
+        )
+
+
+Source = Scene | Run | Comparison | Log | str | Path
+
+
+def make_scene(source: Source, seconds: float | None = None) -> Scene:
+    """The scene of a log, a run, a comparison, or of a file that holds a log or a run.
+
+    Args:
+        source: a log is laid over the twin's prediction with the thesis' Table 3.2; `compare` it
+            first for other values.
+        seconds: only so many from the start; all of it when None.
+
+    Raises:
+        InputError: the file is neither a log nor a run, or `seconds` leaves less than two samples.
+        DivergenceError: the twin cannot be simulated under the log's currents.
+    """
+    if seconds is not None and not seconds > 0:
+        raise InputError(f"cannot film {seconds:g} s; give a positive number of seconds")
+    if isinstance(source, str | Path):
+        path = Path(source)
+        source = load_run(path) if path.suffix == ".npz" else read_inca_log(path)
+    if isinstance(source, Log):
+        if seconds is not None and seconds < source.duration:
+            source = source.between(float("-inf"), float(source.time[0]) + seconds)
+        source = compare(source)
+    if isinstance(source, Comparison):
+        source = Scene(source.run, source.log.outputs, pose_of(source.log))
+    elif isinstance(source, Run):
+        source = Scene(source)
+    return source if seconds is None else source.until(seconds)
