@@ -96,7 +96,7 @@ def design(
     _refuse_start(robot, limits)
     bench = Bench(robot, sigma, tuple(names), limits)
     first, *rest = standard_inputs(n)
-    baseline = bench.attempt(first[0], simulate(robot, first[1], SAMPLING))
+    baseline = bench.attempt(first[0], simulate(robot, first[1], SAMPLING), resolved=True)
     kept, held = determinable(baseline.found)
     if not kept:
         raise InputError("none of these parameters shows in the angles; free others")
@@ -118,6 +118,7 @@ def design(
             "no input that was tried keeps the limits; allow a smaller tension margin, more"
             " workspace or more current"
         )
+    best = bench.attempt(best.name, best.run, resolved=True)
     return Design(best, thesis, tried, held, limits, settings, budget)
 
 
