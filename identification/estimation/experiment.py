@@ -14,7 +14,8 @@ import mujoco
 import numpy as np
 
 from identification.errors import InputError
-from identification.estimation.information import Information, root_of
+from identification.estimation.information import Information, information_of
+from identification.estimation.resolution import Resolved, resolve, round_off
 from identification.logs.log import Log
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Plant, Predictor
@@ -69,14 +70,19 @@ class Experiment:
 
 
 def information(
-    experiment: Experiment, names: Sequence[str], nuisance: Sequence[str] = ()
+    experiment: Experiment,
+    names: Sequence[str],
+    nuisance: Sequence[str] = (),
+    resolved: bool = True,
 ) -> Information:
-    """What an experiment would say, from 2 p simulations.
+    """What an experiment would say, from 4 p simulations or more.
 
     Args:
         experiment: the plant, its inputs, what is read and how noisy.
         names: parameters that are asked for.
         nuisance: parameters that are unknown too but of no interest, such as a start pose.
+        resolved: whether the errors of the sensitivities are estimated; without them 2 p
+            simulations do, and only what is lost in round-off counts as not felt.
 
     Raises:
         InputError: a name is unknown or named twice, has no effect on any output, or there are
@@ -94,8 +100,16 @@ def information(
             f"{log.outputs.size} readings cannot tell {len(every)} parameters; take a longer log"
         )
     predictor = Predictor(experiment.plant, log, every, dict(experiment.fixed))
-    J = sensitivity(predictor, space, space.encode(start))
-    felt = replace(log, outputs=predictor.predict(start)[0])  # what would be measured
-    refuse_without_effect(J, every, felt)
-    S = J.reshape(-1, len(every)) / experiment.sigma
-    return Information(every, len(names), space.logarithmic, root_of(S))
+    q, y = space.encode(start), predictor.predict(start)[0]
+
+    def whiten(J: np.ndarray) -> np.ndarray:
+        return J.reshape(-1, J.shape[2]) / experiment.sigma
+
+    if resolved:
+        found = resolve(predictor, space, q, whiten)
+    else:
+        S = whiten(sensitivity(predictor, space, q))
+        found = Resolved(every, S, np.zeros_like(S), round_off(whiten(y[:, :, None])))
+    J = experiment.sigma * found.S.reshape(*y.shape, -1)
+    refuse_without_effect(J, every, replace(log, outputs=y))  # of what would be measured
+    return information_of(found, space, len(names))

@@ -17,17 +17,13 @@ import numpy as np
 
 from identification.errors import DivergenceError
 from identification.estimation.estimation import Estimate
-from identification.estimation.identifiability import (
-    BLIND,
-    Combination,
-    Identifiability,
-    identifiability,
-    known_combinations,
-)
-from identification.estimation.information import Information, root_of
+from identification.estimation.identifiability import Identifiability, identifiability
+from identification.estimation.information import Information, information_of
 from identification.estimation.metrics import fit_percent, loss, rms
 from identification.estimation.residuals import ResidualTests, correlation_time, residual_tests
+from identification.estimation.resolution import resolve
 from identification.estimation.robust import influence
+from identification.estimation.scaling_symmetry import Combination
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor
@@ -45,7 +41,8 @@ class Fit:
         correlation: of the estimates, shape (p, p), without unit.
         at_bound: true where a value lies on a bound, shape (p,).
         found: the directions that the log shows.
-        combinations: what can be known of parameters that cannot, with value and std.
+        combinations: what can be known of parameters that cannot, with value and std; the std is
+            infinite where the simulation is too rough to say.
         residual: y - ŷ, shape (n, ny), in the outputs' units.
         fit_percent: on the log, shape (ny,) [%].
         validation_fit_percent: on data that the fit has not seen, shape (ny,) [%], or None.
@@ -99,13 +96,18 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
     log = predictor.log
     predicted = predictor.predict(space.decode(q))[0]
     residual = log.outputs - predicted
-    J = sensitivity(predictor, space, q)
-    S = np.einsum("ij,njp->nip", estimate.whitener, estimate.weight[:, :, None] * J)
-    found = identifiability(S.reshape(-1, len(q)), space.names)
-    prior = np.diag(estimate.prior)
-    known = identifiability(np.concatenate([S.reshape(-1, len(q)), prior]), space.names)
+
+    def whiten(J: np.ndarray) -> np.ndarray:
+        S = np.einsum("ij,njp->nip", estimate.whitener, estimate.weight[:, :, None] * J)
+        return S.reshape(-1, J.shape[2])
+
+    resolved = resolve(predictor, space, q, whiten)
+    S, found, prior = resolved.S, resolved.found, np.diag(estimate.prior)
+    E = np.concatenate([resolved.E, np.zeros_like(prior)])
+    known = identifiability(np.concatenate([S, prior]), space.names, E, resolved.least)
     error = (estimate.weight * residual) @ estimate.whitener.T
-    covariance = _sandwich(S, *influence(error, estimate.options.loss), error, known, prior)
+    pull, share = influence(error, estimate.options.loss)
+    covariance = _sandwich(S.reshape(*error.shape, -1), pull, share, error, known, prior)
     std_q = np.where(known.undetermined, np.inf, np.sqrt(np.diag(covariance)))
     scale = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
     fit, unseen, spread = _beyond(estimate, validation, covariance)
@@ -124,7 +126,7 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
         expected,
         noise_floor(log.outputs),
         residual_tests(residual, log.inputs),
-        Information(space.names, len(q), space.logarithmic, root_of(S.reshape(-1, len(q)))),
+        information_of(resolved, space),
     )
 
 
@@ -141,8 +143,8 @@ def _sandwich(
     length = min(int(np.ceil(3 * correlation_time(error) - 2)), max(1, n // 30))
     scores = np.einsum("nip,ni->np", S, pull / share)
     blocks = np.add.reduceat(scores, np.arange(0, n, length), axis=0)
-    felt = found.strengths >= BLIND * found.strengths[0]
-    inverse = (found.directions[felt].T / found.strengths[felt] ** 2) @ found.directions[felt]
+    felt, strengths = found.directions[: found.rank], found.strengths[: found.rank]
+    inverse = (felt.T / strengths**2) @ felt
     freedom = n * ny / max(1, n * ny - p)
     return inverse @ (freedom * blocks.T @ blocks + prior**2) @ inverse
 
@@ -150,12 +152,16 @@ def _sandwich(
 def combinations_of(
     found: Identifiability, estimate: Estimate, covariance: np.ndarray
 ) -> tuple[tuple[Combination, float, float], ...]:
-    """Products of parameters with value and std (of the product)."""
+    """Products of parameters with value and std (of the product).
+
+    The std is infinite where a direction that differences cannot resolve moves the product too.
+    """
     out = []
-    for combination in known_combinations(found, estimate.space.logarithmic):
-        powers = np.array([float(combination.exponents.get(n, 0)) for n in found.names])
+    for combination in found.combinations:
+        powers = combination.row(found.names)
         value = combination.value(estimate.values)
-        out.append((combination, value, value * float(np.sqrt(powers @ covariance @ powers))))
+        std = np.inf if found.moved(powers[None])[0] else np.sqrt(powers @ covariance @ powers)
+        out.append((combination, value, value * float(std)))
     return tuple(out)
 
 

@@ -3,143 +3,179 @@
     S = C ∂ŷ/∂q (n ny × p),   F = SᵀS    Fisher information for noise whitened by C
     S = U Σ Vᵀ:   a move along v_i is felt as σ_i;  its std is 1/σ_i
 
-A direction that is not felt at all leaves a product of powers of the parameters that can be known:
-along v = (+1, -2)/√5 in (ln R_s, ln k_s) that is k_s R_s², and only it.
+S comes from differences, so that what is known is S + E. What differences cannot resolve is not
+information. With D = diag(d), d_j the norm of column j of an estimate of E,
+
+    |σ_i((S + E) D⁻¹) - σ_i(S D⁻¹)| ≤ ‖E D⁻¹‖₂ ≤ ‖E D⁻¹‖_F = √p                 (Weyl 1912)
+
+so that a direction counts as felt only where its singular value, each column divided by its error,
+exceeds √p; columns of equal errors make the count independent of units (Stewart 1984, Rank
+degeneracy). The others span the blind directions. Such a direction b is off, to first order, by
+-S_f⁺ E b with S_f the part of S that is felt = U_f Σ_f V_fᵀ. A parameter, or a product of powers w
+of parameters, counts as moved by b where that is more than what b itself is off by:
+
+    |wᵀb| > std(w) ‖U_fᵀ E b‖,    std(w)² = Σ_felt (wᵀv_i)²/σ_i²
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 
-# Sensitivities are right to 1e-8 (central differences); a direction below 1e-6 of the strongest
-# is one that they cannot tell from nothing.
-BLIND = 1e-6
+from identification.estimation.scaling_symmetry import (
+    Combination,
+    ScalingSymmetry,
+    known_products,
+)
+
+UNMOVED = 1e-3  # entry of a direction of norm 1 that is no more than the round-off of its search
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Identifiability:
     """The directions of a parameter space, and how much of each a log shows.
 
     Attributes:
         names: parameters, p of them.
-        strengths: singular values of S, strongest first, shape (p,).
-        directions: right singular vectors, one a row, shape (p, p).
+        strengths: ‖S v‖ of each direction v, strongest first among those that are felt and among
+            the others, shape (p,).
+        directions: orthogonal and of norm 1, one a row, shape (p, p): those that are felt, then
+            those that differences cannot tell from nothing, then the proven symmetries.
+        rank: how many directions the outputs feel.
         norms: of the columns of S, shape (p,): effect of each parameter alone, in noise units.
+        errors: d, of the columns of S, shape (p,).
+        leaks: ‖U_fᵀ E b‖ of each blind direction b, 0 of a symmetry, shape (p - rank,).
+        symmetries: by which parameters can be scaled together without any output feeling it.
     """
 
     names: tuple[str, ...]
     strengths: np.ndarray
     directions: np.ndarray
+    rank: int
     norms: np.ndarray
+    errors: np.ndarray
+    leaks: np.ndarray
+    symmetries: tuple[ScalingSymmetry, ...] = ()
 
     @property
     def blind(self) -> np.ndarray:
         """Directions that the outputs do not feel, shape (k, p)."""
-        return self.directions[self.strengths < BLIND * self.strengths[0]]
+        return self.directions[self.rank :]
 
     @property
-    def rank(self) -> int:
-        """How many directions the outputs feel."""
-        return len(self.names) - len(self.blind)
+    def unresolved(self) -> np.ndarray:
+        """Those of them that are no symmetry: differences cannot tell them from nothing."""
+        return self.directions[self.rank : len(self.names) - len(self.symmetries)]
 
     @property
     def std(self) -> np.ndarray:
         """Cramér-Rao std of each q, infinite where a blind direction moves it, shape (p,)."""
-        felt = self.strengths >= BLIND * self.strengths[0]
-        variance = ((self.directions[felt] / self.strengths[felt, None]) ** 2).sum(axis=0)
-        return np.where(self.undetermined, np.inf, np.sqrt(variance))
+        return np.where(self.undetermined, np.inf, self._std(np.eye(len(self.names))))
 
     @property
     def undetermined(self) -> np.ndarray:
         """Which parameters a blind direction moves, shape (p,)."""
-        return np.abs(self.blind).max(axis=0, initial=0.0) > 1e-3
+        return self.moved(np.eye(len(self.names)))
+
+    @property
+    def moved_by_unresolved(self) -> np.ndarray:
+        """Which parameters a direction that is no symmetry moves, shape (p,)."""
+        moves = self._moves(np.eye(len(self.names)))[:, : len(self.unresolved)]
+        return np.asarray(moves.any(axis=1))
+
+    def moved(self, powers: np.ndarray) -> np.ndarray:
+        """Which products of powers of parameters, shape (m, p), a blind direction moves: (m,)."""
+        return np.asarray(self._moves(powers).any(axis=1))
+
+    def _moves(self, powers: np.ndarray) -> np.ndarray:
+        """Whether each blind direction moves each product of powers (m, p): (m, p - rank)."""
+        least = UNMOVED * np.linalg.norm(powers, axis=1)[:, None]
+        off = self._std(powers)[:, None] * self.leaks
+        return np.abs(powers @ self.blind.T) > np.maximum(least, off)
+
+    def _std(self, powers: np.ndarray) -> np.ndarray:
+        """Cramér-Rao std of powersᵀq along the directions that are felt, shape (m,)."""
+        felt = self.directions[: self.rank] / self.strengths[: self.rank, None]
+        return np.sqrt(((powers @ felt.T) ** 2).sum(axis=1))
+
+    @property
+    def combinations(self) -> list[Combination]:
+        """Products that survive the symmetries where their factors do not."""
+        return known_products(self.symmetries, self.names)
 
     def weakest(self) -> str:
         """The worst determined direction, as `R_s +0.45, k_s -0.89`."""
         return in_words(self.directions[-1], self.names)
 
 
-def identifiability(S: np.ndarray, names: Sequence[str]) -> Identifiability:
-    """Analyse whitened sensitivities, shape (n, p) with n rows of samples and outputs."""
-    _, strengths, directions = np.linalg.svd(S, full_matrices=False)
-    return Identifiability(tuple(names), strengths, directions, np.linalg.norm(S, axis=0))
+def identifiability(
+    S: np.ndarray,
+    names: Sequence[str],
+    E: np.ndarray,
+    least: float,
+    symmetries: tuple[ScalingSymmetry, ...] = (),
+) -> Identifiability:
+    """Analyse whitened sensitivities.
+
+    Args:
+        S: shape (n, p) with n rows of samples and outputs, zero along the symmetries.
+        names: the parameters.
+        E: estimated errors of S, shape (n, p).
+        least: norm of the round-off of a column.
+        symmetries: proven ones.
+    """
+    S, E, p = _tall(S), _tall(E), S.shape[1]
+    errors = column_errors(E, least)
+    U, strengths, directions = np.linalg.svd(S, full_matrices=False)
+    still = _basis(np.array([s.row(names) for s in symmetries]).reshape(-1, p))
+    blind = unresolved_directions(S, errors)
+    rank = p - len(blind)
+    if len(blind):
+        rest = _basis(blind - blind @ still.T @ still)[: len(blind) - len(still)]
+        rest = np.linalg.svd(S @ rest.T, full_matrices=False)[2] @ rest  # strongest first
+        blind = np.vstack([rest, still])
+        U, strengths, directions = np.linalg.svd(S - S @ blind.T @ blind, full_matrices=False)
+        strengths = np.concatenate([strengths[:rank], np.linalg.norm(S @ blind.T, axis=0)])
+        directions = np.vstack([directions[:rank], blind])
+    leaks = np.linalg.norm(U[:, :rank].T @ E @ blind.T, axis=0)
+    leaks[len(leaks) - len(still) :] = 0.0
+    return Identifiability(
+        names=tuple(names),
+        strengths=strengths,
+        directions=directions,
+        rank=rank,
+        norms=np.linalg.norm(S, axis=0),
+        errors=errors,
+        leaks=leaks,
+        symmetries=symmetries,
+    )
+
+
+def column_errors(E: np.ndarray, least: float) -> np.ndarray:
+    """d: norms of the columns of E (n, p), none below that of round-off, shape (p,)."""
+    return np.maximum(np.linalg.norm(E, axis=0), least)
+
+
+def unresolved_directions(S: np.ndarray, errors: np.ndarray) -> np.ndarray:
+    """Directions that sensitivities S (n, p) cannot tell from nothing, orthonormal, (k, p)."""
+    _, strengths, directions = np.linalg.svd(_tall(S) / errors, full_matrices=False)
+    return _basis(directions[strengths <= np.sqrt(len(errors))] / errors)
+
+
+def _tall(S: np.ndarray) -> np.ndarray:
+    """S with as many rows as columns at least: what was not measured is zero."""
+    return np.vstack([S, np.zeros((max(0, S.shape[1] - len(S)), S.shape[1]))])
+
+
+def _basis(rows: np.ndarray) -> np.ndarray:
+    """Orthonormal rows that span the same, the strongest first, shape like `rows`."""
+    size = np.linalg.norm(rows, axis=1, keepdims=True)
+    return np.linalg.svd(rows / np.where(size > 0, size, 1.0), full_matrices=False)[2]
 
 
 def in_words(direction: np.ndarray, names: Sequence[str], least: float = 0.1) -> str:
     """A direction by its largest entries: `R_s +0.45, k_s -0.89`."""
     order = np.argsort(-np.abs(direction))
     return ", ".join(f"{names[i]} {direction[i]:+.2f}" for i in order if abs(direction[i]) > least)
-
-
-@dataclass(frozen=True)
-class Combination:
-    """A product of powers of parameters that can be known although they cannot.
-
-    Attributes:
-        exponents: by name.
-    """
-
-    exponents: dict[str, Fraction]
-
-    def __str__(self) -> str:
-        return " ".join(
-            name if power == 1 else f"{name}^{power}" for name, power in self.exponents.items()
-        )
-
-    def value(self, values: dict[str, float]) -> float:
-        """Its value, in the product of the units."""
-        return float(
-            np.prod([values[name] ** float(power) for name, power in self.exponents.items()])
-        )
-
-
-def known_combinations(
-    found: Identifiability, logarithmic: np.ndarray
-) -> list[Combination]:  # fmt: skip
-    """Products that survive the blind directions, with small whole exponents.
-
-    Only blind directions among logarithmic coordinates are products; each set of parameters moved
-    together yields as many products as it has parameters beyond its blind directions.
-    """
-    involved = np.flatnonzero(found.undetermined)
-    if not involved.size or not logarithmic[involved].all():
-        return []
-    kept = _reduced(_null_space(found.blind[:, involved]))
-    combinations = []
-    for row in kept:
-        least = np.abs(row[np.abs(row) > 1e-3]).min()
-        powers = [Fraction(float(x / least)).limit_denominator(4) for x in row]
-        names = [found.names[i] for i in involved]
-        exponents = {n: p for n, p in zip(names, powers, strict=True) if p}
-        first = min(exponents, key=lambda n: abs(exponents[n]))
-        sign = 1 if exponents[first] > 0 else -1
-        combinations.append(Combination({n: sign * p for n, p in sorted(
-            exponents.items(), key=lambda item: abs(item[1]))}))  # fmt: skip
-    return combinations
-
-
-def _null_space(rows: np.ndarray) -> np.ndarray:
-    _, s, vt = np.linalg.svd(rows)
-    return vt[int((s > 1e-6).sum()) :]
-
-
-def _reduced(rows: np.ndarray) -> np.ndarray:
-    """Row echelon form, so that each product holds as few parameters as it can."""
-    rows = rows.copy()
-    lead = 0
-    for column in range(rows.shape[1]):
-        if lead == len(rows):
-            break
-        pivot = lead + int(np.abs(rows[lead:, column]).argmax())
-        if abs(rows[pivot, column]) < 1e-6:
-            continue
-        rows[[lead, pivot]] = rows[[pivot, lead]]
-        rows[lead] /= rows[lead, column]
-        others = np.arange(len(rows)) != lead
-        rows[others] -= np.outer(rows[others, column], rows[lead])
-        lead += 1
-    return rows

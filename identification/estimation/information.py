@@ -19,15 +19,17 @@ import numpy as np
 
 from identification.errors import InputError, unknown_name
 from identification.estimation.identifiability import (
-    BLIND,
-    Combination,
     Identifiability,
+    column_errors,
     identifiability,
-    known_combinations,
+    unresolved_directions,
 )
+from identification.estimation.resolution import Resolved
+from identification.estimation.scaling_symmetry import Combination, ScalingSymmetry
+from identification.model.coordinates import Coordinates
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Information:
     """What an experiment says about p parameters.
 
@@ -36,22 +38,31 @@ class Information:
         asked: how many are asked for.
         logarithmic: true where q = ln(value), shape (p,).
         root: upper triangular, rootᵀ root = F of all, shape (p, p), in the coordinates q.
+        error: errors of S, in rows of which the first p are those of `root`, shape (2 p, p), in the
+            coordinates q.
+        least: norm of the round-off of a column of S.
+        symmetries: by which the parameters can be scaled together without any output feeling it.
     """
 
     names: tuple[str, ...]
     asked: int
     logarithmic: np.ndarray
     root: np.ndarray
+    error: np.ndarray
+    least: float
+    symmetries: tuple[ScalingSymmetry, ...] = ()
 
     @property
     def found(self) -> Identifiability:
         """Directions of the parameters asked for, the nuisances being unknown too."""
-        return identifiability(_without(self.root, self.asked), self.names[: self.asked])
+        S, E = self._without_nuisances
+        names = self.names[: self.asked]
+        return identifiability(S, names, E, self.least, _among(self.symmetries, names))
 
     @property
     def fisher(self) -> np.ndarray:
         """F of the parameters asked for, the nuisances being unknown, shape (asked, asked)."""
-        S = _without(self.root, self.asked)
+        S, _ = self._without_nuisances
         return S.T @ S
 
     @property
@@ -73,7 +84,8 @@ class Information:
     @property
     def combinations(self) -> list[Combination]:
         """Products that can be known where their factors cannot."""
-        return known_combinations(self.found, self.logarithmic[: self.asked])
+        found = self.found
+        return [c for c in found.combinations if not found.moved(c.row(found.names)[None])[0]]
 
     @property
     def condition(self) -> float:
@@ -104,7 +116,13 @@ class Information:
         """
         if other.names != self.names or other.asked != self.asked:
             raise InputError("two experiments add up when both are about the same parameters")
-        return replace(self, root=root_of(np.vstack([self.root, other.root])))
+        p = len(self.names)
+        beyond = np.vstack([self.error[p:], other.error[p:]])
+        S = np.vstack([self.root, other.root, np.zeros_like(beyond)])
+        root, error = _compressed(S, np.vstack([self.error[:p], other.error[:p], beyond]))
+        symmetries = tuple(s for s in self.symmetries if s in other.symmetries)
+        least = float(np.hypot(self.least, other.least))
+        return replace(self, root=root, error=error, least=least, symmetries=symmetries)
 
     def about(self, names: Sequence[str]) -> Information:
         """Of some of the parameters asked for, the rest being known; nuisances stay.
@@ -117,10 +135,56 @@ class Information:
             if name not in known:
                 raise unknown_name("parameter", name, known)
         kept = [*map(known.index, names), *range(self.asked, len(self.names))]
-        root = root_of(self.root[:, kept])
-        return Information(
-            tuple(self.names[i] for i in kept), len(names), self.logarithmic[kept], root
+        every = tuple(self.names[i] for i in kept)
+        root, error = _compressed(self._rows[:, kept], self.error[:, kept])
+        return replace(
+            self,
+            names=every,
+            asked=len(names),
+            logarithmic=self.logarithmic[kept],
+            root=root,
+            error=error,
+            symmetries=_among(self.symmetries, every),
         )
+
+    @property
+    def _rows(self) -> np.ndarray:
+        """S in the rows of `error`, shape (2 p, p)."""
+        return np.vstack([self.root, np.zeros_like(self.root)])
+
+    @property
+    def _without_nuisances(self) -> tuple[np.ndarray, np.ndarray]:
+        """Sensitivities to what is asked for that no move of the nuisances can imitate.
+
+        Returns:
+            They, S_a - S_n S_n⁺ S_a, and their errors E_a - E_n S_n⁺ S_a to first order, each of
+            shape (2 p, asked). Of the nuisances what is not felt imitates nothing.
+        """
+        S, E, a = self._rows, self.error, self.asked
+        wanted, nuisance = S[:, :a], S[:, a:]
+        if not nuisance.shape[1]:
+            return wanted, E
+        size = np.linalg.norm(nuisance, axis=0)
+        U, s, Vt = np.linalg.svd(nuisance / size, full_matrices=False)
+        unfelt = unresolved_directions(nuisance, column_errors(E[:, a:], self.least))
+        felt = len(s) - len(unfelt)
+        U, s, Vt = U[:, :felt], s[:felt], Vt[:felt]
+        along = U.T @ wanted
+        return wanted - U @ along, E[:, :a] - E[:, a:] @ ((Vt.T / s) @ along / size[:, None])
+
+
+def information_of(resolved: Resolved, space: Coordinates, asked: int | None = None) -> Information:
+    """What whitened sensitivities say of the first `asked` parameters, all when None."""
+    root, error = _compressed(resolved.S, resolved.E)
+    return Information(
+        names=space.names,
+        asked=len(space.names) if asked is None else asked,
+        logarithmic=space.logarithmic,
+        root=root,
+        error=error,
+        least=resolved.least,
+        symmetries=resolved.symmetries,
+    )
 
 
 def determinable(found: Information) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -137,16 +201,15 @@ def determinable(found: Information) -> tuple[tuple[str, ...], tuple[str, ...]]:
     return tuple(kept), tuple(held)
 
 
-def root_of(S: np.ndarray) -> np.ndarray:
-    """Upper triangular with rootᵀ root = SᵀS, shape (p, p)."""
-    return np.asarray(np.linalg.qr(S).R)
+def _compressed(S: np.ndarray, E: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """S and E (n, p) turned to as few rows as hold them: R of S = Q R, and [QᵀE; R of the rest]."""
+    Q, root = np.linalg.qr(S)
+    along = Q.T @ E
+    return root, np.vstack([along, np.linalg.qr(E - Q @ along).R])
 
 
-def _without(root: np.ndarray, asked: int) -> np.ndarray:
-    """Sensitivities to what is asked for that no move of the nuisances can imitate."""
-    wanted, nuisance = root[:, :asked], root[:, asked:]
-    if not nuisance.shape[1]:
-        return wanted
-    U, s, _ = np.linalg.svd(nuisance / np.linalg.norm(nuisance, axis=0), full_matrices=False)
-    U = U[:, s > BLIND * s[0]]
-    return wanted - U @ (U.T @ wanted)
+def _among(
+    symmetries: tuple[ScalingSymmetry, ...], names: Sequence[str]
+) -> tuple[ScalingSymmetry, ...]:
+    """Those that move none but the named parameters."""
+    return tuple(s for s in symmetries if s.powers.keys() <= set(names))

@@ -152,14 +152,16 @@ class Tangent:
         return dq, np.einsum("wkx,wk->wx", self.Vt, along) / self.size
 
 
-def tangent(shooting: Shooting, q: np.ndarray, d: np.ndarray) -> Tangent:
+def tangent(
+    shooting: Shooting, q: np.ndarray, d: np.ndarray, step: float = FORWARD_STEP
+) -> Tangent:
     """Linearise all windows at q (p,) and d (W, nx), by forward differences in one batch.
 
     Raises:
         DivergenceError: a window left the finite numbers.
     """
     p, nx = len(q), d.shape[1]
-    h = FORWARD_STEP
+    h = step
     points = np.concatenate([np.tile(q, (1 + nx, 1)), q + h * np.eye(p)])
     moves = [d, *(d + h * e for e in np.eye(nx)), *[d] * p]
     y = shooting.outputs(points, moves)

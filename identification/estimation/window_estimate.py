@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError
-from identification.estimation.identifiability import Identifiability, identifiability
+from identification.estimation.identifiability import Identifiability
 from identification.estimation.options import Progress
+from identification.estimation.resolution import resolve_columns, round_off
 from identification.estimation.shooting import Shooting, Tangent, tangent
 from identification.estimation.windows import apart, first_states, windows
 from identification.logs.log import Log
@@ -23,11 +24,12 @@ from identification.logs.noise import noise_floor
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.model.rollout import State
-from identification.model.sensitivity import refuse_without_effect
+from identification.model.sensitivity import FORWARD_STEP, refuse_without_effect
 
 BELIEFS = 3  # the states' belief follows the values that were found with the last one
 ROUGH = 1e-2  # relative gain that ends a search which another follows
 FIRST_DAMPING = 1e-2  # of the squared norms of X's and S's columns
+STEPS = (FORWARD_STEP, 100 * FORWARD_STEP)  # of the differences that the std rest on
 LEAST_DAMPING = 1e-12
 MOST_DAMPING = 1e8
 
@@ -113,8 +115,7 @@ def estimate_windows(
         enough = tolerance if k == BELIEFS else max(ROUGH, tolerance)
         end = _search(shooting, q, d, enough, max_evaluations, progress, k == 1)
         q, begun, tangents = end.q, shooting.states(end.d), tangents + end.tangents
-    S = end.tangent.projected
-    found = identifiability(S, space.names)
+    found = _resolved(shooting, end)
     # A belief counts as one reading for each state that it bears on.
     readings = cut.outputs.size + len(end.d) * int((shooting.first.weight > 0).sum())
     freedom = max(1, readings - end.tangent.freedom - len(first))
@@ -187,6 +188,17 @@ def _search(
         if small:
             return _End(q, d, at, True, tangents + 1)
     return _End(q, d, at, False, tangents + 1)
+
+
+def _resolved(shooting: Shooting, end: _End) -> Identifiability:
+    """What the windows show where a search ended, with the errors of their differences."""
+
+    def at(step: float) -> tuple[np.ndarray, np.ndarray]:
+        first = end.tangent if step == STEPS[0] else tangent(shooting, end.q, end.d, step)
+        return first.projected, tangent(shooting, end.q, end.d, 2 * step).projected
+
+    y = shooting.joined(np.zeros_like(shooting.cut.outputs), end.d) - end.tangent.r
+    return resolve_columns(shooting.space.names, at, round_off(y), STEPS).found
 
 
 def _felt(shooting: Shooting, at: Tangent) -> tuple[np.ndarray, tuple[str, ...], Log]:

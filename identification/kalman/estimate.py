@@ -20,9 +20,10 @@ from threadpoolctl import threadpool_limits
 from identification.errors import InputError
 from identification.estimation.estimation import Estimate
 from identification.estimation.fit import Fit, assess, combinations_of
-from identification.estimation.information import root_of
+from identification.estimation.information import information_of
 from identification.estimation.options import Options, Progress, Status, prior_weight
 from identification.estimation.residuals import residual_tests
+from identification.estimation.resolution import resolve
 from identification.kalman.linear import linearise
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise, build_whitener
@@ -162,8 +163,12 @@ def _of_innovations(end: Refit, fit: Fit) -> Fit:
     point, σ = end.point, end.level.sigma
     with threadpool_limits(1, "blas"):
         filter_ = build_whitener(point.linear, end.level.noise, point.log.sampling_time)
-        E, S = filter_(point.e), filter_(point.J).reshape(point.e.size, -1) / σ
-    found = fit.found  # directions without effect are found by the free run, where they are exact
+        E = filter_(point.e)
+        resolved = resolve(
+            point.predictor, point.space, point.q,
+            lambda J: filter_(J).reshape(point.e.size, -1) / σ,
+        )  # fmt: skip
+    S, found = resolved.S, resolved.found
     covariance = np.linalg.pinv(S.T @ S + np.diag(end.prior**2), hermitian=True)
     std = np.sqrt(np.diag(covariance))
     return replace(
@@ -171,6 +176,7 @@ def _of_innovations(end: Refit, fit: Fit) -> Fit:
         std=np.where(found.undetermined, np.inf, std) * point.space.slope(point.q),
         correlation=covariance / np.outer(std, std),
         combinations=combinations_of(found, fit.estimate, covariance),
-        information=replace(fit.information, root=root_of(S)),
+        found=found,
+        information=information_of(resolved, point.space),
         tests=residual_tests(E, point.log.inputs),
     )

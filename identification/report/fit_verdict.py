@@ -10,6 +10,7 @@ from identification.estimation.identifiability import in_words
 
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
+    from identification.estimation.identifiability import Identifiability
     from identification.estimation.window_estimate import WindowEstimate
 
 # A residual above this multiple of the noise floor is more than noise; the floor itself is an upper
@@ -18,6 +19,7 @@ ABOVE = 1.2
 HOLDS = 1.2  # a fit holds on unseen data up to this multiple of the residual that is expected there
 GROWN = 10.0  # a free run that errs by more than this multiple of the fitted residual has diverged
 LEVEL = 0.01  # significance of the tests of the residual: one false alarm in a hundred
+ROUGH = 1e-4  # relative error of a sensitivity, which a smooth simulation stays far below
 
 
 def fit_verdict(fit: Fit) -> list[str]:
@@ -53,18 +55,46 @@ def identifiable_sentences(fit: Fit) -> list[str]:
                 f" Too weakly for this noise: {', '.join(weak)}, their std exceeds half the value."
             )
         return [said]
-    unknown = [n for n, u in zip(found.names, found.undetermined, strict=True) if u]
-    sentences = [
-        f"{found.rank} of {len(found.names)} directions are felt: {' and '.join(unknown)} trade off"
-        f" along ({'; '.join(in_words(d, found.names) for d in found.blind)}) without any output"
-        " feeling it."
-    ]
+    felt = f"{found.rank} of {len(found.names)} directions are felt"
+    sentences = []
+    if found.symmetries:
+        scaled = [n for n in found.names if any(n in s.powers for s in found.symmetries)]
+        along = "; ".join(in_words(s.row(found.names), found.names) for s in found.symmetries)
+        sentences.append(
+            f"{felt}: {' and '.join(scaled)} trade off along ({along}) without any output feeling"
+            " it."
+        )
     for combination, value, std in fit.combinations:
+        error = f" ± {std:.2g}" if np.isfinite(std) else " (its std is not known)"
         sentences.append(
             f"Of {' and '.join(combination.exponents)} only {combination} can be known from this"
-            f" log: {value:.6g} ± {std:.2g}; fix one of them."
+            f" log: {value:.6g}{error}; fix one of them."
         )
+    if k := len(found.unresolved):
+        count = f"{k} more" if found.symmetries else f"{felt}; {k}"
+        sentences.append(f"{count} {'are' if k > 1 else 'is'}{unresolved_words(found)}")
     return sentences
+
+
+def unresolved_words(found: Identifiability) -> str:
+    """What directions that differences cannot resolve lack, and which parameters that leaves."""
+    moved = found.moved_by_unresolved
+    names = [n for n, m in zip(found.names, moved, strict=True) if m]
+    share = np.where(moved, found.errors / np.where(found.norms > 0, found.norms, np.inf), 0.0)
+    worst = np.argsort(-share)[: min(3, len(names))]
+    errors = ", ".join(f"{_percent(share[i])} for {found.names[i]}" for i in worst)
+    listed = " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+    said = (
+        f" lost in the errors of the sensitivities ({errors}), so that {listed}"
+        f" {'have' if len(names) > 1 else 'has'} no std."
+    )
+    if share.max() > ROUGH:
+        said += " The simulation is rough at these values; a smaller timestep may resolve more."
+    return said
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %" if share > 0.1 else f"{100 * share:.2g} %"
 
 
 def window_sentences(found: WindowEstimate, floor: float) -> list[str]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from identification.estimation.identifiability import in_words
 from identification.estimation.information import Information, determinable
+from identification.report.fit_verdict import unresolved_words
 from identification.report.page import Section, Table
 from inca_mj.report.figures_information import std_figure
 from inca_mj.workflows.bench import Tried
@@ -25,14 +26,7 @@ def information_verdict(found: Information) -> list[str]:
     """What can be determined, what cannot, in sentences."""
     kept, held = determinable(found)
     if held:
-        unknown = [n for n, u in zip(found.found.names, found.found.undetermined, strict=True) if u]
-        lost = "; ".join(in_words(v, found.found.names) for v in found.found.blind)
-        known = ", ".join(map(str, found.combinations))
-        said = [
-            f"{' and '.join(unknown)} trade off along ({lost}) without any output feeling it"
-            + (f"; only {known} can be known" if known else "")
-            + f": hold {' and '.join(held)} fixed."
-        ]
+        said = [*lost_sentences(found), f"Hold {' and '.join(held)} fixed."]
         if not kept:
             return said
         found = found.about(kept)
@@ -53,6 +47,23 @@ def information_verdict(found: Information) -> list[str]:
         n for n, s, r in zip(found.names, std, logarithmic, strict=False) if r and s > WEAK
     ]:
         said.append(f"Too weakly for this noise: {', '.join(weak)}; excite them more, or longer.")
+    return said
+
+
+def lost_sentences(found: Information) -> list[str]:
+    """What cannot be told, because no output feels it or because differences cannot resolve it."""
+    inner, said = found.found, []
+    if inner.symmetries:
+        scaled = [n for n in inner.names if any(n in s.powers for s in inner.symmetries)]
+        along = "; ".join(in_words(s.row(inner.names), inner.names) for s in inner.symmetries)
+        known = ", ".join(map(str, found.combinations))
+        said.append(
+            f"{' and '.join(scaled)} trade off along ({along}) without any output feeling it"
+            + (f"; only {known} can be known." if known else ".")
+        )
+    if k := len(inner.unresolved):
+        count = f"{k}{' more' if said else ''} direction{'s are' if k > 1 else ' is'}"
+        said.append(count + unresolved_words(inner))
     return said
 
 

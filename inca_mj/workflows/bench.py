@@ -56,12 +56,19 @@ class Bench:
     names: tuple[str, ...]
     limits: Limits
 
-    def attempt(self, name: str, run: Run) -> Tried:
-        """What a run is worth, from 2 p simulations."""
+    def attempt(self, name: str, run: Run, resolved: bool = False) -> Tried:
+        """What a run is worth, from 2 p simulations.
+
+        Args:
+            name: in words.
+            run: the simulated run.
+            resolved: whether the errors of the sensitivities are estimated, for twice as many.
+        """
         sampling = float(run.time[1] - run.time[0])
         trial = Experiment(self.robot, run.currents, sampling, ANGLES, self.sigma)
         far = extent(run)
-        return Tried(name, run, far, robot_information(trial, self.names), far.within(self.limits))
+        found = robot_information(trial, self.names, resolved)
+        return Tried(name, run, far, found, far.within(self.limits))
 
     def fitted(self, recipe: Recipe, n: int) -> tuple[Recipe, Run] | None:
         """The recipe with as much swing as the limits let it have, and its run."""

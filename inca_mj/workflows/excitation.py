@@ -99,7 +99,7 @@ def excite(
     _refuse_start(robot, limits)
     bench = Bench(robot, noise, tuple(free), limits)
     first, *rest = standard_inputs(n)
-    baseline = bench.attempt(first[0], simulate(robot, first[1], SAMPLING))
+    baseline = bench.attempt(first[0], simulate(robot, first[1], SAMPLING), resolved=True)
     kept, held = determinable(baseline.found)
     if not kept:
         raise InputError("none of these parameters shows in the angles; free others")
@@ -121,6 +121,7 @@ def excite(
             "no input that was tried keeps the limits; allow a smaller tension margin, more"
             " workspace or more current"
         )
+    best = bench.attempt(best.name, best.run, resolved=True)
     return Design(
         best=best,
         prbs=thesis,

@@ -94,15 +94,19 @@ def sensitivity(
     return robot_information(trial, free)
 
 
-def robot_information(trial: Experiment, names: Sequence[str]) -> Information:
+def robot_information(
+    trial: Experiment, names: Sequence[str], resolved: bool = True
+) -> Information:
     """What an experiment would say of some parameters, the start pose being unknown too.
 
     Args:
         trial: an experiment with the twin.
         names: parameters that are asked for.
+        resolved: whether the errors of the sensitivities are estimated, for twice as many
+            simulations.
 
     Raises:
         InputError: a name is unknown or named twice, or has no effect on any output.
         DivergenceError: a simulation left the finite numbers.
     """
-    return information(trial, names, [n for n in POSE if n not in names])
+    return information(trial, names, [n for n in POSE if n not in names], resolved)

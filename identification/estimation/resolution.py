@@ -1,0 +1,151 @@
+"""Sensitivities as well as differences can resolve them, each column with its error.
+
+    S_h, d_j = max(‖(S_2h - S_h) e_j‖, round-off)       h = 1e-4, and 1e-2 if that does not do
+
+Where a direction is not felt at the short step (see `identification.estimation.identifiability`),
+it may be a scaling symmetry, which simulations prove and which is then taken out of S for good; or
+the simulation is too rough for short differences, and each column is taken from the step at which
+it errs less.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.errors import DivergenceError, InputError
+from identification.estimation.identifiability import (
+    Identifiability,
+    column_errors,
+    identifiability,
+    unresolved_directions,
+)
+from identification.estimation.scaling_symmetry import (
+    ScalingSymmetry,
+    Whiten,
+    scaling_symmetries,
+)
+from identification.model.coordinates import Coordinates
+from identification.model.predictor import Predictor
+from identification.model.sensitivity import ROUND_OFF, STEP, two_sensitivities
+
+STEPS = (STEP, 100 * STEP)
+
+# at a step h: sensitivities at h and at 2 h, whitened, each of shape (n, p)
+AtTwoSteps = Callable[[float], tuple[np.ndarray, np.ndarray]]
+
+
+@dataclass(frozen=True)
+class Resolved:
+    """Whitened sensitivities and what they err by.
+
+    Attributes:
+        names: parameters, p of them.
+        S: shape (n, p), zero along the symmetries.
+        E: estimated errors of S, shape (n, p).
+        least: norm of the round-off of a column.
+        symmetries: proven ones.
+    """
+
+    names: tuple[str, ...]
+    S: np.ndarray
+    E: np.ndarray
+    least: float
+    symmetries: tuple[ScalingSymmetry, ...] = ()
+
+    @property
+    def errors(self) -> np.ndarray:
+        """Norms of the errors of the columns of S, shape (p,)."""
+        return column_errors(self.E, self.least)
+
+    @property
+    def found(self) -> Identifiability:
+        """The directions that the outputs feel, and those that they do not."""
+        return identifiability(self.S, self.names, self.E, self.least, self.symmetries)
+
+    @property
+    def done(self) -> bool:
+        """Whether every direction is felt or a symmetry."""
+        return len(unresolved_directions(self.S, self.errors)) == len(self.symmetries)
+
+    def better(self, S: np.ndarray, E: np.ndarray) -> Resolved:
+        """The same with each column from where it errs less."""
+        less = np.linalg.norm(E, axis=0) < np.linalg.norm(self.E, axis=0)
+        S, E = np.where(less, S, self.S), np.where(less, E, self.E)
+        return Resolved(self.names, S, E, self.least).with_symmetries(self.symmetries)
+
+    def with_symmetries(self, symmetries: tuple[ScalingSymmetry, ...]) -> Resolved:
+        """The same without what rough differences show along proven symmetries."""
+        if not symmetries:
+            return self
+        rows = np.linalg.qr(np.array([s.row(self.names) for s in symmetries]).T)[0].T
+        S, E = (X - X @ rows.T @ rows for X in (self.S, self.E))
+        return Resolved(self.names, S, E, self.least, symmetries)
+
+
+def resolve(predictor: Predictor, space: Coordinates, q: np.ndarray, whiten: Whiten) -> Resolved:
+    """Sensitivities of a predictor's outputs at q, and what they err by.
+
+    Args:
+        predictor: of the outputs.
+        space: coordinates of the parameters.
+        q: where, shape (p,).
+        whiten: makes the noise of the outputs white, of std 1.
+
+    Raises:
+        DivergenceError: a simulation left the finite numbers.
+    """
+    y = predictor.predict(space.decode(q))[0]
+
+    def at(step: float) -> tuple[np.ndarray, np.ndarray]:
+        once, twice = two_sensitivities(predictor, space, q, step)
+        return whiten(once), whiten(twice)
+
+    def symmetries(S: np.ndarray, errors: np.ndarray) -> tuple[ScalingSymmetry, ...]:
+        return scaling_symmetries(predictor, space, q, whiten, S, errors)
+
+    least = round_off(whiten(y[:, :, None]))
+    return resolve_columns(space.names, at, least, STEPS, symmetries)
+
+
+def round_off(y: np.ndarray) -> float:
+    """Norm of what round-off makes of a column of the sensitivities of whitened outputs y."""
+    return ROUND_OFF * (float(np.linalg.norm(y)) or 1.0)
+
+
+def resolve_columns(
+    names: tuple[str, ...],
+    at: AtTwoSteps,
+    least: float,
+    steps: Sequence[float],
+    symmetries: Callable[[np.ndarray, np.ndarray], tuple[ScalingSymmetry, ...]] | None = None,
+) -> Resolved:
+    """Sensitivities at the first step, or each at the step of some where it errs least.
+
+    Args:
+        names: parameters, p of them.
+        at: sensitivities at a step and at twice the step.
+        least: norm of the round-off of a column.
+        steps: to be tried, until all that can be felt is felt.
+        symmetries: finds those of sensitivities and their columns' errors; None for none.
+
+    Raises:
+        DivergenceError: a simulation at the first step left the finite numbers.
+    """
+    once, twice = at(steps[0])
+    known = Resolved(names, once, twice - once, least)
+    for following in (*steps[1:], None):
+        if known.done:
+            return known
+        if symmetries is not None:
+            known = known.with_symmetries(symmetries(known.S, known.errors))
+        if known.done or following is None:
+            break
+        try:
+            once, twice = at(following)
+        except (DivergenceError, InputError):  # so far away there is no such run, or no start
+            break
+        known = known.better(once, twice - once)
+    return known

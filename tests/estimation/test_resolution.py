@@ -1,0 +1,190 @@
+"""What differences cannot resolve is not information: only what exceeds their error is felt."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from estimation_plants import positive, record, slider
+
+from identification import ParameterSet
+from identification.estimation.estimation import Options, estimate
+from identification.estimation.fit import assess
+from identification.estimation.identifiability import identifiability
+from identification.estimation.information import information_of
+from identification.estimation.resolution import STEPS, resolve, resolve_columns
+from identification.estimation.window_estimate import estimate_windows
+from identification.kalman.estimate import estimate_innovations
+from identification.model.coordinates import Coordinates, coordinates
+from identification.model.plant import ModelPlant
+from identification.model.predictor import Predictor
+from identification.report.fit_verdict import verdict
+
+NAMES = ("a", "b", "c", "d")
+BLIND = np.array([2.0, -1.0, 0.0, 0.0]) / 5**0.5
+
+
+def rough(seed, roughness, n=400, curvature=1e-3):
+    """Sensitivities of a simulation whose outputs jump by `roughness`, blind along BLIND."""
+    rng = np.random.default_rng(seed)
+    exact = rng.standard_normal((n, 4))
+    exact -= np.outer(exact @ BLIND, BLIND)
+    bent = rng.standard_normal((n, 4))
+
+    def at(step):
+        jumps = (rng.standard_normal((n, 4)) for _ in range(2))
+        return tuple(
+            exact + curvature * (k * step) ** 2 * bent + roughness / (2**0.5 * k * step) * jump
+            for k, jump in zip((1, 2), jumps, strict=True)
+        )
+
+    return exact, at
+
+
+@pytest.mark.parametrize("roughness", [0.0, 1e-9, 1e-6, 1e-4, 1e-2, 1.0])
+def test_no_direction_is_felt_that_is_blind(roughness):
+    for seed in range(40):
+        _, at = rough(seed, roughness)
+        assert resolve_columns(NAMES, at, 1e-12, STEPS).found.rank <= 3
+
+
+@pytest.mark.parametrize("roughness", [0.0, 1e-9, 1e-6, 1e-4])
+def test_the_blind_direction_is_the_one_that_is_found(roughness):
+    """And of its parameters alone there is no std, although it is only known roughly."""
+    for seed in range(20):
+        _, at = rough(seed, roughness)
+        found = resolve_columns(NAMES, at, 1e-12, STEPS).found
+        assert found.rank == 3
+        assert abs(found.blind[0] @ BLIND) > 0.99
+        assert found.undetermined.tolist() == [True, True, False, False]
+        assert not found.moved(np.array([[1.0, 2.0, 0.0, 0.0]]))[0]  # a b² can be known
+
+
+def test_the_estimated_error_is_the_error():
+    for roughness, step in ((1e-3, STEPS[0]), (0.0, STEPS[0]), (1e-3, STEPS[1])):
+        for seed in range(10):
+            exact, at = rough(seed, roughness, curvature=1.0)
+            resolved = resolve_columns(NAMES, at, 1e-300, (step,))
+            true = np.linalg.norm(resolved.S - exact, axis=0)
+            assert (resolved.errors > 0.9 * true).all()
+            assert (resolved.errors < 4 * true).all()
+
+
+def test_the_longer_step_is_taken_where_it_errs_less():
+    """Some outputs are rough in one parameter only; the others keep their short step."""
+    exact = np.random.default_rng(0).standard_normal((300, 2))
+    noise = np.random.default_rng(1).standard_normal((300, 4))
+
+    def at(step):
+        return tuple(
+            np.column_stack([
+                exact[:, 0] + 2e-3 / (k * step) * noise[:, k], exact[:, 1] + (k * step) ** 2
+            ])
+            for k in (1, 2)
+        )  # fmt: skip
+
+    resolved = resolve_columns(("a", "b"), at, 1e-12, STEPS)
+    np.testing.assert_array_equal(resolved.S[:, 0], at(STEPS[1])[0][:, 0])
+    np.testing.assert_array_equal(resolved.S[:, 1], at(STEPS[0])[0][:, 1])
+    assert resolved.found.rank == 2
+
+
+def test_what_is_felt_does_not_depend_on_units():
+    for seed in range(20):
+        _, at = rough(seed, 1e-6)
+        resolved = resolve_columns(NAMES, at, 1e-12, STEPS[:1])
+        units = np.array([1.0, 1e4, 1e-5, 30.0])
+        scaled = identifiability(resolved.S * units, NAMES, resolved.E * units, 0.0)
+        assert scaled.rank == resolved.found.rank == 3
+        same = scaled.blind[0] * units / np.linalg.norm(scaled.blind[0] * units)
+        assert abs(same @ resolved.found.blind[0]) == pytest.approx(1.0, abs=1e-9)
+
+
+def test_the_same_experiment_twice_is_felt_more_and_resolved_as_well():
+    _, at = rough(3, 1e-6)
+    resolved = resolve_columns(NAMES, at, 1e-12, STEPS[:1])
+    space = Coordinates(NAMES, np.ones(4, bool), *(np.zeros(4) for _ in range(3)))
+    once = information_of(resolved, space)
+    twice = once.with_data(once)
+    assert once.found.rank == twice.found.rank == 3
+    np.testing.assert_allclose(once.found.leaks, resolved.found.leaks, rtol=1e-9)
+    np.testing.assert_allclose(twice.found.errors, 2**0.5 * resolved.errors, rtol=1e-9)
+    felt, more = once.found.strengths[:3], twice.found.strengths[:3]
+    np.testing.assert_allclose(more, 2**0.5 * felt, rtol=1e-9)
+
+
+def test_all_of_a_slider_is_felt_and_its_sensitivities_are_right():
+    names = ("mass", "damping", "stiffness", "x0", "v0")
+    log = record(slider(), ("position",), noise=1e-3)
+    fit = assess(estimate(slider(), log, names, {"mass": 2.2, "damping": 2.8}))
+    assert fit.found.rank == 5
+    assert (fit.found.errors < 1e-6 * fit.found.norms).all()
+    assert "All 5 directions" in " ".join(verdict(fit))
+
+
+def test_a_linear_parameter_errs_by_round_off():
+    """The output is proportional to the gear: of its differences nothing but round-off is wrong."""
+    plant = slider(x0=0.0)
+    log = record(plant, ("position",))
+    records = replace(plant.parameters, records=tuple(
+        replace(p, lower=-np.inf) if p.name == "gear" else p for p in plant.parameters
+    ))  # fmt: skip
+    space = coordinates(records, ("gear",), np.array([5.0]))
+    assert not space.logarithmic.any()
+    q = space.encode(np.array([5.0]))
+    predictor = Predictor(plant, log, ("gear",))
+    resolved = resolve(predictor, space, q, lambda J: J.reshape(-1, J.shape[2]))
+    assert resolved.errors[0] < 1e-8 * np.linalg.norm(resolved.S)
+    assert resolved.found.rank == 1
+
+
+ALL = ("mass", "damping", "stiffness", "gear")
+
+
+def test_windows_and_innovations_give_no_std_to_a_common_factor():
+    log = record(slider(x0=0.0), ("position",), noise=1e-3)
+    windows = estimate_windows(slider(x0=0.0), log, ALL, 1.0, {"damping": 2.5})
+    assert windows.found.rank == 3
+    assert np.isinf(windows.std).all()
+    fewer = estimate_windows(slider(x0=0.0), log, ALL[:3], 1.0, {"damping": 2.5})
+    assert np.isfinite(fewer.std).all()
+    predicted = estimate_innovations(slider(x0=0.0), log, ALL, {"damping": 2.5}).fit
+    assert predicted.found.rank == 3
+    assert np.isinf(predicted.std).all()
+    assert len(predicted.combinations) == 3
+
+
+@dataclass(frozen=True)
+class Curved:
+    """A slider whose stiffness is a b^1.37: a trade-off that is no product of small powers."""
+
+    plant: ModelPlant
+    parameters: ParameterSet
+
+    @property
+    def model(self):
+        return self.plant.model
+
+    def settings(self, names, values):
+        own = self.parameters.values()
+        a, b = (
+            values[:, names.index(n)] if n in names else np.full(len(values), own[n])
+            for n in ("a", "b")
+        )
+        return self.plant.settings(("stiffness",), (a * b**1.37)[:, None])
+
+    def inputs(self, names, values, held, timestep):
+        return held
+
+
+def test_a_trade_off_that_is_no_product_of_small_powers_is_not_called_one():
+    records = tuple(positive(n, v, "", "start") for n, v in (("a", 20.0), ("b", 1.0)))
+    plant = Curved(slider(x0=0.0), ParameterSet("curved", records))
+    log = record(slider(x0=0.0), ("position",), noise=1e-3)
+    fit = assess(estimate(plant, log, ("a", "b"), {"a": 18.0}, options=Options()))
+    assert fit.found.rank == 1
+    assert np.isinf(fit.std).all()
+    assert not fit.combinations
+    said = " ".join(verdict(fit))
+    assert "1 of 2 directions are felt; 1 is lost" in said
+    assert "a and b have no std" in said
+    assert "rough" not in said
