@@ -1,6 +1,7 @@
 """An effect of your own: one compiled function, one record; then ask whether a log needs it.
 
-    Δτ = -c |φ| tanh(β ω)      the cable rubs on what is wound already
+    Δτ = -c |φ| tanh(β ω)      INCA: the cable rubs on what is wound already
+    f  = -c |q| tanh(v/v₀)     any joint of any MJCF: the guide is tighter at its ends
 
 Run it: python examples/own_effect.py
 """
@@ -9,30 +10,34 @@ from dataclasses import replace
 from math import tanh
 
 import numpy as np
-from inca_mj.effects.places import DRIVES_EACH
 from numba import njit
 
 from identification.effects.effect import Effect, Size
+from identification.effects.joint_plant import joint_plant
+from identification.effects.places import places
+from identification.logs.log import Log
+from identification.model.parameter import Parameter
+from identification.model.predictor import Predictor
 from inca_mj import build_twin, make_input, run_to_log, simulate
 from inca_mj.effects.catalogue import CATALOGUE
-from inca_mj.effects.hooks import DriveEffect
+from inca_mj.effects.hooks import DRIVES_EACH
+
+# ----------------------------------------------------------------- of INCA's drives
 
 
 @njit
-def torque(s, p):
+def winding_friction(s, p):
     """Torque on a motor [N m]: s is what is known of its drive, p the effect's parameters."""
     return -p[0] * abs(s.phi) * tanh(s.beta * s.omega)
 
 
-WINDING_FRICTION = DriveEffect(
-    Effect(
-        "winding_friction",
-        law="-c |φ| tanh(β ω)",
-        sizes=(Size("c", "N m/rad", largest=2e-3, probe=1e-4, sign=1, about="growth per radian"),),
-        places=DRIVES_EACH,  # on all drives alike, or on one
-        phrase="friction: grows with what is wound",
-    ),
-    torque=torque,
+WINDING_FRICTION = Effect(
+    "winding_friction",
+    law="-c |φ| tanh(β ω)",
+    sizes=(Size("c", "N m/rad", largest=2e-3, probe=1e-4, sign=1, about="growth per radian"),),
+    places=DRIVES_EACH,  # on all drives alike, or on one
+    phrase="friction: grows with what is wound",
+    hooks={"torque": winding_friction},
 )
 
 
@@ -57,7 +62,64 @@ def find(log, effects=(*CATALOGUE, WINDING_FRICTION)):
     return discover(log, effects=effects)
 
 
+# ----------------------------------------------------------------- of a joint of any MJCF
+
+SLIDER = """<mujoco model="slider">
+  <option timestep="0.002" gravity="0 0 0" integrator="RK4"/>
+  <worldbody><body name="cart"><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>
+    <joint name="slide" type="slide" axis="1 0 0" damping="3" stiffness="20"/>
+  </body></worldbody>
+  <actuator><general name="force" joint="slide" gear="5"/></actuator>
+  <sensor><jointpos name="position" joint="slide"/></sensor>
+</mujoco>"""
+MASS = Parameter("mass", 2.0, "kg", "body/cart.mass", lower=0.0, upper=100.0)
+DAMPING = Parameter("damping", 3.0, "N s/m", "joint/slide.damping", lower=0.0, upper=100.0)
+
+
+@njit
+def guide_friction(s, p):
+    """Force on a joint [N]: s is what is known of it, s.sign a smooth sign of its velocity."""
+    return -p[0] * abs(s.q) * s.sign
+
+
+GUIDE_FRICTION = Effect(
+    "guide_friction",
+    law="-c |q| tanh(v/v₀)",
+    sizes=(Size("c", "N/m", largest=5.0, probe=0.05, sign=1, about="growth along the way"),),
+    places=places("joint", ("slide",)),
+    phrase="friction: grows towards the ends",
+    hooks={"force": guide_friction},
+)
+
+
+def slider_log(samples=1200, c=1.0, noise=5e-4, step=0.01):
+    """A log of a slider that has the effect, with noise on its position [m]."""
+    rng, time = np.random.default_rng(0), np.arange(samples) * step
+    u = np.repeat(rng.choice([-1.0, 1.0], samples // 20 + 1), 20)[:samples, None]
+    moved = 0.5 * np.sin(time)[:, None]  # shows how far the joint moves, before there is a log
+    log = Log(time, u, moved, ("force",), ("position",), units={"position": "m"})
+    plant = slider(log)
+    y = Predictor(plant, log, ("guide_friction.c@slide",)).predict(np.array([[c]]))[0]
+    return replace(log, outputs=y + noise * rng.standard_normal(y.shape))
+
+
+def slider(log):
+    """The slider with the own effect beside the catalogue's."""
+    return joint_plant(SLIDER, (MASS, DAMPING), log, own=[GUIDE_FRICTION])
+
+
+def find_on_slider(log):
+    """What the nominal slider lacks of a log, the own effect among the candidates."""
+    from identification.discovery.nominal_model import NominalModel
+    from identification.discovery.search import discover
+    from identification.effects.joint_plant import candidates
+
+    plant, free = slider(log), ("mass", "damping")
+    return discover(NominalModel(plant, free, np.array([0.3, 0.3])), log, candidates(plant, free))
+
+
 if __name__ == "__main__":
     from identification.report.discovery_text import discovery_text
 
+    print(discovery_text(find_on_slider(slider_log())))
     print(discovery_text(find(log_with_it())))

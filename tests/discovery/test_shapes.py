@@ -21,7 +21,7 @@ KINDS = Effect(
         Shape("at", "N", (1.0, 2.0), 0.1, 9.0),
         Shape("soft", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0),
     ),
-    {"joint": ""},
+    places={"joint": ""},
 )
 
 
