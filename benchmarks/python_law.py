@@ -48,3 +48,9 @@ def install(model: mujoco.MjModel) -> None:
     mujoco.set_mjcb_act_dyn(act_dyn)
     mujoco.set_mjcb_act_bias(act_bias)
     mujoco.set_mjcb_sensor(sensor)
+
+
+def uninstall() -> None:
+    """Release MuJoCo's callbacks."""
+    for kind in ("passive", "act_dyn", "act_bias", "sensor"):
+        getattr(mujoco, f"set_mjcb_{kind}")(None)

@@ -73,7 +73,7 @@ def python_ratio(robot: Twin) -> float:
     native.uninstall()
     python_law.install(robot.model)
     (slow,) = least([step], 20)
-    native.uninstall()
+    python_law.uninstall()
     native.install()
     return slow / compiled
 

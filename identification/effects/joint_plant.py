@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cached_property
 from pathlib import Path
 
 import mujoco
@@ -23,7 +23,7 @@ from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
 from identification.effects.input_effects import drives, input_effects
 from identification.effects.joint_catalogue import joint_effects
-from identification.effects.layout import key_of, refuse_misplaced, terms_of
+from identification.effects.joint_layout import JointLayout
 from identification.effects.rows import read_model, with_rows
 from identification.logs.log import Log
 from identification.model.parameter import Parameter, ParameterSet
@@ -31,11 +31,7 @@ from identification.model.paths import Slot
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
-from identification.native.element import Term
-from identification.native.hook_checks import refuse_unfit_functions
-from identification.native.input_filter import INPUT
-from identification.native.installer import Law, install
-from identification.native.joint_callback import FIELDS, FIRST, JOINT, callbacks, width
+from identification.native.joint_callback import FIRST
 
 
 @dataclass(frozen=True)
@@ -67,6 +63,11 @@ class JointPlant:
         ):
             bare.model.jnt_user[slot.index()] = values[0]
 
+    @cached_property
+    def layout(self) -> JointLayout:
+        """Where the parameters of its effects are in the model."""
+        return JointLayout(self.effects)
+
     @property
     def model(self) -> mujoco.MjModel:
         """The compiled model at its nominal values."""
@@ -90,7 +91,7 @@ class JointPlant:
         Raises:
             InputError: a name is unknown, or another library holds MuJoCo's callback.
         """
-        install(_law(key_of(self._of_joints), terms_of(self._of_joints, JOINT)))
+        self.layout.install()
         for name in names:
             self.parameters[name]
         known = {p.name for p in self.bare.parameters}
@@ -99,21 +100,16 @@ class JointPlant:
         others = [k for k, name in enumerate(names) if name not in known]
         return start, [*numbers, *self._rows([names[k] for k in others], values[:, others])]
 
-    @property
-    def _of_joints(self) -> tuple[Effect, ...]:
-        return _of_joints(self.effects)
-
     def _rows(self, names: Sequence[str], values: np.ndarray) -> Numbers:
         """Entries of the joints' rows that some parameters of effects change."""
         every = effect_values.merged(self.parameters.values(), names, values)
-        terms = terms_of(self._of_joints, JOINT)
-        first = int(self.model.nuser_jnt) - width(terms) + FIRST
+        first = int(self.model.nuser_jnt) - self.layout.entries + FIRST
         return [
             (Slot("jnt_user", (int(self.model.joint(joint).id),), first + column),
              np.broadcast_to(numbers, len(values)))
             for joint in self.joints
             for column, numbers in effect_values.changed_columns(
-                self._of_joints, terms, joint, names, every
+                self.effects, self.layout.on_joints, joint, names, every
             )
         ]  # fmt: skip
 
@@ -126,22 +122,6 @@ class JointPlant:
         return effect_values.changed_inputs(
             self.effects, actuators, every, held, timestep, len(values)
         )
-
-
-def _of_joints(effects: Iterable[Effect]) -> tuple[Effect, ...]:
-    return tuple(e for e in effects if "force" in e.hooks)
-
-
-@cache
-def _law(key: float, terms: tuple[Term, ...]) -> Law:
-    """The law of a set of joint effects."""
-    return Law(
-        name="joints",
-        key=key,
-        functions=callbacks(terms, key),
-        fields=FIELDS,
-        check=lambda: refuse_unfit_functions(JOINT, terms),
-    )
 
 
 def joint_plant(
@@ -174,14 +154,11 @@ def joint_plant(
     if effects is None:
         effects = (*joint_effects(known), *input_effects(drives(log)))
     effects = (*effects, *own)
-    refuse_misplaced(effects, (JOINT, INPUT))
     records = {p.name: p for e in effects for p in effect_parameters(e)}
     given = {p.name: p for p in parameters}
-    free = ParameterSet("own", tuple(p for p in given.values() if p.name not in records))
-    every = (*free, *(given.get(name, record) for name, record in records.items()))
-    of_joints = _of_joints(effects)
-    model = with_rows(spec, known, width(terms_of(of_joints, JOINT)), key_of(of_joints))
-    bare = ModelPlant(model, free, start)
+    paths = ParameterSet("own", tuple(p for p in given.values() if p.name not in records))
+    every = (*paths, *(given.get(name, record) for name, record in records.items()))
+    bare = ModelPlant(with_rows(spec, known, JointLayout(effects)), paths, start)
     name = spec.modelname or "robot"
     return JointPlant(bare, ParameterSet(name, every), effects, tuple(a.joint for a in known))
 

@@ -46,9 +46,14 @@ def terms_of(
     return tuple(out)
 
 
-def key_of(effects: Sequence[Effect]) -> float:
-    """The number that tells a set of effects from others."""
-    return float(crc32(repr([(e.name, e.names, e.law) for e in effects]).encode()))
+def key_of(effects: Sequence[Effect], of: str = "") -> float:
+    """The number that tells a set of effects from others.
+
+    Args:
+        effects: the set.
+        of: what they act on, where sets of other things may bear the same names.
+    """
+    return float(crc32((of + repr([(e.name, e.names, e.law) for e in effects])).encode()))
 
 
 def refuse_misplaced(effects: Sequence[Effect], elements: Sequence[Element]) -> None:

@@ -15,6 +15,7 @@ import mujoco
 import numpy as np
 
 from identification.effects.axes import Axis
+from identification.effects.joint_layout import JointLayout
 from identification.errors import InputError, unknown_name
 from identification.logs.names import quoted
 from identification.native.joint_callback import SMOOTH, TAG
@@ -44,16 +45,13 @@ def read_model(source: str | Path) -> mujoco.MjSpec:
     return spec
 
 
-def with_rows(
-    spec: mujoco.MjSpec, axes: Sequence[Axis], entries: int, key: float
-) -> mujoco.MjModel:
+def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis], layout: JointLayout) -> mujoco.MjModel:
     """The compiled model with a row of effects on some joints, all their numbers zero.
 
     Args:
         spec: the model, which is not changed.
         axes: the joints.
-        entries: of a row.
-        key: of the set of effects.
+        layout: the effects.
 
     Raises:
         InputError: the model has no such hinge or slide joint.
@@ -64,8 +62,8 @@ def with_rows(
         if axis.joint not in joints:
             raise unknown_name("hinge or slide joint", axis.joint, joints)
         given = own.jnt_user[own.joint(axis.joint).id]
-        row = np.zeros(entries)
-        row[SMOOTH], row[-2], row[-1] = axis.smooth, key, TAG
+        row = np.zeros(layout.entries)
+        row[SMOOTH], row[-2], row[-1] = axis.smooth, layout.key, TAG
         joints[axis.joint].userdata = np.concatenate([given, row])
-    spec.nuser_jnt = own.nuser_jnt + entries
+    spec.nuser_jnt = own.nuser_jnt + layout.entries
     return spec.compile()

@@ -42,8 +42,8 @@ class Layout:
 
     @cached_property
     def key(self) -> float:
-        """Tells this set from others."""
-        return key_of(self.effects)
+        """Tells this set from others; zero, as where a drive carries no key, without effects."""
+        return key_of(self.effects) if self.effects else 0.0
 
     @cached_property
     def on_drives(self) -> tuple[Term, ...]:

@@ -113,7 +113,7 @@ def _begun(m, d, i):  # type: ignore[no-untyped-def]
 
 
 def callbacks(
-    key: float, on_drives: Sequence[Term], on_platform: Sequence[Term], *, some: bool
+    key: float, on_drives: Sequence[Term], on_platform: Sequence[Term]
 ) -> dict[str, Function]:
     """The four callbacks of the law with a set of candidate effects, to be compiled.
 
@@ -121,13 +121,13 @@ def callbacks(
         key: of the set, which its drives carry; zero where it has no effects.
         on_drives: the effects of the drives, their columns counted in `actuator_user`.
         on_platform: the effects of the platform, their columns counted in `body_user`.
-        some: whether there are effects at all.
     """
     added_current, added_radius, added_path, added_tension, added_torque, added_force = (
         total(DRIVE, on_drives, hook)
         for hook in ("current", "radius", "path", "tension", "torque", "force")
     )
     added_wrench, advance = total(PLATFORM, on_platform, "wrench"), rates(DRIVE, on_drives)
+    some = key != 0.0
 
     @inlined
     def winding(m, d, i):  # type: ignore[no-untyped-def]

@@ -29,8 +29,7 @@ def install(layout: Layout | None = None) -> None:
         RuntimeError: MuJoCo's structs are not laid out as declared.
     """
     layout = layout or Layout()
-    key = layout.key if layout.effects else 0.0  # the drives of a robot without effects carry none
-    installer.install(_law(key, layout.on_drives, layout.on_platform, some=bool(layout.effects)))
+    installer.install(_law(layout.key, layout.on_drives, layout.on_platform))
 
 
 def uninstall() -> None:
@@ -39,9 +38,7 @@ def uninstall() -> None:
 
 
 @cache
-def _law(
-    key: float, on_drives: tuple[Term, ...], on_platform: tuple[Term, ...], *, some: bool
-) -> installer.Law:
+def _law(key: float, on_drives: tuple[Term, ...], on_platform: tuple[Term, ...]) -> installer.Law:
     """The law of the drives with a set of effects."""
 
     def check() -> None:
@@ -51,7 +48,7 @@ def _law(
     return installer.Law(
         name="drives",
         key=key,
-        functions=callbacks(key, on_drives, on_platform, some=some),
+        functions=callbacks(key, on_drives, on_platform),
         fields=FIELDS,
         check=check,
     )

@@ -17,7 +17,7 @@ from identification.kalman.estimate import estimate_innovations
 from identification.model.coordinates import Coordinates, coordinates
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor
-from identification.report.fit_verdict import verdict
+from identification.report.fit_verdict import fit_verdict
 
 NAMES = ("a", "b", "c", "d")
 BLIND = np.array([2.0, -1.0, 0.0, 0.0]) / 5**0.5
@@ -118,7 +118,7 @@ def test_all_of_a_slider_is_felt_and_its_sensitivities_are_right():
     fit = assess(estimate(slider(), log, names, {"mass": 2.2, "damping": 2.8}))
     assert fit.found.rank == 5
     assert (fit.found.errors < 1e-6 * fit.found.norms).all()
-    assert "All 5 directions" in " ".join(verdict(fit))
+    assert "All 5 directions" in " ".join(fit_verdict(fit))
 
 
 def test_a_linear_parameter_errs_by_round_off():
@@ -184,7 +184,7 @@ def test_a_trade_off_that_is_no_product_of_small_powers_is_not_called_one():
     assert fit.found.rank == 1
     assert np.isinf(fit.std).all()
     assert not fit.combinations
-    said = " ".join(verdict(fit))
+    said = " ".join(fit_verdict(fit))
     assert "1 of 2 directions are felt; 1 is lost" in said
     assert "a and b have no std" in said
     assert "rough" not in said

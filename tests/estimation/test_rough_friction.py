@@ -13,7 +13,7 @@ import pytest
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.experiment import Experiment, information
 from identification.estimation.fit import assess
-from identification.report.fit_verdict import verdict
+from identification.report.fit_verdict import fit_verdict
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.logs import ANGLES, read_inca_log, run_to_log
@@ -47,7 +47,7 @@ def test_the_example_log_does_not_know_what_its_first_fit_claimed():
     assert np.isinf(std["k_s"])
     assert np.isinf(std["beta"])
     assert [str(c) for c, _, _ in fit.combinations] == ["k_s R_s^2"]
-    said = " ".join(verdict(fit))
+    said = " ".join(fit_verdict(fit))
     assert "R_s and k_s trade off along (k_s -0.89, R_s +0.45) without any output" in said
     assert "Of k_s and R_s only k_s R_s^2 can be known from this log" in said
     assert "The simulation is rough at these values" in said
@@ -64,7 +64,7 @@ def test_only_the_product_is_known_however_steep_the_friction(beta):
     assert np.isinf(std["R_s"])
     assert np.isinf(std["k_s"])
     assert [str(c) for c, _, _ in fit.combinations] == ["k_s R_s^2"]
-    assert "Of k_s and R_s only k_s R_s^2 can be known" in " ".join(verdict(fit))
+    assert "Of k_s and R_s only k_s R_s^2 can be known" in " ".join(fit_verdict(fit))
 
 
 @pytest.mark.parametrize("beta", [0.8, 50.0, 500.0])

@@ -43,3 +43,11 @@ def test_it_is_found(own: dict) -> None:
     assert [n.candidate.effect.name for n in found.named] == ["winding_friction"]
     value, std, _ = found.named[0].parameters["c"]
     assert abs(value - 5e-4) < 5 * std
+
+
+def test_one_of_a_joint_is_found_beside_the_catalogue(own: dict) -> None:
+    found = own["find_on_slider"](own["slider_log"]())
+    assert [n.candidate.effect.name for n in found.named] == ["guide_friction"]
+    value, std, unit = found.named[0].parameters["c"]
+    assert abs(value - 1.0) < 5 * std
+    assert unit == "N/m"

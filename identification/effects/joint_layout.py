@@ -1,0 +1,73 @@
+"""Where the parameters of a set of effects live in the model of a robot with joints.
+
+Those of joints in the joints' user data, a row each (see `identification.native.joint_callback`);
+those of inputs nowhere: they act before the model.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+from identification.effects.effect import Effect
+from identification.effects.layout import key_of, refuse_misplaced, terms_of
+from identification.native.element import Term
+from identification.native.hook_checks import refuse_unfit_functions
+from identification.native.input_filter import INPUT
+from identification.native.installer import Law, install
+from identification.native.joint_callback import FIELDS, JOINT, callbacks, width
+
+
+@dataclass(frozen=True)
+class JointLayout:
+    """The columns of a set of effects, and its law.
+
+    Attributes:
+        effects: the set, in order.
+
+    Raises:
+        InputError: two effects have one name, or one has a hook that is neither a joint's nor an
+            input's.
+    """
+
+    effects: tuple[Effect, ...]
+
+    def __post_init__(self) -> None:
+        refuse_misplaced(self.effects, (JOINT, INPUT))
+
+    @cached_property
+    def on_joints(self) -> tuple[Term, ...]:
+        """The effects with parameters in a joint's row, columns counted from the first of them."""
+        return terms_of(self.effects, JOINT)
+
+    @cached_property
+    def key(self) -> float:
+        """Tells this set of joint effects from others."""
+        names = {term.effect for term in self.on_joints}
+        return key_of([e for e in self.effects if e.name in names], "joints")
+
+    @property
+    def entries(self) -> int:
+        """Entries of a joint's row."""
+        return width(self.on_joints)
+
+    def install(self) -> None:
+        """Install the law in this process; does nothing when it is installed already.
+
+        Raises:
+            InputError: another library holds MuJoCo's callback, or a function of an effect is not
+                what its hook takes.
+            RuntimeError: MuJoCo's structs are not laid out as declared.
+        """
+        install(_law(self.key, self.on_joints))
+
+
+@cache
+def _law(key: float, terms: tuple[Term, ...]) -> Law:
+    return Law(
+        name="joints",
+        key=key,
+        functions=callbacks(terms, key),
+        fields=FIELDS,
+        check=lambda: refuse_unfit_functions(JOINT, terms),
+    )
