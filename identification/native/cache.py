@@ -74,8 +74,11 @@ def decode(key: str, content: bytes) -> MachineCode | None:
     *header, rest = content.split(b"\n", 3)
     if header != [_FORMAT, key.encode(), _digest(key, rest)]:
         return None
-    symbol, needs, object_file = rest.split(b"\n", 2)
-    return MachineCode(symbol.decode(), tuple(needs.decode().split()), object_file)
+    try:
+        symbol, needs, object_file = rest.split(b"\n", 2)
+        return MachineCode(symbol.decode(), tuple(needs.decode().split()), object_file)
+    except ValueError:  # another version of this program has laid it out otherwise
+        return None
 
 
 def _digest(key: str, rest: bytes) -> bytes:

@@ -1,5 +1,6 @@
 """A callback from the cache is the compiled one; what cannot be trusted is compiled anew."""
 
+import hashlib
 import logging
 import os
 import pickle
@@ -61,6 +62,18 @@ def other_needs(entry):
     entry.write_bytes(encode(entry.name, machine_code.MachineCode(code.symbol, needs, b"")))
 
 
+def other_layout(*lines):
+    """An entry with the right key and digest, of which the rest is laid out otherwise."""
+
+    def spoil(entry):
+        rest = b"\n".join(lines)
+        digest = hashlib.sha256(entry.name.encode() + b"\n" + rest).hexdigest().encode()
+        form = entry.read_bytes().split(b"\n", 1)[0]
+        entry.write_bytes(b"\n".join((form, entry.name.encode(), digest, rest)))
+
+    return spoil
+
+
 def mode(bits):
     def spoil(entry):
         entry.chmod(bits)
@@ -93,6 +106,8 @@ SPOILED = {
     "other code": flipped(-20),
     "other key": other_key,
     "other needs": other_needs,
+    "too few lines": other_layout(b"symbol", b"code"),
+    "no text": other_layout(b"symbol", b"\x7fELF\xb8", b"code"),
     "writable by all": mode(0o602),
     "writable by the group": mode(0o620),
     "linked": linked,
