@@ -1,6 +1,6 @@
-"""What is left when the noise model has had its share: are the innovations white?
+"""What is left when the noise model has had its share: are the innovations white and even?
 
-    Q = N (N+2) Σ_l r_l²/(N-l)  over L lags and n_y channels  ~  χ²_{L n_y}      (Ljung, Box 1978)
+    Σ_i Q_i ~ χ²_{m ny}                  see `identification.estimation.whiteness`
     g = max_f I(f)/Σ_f I(f),  P(g > x) ≈ M (1 - x)^{M-1}                         (Fisher 1929)
 
 A missing effect that no candidate explains looks to the noise model like input noise; what is not
@@ -14,17 +14,18 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-LAGS = 20
+from identification.estimation.whiteness import whiteness
+
 SURE = 1e-4  # chance at which structure in innovations is believed
 MATTERS = 0.03  # share of a mean square below which what explains it is no missing effect
 
 
-@dataclass(frozen=True)
-class Whiteness:
+@dataclass(frozen=True, kw_only=True)
+class InnovationTests:
     """Tests of innovations.
 
     Attributes:
-        p_correlation: of the portmanteau test over all channels.
+        p_correlation: of the test of Ljung and Box over all channels.
         predictable: share of the power that the correlations would predict, beyond chance's.
         p_line: of the strongest line over all channels.
         channel: index of the output on which that line is the loudest.
@@ -47,29 +48,25 @@ class Whiteness:
         return self.p_correlation < SURE and self.predictable > MATTERS
 
 
-def whiteness(E: np.ndarray, sampling_time: float) -> Whiteness:
+def innovation_tests(E: np.ndarray, sampling_time: float) -> InnovationTests:
     """Tests of innovations in units of their own std, shape (N, ny)."""
     n, ny = E.shape
+    white = whiteness(E)
     E = E - E.mean(axis=0)
     power = np.mean(E**2, axis=0)
-    r = np.array([np.mean(E[lag:] * E[:-lag], axis=0) / power for lag in range(1, LAGS + 1)])
-    excess = max(0.0, float(np.sum(r**2) / ny - LAGS / n))
-    lags = np.arange(1, LAGS + 1)[:, None]
-    Q = float(n * (n + 2) * np.sum(r**2 / (n - lags)))
     I = np.abs(np.fft.rfft(E, axis=0)[1 : (n + 1) // 2]) ** 2
     share = I / I.sum(axis=0)
     M = len(I)
     at, sharp = np.unravel_index(int(share.argmax()), share.shape)
     line = ny * M * (1 - share[at, sharp]) ** (M - 1)
-    channel = int(I[at].argmax())  # it is the loudest where it comes from
     ratio = power / power.mean()
     louder = float(n / 2 * np.sum((ratio - 1) ** 2))
-    return Whiteness(
-        float(chi2.sf(Q, LAGS * ny)),
-        excess / (1 + excess),  # a² of a first-order process with the coefficient a
-        float(min(1.0, line)),
-        channel,
-        float((at + 1) / (n * sampling_time)),
-        float(chi2.sf(louder, ny - 1)) if ny > 1 else 1.0,
-        int(ratio.argmax()),
+    return InnovationTests(
+        p_correlation=white.p_value,
+        predictable=white.predictable,
+        p_line=float(min(1.0, line)),
+        channel=int(I[at].argmax()),  # it is the loudest where it comes from
+        frequency=float((at + 1) / (n * sampling_time)),
+        p_louder=float(chi2.sf(louder, ny - 1)) if ny > 1 else 1.0,
+        loudest=int(ratio.argmax()),
     )

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.kalman.innovations import whiteness
+from identification.kalman.innovations import innovation_tests
 from identification.kalman.noise_fit import ALLOWED, NoiseLevel, fit_noise
 from identification.kalman.point import Point, evaluate_point
 from identification.kalman.problem import Problem, linearise_criterion
@@ -141,7 +141,7 @@ def _blind(problem: Problem) -> bool:
     """Whether the noise explains what it is not: inputs that err too much, and not by chance."""
     point = problem.point
     large = problem.level.input_std > ALLOWED * point.motion
-    return large and whiteness(problem.left, point.log.sampling_time).correlated
+    return large and innovation_tests(problem.left, point.log.sampling_time).correlated
 
 
 def _rms(point: Point) -> float:

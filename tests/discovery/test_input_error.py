@@ -21,7 +21,7 @@ from identification.discovery.search import discover
 from identification.discovery.selection.shapes import structured
 from identification.effects.effect import Effect, Size
 from identification.errors import DivergenceError
-from identification.kalman.innovations import whiteness
+from identification.kalman.innovations import innovation_tests
 from identification.kalman.noise_model import Noise, build_whitener
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor
@@ -131,7 +131,7 @@ def test_an_error_along_the_rate_is_told_as_that():
     step = fit_model(base(), record(robot, n, 2, error), (), {})
     (said,) = find_input_error(step)
     assert "the rate of its output" in said
-    assert not whiteness(step.innovations, STEP).correlated
+    assert not innovation_tests(step.innovations, STEP).correlated
     assert structured(step)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from identification.discovery.fitted_model import FittedModel, is_relevant
 from identification.discovery.missing_forces import MissingForce
 from identification.discovery.result import Tried
-from identification.kalman.innovations import SURE, whiteness
+from identification.kalman.innovations import SURE, innovation_tests
 from identification.kalman.noise_fit import ALLOWED
 from identification.kalman.refit import Refit
 from identification.quantities import probability, quantity
@@ -108,7 +108,7 @@ def _acting(fit: Refit, missing: MissingForce) -> str:
 def find_structure(step: FittedModel) -> tuple[str, ...]:
     """What the final model does not explain, in sentences; empty when it explains all."""
     log = step.refit.point.log
-    white = whiteness(step.innovations, log.sampling_time)
+    white = innovation_tests(step.innovations, log.sampling_time)
     out = []
     if white.p_line < SURE:
         out.append(

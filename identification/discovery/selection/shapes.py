@@ -13,7 +13,7 @@ from identification.discovery.fitted_model import FittedModel, try_fit
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.scoring.scores import Score
 from identification.effects.effect import Candidate
-from identification.kalman.innovations import whiteness
+from identification.kalman.innovations import innovation_tests
 from identification.logs.log import Log
 
 BARE = 2.0  # of BIC, below which a difference is hardly worth a mention (Kass, Raftery 1995)
@@ -41,7 +41,7 @@ def improved(
 
 def structured(step: FittedModel) -> bool:
     """Whether innovations are not white, or what the noise model takes for chance is none."""
-    white = whiteness(step.innovations, step.refit.point.log.sampling_time)
+    white = innovation_tests(step.innovations, step.refit.point.log.sampling_time)
     return white.correlated or bool(find_input_error(step))
 
 
