@@ -20,10 +20,11 @@ from identification.estimation.estimation import Estimate
 from identification.estimation.identifiability import Identifiability, identifiability
 from identification.estimation.information import Information, information_of
 from identification.estimation.metrics import fit_percent, loss, rms
-from identification.estimation.residuals import ResidualTests, correlation_time, residual_tests
+from identification.estimation.residuals import ResidualTests, residual_tests
 from identification.estimation.resolution import resolve
 from identification.estimation.robust import influence
 from identification.estimation.scaling_symmetry import Combination
+from identification.estimation.whiteness import correlation_time
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor

@@ -1,6 +1,6 @@
 """Is anything of the model left in what it could not predict?
 
-    whiteness       Q = N (N+2) Σ_{k≤m} r_k²/(N-k) ~ χ²_m             (Ljung and Box 1978)
+    whiteness       see `identification.estimation.whiteness`
     independence    √N r_ue(k)/√P ~ N(0, 1),  P = Σ_j r_e(j) r_u(j)   (Ljung 1999, 16.6)
 
 r are normalised correlations. A residual may well depend on its own past (coloured noise) while
@@ -12,9 +12,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2, norm
+from scipy.stats import norm
 
-LAGS = 25  # as MATLAB's resid
+from identification.estimation.whiteness import LAGS, autocorrelation, whiteness
 
 
 @dataclass(frozen=True)
@@ -39,33 +39,8 @@ def residual_tests(residual: np.ndarray, inputs: np.ndarray, lags: int = LAGS) -
         inputs: of the same samples, shape (n, nu), each column in a unit of its own.
         lags: how many samples back.
     """
-    return ResidualTests(_whiteness(residual, lags), _independence(residual, inputs, lags))
-
-
-def autocorrelation(x: np.ndarray, lags: int) -> np.ndarray:
-    """Normalised autocorrelation at lags 0..lags of each column, (n, m) -> (lags + 1, m)."""
-    x = x - x.mean(axis=0)
-    power = (x * x).sum(axis=0)
-    power = np.where(power > 0, power, 1.0)
-    return np.stack([(x[k:] * x[: len(x) - k]).sum(axis=0) / power for k in range(lags + 1)])
-
-
-def correlation_time(residual: np.ndarray, lags: int = LAGS) -> float:
-    """Integrated autocorrelation time of the most persistent column [samples], 1 when white.
-
-    Summed up to the first lag that is not significantly positive (Geyer's initial sequence).
-    """
-    r = autocorrelation(residual, min(lags, len(residual) - 1))[1:]
-    significant = np.cumprod(r > norm.ppf(0.99) / np.sqrt(len(residual)), axis=0)
-    return float(1 + 2 * (r * significant).sum(axis=0).max())
-
-
-def _whiteness(residual: np.ndarray, lags: int) -> np.ndarray:
-    n = len(residual)
-    lags = min(lags, n // 4)
-    r = autocorrelation(residual, lags)[1:]
-    Q = n * (n + 2) * (r**2 / (n - np.arange(1, lags + 1))[:, None]).sum(axis=0)
-    return chi2.sf(Q, lags)
+    white = whiteness(residual, lags).p_values
+    return ResidualTests(white, _independence(residual, inputs, lags))
 
 
 def _independence(residual: np.ndarray, inputs: np.ndarray, lags: int) -> np.ndarray:

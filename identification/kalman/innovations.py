@@ -1,6 +1,6 @@
 """Tests of innovations: are they white, and do all channels have the same variance?
 
-    Q = N (N+2) Σ_l r_l²/(N-l)  over L lags and n_y channels  ~  χ²_{L n_y}      (Ljung, Box 1978)
+    Σ_i Q_i ~ χ²_{m ny}                  see `identification.estimation.whiteness`
     g = max_f I(f)/Σ_f I(f),  P(g > x) ≈ M (1 - x)^{M-1}                         (Fisher 1929)
 
 I(f) is the periodogram of one channel at M frequencies. The noise model takes a missing effect that
@@ -16,17 +16,16 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
+from identification.estimation.whiteness import whiteness
 from identification.kalman.options import KalmanOptions
-
-LAGS = 20  # of the correlations that the portmanteau test takes
 
 
 @dataclass(frozen=True, kw_only=True)
-class Whiteness:
+class InnovationTests:
     """Tests of innovations.
 
     Attributes:
-        p_correlation: p-value of the portmanteau test over all channels.
+        p_correlation: p-value of the test of Ljung and Box over all channels.
         predictable: share of the power that the correlations would predict, less the share that
             chance would predict, 0 to 1.
         p_line: p-value of the strongest spectral line of all channels.
@@ -52,7 +51,7 @@ class Whiteness:
         )
 
 
-def whiteness(E: np.ndarray, sampling_time: float) -> Whiteness:
+def innovation_tests(E: np.ndarray, sampling_time: float) -> InnovationTests:
     """Test innovations.
 
     Args:
@@ -60,12 +59,9 @@ def whiteness(E: np.ndarray, sampling_time: float) -> Whiteness:
         sampling_time: [s].
     """
     n, ny = E.shape
+    white = whiteness(E)
     E = E - E.mean(axis=0)
     power = np.mean(E**2, axis=0)
-    r = np.array([np.mean(E[lag:] * E[:-lag], axis=0) / power for lag in range(1, LAGS + 1)])
-    excess = max(0.0, float(np.sum(r**2) / ny - LAGS / n))
-    lags = np.arange(1, LAGS + 1)[:, None]
-    Q = float(n * (n + 2) * np.sum(r**2 / (n - lags)))
     I = np.abs(np.fft.rfft(E, axis=0)[1 : (n + 1) // 2]) ** 2
     share = I / I.sum(axis=0)
     M = len(I)
@@ -74,9 +70,9 @@ def whiteness(E: np.ndarray, sampling_time: float) -> Whiteness:
     channel = int(I[at].argmax())  # the line has the most power on the output that it comes from
     ratio = power / power.mean()
     louder = float(n / 2 * np.sum((ratio - 1) ** 2))
-    return Whiteness(
-        p_correlation=float(chi2.sf(Q, LAGS * ny)),
-        predictable=excess / (1 + excess),  # a² of a first-order process with the coefficient a
+    return InnovationTests(
+        p_correlation=white.p_value,
+        predictable=white.predictable,
         p_line=float(min(1.0, line)),
         channel=channel,
         frequency=float((at + 1) / (n * sampling_time)),

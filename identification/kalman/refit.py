@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.kalman.innovations import whiteness
+from identification.kalman.innovations import innovation_tests
 from identification.kalman.noise_fit import NoiseLevel, fit_noise
 from identification.kalman.options import KalmanOptions
 from identification.kalman.point import Point, evaluate_point
@@ -158,7 +158,7 @@ def _is_refuted(problem: Problem, options: KalmanOptions) -> bool:
     point = problem.point
     if problem.level.input_std <= options.allowed_input_error * point.motion:
         return False
-    white = whiteness(problem.remaining_innovations, point.log.sampling_time)
+    white = innovation_tests(problem.remaining_innovations, point.log.sampling_time)
     return white.is_correlated(options)
 
 

@@ -32,7 +32,7 @@ from identification.discovery.search import discover
 from identification.discovery.selection.shapes import is_structured
 from identification.effects.effect import Effect, Size
 from identification.errors import DivergenceError
-from identification.kalman.innovations import whiteness
+from identification.kalman.innovations import innovation_tests
 from identification.kalman.noise_model import Noise, build_whitener
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor
@@ -147,7 +147,7 @@ def test_an_error_along_the_rate_is_told_as_that():
     model = fit_model(task(record(robot, n, 2, error)), (), {})
     (finding,) = find_input_error(model.validation, OPTIONS)
     assert finding.evidence.regressor == "output rate"
-    assert not whiteness(model.innovations, STEP).is_correlated(OPTIONS)
+    assert not innovation_tests(model.innovations, STEP).is_correlated(OPTIONS)
     assert is_structured(model, OPTIONS)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from identification.kalman.innovations import whiteness
+from identification.kalman.innovations import innovation_tests
 from identification.kalman.options import KalmanOptions
 
 H, N, NY = 0.01, 600, 8
@@ -15,7 +15,7 @@ def white(seed):
 
 
 def test_chances_are_uniform_under_white_innovations():
-    found = [whiteness(white(seed), H) for seed in range(300)]
+    found = [innovation_tests(white(seed), H) for seed in range(300)]
     assert kstest([w.p_louder for w in found], "uniform").pvalue > 0.01
     lines, correlation = (
         np.array([getattr(w, name) for w in found]) for name in ("p_line", "p_correlation")
@@ -32,7 +32,7 @@ def test_chances_are_uniform_under_white_innovations():
 def test_a_sine_is_found_at_its_frequency_and_channel(frequency, channel):
     E = white(1)
     E[:, channel] += 0.5 * np.sin(2 * np.pi * frequency * H * np.arange(N) + 1)
-    w = whiteness(E, H)
+    w = innovation_tests(E, H)
     assert w.p_line < 1e-6
     assert w.channel == channel
     assert w.frequency == pytest.approx(frequency, abs=1 / (N * H))
@@ -41,7 +41,7 @@ def test_a_sine_is_found_at_its_frequency_and_channel(frequency, channel):
 def test_a_loud_channel_is_found():
     E = white(2)
     E[:, 5] *= 1.4
-    w = whiteness(E, H)
+    w = innovation_tests(E, H)
     assert w.p_louder < 1e-6
     assert w.loudest == 5
 
@@ -49,18 +49,18 @@ def test_a_loud_channel_is_found():
 def test_colour_is_found():
     E = white(3)
     E[1:, 2] += 0.4 * E[:-1, 2]
-    assert whiteness(E, H).p_correlation < 1e-4
+    assert innovation_tests(E, H).p_correlation < 1e-4
 
 
 def test_one_channel_is_no_louder_than_itself():
-    w = whiteness(white(4)[:, :1], H)
+    w = innovation_tests(white(4)[:, :1], H)
     assert w.p_louder == 1
     assert w.p_correlation > 1e-3
 
 
 def test_a_constant_is_no_line():
-    shifted = whiteness(white(5) + 3.0, H)
-    same = whiteness(white(5), H)
+    shifted = innovation_tests(white(5) + 3.0, H)
+    same = innovation_tests(white(5), H)
     assert shifted.p_line == pytest.approx(same.p_line, rel=1e-6)
     assert shifted.p_correlation == pytest.approx(same.p_correlation, rel=1e-6)
 
@@ -71,7 +71,7 @@ def test_the_predictable_share_of_a_first_order_process(a):
     E = rng.standard_normal((20000, 4))
     for k in range(1, len(E)):
         E[k] += a * E[k - 1]
-    w = whiteness(E, H)
+    w = innovation_tests(E, H)
     assert w.predictable == pytest.approx(a**2, rel=0.1)
     assert w.p_correlation < 1e-4  # beyond chance in all three, but of the first too little
     assert w.is_correlated(KalmanOptions()) == (a > 0.1)

@@ -16,7 +16,7 @@ from identification.discovery.findings.evidence import (
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.fitted_model import FittedModel, list_parameters_at_limit
 from identification.discovery.options import DiscoveryOptions
-from identification.kalman.innovations import whiteness
+from identification.kalman.innovations import innovation_tests
 
 
 def find_structure(model: FittedModel, options: DiscoveryOptions) -> tuple[Finding, ...]:
@@ -27,7 +27,7 @@ def find_structure(model: FittedModel, options: DiscoveryOptions) -> tuple[Findi
         options: what counts as beyond chance, and as an error of the inputs that is no noise.
     """
     log = model.refit.point.log
-    white = whiteness(model.innovations, log.sampling_time)
+    white = innovation_tests(model.innovations, log.sampling_time)
     out = []
     if white.p_line < options.structure_level:
         line = SpectralLine(log.output_names[white.channel], white.frequency, white.p_line)

@@ -15,7 +15,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import Score
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
-from identification.kalman.innovations import whiteness
+from identification.kalman.innovations import innovation_tests
 
 
 def improve_shape(
@@ -39,7 +39,7 @@ def improve_shape(
 
 def is_structured(model: FittedModel, options: DiscoveryOptions) -> bool:
     """Whether the innovations are not white, or the inputs' error is not random."""
-    white = whiteness(model.innovations, model.refit.point.log.sampling_time)
+    white = innovation_tests(model.innovations, model.refit.point.log.sampling_time)
     return white.is_correlated(options) or bool(find_input_error(model.validation, options))
 
 
