@@ -2,15 +2,19 @@
 
     V(q) = Σ_k ‖C ε_k‖² + Σ_j ((q_j - q̄_j)/s_j)²,    ε_k = y_k - ŷ_k(q)            (thesis 3.2)
 
-`trace`: C = I/σ. `det`: CᵀC = Λ⁻¹ with Λ the covariance of the residual, re-estimated from the
-last fit until it stays, which is maximum likelihood for Gaussian noise of unknown covariance.
+There are two criteria. `trace`: C = I/σ. `det`: CᵀC = Λ⁻¹, where Λ is the covariance of the
+residual. Λ is estimated again from each fit until it no longer changes; this is maximum likelihood
+for Gaussian noise of unknown covariance.
 
-A free run of a stiff robot is a wild function of its parameters over seconds and a tame one over a
-quarter of a second. So the fit begins on a short horizon and lengthens it, each time from the last
-result; a single fit over the whole log ends in a local minimum, as the thesis' did. A horizon that
-is too short to say something of a parameter must not carry it away, nor may round-off carry it
-along a direction that no output feels: each q is held to where the horizon before left it, by one
-noise std per unit (a factor e, or 1 m), a tenth on the last, which any information outweighs.
+Over several seconds, the free run of a stiff robot depends on its parameters in a very nonlinear
+way; over a quarter of a second it is nearly linear. So the fit begins on a short horizon and
+lengthens it, and each fit starts from the result of the one before. A single fit over the whole log
+ends in a local minimum, as the thesis' fit did.
+
+A short horizon may say nothing about some parameter, and no output may feel some direction. Neither
+noise nor round-off may then move the parameters. So each q is pulled weakly towards its result on
+the horizon before: one unit of q (a factor e, or 1 m) costs as much as one std of the noise, and on
+the last horizon a tenth of that. Any information in the log outweighs this.
 """
 
 from __future__ import annotations
@@ -42,11 +46,13 @@ class Estimate:
         start: starting values, shape (p,), in their units.
         q: the estimate, shape (p,), in the coordinates of `space`.
         whitener: C of the criterion, shape (ny, ny), in one over the outputs' units.
-        weight: of each residual where the noise is relative, shape (n, ny); else ones.
-        options: how it was searched.
+        weight: weight of each residual where the noise is relative, shape (n, ny); ones where it
+            is not.
+        options: the options of the search.
         evaluations: how often the outputs were simulated.
-        jacobians: how often their sensitivities were.
-        status: `converged`, `iterations` (out of them) or `stopped` by the user.
+        jacobians: how often the sensitivities were computed.
+        status: `converged`, `iterations` (the largest number was reached), or `stopped` by the
+            user.
         seconds: wall time [s].
     """
 
@@ -82,19 +88,19 @@ def estimate(
     progress: Progress | None = None,
     whitener: np.ndarray | None = None,
 ) -> Estimate:
-    """Estimate parameters of a plant from a log, free-running from its first sample.
+    """Estimate parameters of a plant from the free run of a log, from its first sample.
 
     An interrupt (Ctrl-C) ends the search and keeps the best values so far.
 
     Args:
-        plant: the model, with nominal values for whatever is not named.
-        log: what to explain.
+        plant: the model; parameters that are not named keep its values.
+        log: the log that is fitted.
         names: the free parameters.
         start: starting values by name; the plant's own where not given.
         options: how to search.
         progress: is told one line per accepted step.
-        whitener: C of the `trace` criterion, shape (ny, ny), in one over the outputs' units; I/σ,
-            σ the noise floor, when None.
+        whitener: C of the `trace` criterion, shape (ny, ny), in one over the outputs' units; when
+            None it is I/σ, where σ is the noise floor.
 
     Raises:
         InputError: a name is unknown or has no effect on the outputs, or a start is out of bounds.

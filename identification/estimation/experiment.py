@@ -1,4 +1,4 @@
-"""An experiment that could be done: its Fisher information, before it is.
+"""A planned experiment, and the Fisher information that it would give.
 
     S = ∂ŷ/∂q / σ  (n ny × p),   F = SᵀS                         white noise of std σ on each output
 
@@ -24,10 +24,10 @@ from identification.model.sensitivity import refuse_without_effect, sensitivity
 
 @dataclass(frozen=True)
 class Experiment:
-    """An experiment that could be done.
+    """A planned experiment.
 
     Attributes:
-        plant: the model, at the values where its outputs' sensitivities are taken.
+        plant: the model, with the values at which the sensitivities are taken.
         inputs: shape (n, nu), in the units of the model's controls.
         sampling_time: between samples [s].
         outputs: names of the model's sensors that will be read.
@@ -75,14 +75,14 @@ def information(
     nuisance: Sequence[str] = (),
     resolved: bool = True,
 ) -> Information:
-    """What an experiment would say, from 4 p simulations or more.
+    """What an experiment would say about parameters, from 4 p simulations or more.
 
     Args:
-        experiment: the plant, its inputs, what is read and how noisy.
-        names: parameters that are asked for.
+        experiment: the plant, its inputs, the outputs that are measured, and their noise.
+        names: the parameters of interest.
         nuisance: parameters that are unknown too but of no interest, such as a start pose.
-        resolved: whether the errors of the sensitivities are estimated; without them 2 p
-            simulations do, and only what is lost in round-off counts as not felt.
+        resolved: whether the errors of the sensitivities are estimated. Without this estimate 2 p
+            simulations are enough, and a direction counts as felt unless round-off hides it.
 
     Raises:
         InputError: a name is unknown or named twice, has no effect on any output, or there are

@@ -1,12 +1,13 @@
-"""A fit: estimated values with their uncertainty, how well they explain, and what they mean.
+"""A fit: the estimated values, their uncertainty, and how well they explain the log.
 
     cov(q) = A⁺ B A⁺,   A = Σ_k S_kᵀ S_k,   B = Σ_blocks g_b g_bᵀ,   g_b = Σ_{k in b} S_kᵀ ψ_k/c
 
 ψ = C ε and c = 1 for least squares; for a robust loss see `identification.estimation.robust`.
 
-The sandwich (White 1980, with blocks for coloured noise) stays right when the noise is not equal
-everywhere, as in the thesis' trial 4 where it is 5 % of each sample. A prior of std s adds 1/s² to
-A and to B; what the log itself shows is told without it.
+This covariance is the sandwich estimator (White 1980), with blocks for coloured noise. It stays
+right when the noise is not the same everywhere, as in the thesis' trial 4, where it is 5 % of each
+sample. A prior of std s adds 1/s² to A and to B. What the log alone can say about the parameters is
+computed without priors.
 """
 
 from __future__ import annotations
@@ -37,22 +38,22 @@ class Fit:
 
     Attributes:
         estimate: where the search ended.
-        std: of the values, in their units, infinite where neither log nor prior can say, shape
-            (p,).
-        correlation: of the estimates, shape (p, p), without unit.
+        std: std of the values, in their units, shape (p,); infinite where neither the log nor a
+            prior determines a value.
+        correlation: correlation of the estimates, shape (p, p), without unit.
         at_bound: true where a value lies on a bound, shape (p,).
-        found: the directions that the log shows.
-        combinations: what can be known of parameters that cannot, with value and std; the std is
-            infinite where the simulation is too rough to say.
+        found: the directions that the outputs feel, and those that they do not feel.
+        combinations: products of parameters that can be known although the parameters cannot, with
+            value and std; the std is infinite where the simulation is too rough to tell.
         residual: y - ŷ, shape (n, ny), in the outputs' units.
         fit_percent: on the log, shape (ny,) [%].
         validation_fit_percent: on data that the fit has not seen, shape (ny,) [%], or None.
-        validation_rms: there, over all outputs, or None.
-        validation_expected: there, if the model is right: the fitted residual and what the
-            uncertainty of the parameters makes of it there, or None.
+        validation_rms: rms error on these data, over all outputs, or None.
+        validation_expected: the rms error to expect on these data if the model is right, from the
+            fitted residual and from the uncertainty of the parameters, or None.
         floor: std of the noise seen in the measurement alone, shape (ny,), in the outputs' units.
-        tests: of the residual.
-        information: what the log says of the parameters at the estimate, for white noise.
+        tests: tests of the residual.
+        information: Fisher information of the log at the estimate, for white noise.
     """
 
     estimate: Estimate
@@ -72,7 +73,7 @@ class Fit:
 
     @property
     def rms(self) -> float:
-        """Of the residual over all outputs."""
+        """Rms of the residual over all outputs."""
         return float(np.sqrt(np.mean(self.residual**2)))
 
     @property
@@ -82,16 +83,16 @@ class Fit:
 
 
 def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
-    """What an estimate is worth.
+    """Assess an estimate: its uncertainty, its residual, and its error on unseen data.
 
     Args:
         estimate: where a search ended.
-        validation: the whole log of which the estimation used the beginning; what lies beyond is
-            data that the fit has not seen. None when there is none.
+        validation: the whole log, of which the estimation used the beginning; the rest is unseen
+            data. None when there is none.
 
     Raises:
-        InputError: the values that were estimated admit no start.
-        DivergenceError: a simulation beside the estimate left the finite numbers.
+        InputError: the robot cannot start with the estimated values.
+        DivergenceError: a simulation near the estimate left the finite numbers.
     """
     predictor, space, q = estimate.predictor, estimate.space, estimate.q
     log = predictor.log
@@ -139,7 +140,7 @@ def _sandwich(
     found: Identifiability,
     prior: np.ndarray,
 ) -> np.ndarray:
-    """Covariance of q along the directions that log and prior know, shape (p, p)."""
+    """Covariance of q along the directions that log or priors determine, shape (p, p)."""
     n, ny, p = S.shape
     length = min(int(np.ceil(3 * correlation_time(error) - 2)), max(1, n // 30))
     scores = np.einsum("nip,ni->np", S, pull / share)
@@ -153,9 +154,10 @@ def _sandwich(
 def combinations_of(
     found: Identifiability, estimate: Estimate, covariance: np.ndarray
 ) -> tuple[tuple[Combination, float, float], ...]:
-    """Products of parameters with value and std (of the product).
+    """Products of parameters, with the value and the std of each product.
 
-    The std is infinite where a direction that differences cannot resolve moves the product too.
+    The std is infinite where the product also changes along a direction that the differences cannot
+    resolve.
     """
     out = []
     for combination in found.combinations:
@@ -169,8 +171,10 @@ def combinations_of(
 def _beyond(
     estimate: Estimate, whole: Log | None, covariance: np.ndarray
 ) -> tuple[np.ndarray | None, float | None, float]:
-    """On the samples after the fitted ones, by a free run from the start: fit %, rms, and the rms
-    spread of the prediction that the covariance of q makes."""
+    """Fit in %, rms error, and rms spread of the prediction by the covariance of q.
+
+    All three are of the samples after the fitted ones, in a free run from the start of the log.
+    """
     n = len(estimate.predictor.log)
     if whole is None or len(whole) <= n + 2:
         return None, None, 0.0

@@ -3,16 +3,18 @@
     S = C ∂ŷ/∂q (n ny × p),   F = SᵀS    Fisher information for noise whitened by C
     S = U Σ Vᵀ:   a move along v_i is felt as σ_i;  its std is 1/σ_i
 
-S comes from differences, so that what is known is S + E. What differences cannot resolve is not
-information. With D = diag(d), d_j the norm of column j of an estimate of E,
+S is computed by finite differences, so only S + E is known, where E is the error of the
+differences. What the differences cannot resolve does not count as information. Let D = diag(d),
+where d_j is the norm of column j of an estimate of E. Then
 
     |σ_i((S + E) D⁻¹) - σ_i(S D⁻¹)| ≤ ‖E D⁻¹‖₂ ≤ ‖E D⁻¹‖_F = √p                 (Weyl 1912)
 
-so that a direction counts as felt only where its singular value, each column divided by its error,
-exceeds √p; columns of equal errors make the count independent of units (Stewart 1984, Rank
-degeneracy). The others span the blind directions. Such a direction b is off, to first order, by
--S_f⁺ E b with S_f the part of S that is felt = U_f Σ_f V_fᵀ. A parameter, or a product of powers w
-of parameters, counts as moved by b where that is more than what b itself is off by:
+A direction counts as felt only if its singular value exceeds √p when each column is divided by its
+error. All columns then have equal errors, so that the count does not depend on units (Stewart 1984,
+Rank degeneracy). The other directions span the blind directions. A blind direction b is itself
+uncertain: to first order its error is -S_f⁺ E b, where S_f = U_f Σ_f V_fᵀ is the part of S that is
+felt. A parameter, or a product of parameters with powers w, counts as moved by b only if it moves
+by more than this error:
 
     |wᵀb| > std(w) ‖U_fᵀ E b‖,    std(w)² = Σ_felt (wᵀv_i)²/σ_i²
 """
@@ -30,24 +32,26 @@ from identification.estimation.scaling_symmetry import (
     known_products,
 )
 
-UNMOVED = 1e-3  # entry of a direction of norm 1 that is no more than the round-off of its search
+UNMOVED = 1e-3  # an entry of a direction of norm 1 that is smaller than this is round-off
 
 
 @dataclass(frozen=True, kw_only=True)
 class Identifiability:
-    """The directions of a parameter space, and how much of each a log shows.
+    """The directions of a parameter space, and how strongly the outputs of a log feel each.
 
     Attributes:
         names: parameters, p of them.
-        strengths: ‖S v‖ of each direction v, strongest first among those that are felt and among
-            the others, shape (p,).
-        directions: orthogonal and of norm 1, one a row, shape (p, p): those that are felt, then
-            those that differences cannot tell from nothing, then the proven symmetries.
+        strengths: ‖S v‖ of each direction v, shape (p,). The directions that are felt come first,
+            then the others; in both groups the strongest is first.
+        directions: orthogonal, of norm 1, one in each row, shape (p, p). First those that are felt,
+            then those whose effect cannot be told from the error of the differences, then the
+            proven symmetries.
         rank: how many directions the outputs feel.
-        norms: of the columns of S, shape (p,): effect of each parameter alone, in noise units.
-        errors: d, of the columns of S, shape (p,).
-        leaks: ‖U_fᵀ E b‖ of each blind direction b, 0 of a symmetry, shape (p - rank,).
-        symmetries: by which parameters can be scaled together without any output feeling it.
+        norms: norms of the columns of S, shape (p,): the effect of each parameter alone, in units
+            of the noise.
+        errors: d, the norms of the errors of the columns of S, shape (p,).
+        leaks: ‖U_fᵀ E b‖ of each blind direction b, shape (p - rank,); 0 for a symmetry.
+        symmetries: the ways in which parameters can be scaled together while no output changes.
     """
 
     names: tuple[str, ...]
@@ -66,7 +70,7 @@ class Identifiability:
 
     @property
     def unresolved(self) -> np.ndarray:
-        """Those of them that are no symmetry: differences cannot tell them from nothing."""
+        """Blind directions that are no proven symmetry: the differences cannot resolve them."""
         return self.directions[self.rank : len(self.names) - len(self.symmetries)]
 
     @property
@@ -102,7 +106,7 @@ class Identifiability:
 
     @property
     def combinations(self) -> list[Combination]:
-        """Products that survive the symmetries where their factors do not."""
+        """Products of parameters that no symmetry changes, although it changes their factors."""
         return known_products(self.symmetries, self.names)
 
     def weakest(self) -> str:
@@ -120,11 +124,12 @@ def identifiability(
     """Analyse whitened sensitivities.
 
     Args:
-        S: shape (n, p) with n rows of samples and outputs, zero along the symmetries.
+        S: sensitivities, shape (n, p), with n rows of samples and outputs; zero along the
+            symmetries.
         names: the parameters.
         E: estimated errors of S, shape (n, p).
-        least: norm of the round-off of a column.
-        symmetries: proven ones.
+        least: norm of the round-off error of a column.
+        symmetries: the proven symmetries.
     """
     S, E, p = _tall(S), _tall(E), S.shape[1]
     errors = column_errors(E, least)
@@ -154,28 +159,28 @@ def identifiability(
 
 
 def column_errors(E: np.ndarray, least: float) -> np.ndarray:
-    """d: norms of the columns of E (n, p), none below that of round-off, shape (p,)."""
+    """d: norms of the columns of E (n, p), each at least that of round-off, shape (p,)."""
     return np.maximum(np.linalg.norm(E, axis=0), least)
 
 
 def unresolved_directions(S: np.ndarray, errors: np.ndarray) -> np.ndarray:
-    """Directions that sensitivities S (n, p) cannot tell from nothing, orthonormal, (k, p)."""
+    """Directions whose effect is within the errors of S (n, p); orthonormal, shape (k, p)."""
     _, strengths, directions = np.linalg.svd(_tall(S) / errors, full_matrices=False)
     return _basis(directions[strengths <= np.sqrt(len(errors))] / errors)
 
 
 def _tall(S: np.ndarray) -> np.ndarray:
-    """S with as many rows as columns at least: what was not measured is zero."""
+    """S with at least as many rows as columns; rows that are added are zero."""
     return np.vstack([S, np.zeros((max(0, S.shape[1] - len(S)), S.shape[1]))])
 
 
 def _basis(rows: np.ndarray) -> np.ndarray:
-    """Orthonormal rows that span the same, the strongest first, shape like `rows`."""
+    """Orthonormal rows that span the same space, the strongest first, shape like `rows`."""
     size = np.linalg.norm(rows, axis=1, keepdims=True)
     return np.linalg.svd(rows / np.where(size > 0, size, 1.0), full_matrices=False)[2]
 
 
 def in_words(direction: np.ndarray, names: Sequence[str], least: float = 0.1) -> str:
-    """A direction by its largest entries: `R_s +0.45, k_s -0.89`."""
+    """A direction as text, by its largest entries: `R_s +0.45, k_s -0.89`."""
     order = np.argsort(-np.abs(direction))
     return ", ".join(f"{names[i]} {direction[i]:+.2f}" for i in order if abs(direction[i]) > least)

@@ -1,12 +1,13 @@
-"""What an experiment says about parameters: Fisher information and its criteria.
+"""What an experiment says about parameters: the Fisher information and its criteria.
 
     F = SᵀS,   S = ∂ŷ/∂q / σ  (n ny × p)                        white noise of std σ on each output
     cov(q̂) ≥ F⁻¹                                                  Cramér-Rao, all of q unknown
     S_a ← (I - S_n S_n⁺) S_a                                    nuisances S_n unknown, not asked for
     E = λ_min(F),   D = ln det F,   A = tr F⁻¹                  of the parameters that are asked for
 
-q = ln(value) for a positive parameter, so its std is relative. E is the information on the worst
-determined direction: F of an experiment is the sum of its parts', and none of them can lower E.
+For a positive parameter q = ln(value), so that its std is relative. E is the information on the
+worst determined direction. F of an experiment is the sum of the F of its parts, and no further part
+can lower E.
 Source: Ljung, System Identification (1999), 7.4 and 13.2; Swevers et al. (1997) for robots.
 """
 
@@ -34,14 +35,14 @@ class Information:
     """What an experiment says about p parameters.
 
     Attributes:
-        names: the parameters that are asked for, then the nuisances.
-        asked: how many are asked for.
+        names: the parameters of interest, then the nuisances.
+        asked: how many parameters are of interest.
         logarithmic: true where q = ln(value), shape (p,).
         root: upper triangular, rootᵀ root = F of all, shape (p, p), in the coordinates q.
         error: errors of S, in rows of which the first p are those of `root`, shape (2 p, p), in the
             coordinates q.
-        least: norm of the round-off of a column of S.
-        symmetries: by which the parameters can be scaled together without any output feeling it.
+        least: norm of the round-off error of a column of S.
+        symmetries: the ways in which parameters can be scaled together while no output changes.
     """
 
     names: tuple[str, ...]
@@ -54,25 +55,25 @@ class Information:
 
     @property
     def found(self) -> Identifiability:
-        """Directions of the parameters asked for, the nuisances being unknown too."""
+        """Directions of the parameters of interest, where the nuisances are unknown too."""
         S, E = self._without_nuisances
         names = self.names[: self.asked]
         return identifiability(S, names, E, self.least, _among(self.symmetries, names))
 
     @property
     def fisher(self) -> np.ndarray:
-        """F of the parameters asked for, the nuisances being unknown, shape (asked, asked)."""
+        """F of the parameters of interest, with unknown nuisances, shape (asked, asked)."""
         S, _ = self._without_nuisances
         return S.T @ S
 
     @property
     def std(self) -> np.ndarray:
-        """Least std of q with all others unknown, shape (asked,): relative where logarithmic."""
+        """Least std of q if all others are unknown, shape (asked,): relative where logarithmic."""
         return self.found.std
 
     @property
     def conditional(self) -> np.ndarray:
-        """Least std of q were all others known, shape (asked,)."""
+        """Least std of q if all others are known, shape (asked,)."""
         with np.errstate(divide="ignore"):
             return 1 / np.linalg.norm(self.root[:, : self.asked], axis=0)
 
@@ -89,7 +90,7 @@ class Information:
 
     @property
     def condition(self) -> float:
-        """Strongest over weakest direction; infinite where one is blind."""
+        """Strength of the strongest direction over the weakest; infinite where one is blind."""
         strengths = self.found.strengths
         return float(strengths[0] / strengths[-1]) if not len(self.found.blind) else np.inf
 
@@ -109,7 +110,7 @@ class Information:
         return float((self.std**2).sum())
 
     def with_data(self, other: Information) -> Information:
-        """Of both experiments together.
+        """The information of both experiments together.
 
         Raises:
             InputError: the other is about other parameters.
@@ -125,7 +126,9 @@ class Information:
         return replace(self, root=root, error=error, least=least, symmetries=symmetries)
 
     def about(self, names: Sequence[str]) -> Information:
-        """Of some of the parameters asked for, the rest being known; nuisances stay.
+        """The information on some of the parameters of interest, where the others are known.
+
+        The nuisances stay unknown.
 
         Raises:
             InputError: a name was not asked for.
@@ -154,11 +157,12 @@ class Information:
 
     @property
     def _without_nuisances(self) -> tuple[np.ndarray, np.ndarray]:
-        """Sensitivities to what is asked for that no move of the nuisances can imitate.
+        """Sensitivities to the parameters of interest that no change of the nuisances can imitate.
 
         Returns:
-            They, S_a - S_n S_n⁺ S_a, and their errors E_a - E_n S_n⁺ S_a to first order, each of
-            shape (2 p, asked). Of the nuisances what is not felt imitates nothing.
+            The sensitivities S_a - S_n S_n⁺ S_a and, to first order, their errors
+            E_a - E_n S_n⁺ S_a, each of shape (2 p, asked). Directions of the nuisances that are
+            not felt imitate nothing and are left out of S_n⁺.
         """
         S, E, a = self._rows, self.error, self.asked
         wanted, nuisance = S[:, :a], S[:, a:]
@@ -174,7 +178,7 @@ class Information:
 
 
 def information_of(resolved: Resolved, space: Coordinates, asked: int | None = None) -> Information:
-    """What whitened sensitivities say of the first `asked` parameters, all when None."""
+    """The information of whitened sensitivities on the first `asked` parameters, or on all."""
     root, error = _compressed(resolved.S, resolved.E)
     return Information(
         names=space.names,
@@ -188,9 +192,9 @@ def information_of(resolved: Resolved, space: Coordinates, asked: int | None = N
 
 
 def determinable(found: Information) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Parameters that can be told apart, and those to hold fixed so that they can.
+    """Parameters that can be determined, and those that must be held fixed for this.
 
-    Of each blind direction the parameter that moves most along it is held.
+    For each blind direction, the parameter that moves most along it is held fixed.
     """
     kept = list(found.names[: found.asked])
     held = []
@@ -202,7 +206,7 @@ def determinable(found: Information) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 
 def _compressed(S: np.ndarray, E: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """S and E (n, p) turned to as few rows as hold them: R of S = Q R, and [QᵀE; R of the rest]."""
+    """S and E (n, p) rotated into fewer rows: R of S = Q R, and [QᵀE; R of the rest of E]."""
     Q, root = np.linalg.qr(S)
     along = Q.T @ E
     return root, np.vstack([along, np.linalg.qr(E - Q @ along).R])
@@ -211,5 +215,5 @@ def _compressed(S: np.ndarray, E: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _among(
     symmetries: tuple[ScalingSymmetry, ...], names: Sequence[str]
 ) -> tuple[ScalingSymmetry, ...]:
-    """Those that move none but the named parameters."""
+    """The symmetries that change no other parameters than the named ones."""
     return tuple(s for s in symmetries if s.powers.keys() <= set(names))

@@ -1,4 +1,4 @@
-"""Several records of one robot as one log, for a fit over windows that crosses no seam."""
+"""Several records of one robot as one log, for a fit over windows within the records."""
 
 from __future__ import annotations
 
@@ -15,16 +15,18 @@ from identification.logs.log import Log
 def joined(logs: Sequence[Log], length: float, name: str = "joined") -> Log:
     """Records one after the other, each cut to whole windows.
 
-    A free run, or a discovery, does not know of the seams; only what begins anew in each window of
-    this length (`estimate_windows`, `window_error`) may use it.
+    No window of this length crosses the border between two records. A free run and a discovery know
+    nothing of these borders, so that only functions that start again in each window of this length
+    (`estimate_windows`, `window_error`) may use the result.
 
     Args:
-        logs: of the same inputs, outputs and sampling time.
-        length: of a window [s].
-        name: of the whole.
+        logs: the records; they have the same inputs, outputs and sampling time.
+        length: length of a window [s].
+        name: name of the result.
 
     Raises:
-        InputError: there is none, they differ, or one is shorter than a window of 3 samples.
+        InputError: there is no record, the records differ, or one is shorter than a window, or a
+            window has fewer than 3 samples.
     """
     if not logs:
         raise InputError("no records to join; give one at least")

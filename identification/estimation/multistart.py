@@ -1,8 +1,9 @@
-"""Several starts of one search, and the best end.
+"""One search from several starting values, and the best result.
 
     q⁽⁰⁾ = q_start,   q⁽ⁱ⁾ uniform in q_start ± spread, inside the bounds
 
-A criterion with local minima shows them this way: ends that agree are a reason to believe the best.
+If the criterion has local minima, different starts end in different places. If most starts end in
+the same place, this is a reason to believe it.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates, coordinates
 from identification.model.predictor import Plant
 
-ENOUGH = 1.5  # times the noise floor: a search that ends below needs no other
-ELSEWHERE = 0.1  # of the spread, for what is no logarithm: a pose is known to centimetres
+ENOUGH = 1.5  # times the noise floor: a search that ends below it is good enough
+ELSEWHERE = 0.1  # of the spread, for coordinates that are no logarithms, such as a pose
 
 
 @dataclass(frozen=True)
@@ -29,8 +30,8 @@ class Starts:
 
     Attributes:
         best: the search that explains the log best.
-        rms: of the residual of each search, infinite where it diverged, in order of the starts,
-            shape (n,), in the outputs' unit.
+        rms: rms of the residual of each search, in the order of the starts, shape (n,), in the
+            outputs' unit; infinite where the search diverged.
         values: starting values, shape (n, p), in their units.
     """
 
@@ -50,22 +51,22 @@ def estimate_from(
     options: Options | None = None,
     progress: Progress | None = None,
 ) -> Starts:
-    """Search from the start, and from others around it until one ends near the noise floor.
+    """Search from the given start, then from others around it, until one ends near the noise floor.
 
     Args:
         plant: the model.
-        log: what to explain.
+        log: the log that is fitted.
         names: the free parameters.
-        n: how many starts at most, the given one included.
-        seed: of the other starts.
+        n: largest number of starts, the given one included.
+        seed: seed of the random numbers for the other starts.
         start: starting values by name; the plant's own where not given.
-        spread: largest distance of a start in ln(value) of a positive parameter; of others a
-            tenth, in units of their scale (m, rad).
+        spread: largest distance of a start from the given one, in ln(value) of a positive
+            parameter; a tenth of it for the others, in units of their scale (m, rad).
         options: how to search.
         progress: is told one line per accepted step.
 
     Raises:
-        InputError: fewer than one start, or as `estimate`.
+        InputError: n is less than one, or for the reasons of `estimate`.
         DivergenceError: no start can be simulated.
     """
     if n < 1:
@@ -84,7 +85,7 @@ def estimate_from(
         except InputError:
             if k == 0:
                 raise
-            errors.append(np.inf)  # a start that the plant cannot have
+            errors.append(np.inf)  # the plant cannot start with these values
             continue
         except DivergenceError as lost:
             errors.append(np.inf)
@@ -110,6 +111,6 @@ def _around(space: Coordinates, first: np.ndarray, n: int, spread: float, seed: 
 
 
 def _rms(found: Estimate) -> float:
-    """Of the residual over all outputs."""
+    """Rms of the residual over all outputs."""
     predicted = found.predictor.predict(found.space.decode(found.q))[0]
     return float(np.sqrt(np.mean((found.predictor.log.outputs - predicted) ** 2)))

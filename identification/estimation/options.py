@@ -1,4 +1,4 @@
-"""How a search is told to search, and how it says that it ended."""
+"""Options of a search, and the words for how it ended."""
 
 from __future__ import annotations
 
@@ -17,18 +17,20 @@ Status = Literal["converged", "iterations", "stopped"]
 
 @dataclass(frozen=True)
 class Options:
-    """How to search.
+    """Options of a search.
 
     Attributes:
-        method: of `scipy.optimize.least_squares`; "lm" knows no bounds.
+        method: the `method` of `scipy.optimize.least_squares`; "lm" has no bounds.
         criterion: "trace" (least squares) or "det" (maximum likelihood, covariance estimated).
         loss: robust loss of `least_squares`: "linear", "soft_l1", "huber", "cauchy", "arctan".
-        horizons: growing fractions of the log, the last is 1; (1.0,) is a single free-run fit.
+        horizons: growing fractions of the log, of which the last is 1; (1.0,) is a single fit of
+            the free run over the whole log.
         tolerance: relative change of cost and of q at which a search stops.
-        max_evaluations: of the outputs, per horizon.
-        relative_noise: std of a sample's noise over the sample itself, where noise grows with the
-            signal; each residual is then divided by that std, of the prediction.
-        priors: std by name of q about the start (of ln(value) where q is a logarithm).
+        max_evaluations: largest number of simulations of the outputs for each horizon.
+        relative_noise: std of a sample's noise divided by the sample, where the noise grows with
+            the signal. Each residual is then divided by this std, computed from the prediction.
+        priors: std of the prior of q about the start, by name (of ln(value) where q is a
+            logarithm).
 
     Raises:
         InputError: the horizons do not grow to 1, or a prior's std is not positive.

@@ -1,13 +1,14 @@
-"""The profile of one parameter: how well the others can make up for it.
+"""The profile of one parameter: the smallest criterion at each of its values.
 
     V_p(c) = min over the others of V(q | q_j = c)
     95 %:  V_p(c) - V_p(q̂_j) < 3.84 s_j²,    s_j² = cov(q̂)_jj / (A⁻¹)_jj       (Kent 1982)
 
-3.84 is the 95 % point of χ² with one degree of freedom (Venzon and Moolgavkar 1988). cov is that of
-`identification.estimation.fit`, A = Σ SᵀS: for white noise s_j² = V(q̂)/(n ny - p), for a coloured
-residual it is larger. Where V is a parabola this is the interval q̂ ± 1.96 std; where it is not, the
-profile is right and the std is not. A profile that stays below the line, or that no simulation can
-follow, shows a parameter that the log cannot tell: its interval is open.
+3.84 is the 95 % point of χ² with one degree of freedom (Venzon and Moolgavkar 1988). cov is the
+covariance of `identification.estimation.fit`, and A = Σ SᵀS. For white noise s_j² =
+V(q̂)/(n ny - p); for a coloured residual it is larger. Where V is a parabola this is the interval
+q̂ ± 1.96 std; where it is not, the profile is right and the std is not. If the profile stays below
+the line on one side, or cannot be simulated there, the log does not determine the parameter, and
+the interval is open on that side.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from identification.estimation.estimation import estimate as search
 from identification.estimation.fit import Fit
 
 LEVEL = float(chi2.ppf(0.95, 1))  # 3.84
-REACH = 3.0  # std to each side, where no points are given
+REACH = 3.0  # std to each side, unless points are given
 WIDEST = 0.5  # of q to each side where the std is larger or infinite
 
 
@@ -35,9 +36,10 @@ class Profile:
     Attributes:
         name: the parameter.
         estimate: its estimated value.
-        values: where it was held, ascending, shape (k,), in its unit.
+        values: the values at which it was held, ascending, shape (k,), in its unit.
         rise: V_p - V(q̂) in units of s_j², infinite where no simulation was possible, shape (k,).
-        others: the other parameters there, by name, each of shape (k,) in its unit.
+        others: the best values of the other parameters there, by name, each of shape (k,) in its
+            unit.
         interval: 95 % interval of the value; an end that the profile does not reach is infinite.
     """
 
@@ -50,20 +52,20 @@ class Profile:
 
     @property
     def open(self) -> bool:
-        """Whether the interval has an end that was not found between the given values."""
+        """Whether an end of the interval was not found between the given values."""
         return bool(np.isinf(self.interval).any())
 
 
 def profile(
     fit: Fit, name: str, points: int | Sequence[float] = 9, max_evaluations: int = 30
 ) -> Profile:
-    """Profile one parameter of a fit, refitting the others from point to neighbour.
+    """Profile one parameter of a fit: at each of its values the others are fitted again.
 
     Args:
         fit: an estimate and its uncertainty.
         name: the parameter.
         points: values of it, or how many to spread over ±3 std of its coordinate.
-        max_evaluations: of the outputs, per point.
+        max_evaluations: largest number of simulations of the outputs for each point.
 
     Raises:
         InputError: the name is not among the estimated ones, or fewer than two values remain.
@@ -94,12 +96,12 @@ def profile(
 
 
 def _std_q(fit: Fit, j: int) -> float:
-    """Std of q_j; infinite where the log cannot say."""
+    """Std of q_j; infinite where the log does not determine it."""
     return float(fit.std[j] / fit.estimate.space.slope(fit.estimate.q)[j])
 
 
 def _scale(fit: Fit, j: int, bottom: float) -> float:
-    """s_j², or that of white noise where the log cannot say."""
+    """s_j², or its value for white noise where the log does not determine q_j."""
     known, alone = _std_q(fit, j), float(fit.found.std[j])
     freedom = max(1, fit.residual.size - len(fit.std))
     both = np.isfinite(known) and np.isfinite(alone) and known > 0
@@ -119,7 +121,7 @@ def _spread(fit: Fit, j: int, points: int) -> np.ndarray:
 def _refit(
     estimate: Estimate, name: str, value: float, near: dict[str, float], most: int
 ) -> dict[str, float]:
-    """The others' best values with one held, searched from a neighbour's."""
+    """Best values of the others while one is held; the search starts from a neighbouring point."""
     predictor, options = estimate.predictor, estimate.options
     held = {**predictor.fixed, **near, name: value}
     free = tuple(n for n in near if n != name)
@@ -133,21 +135,21 @@ def _refit(
 
 
 def _cost(estimate: Estimate, values: dict[str, float]) -> float:
-    """V of the estimate's criterion, covariance held."""
+    """V of the estimate's criterion, with the same covariance."""
     row = np.array([[values[n] for n in estimate.space.names]])
     error = estimate.predictor.log.outputs - estimate.predictor.predict(row)[0]
     return float(np.sum((error @ estimate.whitener.T) ** 2))
 
 
 def _crossing(values: np.ndarray, rise: np.ndarray, best: float, side: int) -> float:
-    """Where the profile crosses the level on one side; √rise is all but straight there."""
+    """Where the profile crosses the level on one side; √rise is nearly a straight line there."""
     order = np.argsort(side * values)
     beyond = order[side * values[order] > side * best]
     inner_value, inner = best, 0.0
     for i in beyond:
         root = float(np.sqrt(max(0.0, rise[i])))
         if root > np.sqrt(LEVEL):
-            if np.isinf(root):  # no simulation there: how far it rises is not known
+            if np.isinf(root):  # there is no simulation here, so the rise is not known
                 break
             share = (np.sqrt(LEVEL) - inner) / (root - inner)
             return float(inner_value + share * (values[i] - inner_value))

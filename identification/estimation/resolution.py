@@ -1,11 +1,11 @@
-"""Sensitivities as well as differences can resolve them, each column with its error.
+"""Sensitivities by finite differences, and the error of each of their columns.
 
-    S_h, d_j = max(‖(S_2h - S_h) e_j‖, round-off)       h = 1e-4, and 1e-2 if that does not do
+    S_h, d_j = max(‖(S_2h - S_h) e_j‖, round-off)       h = 1e-4, and 1e-2 if 1e-4 is not enough
 
-Where a direction is not felt at the short step (see `identification.estimation.identifiability`),
-it may be a scaling symmetry, which simulations prove and which is then taken out of S for good; or
-the simulation is too rough for short differences, and each column is taken from the step at which
-it errs less.
+A direction that is not felt at the short step (see `identification.estimation.identifiability`) has
+one of two reasons. It may be a scaling symmetry; simulations prove it, and it is then removed from
+S. Or the simulation is too rough for short differences; then each column is taken from the step at
+which its error is smaller.
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ AtTwoSteps = Callable[[float], tuple[np.ndarray, np.ndarray]]
 
 @dataclass(frozen=True)
 class Resolved:
-    """Whitened sensitivities and what they err by.
+    """Whitened sensitivities and their errors.
 
     Attributes:
         names: parameters, p of them.
         S: shape (n, p), zero along the symmetries.
         E: estimated errors of S, shape (n, p).
-        least: norm of the round-off of a column.
-        symmetries: proven ones.
+        least: norm of the round-off error of a column.
+        symmetries: the proven symmetries.
     """
 
     names: tuple[str, ...]
@@ -71,13 +71,13 @@ class Resolved:
         return len(unresolved_directions(self.S, self.errors)) == len(self.symmetries)
 
     def better(self, S: np.ndarray, E: np.ndarray) -> Resolved:
-        """The same with each column from where it errs less."""
+        """The same, but each column is the one with the smaller error."""
         less = np.linalg.norm(E, axis=0) < np.linalg.norm(self.E, axis=0)
         S, E = np.where(less, S, self.S), np.where(less, E, self.E)
         return Resolved(self.names, S, E, self.least).with_symmetries(self.symmetries)
 
     def with_symmetries(self, symmetries: tuple[ScalingSymmetry, ...]) -> Resolved:
-        """The same without what rough differences show along proven symmetries."""
+        """The same, but exactly zero along the proven symmetries."""
         if not symmetries:
             return self
         rows = np.linalg.qr(np.array([s.row(self.names) for s in symmetries]).T)[0].T
@@ -86,12 +86,12 @@ class Resolved:
 
 
 def resolve(predictor: Predictor, space: Coordinates, q: np.ndarray, whiten: Whiten) -> Resolved:
-    """Sensitivities of a predictor's outputs at q, and what they err by.
+    """Sensitivities of a predictor's outputs at q, and their errors.
 
     Args:
-        predictor: of the outputs.
+        predictor: predicts the outputs.
         space: coordinates of the parameters.
-        q: where, shape (p,).
+        q: the point, shape (p,).
         whiten: makes the noise of the outputs white, of std 1.
 
     Raises:
@@ -111,7 +111,7 @@ def resolve(predictor: Predictor, space: Coordinates, q: np.ndarray, whiten: Whi
 
 
 def round_off(y: np.ndarray) -> float:
-    """Norm of what round-off makes of a column of the sensitivities of whitened outputs y."""
+    """Norm of the round-off error in a column of the sensitivities of whitened outputs y."""
     return ROUND_OFF * (float(np.linalg.norm(y)) or 1.0)
 
 
@@ -122,14 +122,15 @@ def resolve_columns(
     steps: Sequence[float],
     symmetries: Callable[[np.ndarray, np.ndarray], tuple[ScalingSymmetry, ...]] | None = None,
 ) -> Resolved:
-    """Sensitivities at the first step, or each at the step of some where it errs least.
+    """Sensitivities at the first step, or each column at the step where its error is smallest.
 
     Args:
         names: parameters, p of them.
-        at: sensitivities at a step and at twice the step.
-        least: norm of the round-off of a column.
-        steps: to be tried, until all that can be felt is felt.
-        symmetries: finds those of sensitivities and their columns' errors; None for none.
+        at: computes the sensitivities at a step and at twice the step.
+        least: norm of the round-off error of a column.
+        steps: the steps to try, until each direction is felt or a symmetry.
+        symmetries: finds the symmetries from sensitivities and the errors of their columns; None
+            if they are not searched.
 
     Raises:
         DivergenceError: a simulation at the first step left the finite numbers.
@@ -145,7 +146,7 @@ def resolve_columns(
             break
         try:
             once, twice = at(following)
-        except (DivergenceError, InputError):  # so far away there is no such run, or no start
+        except (DivergenceError, InputError):  # no simulation or no start is possible so far away
             break
         known = known.better(once, twice - once)
     return known

@@ -1,10 +1,10 @@
-"""What a robust loss makes of a residual.
+"""The influence of a residual on an estimate under a robust loss.
 
     V = Σ ρ(e²),   ψ(e) = ρ'(e²) e,   c = mean of ψ'(e) = mean of ρ' + 2 e² ρ''
 
-A residual pulls at the estimate by ψ instead of e, and the estimate yields by c times what it would
-under least squares: std = that of ψ/c (Huber 1964). With e itself the std would grow with every
-outlier that the loss has just made harmless.
+Under a robust loss ψ takes the place of the residual e, and the curvature of the criterion is c
+times that of least squares. So the std of the estimate is computed from ψ/c (Huber 1964). Computed
+from e itself, it would grow with every outlier, although the loss has made the outlier harmless.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ _SLOPES = {
 def influence(error: np.ndarray, loss: str) -> tuple[np.ndarray, float]:
     """ψ of each residual, of the same shape, and c.
 
-    c is kept at 1 % or more: below, all but outliers are gone and no std is to be believed.
+    c is at least 1 %: if it were smaller, nearly all residuals would be outliers, and no std could
+    be believed.
 
     Raises:
         InputError: the loss is unknown.

@@ -1,13 +1,14 @@
-"""Parameters that can be scaled together without any output feeling it, and what then is known.
+"""Parameters that can be scaled together while no output changes, and what can be known of them.
 
     θ_j → θ_j c^v_j for all c        a scaling symmetry v: the outputs stay as they are
     Π θ_j^w_j,  Σ_j w_j v_j = 0       products that no symmetry moves: these can be known
 
-R_s → c R_s, k_s → c⁻² k_s leaves k_s R_s². The numbers v are small whole ones, so that they are
-rounded from sensitivities that are only roughly known, and then proven by a simulation: a move of
-10 % to each side along v may change all outputs together by less than one std of the noise. Along
-a symmetry any step is as good as a short one, so that the roughness of the simulation, which spoils
-short differences, does not matter here (scaling symmetries: Yates, Evans and Chappell 2009).
+For example, R_s → c R_s, k_s → c⁻² k_s leaves k_s R_s² unchanged. The numbers v are small
+fractions. So they are rounded from sensitivities that are only roughly known, and then proven by
+simulations: a move of 10 % to each side along v must change all outputs together by less than one
+std of the noise. Along a symmetry a long step is as good as a short one. So the roughness of a
+simulation, which spoils short differences, does not matter here (scaling symmetries: Yates, Evans
+and Chappell 2009).
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ class ScalingSymmetry:
     """Parameters that can be scaled together.
 
     Attributes:
-        powers: v by name; those that are not named have 0.
+        powers: v by name; parameters that are not named have 0.
     """
 
     powers: dict[str, Fraction]
@@ -48,10 +49,10 @@ class ScalingSymmetry:
 
 @dataclass(frozen=True)
 class Combination:
-    """A product of powers of parameters that can be known although they cannot.
+    """A product of powers of parameters that can be known although the parameters cannot.
 
     Attributes:
-        exponents: by name.
+        exponents: the powers, by name.
     """
 
     exponents: dict[str, Fraction]
@@ -83,19 +84,19 @@ def scaling_symmetries(
     """The scaling symmetries that whitened sensitivities suggest and simulations prove.
 
     Args:
-        predictor: of the outputs.
+        predictor: predicts the outputs.
         space: coordinates of the parameters.
-        q: where, shape (p,).
+        q: the point, shape (p,).
         whiten: makes the noise of the outputs white, of std 1.
         S: sensitivities, shape (n, p).
-        errors: of their columns, shape (p,).
+        errors: norms of the errors of their columns, shape (p,).
     """
     proven: list[np.ndarray] = []
     found = []
     for v in _candidates(S, errors, space.logarithmic):
         size = np.array(v, float)
         if np.linalg.matrix_rank(np.array([*proven, size])) <= len(proven):
-            continue  # proven already by those before
+            continue  # it follows from symmetries that are proven already
         if _unseen(predictor, space, q, whiten, size):
             proven.append(size)
             powers = {name: power for name, power in zip(space.names, v, strict=True) if power}
@@ -106,10 +107,10 @@ def scaling_symmetries(
 def _unseen(
     predictor: Predictor, space: Coordinates, q: np.ndarray, whiten: Whiten, v: np.ndarray
 ) -> bool:
-    """Whether no test could see a move along v."""
+    """Whether a long move along v changes the outputs by less than the noise."""
     try:
         ahead, behind = predictor.predict(space.decode(np.stack([q + LONG * v, q - LONG * v])))
-    except (DivergenceError, InputError):  # there is no such start, or no such run
+    except (DivergenceError, InputError):  # no start or no simulation is possible there
         return False
     return bool(np.linalg.norm(whiten((ahead - behind)[:, :, None])) < SEEN)
 
@@ -117,7 +118,7 @@ def _unseen(
 def _candidates(
     S: np.ndarray, errors: np.ndarray, logarithmic: np.ndarray
 ) -> list[tuple[Fraction, ...]]:
-    """Directions of small whole numbers along which S is zero within its errors, fewest first."""
+    """Directions of small fractions along which S is zero within its errors, the shortest first."""
     root = np.linalg.qr(S).R
     rows = [_parallel(root, errors, logarithmic, int(j)) for j in np.flatnonzero(logarithmic)]
     rounded = {_rounded(row) for row in rows if row is not None}
@@ -131,9 +132,9 @@ def _candidates(
 def _parallel(
     root: np.ndarray, errors: np.ndarray, logarithmic: np.ndarray, j: int
 ) -> np.ndarray | None:
-    """The fewest columns that together are column j within the errors, one chosen at a time.
+    """A few columns whose combination is column j within the errors, chosen one at a time.
 
-    That is orthogonal matching pursuit (Pati, Rezaiifar and Krishnaprasad 1993).
+    This is orthogonal matching pursuit (Pati, Rezaiifar and Krishnaprasad 1993).
     """
     chosen: list[int] = []
     free = [int(k) for k in np.flatnonzero(logarithmic) if k != j]
@@ -164,10 +165,9 @@ def _rounded(v: np.ndarray) -> tuple[Fraction, ...]:
 def known_products(
     symmetries: Sequence[ScalingSymmetry], names: Sequence[str]
 ) -> list[Combination]:
-    """Products that no symmetry moves, of the parameters that symmetries move.
+    """Products that no symmetry changes, made of the parameters that symmetries change.
 
-    Each set of parameters moved together yields as many products as it has parameters beyond its
-    symmetries.
+    A set of k parameters that m symmetries change together gives k - m products.
     """
     moved = [name for name in names if any(name in s.powers for s in symmetries)]
     rows, held = _reduced([[s.powers.get(n, Fraction(0)) for n in moved] for s in symmetries])
@@ -182,7 +182,7 @@ def known_products(
 
 
 def _whole(powers: dict[str, Fraction]) -> Combination:
-    """The product whose smallest power is 1, in order of the powers."""
+    """The product scaled so that its smallest power is 1, in the order of the powers."""
     least = min(powers.values(), key=abs)
     return Combination({n: x / least for n, x in sorted(
         powers.items(), key=lambda item: abs(item[1]))})  # fmt: skip

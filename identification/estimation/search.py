@@ -1,9 +1,10 @@
-"""One search for the least criterion, by horizons that grow, without a simulation too many.
+"""One search for the smallest criterion, over horizons that grow, with few simulations.
 
-the outputs at a point are simulated once, for the residual and for its sensitivities
-sensitivities are forward differences from them
-a horizon that a longer one follows ends at a relative gain of `ROUGH`, the last at `tolerance`
-no sensitivities are taken at a point where the search ends
+- The outputs at a point are simulated once, for the residual and for the sensitivities.
+- Sensitivities are forward differences from these outputs.
+- A horizon ends at a relative gain of `ROUGH` if a longer one follows; the last horizon ends at the
+  `tolerance` of the options.
+- No sensitivities are computed at the point where the search ends.
 """
 
 from __future__ import annotations
@@ -25,14 +26,14 @@ from identification.model.sensitivity import (
     without_effect,
 )
 
-ROUGH = 1e-2  # relative gain that ends a horizon which a longer one follows
-HOLD = (1.0, 0.1)  # noise std per unit of q, on a short horizon and on the whole log
-CLOSER = 0.1  # relative growth of a horizon below which a divergence is final
-EXACT = 1e-11  # residual over outputs at which nothing but round-off is left
+ROUGH = 1e-2  # relative gain at which a horizon ends, if a longer one follows
+HOLD = (1.0, 0.1)  # pull towards the last result, on a short horizon and on the whole log
+CLOSER = 0.1  # if a horizon that is longer by less than this share diverges, the search fails
+EXACT = 1e-11  # residual over outputs below which only round-off is left
 
 
 class _Settled(Exception):
-    """The next sensitivities would be the last, and not be used."""
+    """The search ends here, so that the next sensitivities would not be used."""
 
 
 class Search:
@@ -61,7 +62,7 @@ class Search:
         self._last = np.full_like(q, np.nan), np.empty((0, 0))  # a point and its ŷ
 
     def refuse_idle(self) -> None:
-        """Refuse parameters without effect; most show theirs on the first horizon."""
+        """Refuse parameters without effect; the first horizon is tried before the whole log."""
         for fraction in (self.options.horizons[0], 1.0):
             J = sensitivity(self.predictor, self.space, self.best, self.samples(fraction))
             if not without_effect(J, self.predictor.log.outputs).any():
@@ -69,11 +70,11 @@ class Search:
         refuse_without_effect(J, self.space.names, self.predictor.log)
 
     def samples(self, fraction: float) -> int:
-        """Samples of a horizon."""
+        """Number of samples of a horizon."""
         return max(3, round(fraction * len(self.predictor.log)))
 
     def run(self) -> Status:
-        """All horizons, then the weights of relative noise and the covariance of `det`."""
+        """Search all horizons, then again with the weights of relative noise or with `det`."""
         status: Status = "converged"
         try:
             status = self._grow()
@@ -92,10 +93,10 @@ class Search:
         return status
 
     def _grow(self) -> Status:
-        """All horizons; one that diverges from where the last ended is reached in smaller steps.
+        """Search all horizons; one that diverges at first is reached by horizons in between.
 
         Raises:
-            DivergenceError: the first horizon diverges, or one no longer than a tenth more.
+            DivergenceError: the first horizon diverges, or one that is longer by less than a tenth.
         """
         status: Status = "converged"
         reached, ahead = 0.0, list(self.options.horizons)
@@ -116,7 +117,7 @@ class Search:
         return self.predictor.log.outputs[:samples] - self.predicted(q, samples)
 
     def predicted(self, q: np.ndarray, samples: int | None) -> np.ndarray:
-        """ŷ, shape (samples, ny); the last one is kept, for the Jacobian at the same point."""
+        """ŷ, shape (samples, ny); it is kept for the Jacobian at the same point."""
         samples = samples or len(self.predictor.log)
         at, known = self._last
         if len(known) != samples or not np.array_equal(at, q):
@@ -128,10 +129,11 @@ class Search:
     def solve(self, samples: int, tolerance: float) -> Status:
         """Minimise the criterion over the first samples, from the best point.
 
-        `least_squares` asks for sensitivities where it ends, the dearest of a short search; a step
-        that gained too little to go on ends it before them.
+        `least_squares` asks for sensitivities also at the point where it ends, and these would cost
+        the most of a short search. So a step with too small a gain ends the search before they are
+        computed.
         """
-        self.error(self.best, samples)  # a start that diverges is the caller's to know
+        self.error(self.best, samples)  # if the start diverges, the caller is told
         weight = self.weight[:samples]
         measured = (weight * self.predictor.log.outputs[:samples]) @ self.whitener.T
         exact = EXACT**2 * float(np.sum(measured**2))
@@ -145,7 +147,7 @@ class Search:
             nonlocal cost, gain
             try:
                 weighed = (weight * self.error(q, samples)) @ self.whitener.T
-            except InputError:  # it diverged, or has no start: the search must go elsewhere
+            except InputError:  # no simulation is possible here: the search must try another point
                 weighed = np.full((samples, len(self.whitener)), np.inf)
             r = np.concatenate(
                 [weighed.ravel(), (q - self.first) * self.prior, (q - origin) * hold]

@@ -1,14 +1,14 @@
-"""Multiple shooting: the windows of a log, explained as well as their initial states can.
+"""Multiple shooting: windows of a log, each predicted from an initial state that is fitted too.
 
-    r_w(q, d_w) = [ C (y_w - ŷ_w(q, x̄_w ⊕ d_w)) ; -d_w/s ]      what a window leaves; its belief
+    r_w(q, d_w) = [ C (y_w - ŷ_w(q, x̄_w ⊕ d_w)) ; -d_w/s ]   residual of w, prior of d_w
     X_w = -∂r_w/∂d_w = U s Vᵀ,  S_w = -∂r_w/∂q                    the tangent at a point
 
     (X_wᵀX_w + μ) Δd_w + X_wᵀS_w Δq = X_wᵀ r_w                    Levenberg-Marquardt, all at once
     Σ_w S_wᵀX_w Δd_w + (Σ_w S_wᵀS_w + μ) Δq = Σ_w S_wᵀ r_w
 
-Each Δd_w is eliminated by itself, so a window more costs no more than its simulations
-(condensing; Bock 1983). A tangent takes 1 + nx + p simulations of the log, all in one batch; a
-trial step takes one. What q itself is known by is S_w without what the states make up for.
+Each Δd_w is eliminated separately, so that one more window costs only its simulations (condensing;
+Bock 1983). A tangent takes 1 + nx + p simulations of the log, all in one batch; a trial step takes
+one. The information on q is that of S_w after the initial states are projected out.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from identification.model.predictor import Predictor, output_columns
 from identification.model.rollout import State, hold, rollout, substeps
 from identification.model.sensitivity import FORWARD_STEP
 
-FELT = 1e-6  # of the strongest direction of a state, each entry scaled to its own effect
+FELT = 1e-6  # of the strongest direction of a state; weaker ones are not felt
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Shooting:
         predictor: the plant, the log and the names of p free parameters.
         space: their coordinates.
         cut: the windows.
-        first: where they are believed to begin.
+        first: the prior of their initial states.
         whitener: C, shape (ny, ny).
     """
 
@@ -86,9 +86,10 @@ class Shooting:
         return y.reshape(len(q), W, *y.shape[1:])
 
     def _inputs(self, values: np.ndarray) -> tuple[np.ndarray, int, str]:
-        """Inputs of all windows of k value sets, how many of them a sample has, and their hold.
+        """Inputs of all windows for k value sets, the number of inputs per sample, and their hold.
 
-        What a plant makes of its inputs depends on those before the window.
+        The plant changes the inputs of the whole log, because its effects may depend on inputs
+        before the window.
         """
         predictor, cut, log = self.predictor, self.cut, self.predictor.log
         every = substeps(log.sampling_time, predictor.plant.model.opt.timestep)
@@ -96,7 +97,7 @@ class Shooting:
         made = predictor.inputs(values)(held)
         if made is held:
             return np.tile(cut.inputs, (len(values), 1, 1)), 1, log.hold
-        last = np.zeros((*made.shape[:-2], 1, made.shape[-1]))  # is not reached
+        last = np.zeros((*made.shape[:-2], 1, made.shape[-1]))  # a step that is never simulated
         made = np.broadcast_to(np.concatenate([made, last], axis=-2),
                                (len(values), len(held) + 1, held.shape[1]))  # fmt: skip
         steps = np.arange((cut.inputs.shape[1] - 1) * every + 1)
@@ -106,15 +107,15 @@ class Shooting:
 
 @dataclass(frozen=True)
 class Tangent:
-    """All windows, linearised at a point; the columns of X have the norm 1 in U s Vᵀ.
+    """All windows, linearised at a point; X = U s Vᵀ, its columns scaled to the norm 1.
 
     Attributes:
-        r: residual there, shape (W, m), m = L ny + nx.
+        r: residual at the point, shape (W, m), m = L ny + nx.
         S: -∂r/∂q, shape (W, m, p).
         U: shape (W, m, nx).
-        s: 0 where no state is felt, shape (W, nx).
+        s: singular values, 0 for directions that are not felt, shape (W, nx).
         Vt: shape (W, nx, nx).
-        size: norms of the columns of X, shape (W, nx).
+        size: norms of the columns of X before the scaling, shape (W, nx).
     """
 
     r: np.ndarray
@@ -126,13 +127,13 @@ class Tangent:
 
     @property
     def projected(self) -> np.ndarray:
-        """S without what the states can make up for, shape (W m, p)."""
+        """S with the initial states projected out, shape (W m, p)."""
         U = self.U * (self.s > 0)[:, None]
         return (self.S - U @ (np.swapaxes(U, 1, 2) @ self.S)).reshape(-1, self.S.shape[2])
 
     @property
     def freedom(self) -> int:
-        """Directions of all states that are felt."""
+        """Number of directions of the initial states that are felt, over all windows."""
         return int((self.s > 0).sum())
 
     def step(self, damping: float) -> tuple[np.ndarray, np.ndarray]:

@@ -1,10 +1,10 @@
-"""How well a model with given values predicts a log over a horizon, wherever it begins.
+"""How well a model with given values predicts a log over a horizon, from any time of the log.
 
 r_w = y_w - ŷ_w(θ, x̄_w ⊕ d_w),   d_w the state at the start of window w that explains it best
 
-A free run of a robot that integrates its input drifts by whatever disturbs it; over a window the
-error is the model's. Nothing of the model is fitted here, so that a log which no fit has seen
-compares two models fairly.
+The free run of a robot that integrates its input drifts with every disturbance; over a short window
+the error is mainly that of the model. No parameter of the model is fitted here, but initial states
+only, so that two models can be compared fairly on unseen data.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Plant, Predictor
 
-STEPS = 20  # of Levenberg and Marquardt, at most
-ENDED = 1e-3  # of the mean squared error: a window that changes by less is at its best
+STEPS = 20  # largest number of Levenberg-Marquardt steps
+ENDED = 1e-3  # relative change of the mean squared error at which a window is finished
 FIRST_DAMPING, MOST_DAMPING = 1e-9, 1e2  # of the squared norms of X's columns
 
 
 def window_error(
     plant: Plant, log: Log, length: float, values: Mapping[str, float] | None = None
 ) -> np.ndarray:
-    """Errors of the outputs in windows of a log, each from its own best state.
+    """Errors of the outputs in windows of a log, each window from its best initial state.
 
     Args:
         plant: the model.
@@ -49,7 +49,7 @@ def window_error(
     at = tangent(shooting, none, d)
     damping = np.full(len(d), FIRST_DAMPING)
     for _ in range(STEPS):
-        # A window has its own damping: where a joint sticks, its first rate is hardly felt.
+        # Each window has its own damping: where a joint sticks, the outputs hardly feel its rate.
         before = np.sum(at.r**2, axis=1)
         along = np.einsum("wmk,wm->wk", at.U, at.r) * at.s / (at.s**2 + damping[:, None])
         trial = d + np.einsum("wkx,wk->wx", at.Vt, along) / at.size
@@ -68,7 +68,7 @@ def window_error(
 
 
 def first_error(plant: Plant, log: Log, length: float) -> np.ndarray:
-    """Errors in the same windows, each from the state where it is believed to begin.
+    """Errors in the same windows, each from the mean of the prior of its initial state.
 
     Args:
         plant: the model, with its own values.
@@ -89,7 +89,7 @@ def first_error(plant: Plant, log: Log, length: float) -> np.ndarray:
 def _fixed(
     plant: Plant, log: Log, length: float, values: Mapping[str, float] | None
 ) -> tuple[Shooting, np.ndarray]:
-    """Windows of a model of which nothing is free, and no moves of their states, (W, nx)."""
+    """Windows of a model without free parameters, and zero changes of their states (W, nx)."""
     none, cut = np.zeros(0), windows(log, length)
     predictor = Predictor(plant, log, (), dict(values or {}))
     space = Coordinates((), none.astype(bool), none, none, none)

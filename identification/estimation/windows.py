@@ -1,16 +1,17 @@
 """Windows of a log whose initial states are nuisances.
 
     x_w = x̄_w ⊕ d_w,   w = 1..W                     ⊕ in the tangent of qpos, in qvel and in act
-    x̄_w  measured where an output tells (and its rate), else on a free run of the values so far
-    s_j  = rms motion of state j on that run         how far x_w may well be from x̄_w
+    x̄_w  from the measured outputs and their rates; the other states from a free run
+    s_j  = rms motion of state j on that run         std of the prior of x_w about x̄_w
 
-A free run adds up all that disturbs the robot, and an unstable one loses it; a window forgets after
-its length. How d_w is found is told in `identification.estimation.shooting`.
+In a free run the effects of all disturbances add up, and an unstable robot leaves the log after a
+short time. A window starts again after its length. `identification.estimation.shooting` says how
+d_w is found.
 
-States that no output measures are treated as any other: a pose, a rate, or an activation such as
-the no-load length of a cable begins on the free run and is free within s_j. A direction of states
-that a window hardly feels (a platform and all its cables moved together) then stays where the run
-was, instead of being carried off by the noise.
+States that no output measures are treated like the others: a pose, a rate, or an activation such as
+the no-load length of a cable begins on the free run and is free within s_j. Some directions of the
+states are hardly felt in a window, for example a platform and all its cables moved together. They
+then stay near the free run and do not follow the noise.
 """
 
 from __future__ import annotations
@@ -25,12 +26,12 @@ from identification.logs.log import Log
 from identification.model.predictor import Predictor, output_columns
 from identification.model.rollout import State, rollout
 
-LEAST = 1e-3  # of the largest motion in its field: how far at least a state may be off
+LEAST = 1e-3  # smallest s_j, as a share of the largest motion in its field
 
 
 @dataclass(frozen=True)
 class Windows:
-    """A log in W windows of L samples; a rest shorter than a window is left out.
+    """A log in W windows of L samples; a remainder shorter than a window is left out.
 
     Attributes:
         inputs: shape (W, L, nu).
@@ -62,11 +63,11 @@ def windows(log: Log, length: float) -> Windows:
 
 @dataclass(frozen=True)
 class FirstStates:
-    """Where the windows are believed to begin.
+    """The prior of the windows' initial states.
 
     Attributes:
         states: x̄, W rows.
-        weight: 1/s of each tangent coordinate, 0 where nothing is believed, shape (nx,).
+        weight: 1/s of each tangent coordinate, 0 where nothing is known, shape (nx,).
     """
 
     states: State
@@ -74,14 +75,14 @@ class FirstStates:
 
 
 def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> FirstStates:
-    """States at the windows' starts: measured where an output tells, else on a free run.
+    """States at the windows' starts: as measured, and from a free run where nothing is measured.
 
-    Where the free run diverges, what is not measured begins at the plant's start, and may be
-    anywhere.
+    Where the free run diverges, states that are not measured begin at the plant's start and are
+    free without limit.
 
     Args:
         predictor: the plant and the log.
-        values: of its free parameters, shape (p,).
+        values: values of its free parameters, shape (p,).
         cut: the windows.
     """
     plant, log = predictor.plant, predictor.log
@@ -100,7 +101,7 @@ def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> Firs
         weight = np.zeros(2 * model.nv + model.na)
     rate = np.gradient(log.outputs, log.sampling_time, axis=0)[cut.starts]
     columns = list(enumerate(output_columns(model, log.output_names)))
-    for k, (field, i) in sorted(columns, key=lambda item: item[1][0]):  # a measured rate is last
+    for k, (field, i) in sorted(columns, key=lambda item: item[1][0]):  # rates last
         rows[field][:, i] = log.outputs[cut.starts, k]
         if field == "qpos":
             joint = int(np.flatnonzero(model.jnt_qposadr == i)[0])
@@ -117,11 +118,11 @@ def _motion(model: mujoco.MjModel, run: State) -> np.ndarray:
         size = np.sqrt(np.mean(part**2, axis=0))
         parts.append(np.maximum(size, LEAST * size.max(initial=0.0)))
     size = np.concatenate(parts)
-    return np.where(size > 0, size, np.inf)  # a field at rest says nothing of how it may move
+    return np.where(size > 0, size, np.inf)  # a field at rest does not show how far it may move
 
 
 def moved(model: mujoco.MjModel, states: State, step: np.ndarray) -> State:
-    """States moved along their tangent (qpos, qvel, act): by one step for all, or one each."""
+    """States moved along their tangent (qpos, qvel, act), by one step for all or one for each."""
     W, nv = len(states.qpos), model.nv
     steps = np.broadcast_to(step, (W, 2 * nv + model.na))
     qpos = np.array(states.qpos)
