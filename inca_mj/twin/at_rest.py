@@ -27,7 +27,7 @@ SECANTS = 12  # more than enough: each adds half as many digits again
 UNKNOWN = dict.fromkeys(Drive._fields, np.nan)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Change:
     """What the effects that are there change at rest.
 
@@ -106,11 +106,16 @@ def change_at_rest(
             still = Platform(0.0, *pose[:3], *np.zeros(6))
             load -= np.array(effect.wrench(still, tuple(p[:, 0])))
     d = np.linalg.norm(r, axis=1) + way[:, 0]
-    if not layout.settled:
-        nothing = np.zeros(DRIVES)
-        return Change(way[:, 0], 0 * way[:, 1:], 0 * load, nothing, d, values, ())
-    stiffening = tuple(e for e in there if e.tension is not None)
-    return Change(way[:, 0], way[:, 1:], load, wider, d, values, stiffening)
+    at_rest = layout.settled
+    return Change(
+        longer=way[:, 0],
+        turned=at_rest * way[:, 1:],
+        load=at_rest * load,
+        wider=wider if at_rest else np.zeros(DRIVES),
+        d=d,
+        values=values,
+        stiffening=tuple(e for e in there if e.tension is not None) if at_rest else (),
+    )
 
 
 def _drive(**known: float) -> Any:
