@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 
@@ -16,6 +16,11 @@ class DivergenceError(InputError):
 
 class GraphicsError(InputError):
     """No OpenGL context could be made; everything that does not draw still works."""
+
+
+def repeated(names: Sequence[str]) -> list[str]:
+    """The names that occur more than once, in alphabetical order."""
+    return sorted({name for name in names if names.count(name) > 1})
 
 
 def unknown_name(what: str, name: str, known: Iterable[str]) -> InputError:

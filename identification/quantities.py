@@ -16,6 +16,11 @@ _FINEST = 1e-5  # a smaller std is said as a power of ten
 _DIGITS = 3  # of a value whose std is not known
 
 
+def finite_or_none(value: float | None) -> float | None:
+    """A number for JSON, which knows no infinity: null where it is not finite."""
+    return None if value is None or not isfinite(value) else float(value)
+
+
 def quantity(value: float, std: float = float("nan"), unit: str = "") -> str:
     """A value with its std and unit.
 

@@ -67,6 +67,37 @@ def write_result(path: Path, command: Any, result: Mapping[str, Any]) -> None:
     write_text(path, json.dumps(record, indent=1, allow_nan=False) + "\n")
 
 
+def conclude(
+    command: Any,
+    record: Mapping[str, Any],
+    text: str,
+    keep: Callable[[Path], object] | None = None,
+) -> None:
+    """Keep the results in the folder that was asked for, whole or not at all, and say them.
+
+    Args:
+        command: with its `output`; its fields are the configuration that result.json tells.
+        record: the results as plain values: result.json, and what `--json` prints.
+        text: what is printed without `--json`.
+        keep: writes more files into the folder: figures, the report, a model.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    from identification.files import whole_folder
+
+    output: Output = command.output
+    if output.out is not None:
+        with whole_folder(output.out) as out:
+            if keep is not None:
+                keep(out)
+            write_result(out / "result.json", command, record)
+    if output.json:
+        say_json(record)
+    else:
+        say(text)
+
+
 def _version(package: str) -> str:
     from importlib.metadata import PackageNotFoundError, version
 

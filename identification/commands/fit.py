@@ -3,16 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from identification.commands.common import (
-    note,
-    refuse_folder,
-    say,
-    say_json,
-    table,
-    write_result,
-)
+from identification.commands.common import conclude, note, refuse_folder, table
 from identification.commands.robots import OnRobot
 
 
@@ -22,7 +16,6 @@ class Fit(OnRobot):
 
     def run(self) -> int:
         """Fit, confirm, say, keep."""
-        from identification.files import whole_folder
         from identification.robot.confirmation import confirm
         from identification.robot.fit_json import robot_fit_to_json
         from identification.robot.fitting import fit
@@ -32,14 +25,12 @@ class Fit(OnRobot):
         robot = self.read()
         found = fit(robot, note)
         record = robot_fit_to_json(found, confirm(robot, found))
-        if self.output.json:
-            say_json(record)
-        else:
-            say(_text(record))
-        if self.output.out is not None:
-            with whole_folder(self.output.out) as out:
-                write_robot(robot, found.values, out / "robot.toml", self.output.out)
-                write_result(out / "result.json", self, record)
+
+        def keep(out: Path) -> None:
+            place = self.output.out or out
+            write_robot(robot, found.values, out / "robot.toml", place)
+
+        conclude(self, record, _text(record), keep)
         return 0
 
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import TypeVar
 
-from identification.errors import InputError, unknown_name
+from identification.errors import InputError, repeated, unknown_name
 
 Value = TypeVar("Value")
 
@@ -64,6 +64,6 @@ def check_column_names(names: Iterable[str]) -> None:
                 f"{name!r} cannot name a column of a log; use printable text without commas or "
                 "quotes, other than 'time'"
             )
-    twice = sorted({n for n in every if every.count(n) > 1})
+    twice = repeated(every)
     if twice:
         raise InputError(f"the log names {listed(twice)} twice; give each column a name of its own")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from identification.errors import InputError
+from identification.errors import InputError, repeated
 from identification.logs.names import listed, quoted
 from identification.logs.sampling import FloatArray
 from identification.logs.table import Table
@@ -77,7 +77,7 @@ def _header(line: str, number: int, path: Path) -> tuple[str, ...]:
             f"line {number} of {path} holds numbers and not names; put a header row, such as "
             "time,input,output and without #, above them"
         )
-    twice = sorted({n for n in names if names.count(n) > 1})
+    twice = repeated(names)
     if twice:
         raise InputError(f"{path} has {listed(twice)} more than once; keep one column of each name")
     return names

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from identification.errors import InputError, unknown_name
+from identification.errors import InputError, repeated, unknown_name
 from identification.logs.names import listed, quoted
 from identification.logs.sampling import FloatArray
 from identification.logs.sidecar import Sidecar
@@ -42,7 +42,7 @@ def renamed(table: Table, sidecar: Sidecar) -> Table:
                 )
     keep = [k for k, name in enumerate(table.names) if name not in sidecar.ignore]
     names = tuple(sidecar.columns.get(table.names[k], table.names[k]) for k in keep)
-    twice = sorted({n for n in names if names.count(n) > 1})
+    twice = repeated(names)
     if twice:
         raise InputError(
             f"{table.path} has {listed(twice)} more than once; keep one column of each name"

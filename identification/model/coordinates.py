@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.errors import InputError
+from identification.errors import InputError, repeated
 from identification.model.parameter import ParameterSet
 
 FARTHEST = 700.0  # of a logarithm: beyond, exp overflows
@@ -83,7 +83,7 @@ def coordinates(
     """
     if not names:
         raise InputError("no parameter is free; name at least one to estimate")
-    twice = sorted({n for n in names if list(names).count(n) > 1})
+    twice = repeated(list(names))
     if twice:
         raise InputError(f"parameter {twice[0]!r} is named twice; name each once")
     records = [parameters[name] for name in names]

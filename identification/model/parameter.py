@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import inf, isfinite
 
-from identification.errors import InputError, unknown_name
+from identification.errors import InputError, repeated, unknown_name
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class ParameterSet:
 
     def __post_init__(self) -> None:
         names = [p.name for p in self.records]
-        twice = sorted({n for n in names if names.count(n) > 1})
+        twice = repeated(names)
         if twice:
             raise InputError(f"parameter set {self.name!r} names {', '.join(twice)} twice")
 

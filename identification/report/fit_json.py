@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from identification.estimation.fit import Fit
+from identification.quantities import finite_or_none
 from identification.report.fit_verdict import fit_verdict
 
 
@@ -19,7 +20,7 @@ def fit_to_json(fit: Fit) -> dict[str, Any]:
         "parameters": {
             name: {
                 "value": e.values[name],
-                "std": _finite(std),
+                "std": finite_or_none(std),
                 "unit": parameters[name].unit,
                 "initial": float(first),
                 "at_bound": bool(bound),
@@ -29,15 +30,15 @@ def fit_to_json(fit: Fit) -> dict[str, Any]:
             )
         },
         "combinations": [
-            {"name": str(c), "value": value, "std": _finite(std)}
+            {"name": str(c), "value": value, "std": finite_or_none(std)}
             for c, value, std in fit.combinations
         ],
         "fit_percent": _list(fit.fit_percent),
         "validation_fit_percent": _list(fit.validation_fit_percent),
         "loss": fit.loss,
         "rms": fit.rms,
-        "validation_rms": _finite(fit.validation_rms),
-        "validation_expected": _finite(fit.validation_expected),
+        "validation_rms": finite_or_none(fit.validation_rms),
+        "validation_expected": finite_or_none(fit.validation_expected),
         "noise_floor": float(np.sqrt(np.mean(fit.floor**2))),
         "iterations": e.jacobians,
         "evaluations": e.evaluations,
@@ -47,9 +48,5 @@ def fit_to_json(fit: Fit) -> dict[str, Any]:
     }
 
 
-def _finite(value: float | None) -> float | None:
-    return None if value is None or not np.isfinite(value) else float(value)
-
-
 def _list(values: Iterable[float] | None) -> list[float | None] | None:
-    return None if values is None else [_finite(value) for value in values]
+    return None if values is None else [finite_or_none(value) for value in values]

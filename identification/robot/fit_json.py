@@ -10,6 +10,7 @@ import numpy as np
 from identification.estimation.fit import Fit
 from identification.estimation.window_estimate import WindowEstimate
 from identification.logs.noise import noise_floor
+from identification.quantities import finite_or_none
 from identification.report.fit_json import fit_to_json
 from identification.report.fit_verdict import window_sentences
 from identification.robot.fitting import RobotFit
@@ -42,7 +43,7 @@ def _windows(result: RobotFit, found: WindowEstimate) -> dict[str, Any]:
     said = [] if unseen is None else [str(unseen)]
     return {
         "parameters": {
-            name: {"value": value, "std": float(std) if np.isfinite(std) else None,
+            name: {"value": value, "std": finite_or_none(std),
                    "unit": robot.plant.parameters[name].unit, "initial": float(first),
                    "at_bound": bool(bound)}
             for (name, value), std, first, bound in rows

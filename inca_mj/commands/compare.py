@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import (
-    Output,
-    note,
-    output_field,
-    say,
-    say_json,
-    table,
-    write_result,
-)
+from identification.commands.common import Output, conclude, note, output_field, table
 from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
@@ -35,7 +28,6 @@ class Compare:
     def run(self) -> int:
         """Compare, say and keep the result; 0 unless the input is bad."""
         do_not_draw()
-        from identification.files import whole_folder
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.comparison import compare
 
@@ -45,15 +37,9 @@ class Compare:
             self.robot.place(),
             timestep=self.robot.step,
         )
+        conclude(self, result.to_json(), summary(result), partial(keep, result))
         if self.output.out is not None:
-            with whole_folder(self.output.out) as out:
-                keep(result, out)
-                write_result(out / "result.json", self, result.to_json())
             note(f"figure, report, model and result.json are in {self.output.out}")
-        if self.output.json:
-            say_json(result.to_json())
-        else:
-            say(summary(result))
         return 0
 
 

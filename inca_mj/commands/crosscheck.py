@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import (
-    Output,
-    note,
-    output_field,
-    say,
-    say_json,
-    table,
-    write_result,
-)
+from identification.commands.common import Output, conclude, note, output_field, table
 from inca_mj.commands.common import Values, do_not_draw, values_field
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from inca_mj.verification import CrossCheck
 
 
@@ -45,26 +40,7 @@ class Crosscheck:
             states=self.states,
             progress=note,
         )
-        if self.output.out is not None:
-            from identification.files import whole_folder
-            from identification.report.page import save_figures, write_report
-            from inca_mj.report.sections import crosscheck_section
-
-            sections = [crosscheck_section(result)]
-            with whole_folder(self.output.out) as out:
-                save_figures(sections, out)
-                write_report(
-                    out / "report.html",
-                    "The twin against the reference",
-                    result.sentences,
-                    sections,
-                    good=result.passed,
-                )
-                write_result(out / "result.json", self, result.to_json())
-        if self.output.json:
-            say_json(result.to_json())
-        else:
-            say(summary(result))
+        conclude(self, result.to_json(), summary(result), partial(keep, result))
         return 0 if result.passed else 1
 
 
@@ -80,6 +56,22 @@ def summary(result: CrossCheck) -> str:
         for row in result.rows
     ]
     return table(head, rows) + "\n" + "\n".join(result.sentences)
+
+
+def keep(result: CrossCheck, out: Path) -> None:
+    """Write the figure and the one-file report into a folder."""
+    from identification.report.page import save_figures, write_report
+    from inca_mj.report.sections import crosscheck_section
+
+    sections = [crosscheck_section(result)]
+    save_figures(sections, out)
+    write_report(
+        out / "report.html",
+        "The twin against the reference",
+        result.sentences,
+        sections,
+        good=result.passed,
+    )
 
 
 def _error(value: float | None) -> str:

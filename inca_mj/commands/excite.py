@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import (
-    Output,
-    note,
-    output_field,
-    say,
-    say_json,
-    table,
-    write_result,
-)
+from identification.commands.common import Output, conclude, note, output_field, table
 from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
@@ -24,7 +17,7 @@ if TYPE_CHECKING:
     from inca_mj.workflows.excitation import Design
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Excite:
     """Design currents that show the worst determined parameter best, inside the limits."""
 
@@ -56,7 +49,6 @@ class Excite:
         do_not_draw()
         from math import radians
 
-        from identification.files import whole_folder
         from inca_mj.report.sections_information import design_json, design_verdict
         from inca_mj.twin.twin import build_twin
         from inca_mj.workflows.bench import SAMPLING
@@ -87,16 +79,10 @@ class Excite:
             progress=note,
         )
         record = design_json(result)
+        said = [summary(result), *design_verdict(result)]
         if self.output.out is not None:
-            with whole_folder(self.output.out) as out:
-                keep(result, out)
-                write_result(out / "result.json", self, record)
-        if self.output.json:
-            say_json(record)
-        else:
-            say(summary(result) + "\n" + "\n".join(design_verdict(result)))
-            if self.output.out is not None:
-                say(f"inca simulate --input {self.output.out / 'excite.csv'} replays it")
+            said.append(f"inca simulate --input {self.output.out / 'excite.csv'} replays it")
+        conclude(self, record, "\n".join(said), partial(keep, result))
         return 0
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from inca_mj.rendering.scene import Scene
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Film:
     """Film a log (measured as ghost, simulated in colour) or a saved run."""
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 STOPPED = 130  # exit code after Ctrl-C, as a shell gives it
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Identify:
     """Estimate parameters and start pose on the first half of a log, confirm on the second."""
 

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, output_field, say, say_json, table, write_result
+from identification.commands.common import Output, conclude, output_field, table
 from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
     from identification.estimation.information import Information
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Sensitivity:
     """Which parameters the angles can tell, how well, and which only together."""
 
@@ -35,7 +36,6 @@ class Sensitivity:
     def run(self) -> int:
         """Analyse, say, keep."""
         do_not_draw()
-        from identification.files import whole_folder
         from inca_mj.report.sections_information import information_json, information_verdict
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.sensitivity import planned_experiment, robot_information
@@ -55,14 +55,8 @@ class Sensitivity:
             what = f"The currents of {log.name}, {log.duration:g} s"
         about = f"{what}, noise {trial.sigma:.3g} rad."
         record = {"noise": trial.sigma, **information_json(found)}
-        if self.output.out is not None:
-            with whole_folder(self.output.out) as out:
-                keep(found, about, out)
-                write_result(out / "result.json", self, record)
-        if self.output.json:
-            say_json(record)
-        else:
-            say(summary(found) + "\n" + "\n".join([about, *information_verdict(found)]))
+        text = "\n".join([summary(found), about, *information_verdict(found)])
+        conclude(self, record, text, partial(keep, found, about))
         return 0
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, say, say_json, table, write_result
+from identification.commands.common import Output, conclude, table
 from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
@@ -35,7 +36,6 @@ class Simulate:
     def run(self) -> int:
         """Simulate, write, say."""
         do_not_draw()
-        from identification.files import whole_folder
         from inca_mj.twin.run import simulate
         from inca_mj.twin.twin import build_twin
         from inca_mj.workflows.comparison import timestep_for
@@ -51,16 +51,12 @@ class Simulate:
             "tension_max": float(result.tension.max()),
             "position_end": result.position[-1].tolist(),
         }
-        out = self.output.out
-        if out is not None:
-            with whole_folder(out) as draft:
-                keep(result, draft, f"input {self.input}, seed {self.seed}")
-                write_result(draft / "result.json", self, summary)
-        if self.output.json:
-            say_json(summary)
-        else:
-            say(_text(result))
-            say(f"log.csv, run.npz, figures, model.xml and report.html are in {out}")
+        text = _text(result)
+        if self.output.out is not None:
+            files = "log.csv, run.npz, figures, model.xml and report.html"
+            text += f"\n{files} are in {self.output.out}"
+        notes = f"input {self.input}, seed {self.seed}"
+        conclude(self, summary, text, partial(keep, result, notes))
         return 0
 
     def _currents(self) -> tuple[np.ndarray, float, str]:
@@ -97,7 +93,7 @@ def _text(result: Run) -> str:
     )
 
 
-def keep(result: Run, out: Path, notes: str) -> None:
+def keep(result: Run, notes: str, out: Path) -> None:
     """Write log, run, model, the thesis' four figures and the report into a folder."""
     from identification import write_log
     from identification.report.page import save_figures, write_report

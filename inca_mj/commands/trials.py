@@ -7,15 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import (
-    Output,
-    note,
-    output_field,
-    say,
-    say_json,
-    table,
-    write_result,
-)
+from identification.commands.common import Output, conclude, note, output_field, table
 from inca_mj.commands.common import do_not_draw
 
 if TYPE_CHECKING:
@@ -40,7 +32,6 @@ class Trials:
         """Run, say, keep."""
         do_not_draw()
         from identification.estimation.estimation import Options
-        from identification.files import whole_folder
         from inca_mj.workflows.trials import monte_carlo, trials
 
         options = Options(horizons=(1.0,)) if self.single else None
@@ -48,15 +39,10 @@ class Trials:
         record: dict[str, object] = {"trials": [r.to_json() for r in results]}
         if self.monte_carlo:
             record["monte_carlo"] = monte_carlo(self.monte_carlo, progress=note)
-        if self.output.out is not None:
-            with whole_folder(self.output.out) as out:
-                write_result(out / "result.json", self, record)
-        if self.output.json:
-            say_json(record)
-        else:
-            say("\n\n".join(summary(r) for r in results))
-            if self.monte_carlo:
-                say(str(record["monte_carlo"]))
+        text = "\n\n".join(summary(r) for r in results)
+        if self.monte_carlo:
+            text += f"\n{record['monte_carlo']}"
+        conclude(self, record, text)
         return 0
 
 

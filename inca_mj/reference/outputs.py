@@ -11,7 +11,7 @@ from inca_mj.reference.equations import cables, derivative
 from inca_mj.reference.kinematics import rotation
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Outputs:
     """Cables and accelerations at one state.
 

@@ -11,6 +11,7 @@ from identification.estimation.fit import Fit
 from identification.estimation.profiles import Profile
 from identification.estimation.window_estimate import WindowEstimate
 from identification.kalman.estimate import InnovationsFit
+from identification.quantities import finite_or_none
 from identification.report.fit_json import fit_to_json
 from identification.report.fit_verdict import (
     HOLDS,
@@ -37,7 +38,7 @@ def identification_json(
     record["seconds"] = result.seconds
     record["seed"] = seed
     if result.starts:
-        record["starts"] = [[_finite(e) for e in errors] for errors in result.starts]
+        record["starts"] = [[finite_or_none(e) for e in errors] for errors in result.starts]
     if (found := result.innovations) is not None:
         record["innovations"] = {
             "rms": found.rms, "validation_rms": found.validation_rms,
@@ -48,7 +49,7 @@ def identification_json(
         record["profiles"] = {p.name: _profile(p) for p in profiles}
     if (w := result.windows) is not None:
         record["parameters"] = {
-            name: {"value": value, "std": _finite(std), "unit": unit, "initial": first,
+            name: {"value": value, "std": finite_or_none(std), "unit": unit, "initial": first,
                    "at_bound": bound}
             for name, value, std, unit, first, bound in rows(result, result.fit)
         }  # fmt: skip
@@ -169,11 +170,7 @@ def profile_sentence(known: Profile) -> str:
 def _profile(known: Profile) -> dict[str, Any]:
     return {
         "value": known.estimate,
-        "interval": [_finite(end) for end in known.interval],
+        "interval": [finite_or_none(end) for end in known.interval],
         "values": known.values.tolist(),
-        "rise": [_finite(r) for r in known.rise],
+        "rise": [finite_or_none(r) for r in known.rise],
     }
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None

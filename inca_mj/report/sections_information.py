@@ -8,6 +8,7 @@ import numpy as np
 
 from identification.estimation.identifiability import in_words
 from identification.estimation.information import Information, determinable
+from identification.quantities import finite_or_none
 from identification.report.fit_verdict import unresolved_words
 from identification.report.page import Section, Table
 from inca_mj.report.figures_information import std_figure
@@ -15,11 +16,6 @@ from inca_mj.workflows.bench import Tried
 from inca_mj.workflows.excitation import Design
 
 WEAK = 0.5  # relative std beyond which a value says little
-
-
-def finite(x: float) -> float | None:
-    """A number for JSON: what is not finite is null."""
-    return float(x) if np.isfinite(x) else None
 
 
 def information_verdict(found: Information) -> list[str]:
@@ -76,8 +72,8 @@ def information_json(found: Information) -> dict[str, Any]:
     return {
         "parameters": {
             name: {
-                "std": finite(std),
-                "conditional_std": finite(alone),
+                "std": finite_or_none(std),
+                "conditional_std": finite_or_none(alone),
                 "relative": bool(relative),
             }
             for name, std, alone, relative in zip(
@@ -87,10 +83,10 @@ def information_json(found: Information) -> dict[str, Any]:
         "ranking": list(found.ranking),
         "strengths": found.found.strengths.tolist(),
         "worst_direction": found.found.weakest(),
-        "condition": finite(found.condition),
+        "condition": finite_or_none(found.condition),
         "E": found.e_value,
-        "D": finite(found.d_value),
-        "A": finite(found.a_value),
+        "D": finite_or_none(found.d_value),
+        "A": finite_or_none(found.a_value),
         "combinations": [str(c) for c in found.combinations],
         "verdict": information_verdict(found),
     }

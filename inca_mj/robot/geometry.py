@@ -8,8 +8,10 @@ and a 4 N pretension rests it at z = 1.43 m. A file of the user's own replaces t
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -96,6 +98,21 @@ INCA = Geometry(
     assumed=True,
     source="assumed: flat SPIDAR-G cross; the thesis' own coordinates are lost",
 )
+
+
+def geometry_of(record: Mapping[str, Any]) -> Geometry:
+    """The geometry of a record that was read from JSON, where rows are lists.
+
+    Args:
+        record: the fields of a `Geometry` by name.
+
+    Raises:
+        InputError: the numbers make no geometry.
+        KeyError: exits or connectors are missing.
+        TypeError: there is a field that a geometry does not have, or a row is none.
+    """
+    rows = {name: tuple(map(tuple, record[name])) for name in ("exits", "connectors")}
+    return Geometry(**{**record, **rows})
 
 
 def read_geometry(path: str | Path) -> Geometry:

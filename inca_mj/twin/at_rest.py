@@ -28,7 +28,7 @@ SECANTS = 12  # more than enough: each adds half as many digits again
 UNKNOWN = dict.fromkeys(Drive._fields, np.nan)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Change:
     """What the effects that are there change at rest.
 
@@ -109,11 +109,16 @@ def change_at_rest(
             )
             load -= np.array(effect.hooks["wrench"](still, tuple(p[:, 0])))
     d = np.linalg.norm(r, axis=1) + way[:, 0]
-    if not layout.settled:
-        nothing = np.zeros(DRIVES)
-        return Change(way[:, 0], 0 * way[:, 1:], 0 * load, nothing, d, values, ())
-    stiffening = tuple(e for e in there if "tension" in e.hooks)
-    return Change(way[:, 0], way[:, 1:], load, wider, d, values, stiffening)
+    at_rest = layout.settled
+    return Change(
+        longer=way[:, 0],
+        turned=at_rest * way[:, 1:],
+        load=at_rest * load,
+        wider=wider if at_rest else np.zeros(DRIVES),
+        d=d,
+        values=values,
+        stiffening=tuple(e for e in there if "tension" in e.hooks) if at_rest else (),
+    )
 
 
 def own_states(values: Mapping[str, float], strain: np.ndarray, layout: Layout) -> np.ndarray:

@@ -14,7 +14,7 @@ from mujoco.batch import Batch
 from identification.errors import InputError
 from identification.files import whole_file
 from identification.model.rollout import State, rollout
-from inca_mj.robot.geometry import DRIVES, Geometry
+from inca_mj.robot.geometry import DRIVES, Geometry, geometry_of
 from inca_mj.robot.kinematics import euler
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import Twin, build_twin
@@ -23,7 +23,7 @@ _STAGE = mujoco.mjtStage.mjSTAGE_VEL
 _ARRAYS = ("time", "currents", "qpos", "qvel", "act", "tension", "length")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Run:
     """N samples of a simulation.
 
@@ -114,7 +114,16 @@ def simulate(
     tension, length = readings(robot, at)
     time = np.arange(len(currents)) * sampling_time
     no_load = at.act[:, :: robot.layout.states]
-    return Run(robot, time, currents, at.qpos, at.qvel, no_load, tension, length)
+    return Run(
+        twin=robot,
+        time=time,
+        currents=currents,
+        qpos=at.qpos,
+        qvel=at.qvel,
+        act=no_load,
+        tension=tension,
+        length=length,
+    )
 
 
 def readings(robot: Twin, at: State) -> tuple[np.ndarray, np.ndarray]:
@@ -179,11 +188,9 @@ def load_run(path: str | Path) -> Run:
 def _robot(header: dict[str, Any]) -> Twin:
     """The robot that a saved run's header tells."""
     names = {f.name for f in fields(Geometry)}
-    geometry = {k: v for k, v in header["geometry"].items() if k in names}
-    for name in ("exits", "connectors"):
-        geometry[name] = tuple(tuple(row) for row in geometry[name])
+    geometry = geometry_of({k: v for k, v in header["geometry"].items() if k in names})
     return build_twin(
         parameter_set(header["set"], header["values"]),
-        Geometry(**geometry),
+        geometry,
         timestep=header["timestep"],
     )

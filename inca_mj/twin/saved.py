@@ -21,7 +21,7 @@ from identification.files import write_text
 from identification.model.parameter import Parameter, ParameterSet
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.effects.values import records
-from inca_mj.robot.geometry import Geometry
+from inca_mj.robot.geometry import geometry_of
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import Twin, build_twin
 
@@ -71,7 +71,7 @@ def load_twin(path: str | Path, effects: Sequence[Effect] = CATALOGUE) -> Twin:
     folder = Path(path).parent if own_file else Path(path)
     record = _read(folder / "effects.json")
     try:
-        geometry = _geometry(record["geometry"])
+        geometry = geometry_of(record["geometry"])
         wanted: list[dict[str, Any]] = record["effects"]
         own = _known(wanted, effects, folder)
         values = {**record["values"], **{n: v for e in wanted for n, v in e["values"].items()}}
@@ -142,11 +142,6 @@ def _parameters(name: str, values: dict[str, float], effects: Sequence[Effect]) 
     base = parameter_set(name)
     known: tuple[Parameter, ...] = (*base.records, *records(effects))
     return replace(base, records=known).with_values(values)
-
-
-def _geometry(record: dict[str, Any]) -> Geometry:
-    rows = {name: tuple(map(tuple, record[name])) for name in ("exits", "connectors")}
-    return Geometry(**{**record, **rows})
 
 
 def _same(model: mujoco.MjModel, path: Path) -> None:

@@ -1,31 +1,41 @@
-"""Is a log wired as the robot is: angles of the right drive, sign and unit?
+"""Is a log wired as the robot is? Its first motion beside the nominal twin's.
 
-    c_ij = ⟨y_i, ŷ_j⟩ / (‖y_i‖ ‖ŷ_j‖),    s_i = ⟨y_i, ŷ_i⟩ / ‖ŷ_i‖²   over two seconds of motion
+    ε_k = 1 - ⟨y_k, ŷ_k⟩ / (‖y_k‖ ‖ŷ_k‖),    s_k = ⟨y_k, ŷ_k⟩ / ‖ŷ_k‖²
 
-ŷ is what the nominal twin does under the logged currents, from where it begins to move. A model
-that lacks something is off by a few percent there: c_ii >= 0.89 and 0.77 <= s <= 1.2 over 89
-simulated logs of 25 effects; an anchor that is 0.1 m off makes even c_ii = -0.5. So a log is
-refused only where another sign, or another drive's motion, explains it far better than its own:
-1 - c falls to a fifth. Where the model does not move, nothing is said.
+ŷ is a free run under the logged currents until two seconds after the twin begins to move; ε is what
+`identification.logs.readings` takes, here without the scale s, which is judged by itself. A twin
+that lacks something is off by a few percent: ε <= 0.11 and 0.77 <= s <= 1.2 over 89 simulated logs
+of 25 effects; an anchor that is 0.1 m off makes even ε = 1.5. Where the twin does not move, nothing
+is said.
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
 from identification import Log, Predictor
 from identification.errors import DivergenceError, InputError
 from identification.logs.frozen import refuse_frozen
+from identification.logs.names import listed
+from identification.logs.readings import (
+    Reading,
+    misread,
+    output_readings,
+    turned,
+)
 from inca_mj.twin.logs import ANGLES
 from inca_mj.twin.twin import Twin
 
 LONGEST = 10.0  # [s] in which motion must begin
-MOTION = 0.05  # [rad] of the model; a hundred times an encoder's noise
+MOTION = 0.05  # [rad] of the twin; a hundred times an encoder's noise
 BEGINNING = 2.0  # [s] from there; later even a good model has drifted
-DEAD = 1e-3  # of the model's motion
-NEARER = 0.2  # of 1 - c, that another sign or drive must leave to be the likelier one
-UNIT = (0.3, 10.0)  # of the motion; revolutions are at 0.16, degrees at 57
-ADVICE = "; `inca compare` shows the log beside the model"
+DEAD = 1e-3  # of the twin's motion
+UNIT = (0.3, 10.0)  # of the twin's motion; revolutions are at 0.16, degrees at 57
+ADVICE = "; `inca compare` shows the log beside the twin"
 
 
 def refuse_miswired(log: Log, plant: Twin) -> None:
@@ -40,52 +50,79 @@ def refuse_miswired(log: Log, plant: Twin) -> None:
     """
     for k in range(log.outputs.shape[1]):
         refuse_frozen(log, k, log.inputs[:, [k]], log.outputs[:, :0])
-    y, predicted = _motion(log, plant)
-    moving = np.sqrt(np.mean(predicted**2, axis=0)) > MOTION if len(y) else np.zeros(0, bool)
-    if not moving.all() or not len(y):
+    found = _first_motion(log, plant)
+    if found is None:
         return
+    part, predicted = found
+    y = part.outputs - part.outputs[0]
     size = np.linalg.norm(y, axis=0)
     dead = np.flatnonzero(size <= DEAD * np.linalg.norm(predicted, axis=0))
     if len(dead) == len(size):
         raise InputError("nothing moves in the log though the currents would move the robot")
     if len(dead):
-        raise InputError(f"{_names(dead)}: stands still though its motor turns; dead encoder?")
-    c = (y / size).T @ (predicted / np.linalg.norm(predicted, axis=0))
-    own = np.diag(c)
-    back = np.flatnonzero(1 + own < NEARER * (1 - own))
-    if len(back) == len(size):
-        raise InputError("all angles, or all currents, have the wrong sign" + ADVICE)
-    from scipy.optimize import linear_sum_assignment  # slow to import
+        names = listed(ANGLES[i] for i in dead)
+        raise InputError(f"{names}: stands still though its motor turns; dead encoder?")
 
-    _, best = linear_sum_assignment(1 - c)
-    moved = np.flatnonzero(best != np.arange(len(best)))
-    if len(moved) and (1 - c[moved, best[moved]] < NEARER * (1 - own[moved])).all():
-        pairs = ", ".join(f"{ANGLES[i]} moves as the model's {ANGLES[best[i]]} does" for i in moved)
-        raise InputError(f"{pairs}; exchange the columns" + ADVICE)
-    if len(back):
-        raise InputError(f"{_names(back)}: moves against the model; reverse its sign" + ADVICE)
+    def unexplained(other: Log) -> np.ndarray:
+        moved = other.outputs - other.outputs[0]
+        return 1 - np.diag(_alike(moved, predicted))
+
+    column = {n: n for n in (*log.output_names, *log.input_names)}
+    every = np.ones(y.shape[1], bool)
+    readings = chain(output_readings(part, every, column), _several(part, y, predicted))
+    said = misread(part, unexplained(part), readings, unexplained)
+    if said is not None:
+        raise InputError(f"log {log.name!r}: the twin {said}{ADVICE}")
     scale = float(np.exp(np.mean(np.log(np.abs((y * predicted).sum(0) / (predicted**2).sum(0))))))
     if not UNIT[0] < scale < UNIT[1]:
         raise InputError(
-            f"the angles move {scale:.2g} times as far as the model's under these currents; they"
+            f"the angles move {scale:.2g} times as far as the twin's under these currents; they"
             " must be in radians (a revolution is 6.28, a degree 0.0175) and currents in ampere"
             + ADVICE
         )
 
 
-def _motion(log: Log, plant: Twin) -> tuple[np.ndarray, np.ndarray]:
-    """Measured and predicted angles from where the model begins to move, shapes (n, 8)."""
+def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Reading]:
+    """What is wrong with several encoders at once: signs, and an exchange of more than two."""
+    back = np.flatnonzero((y * predicted).sum(axis=0) < 0).tolist()
+    if 1 < len(back) < y.shape[1]:
+        outputs = turned(part.outputs, back)
+        yield Reading(replace(part, outputs=outputs), back, "with the other sign",
+                      f"turn the sign of {listed(ANGLES[k] for k in back)}")  # fmt: skip
+    from scipy.optimize import linear_sum_assignment  # slow to import
+
+    _, at = linear_sum_assignment(1 - _alike(y, predicted))
+    moved = np.flatnonzero(at != np.arange(len(at))).tolist()
+    if len(moved) > 2:
+        outputs = part.outputs.copy()
+        outputs[:, at] = part.outputs
+        pairs = listed(f"{ANGLES[i]} to {ANGLES[at[i]]}" for i in moved)
+        yield Reading(replace(part, outputs=outputs), moved, "were they exchanged",
+                      f"rename {pairs} under [columns]")  # fmt: skip
+
+
+def _alike(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:
+    """Cosines between measured and predicted angles, each (n, 8): entry i, j of y_i and ŷ_j."""
+    sizes = np.linalg.norm(y, axis=0)[:, None] * np.linalg.norm(predicted, axis=0)
+    return np.asarray(y.T @ predicted / sizes)
+
+
+def _first_motion(log: Log, plant: Twin) -> tuple[Log, np.ndarray] | None:
+    """The log until its first motion is over, n samples, and the twin's angles, shape (n, 8) [rad].
+
+    None where the twin does not move, or cannot be simulated.
+    """
     start = float(log.time[0])
     part = log.between(start, start + LONGEST) if log.duration > LONGEST else log
     try:
         predicted = Predictor(plant, part, (), {}).predict(np.zeros((1, 0)))[0]
     except DivergenceError:  # the search says what to do
-        return np.zeros((0, 8)), np.zeros((0, 8))
+        return None
     late = np.flatnonzero(np.abs(predicted).max(axis=1) > MOTION)
-    first = int(late[0]) if len(late) else len(predicted)
-    rows = slice(first, first + round(BEGINNING / log.sampling_time))
-    return part.outputs[rows] - part.outputs[0], predicted[rows]
-
-
-def _names(drives: np.ndarray) -> str:
-    return ", ".join(ANGLES[i] for i in drives)
+    if not len(late):
+        return None
+    rows = slice(int(late[0]), int(late[0]) + round(BEGINNING / log.sampling_time))
+    if not (np.sqrt(np.mean(predicted[rows] ** 2, axis=0)) > MOTION).all():
+        return None
+    n = len(predicted[: rows.stop])
+    return part.between(start, float(part.time[n - 1]) + log.sampling_time / 2), predicted[:n]

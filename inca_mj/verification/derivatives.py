@@ -37,7 +37,7 @@ _VARIED = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t", "
            "I_x", "I_y", "I_z")  # fmt: skip
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class DerivativeErrors:
     """Largest relative errors over all states; what they are relative to, see the module.
 
@@ -98,7 +98,15 @@ def compare_derivatives(
     )
     linear, angular, motor, no_load, tension = np.max(errors, axis=0).tolist()
     share = float(np.average(slack, weights=counts))
-    return DerivativeErrors(linear, angular, motor, no_load, tension, sum(counts), share)
+    return DerivativeErrors(
+        linear=linear,
+        angular=angular,
+        motor=motor,
+        no_load=no_load,
+        tension=tension,
+        states=sum(counts),
+        slack=share,
+    )
 
 
 def _random_values(base: ParameterSet, rng: np.random.Generator) -> dict[str, float]:

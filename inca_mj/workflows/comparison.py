@@ -10,6 +10,7 @@ import numpy as np
 
 from identification import InputError, Log, fit_percent, rms
 from identification.model.parameter import ParameterSet
+from identification.quantities import finite_or_none
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.logs import POSE, pose_of
@@ -37,7 +38,7 @@ class Comparison:
     def to_json(self) -> dict[str, Any]:
         """The numbers as plain values."""
         return {
-            "fit_percent": [float(f) if np.isfinite(f) else None for f in self.fit_percent],
+            "fit_percent": [finite_or_none(f) for f in self.fit_percent],
             "rms": self.rms.tolist(),
             "samples": len(self.log),
             "seconds_simulated": self.log.duration,

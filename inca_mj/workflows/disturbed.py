@@ -70,7 +70,7 @@ def identify_windows(
     near = estimate(plant, early, names, progress=progress).values
     found = estimate_windows(plant, fitted, names, length, near, progress=progress)
     fit = assess(estimate(plant, fitted, POSE, found.values, progress=progress), log)
-    return Identification(log, (fit,), 0, windows=found)
+    return Identification(log=log, fits=(fit,), best=0, windows=found)
 
 
 def identify_innovations(
@@ -101,4 +101,4 @@ def identify_innovations(
     refuse_miswired(log, plant)
     names = tuple(free) or (*MECHANICS, *POSE)
     found = estimate_innovations(plant, log, names, progress=progress)
-    return Identification(log, (found.fit,), 0, innovations=found)
+    return Identification(log=log, fits=(found.fit,), best=0, innovations=found)

@@ -29,7 +29,7 @@ MECHANICS = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t",
 UNKNOWN = ("lambda", "b", "J", "b_v", "b_c", "beta")  # "arbitrary" or re-estimated in the thesis
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Identification:
     """Fits of a log, and which of them to believe.
 
@@ -113,6 +113,9 @@ def identify(
 
     tried: list[np.ndarray] = []
 
+    def outcome(fits: tuple[Fit, ...], best: int = 0) -> Identification:
+        return Identification(log=log, fits=fits, best=best, starts=tuple(tried))
+
     def step(names: Sequence[str], start: dict[str, float]) -> Fit:
         if starts == 1:
             return assess(estimate(plant, fitted, names, start, options, progress), log)
@@ -123,13 +126,13 @@ def identify(
         return assess(found.best, log)
 
     if free:
-        return Identification(log, (step(tuple(free), {}),), 0, tuple(tried))
+        return outcome((step(tuple(free), {}),))
     all_of_it = step((*MECHANICS, *POSE), {})
     if all_of_it.estimate.status == "stopped":
-        return Identification(log, (all_of_it,), 0, tuple(tried))
+        return outcome((all_of_it,))
     found = all_of_it.estimate.values
     unknown = (*UNKNOWN, *POSE)
     second = step(unknown, {name: found[name] for name in unknown})
     fits = (all_of_it, second)
     errors = [fit.rms if fit.validation_rms is None else fit.validation_rms for fit in fits]
-    return Identification(log, fits, errors.index(min(errors)), tuple(tried))
+    return outcome(fits, errors.index(min(errors)))

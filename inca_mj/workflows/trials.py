@@ -13,6 +13,7 @@ from identification.errors import unknown_name
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import Fit, assess
 from identification.estimation.metrics import fit_percent, loss
+from identification.quantities import finite_or_none
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.thesis import NOISE, TRIALS, Trial, trial_data, with_noise
@@ -45,7 +46,7 @@ class TrialResult:
                     "true": true[name],
                     "initial": self.trial.start[name],
                     "estimated": value,
-                    "std": float(std) if np.isfinite(std) else None,
+                    "std": finite_or_none(std),
                     "thesis": self.trial.thesis[name],
                     "fit_percent": 100 * (1 - abs(value - true[name]) / abs(true[name]))
                     if true[name]

@@ -12,6 +12,12 @@ from inca_mj.cli import main
 LOG = Path(__file__).parents[2] / "examples" / "log.csv"
 
 
+@pytest.fixture(autouse=True)
+def _drawing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`python -m identification`, run here by another test, switches drawing off."""
+    monkeypatch.delenv("MUJOCO_GL", raising=False)
+
+
 def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
     """Run a command that must be refused; returns its sentence."""
     code = main([str(a) for a in arguments])

@@ -38,9 +38,9 @@ def test_swapped_encoders(plant, i, j):
     def swap(y):
         y[:, [i, j]] = y[:, [j, i]]
 
-    with pytest.raises(InputError, match="exchange the columns") as refused:
+    with pytest.raises(InputError, match="were they exchanged") as refused:
         refuse_miswired(changed(swap), plant)
-    assert f"angle_{i + 1} moves as the model's angle_{j + 1}" in str(refused.value)
+    assert f"exchange angle_{i + 1} and angle_{j + 1} under [columns]" in str(refused.value)
 
 
 @pytest.mark.parametrize("drive", range(8))
@@ -48,7 +48,7 @@ def test_a_reversed_encoder(plant, drive):
     def reverse(y):
         y[:, drive] *= -1
 
-    with pytest.raises(InputError, match=f"angle_{drive + 1}: moves against the model"):
+    with pytest.raises(InputError, match=f"turn the sign of angle_{drive + 1};"):
         refuse_miswired(changed(reverse), plant)
 
 
@@ -83,13 +83,27 @@ def test_a_dead_encoder(plant):
         refuse_miswired(changed(kill), plant)
 
 
-@pytest.mark.parametrize("unit", [2 * np.pi, np.pi / 180])
+@pytest.mark.parametrize("unit", [2 * np.pi, np.pi / 180, 2 * np.pi / 4000])
 def test_another_unit(plant, unit):
     def convert(y):
         y /= unit
 
     with pytest.raises(InputError, match="must be in radians"):
         refuse_miswired(changed(convert), plant)
+
+
+def test_several_encoders_at_once(plant):
+    def reverse(y):
+        y[:, [1, 4, 6]] *= -1
+
+    with pytest.raises(InputError, match="turn the sign of angle_2, angle_5, angle_7;"):
+        refuse_miswired(changed(reverse), plant)
+
+    def rotate(y):
+        y[:, [0, 1, 2]] = y[:, [1, 2, 0]]
+
+    with pytest.raises(InputError, match="rename angle_1 to angle_2, angle_2 to angle_3, angle_3"):
+        refuse_miswired(changed(rotate), plant)
 
 
 @pytest.mark.parametrize("rest", [1.0, 1.99, 2.0, 2.5, 12.0])
@@ -106,5 +120,5 @@ def test_currents_of_the_wrong_sign(plant):
     def reverse(y):
         y *= -1
 
-    with pytest.raises(InputError, match="all currents, have the wrong sign"):
+    with pytest.raises(InputError, match=r"turn the sign of angle_1, .* or of current_1"):
         refuse_miswired(changed(reverse), plant)

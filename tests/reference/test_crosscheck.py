@@ -20,7 +20,13 @@ from inca_mj.verification import (
 from inca_mj.verification.check import STEPS
 from inca_mj.verification.order import crossing, leading_slope, slope
 
-GOOD = DerivativeErrors(0, 0, 0, 0, 0, states=1, slack=0.5)
+
+def derivative_errors(**some):
+    zero = dict.fromkeys(("linear", "angular", "motor", "no_load", "tension"), 0.0)
+    return DerivativeErrors(**{**zero, **some}, states=1, slack=0.5)
+
+
+GOOD = derivative_errors()
 
 
 def row(case, step, error):
@@ -86,9 +92,9 @@ def test_limits_are_judged():
     assert not CrossCheck(GOOD, rows(8e-6, None)).passed
     assert not CrossCheck(GOOD, (*rows(8e-6, 5e-7), row("spin", 1e-3, None))).passed
     assert CrossCheck(GOOD, (*rows(8e-6, 5e-7), row("spin", 2e-3, None))).passed
-    bad = DerivativeErrors(0, 2e-9, 0, 0, 0, states=1, slack=0.5)
+    bad = derivative_errors(angular=2e-9)
     assert not CrossCheck(bad, rows(8e-6, 5e-7)).passed
-    lost = DerivativeErrors(0, np.nan, 0, 0, 0, states=1, slack=0.5)
+    lost = derivative_errors(angular=np.nan)
     assert not CrossCheck(lost, rows(8e-6, 5e-7)).passed
     assert "DISAGREE" in CrossCheck(bad, ()).sentences[0]
 

@@ -1,0 +1,159 @@
+"""Is a log what it says: every column in its unit, with its sign, in its place?
+
+    ε_k = Σ ‖y_k - ŷ_k‖² / Σ ‖y_k - y_k(0)‖²       share of output k that a model leaves unexplained
+
+A model whose parameters are yet to be found may be far off, so a log is refused only where the
+model would explain it as another one, and far better: in other units, against a sign, with two
+columns exchanged. What only a better model explains is left to the search. Where the model's ŷ
+begins, and over which time, is the caller's: he gives ε as a function of a log.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations, product
+
+import numpy as np
+
+from identification.logs.log import Log
+from identification.logs.names import listed
+from identification.logs.units import UNITS
+
+UNEXPLAINED = 0.05  # least ε of an output that is not what it says
+NEARER = 0.2  # of ε, that another reading must leave
+EXPLAINED = 0.5  # ε of all that it changes, at most
+
+Unexplained = Callable[[Log], np.ndarray | None]  # ε, shape (ny,); None where none can be had
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Another way to read a log.
+
+    Attributes:
+        log: so read.
+        columns: outputs that change, with it or with what an input does to them.
+        said: what it would be, in words.
+        cure: what to do, were it so.
+    """
+
+    log: Log
+    columns: Sequence[int]
+    said: str
+    cure: str
+
+
+def misread(
+    log: Log, own: np.ndarray, readings: Iterable[Reading], unexplained: Unexplained
+) -> str | None:
+    """The reading that explains a log far better than it is read, in words.
+
+    Far better: every column that it changes. Of several, the one that leaves least in all.
+
+    Args:
+        log: as it is read.
+        own: its ε, shape (ny,), without unit.
+        readings: other ones.
+        unexplained: ε of a log.
+
+    Returns:
+        How much is explained of which outputs, how much would be, and the cure; None where no
+        reading is far better.
+    """
+    best, least = None, np.inf
+    for reading in readings:
+        left, k = unexplained(reading.log), list(reading.columns)
+        if left is None or not (left[k] < np.minimum(EXPLAINED, NEARER * own[k])).all():
+            continue
+        if left.sum() < least:
+            best, least = (reading, left), float(left.sum())
+    if best is None:
+        return None
+    reading, left = best
+    before, after = (100 * max(0.0, 1 - float(e[list(reading.columns)].max())) for e in (own, left))
+    return (
+        f"explains {before:.0f} % of {listed(log.output_names[k] for k in reading.columns)}, and"
+        f" {after:.0f} % {reading.said}; {reading.cure}"
+    )
+
+
+def unit_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
+    """Other units of the outputs that are not explained.
+
+    Args:
+        log: as it is read.
+        bad: true where an output is not explained, shape (ny,).
+        column: what an output or input is called in the log's file.
+    """
+    out = [column[n] for n in log.output_names]
+    for words in _units([log.units.get(n, "") for n in log.output_names]):
+        changed = [k for k, word in enumerate(words) if word]
+        if all(bad[changed]):
+            scale = [UNITS[word][1] if word else 1.0 for word in words]
+            told = ", ".join(f'{out[k]} = "{words[k]}"' for k in changed)
+            said = f"were it in {' and '.join(dict.fromkeys(words[k] for k in changed))}"
+            yield Reading(replace(log, outputs=log.outputs * scale), changed, said,
+                          f"write {told} under [units] of the log's TOML")  # fmt: skip
+
+
+def output_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
+    """Other signs and places of the outputs that are not explained; see `unit_readings`."""
+    y, wrong = log.outputs, np.flatnonzero(bad).tolist()
+    out, into = ([column[n] for n in names] for names in (log.output_names, log.input_names))
+    units = [log.units.get(n, "") for n in log.output_names]
+    for k in [*([k] for k in wrong), *([wrong] if len(wrong) > 1 else [])]:
+        mirror = f", or of {listed(into)}" if len(k) == y.shape[1] else ""  # looks the same
+        yield Reading(replace(log, outputs=turned(y, k)), k, "with the other sign",
+                      f"turn the sign of {listed(out[i] for i in k)}{mirror}")  # fmt: skip
+    for i, j in combinations(range(y.shape[1]), 2):
+        if bad[i] and bad[j] and units[i] == units[j]:
+            yield Reading(replace(log, outputs=_exchanged(y, i, j)), [i, j], "were they exchanged",
+                          f"exchange {out[i]} and {out[j]} under [columns]")  # fmt: skip
+
+
+def input_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
+    """Other signs and places of the inputs; see `unit_readings`."""
+    u, wrong = log.inputs, np.flatnonzero(bad).tolist()
+    into = [column[n] for n in log.input_names]
+    for k in range(u.shape[1]):
+        yield Reading(replace(log, inputs=turned(u, [k])), wrong,
+                      "with the other sign of an input",
+                      f"turn the sign of {into[k]}")  # fmt: skip
+    for i, j in combinations(range(u.shape[1]), 2):
+        yield Reading(replace(log, inputs=_exchanged(u, i, j)), wrong, "were inputs exchanged",
+                      f"exchange {into[i]} and {into[j]} under [columns]")  # fmt: skip
+
+
+def turned(signals: np.ndarray, columns: Sequence[int]) -> np.ndarray:
+    """Signals, shape (n, m), with the other sign of some columns, in the same units."""
+    return signals * np.where(np.isin(np.arange(signals.shape[1]), columns), -1.0, 1.0)
+
+
+def unexplained_share(y: np.ndarray, error: np.ndarray) -> np.ndarray:
+    """ε of each output over W windows, shape (ny,), without unit; 0 where it does not move.
+
+    Args:
+        y: what was measured, shape (W, L, ny), in the outputs' units.
+        error: of the model, the same shape and units.
+    """
+    moved = np.sum((y - y[:, :1]) ** 2, axis=(0, 1))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio: np.ndarray = np.sum(error**2, axis=(0, 1)) / moved
+    return np.where(moved > 0, ratio, 0.0)
+
+
+def _units(units: Sequence[str]) -> Iterator[tuple[str, ...]]:
+    """Other units of the columns, "" for as it is: of all that share one, and of one alone."""
+    kinds = [*dict.fromkeys(units)]
+    words = {si: ["", *(w for w, (of, _) in UNITS.items() if of == si != w)] for si in kinds}
+    for chosen in product(*(words[si] for si in kinds)):
+        if any(chosen):
+            yield tuple(chosen[kinds.index(si)] for si in units)
+    for k, si in enumerate(units):
+        if units.count(si) > 1:
+            yield from (tuple(w * (i == k) for i in range(len(units))) for w in words[si][1:])
+
+
+def _exchanged(signals: np.ndarray, i: int, j: int) -> np.ndarray:
+    return signals[:, [{i: j, j: i}.get(k, k) for k in range(signals.shape[1])]]
