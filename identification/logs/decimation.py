@@ -2,9 +2,10 @@
 
     u(t) = Σ_k c_k φ_k(t),     c = argmin ∫ (u_logged(t) - u(t))² dt
 
-φ_k are the functions of the new hold: boxes between samples ("zoh": c_k is the mean), or the hats
-of straight lines ("foh"), which also keep the moment of what happened between two samples. The
-outputs are not filtered: a filter would delay what the inputs did, and a fit would see the delay.
+φ_k are the basis functions of the new hold. For "zoh" they are boxes between samples, and c_k is
+the mean. For "foh" they are the hat functions of straight lines, which also keep the first moment
+of the input between two samples. The outputs are not filtered: a filter would delay the outputs
+against the inputs, and a fit would find this delay.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ def decimate(log: Log, every: int, hold: Literal["zoh", "foh"] = "foh") -> Log:
     """Every n-th sample of a log whose inputs were held between samples.
 
     Args:
-        log: of hold "zoh"; its extras are sampled as its outputs are.
+        log: a log of hold "zoh"; its extras are sampled in the same way as its outputs.
         every: n.
-        hold: of the new inputs.
+        hold: the hold of the new inputs.
 
     Raises:
-        InputError: the log is not of hold "zoh", or n leaves less than 3 samples.
+        InputError: the hold of the log is not "zoh", or fewer than 3 samples are left.
     """
     n = (len(log) - 1) // every if every >= 1 else 0
     if n < 2 or log.hold != "zoh":

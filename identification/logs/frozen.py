@@ -1,7 +1,7 @@
-"""Sensors that freeze: from some sample on an output repeats itself while its joint is driven on.
+"""Sensors that freeze: an output repeats one value while its joint is still driven.
 
-A joint that rests repeats itself too, but not while its inputs go on as before; nor does an encoder
-whose steps have become too coarse for the motion freeze all at once.
+The output of a joint at rest repeats one value too, but then its inputs have changed. An encoder
+whose steps are too coarse for a slow motion also repeats values, but it does not stop suddenly.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ import numpy as np
 from identification.errors import InputError
 from identification.logs.log import Log
 
-FEWEST = 50  # samples that repeat
-SHARE = 0.2  # of the log that repeats
-AS_BEFORE = 0.5  # of the std before: a signal that varies so much goes on
-STEPS = 3  # that an encoder crosses in the samples before, as many as `FEWEST`
+FEWEST = 50  # a frozen output repeats at least so many samples
+SHARE = 0.2  # and at least this share of the log
+AS_BEFORE = 0.5  # of the std before; a signal that still varies by as much counts as moving
+STEPS = 3  # that the encoder crosses in the `FEWEST` samples before it freezes
 
 
 def refuse_frozen(log: Log, output: int, inputs: np.ndarray, others: np.ndarray) -> None:
@@ -23,11 +23,13 @@ def refuse_frozen(log: Log, output: int, inputs: np.ndarray, others: np.ndarray)
     Args:
         log: what was measured.
         output: column of the output.
-        inputs: all that drives its joint, shape (n, k); it goes on where all of them do.
-        others: other outputs of its joint, shape (n, m); it goes on where one of them does.
+        inputs: everything that drives its joint, shape (n, k); the joint counts as driven where all
+            of these vary as before.
+        others: other outputs of its joint, shape (n, m); the joint counts as moving where one of
+            these varies as before.
 
     Raises:
-        InputError: it froze.
+        InputError: the output froze.
     """
     y = log.outputs[:, output]
     moved = np.flatnonzero(np.diff(y))
@@ -46,6 +48,6 @@ def refuse_frozen(log: Log, output: int, inputs: np.ndarray, others: np.ndarray)
 
 
 def _goes_on(signals: np.ndarray, first: int) -> np.ndarray:
-    """Which signals vary from a sample on as they did before it, shape (k,)."""
+    """Which signals vary after a sample as much as before it, shape (k,)."""
     before, after = signals[:first].std(axis=0), signals[first:].std(axis=0)
     return np.asarray((after > 0) & (after >= AS_BEFORE * before))

@@ -1,10 +1,10 @@
-"""Channels that arrived whenever they did, on one even grid.
+"""Channels with uneven time stamps, interpolated onto one even grid.
 
     x_i(k h) = the straight line between the nearest samples of channel i on both sides
 
-A bus that asks one device after the other leaves time stamps uneven and cells empty (NaN). A
-predictor steps over an even grid, so each channel is drawn through its own samples. Between two
-samples a line is a guess: a gap that is longer than `widest` is refused.
+A bus that asks one device after the other gives uneven time stamps and empty cells (NaN). A
+predictor needs an even grid, so each channel is interpolated between its own samples. The line
+between two samples is a guess, so a gap that is longer than `widest` is refused.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ def on_a_grid(
     step: float,
     widest: float,
 ) -> tuple[FloatArray, dict[str, FloatArray]]:
-    """Draw every channel through its own samples, from where all have begun to where one ends.
+    """Interpolate every channel, from the time when all have begun to the time when one ends.
 
     Args:
-        time: stamps, shape (n,) [s]; rows with equal stamps are one another's neighbours.
+        time: time stamps, shape (n,) [s]; rows with equal stamps are adjacent.
         channels: by name, shape (n,), each in a unit of its own; NaN where nothing arrived.
-        step: of the grid [s].
-        widest: gap between two samples of a channel that is still bridged [s].
+        step: step of the grid [s].
+        widest: largest gap between two samples of a channel that is interpolated [s].
 
     Returns:
         Time of the grid from zero, shape (m,) [s], and the channels on it.
 
     Raises:
-        InputError: a channel has fewer than two samples, its gap is too wide, or nothing is left.
+        InputError: a channel has fewer than two samples or too wide a gap, or nothing is left.
     """
     if not (step > 0 and np.isfinite(step)):
         raise InputError(f"a grid needs a positive step, not {step:g} s")

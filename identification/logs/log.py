@@ -37,13 +37,13 @@ class Log:
         extras: optional columns by name, each of shape (n,) in its unit, such as a measured pose.
         units: SI unit by column name, where known.
         name: what to call the log in a report.
-        notes: what its author says of it.
-        hold: the input between samples: "zoh" keeps the last, "foh" draws a straight line.
+        notes: remarks of its author.
+        hold: the input between samples: "zoh" keeps the last value, "foh" draws a straight line.
         splits: named parts [start, end) [s], such as estimation and validation.
 
     Raises:
-        InputError: shapes disagree, a number is not finite, time is uneven, a name is unusable, or
-            a split is empty or lets validation see the data of estimation.
+        InputError: shapes disagree, a number is not finite, time is uneven, a name is unusable, a
+            split is empty, or the splits for estimation and validation overlap.
     """
 
     time: FloatArray = field(repr=False)
@@ -72,7 +72,7 @@ class Log:
         self._check()
 
     def _check(self) -> None:
-        """Refuse what breaks a promise of the class."""
+        """Refuse values that the class does not admit."""
         names = (*self.input_names, *self.output_names, *self.extras)
         check_column_names(names)
         if not (self.input_names or self.output_names):
@@ -96,7 +96,7 @@ class Log:
         return len(self.time)
 
     def __reduce__(self) -> tuple[Callable[[dict[str, Any]], Log], tuple[dict[str, Any]]]:
-        # A mapping proxy cannot be pickled, and a log must reach other processes.
+        # A mapping proxy cannot be pickled, but logs are sent to other processes.
         values = {name: getattr(self, name) for name in self.__dataclass_fields__}
         for name in ("extras", "units", "splits"):
             values[name] = dict(values[name])
@@ -123,15 +123,15 @@ class Log:
 
     @property
     def output_unit(self) -> str:
-        """The unit of all outputs, empty where they have several or none is known."""
+        """The unit of all outputs; empty where they have several units or none is known."""
         units = {self.units.get(name, "") for name in self.output_names}
         return units.pop() if len(units) == 1 else ""
 
     def between(self, start: float, end: float) -> Log:
-        """The samples of [start, end) [s]; time keeps its zero, and the splits are dropped.
+        """The samples of [start, end) [s]; time stamps stay as they are, splits are dropped.
 
         Raises:
-            InputError: fewer samples than a log needs are in there.
+            InputError: there are fewer samples than a log needs.
         """
         first, last = rows_between(self.time, start, end)
         if last - first < MIN_ROWS:
@@ -150,7 +150,7 @@ class Log:
         )
 
     def part(self, name: str) -> Log:
-        """A named split; a log without splits has those of `halves`.
+        """The samples of a named split; a log without splits has those of `halves`.
 
         Raises:
             InputError: the name is unknown.
@@ -162,7 +162,7 @@ class Log:
 
 
 def halves(log: Log) -> Splits:
-    """The default splits: identify on the first half, confirm on the second."""
+    """The default splits: the first half is for estimation, the second for validation."""
     step = log.sampling_time
     start, end = float(log.time[0]), float(log.time[-1]) + step
     middle = float(log.time[len(log) // 2])

@@ -1,4 +1,4 @@
-"""What a log promises, checked once, at its birth: see `identification.logs.log.Log`."""
+"""The checks of a new log; see `identification.logs.log.Log`."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ def check_array(log: str, what: str, array: FloatArray, shape: tuple[int, ...]) 
     Args:
         log: name of the log.
         what: name of the array.
-        array: of numbers, any shape.
-        shape: the one that it should have.
+        array: the numbers, in any shape.
+        shape: the shape that it should have.
 
     Raises:
-        InputError: it has another shape, or a number in it is not finite.
+        InputError: the array has another shape, or a number in it is not finite.
     """
     if array.shape != shape:
         raise InputError(
@@ -39,7 +39,7 @@ def check_array(log: str, what: str, array: FloatArray, shape: tuple[int, ...]) 
 
 
 def check_splits(log: str, time: FloatArray, splits: Mapping[str, tuple[float, float]]) -> None:
-    """Refuse a named part that is empty, or a validation that sees the data of estimation.
+    """Refuse a named part that is empty, and parts for estimation and validation that overlap.
 
     Args:
         log: name of the log.

@@ -20,12 +20,12 @@ def group(name: str) -> str:
 
 
 def lookup(table: Mapping[str, Value], name: str) -> Value | None:
-    """What `table` says of a column: under its own name first, else under its group."""
+    """The entry of `table` for a column: under its own name, or else under its group."""
     return table.get(name, table.get(group(name)))
 
 
 def check_keys(what: str, keys: Iterable[str], columns: Iterable[str]) -> None:
-    """Refuse a key that is neither a column nor a group: it would silently do nothing.
+    """Refuse a key that is neither a column nor a group, because it would have no effect.
 
     Raises:
         InputError: a key is unknown.
@@ -37,14 +37,14 @@ def check_keys(what: str, keys: Iterable[str], columns: Iterable[str]) -> None:
 
 
 def listed(names: Iterable[str]) -> str:
-    """Names for a message, on one line whatever they hold, and cut when there are too many."""
+    """Names for a message: always on one line, and shortened when there are too many."""
     every = list(names)
     shown = ", ".join(quoted(n) for n in every[:_LISTED])
     return shown + (f" and {len(every) - _LISTED} more" if len(every) > _LISTED else "")
 
 
 def quoted(text: str, longest: int = 40) -> str:
-    """Text from a file for a message: as it is when it is a plain name, else escaped and cut."""
+    """Text of a file for a message: a plain name as it is, other text escaped and shortened."""
     if text.isprintable() and 0 < len(text) <= longest and text == text.strip():
         return text
     return repr(text if len(text) <= longest else text[: longest - 3] + "...")
@@ -54,7 +54,8 @@ def check_column_names(names: Iterable[str]) -> None:
     """Refuse names that a CSV header could not hold, and names that occur twice.
 
     Raises:
-        InputError: a name is empty, `time`, twice there, or holds a comma, a quote or a line break.
+        InputError: a name is empty, is `time`, occurs twice, or contains a comma, a quote or a line
+            break.
     """
     every = list(names)
     for name in every:

@@ -1,9 +1,9 @@
-"""The noise of a measurement, seen in the measurement alone.
+"""The noise of a measurement, estimated from the measurement alone.
 
-A smooth signal vanishes in differences of high order; white noise of std σ grows to
-σ √C(2n, n) in differences of order n (von Neumann 1941, for n = 1). The largest three tenths of
-them are left out, and the rest scaled up as for a Gaussian: a few samples after a jump of the
-input, where the signal is not smooth, then do not count.
+In differences of high order a smooth signal vanishes, while white noise of std σ has the std σ
+√C(2n, n) in differences of order n (von Neumann 1941, for n = 1). The largest three tenths of the
+differences are left out, and the std of the others is scaled up as for a Gaussian. So the few
+samples after a jump of the input, where the signal is not smooth, do not count.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ import numpy as np
 from scipy.stats import norm
 
 ORDER = 8
-KEPT = 0.7  # share of the differences that counts
+KEPT = 0.7  # share of the differences that is used
 
 
 def noise_floor(y: np.ndarray, order: int = ORDER) -> np.ndarray:
     """Std of the white noise on each channel of a measurement.
 
-    An upper bound where the signal itself is rough at the sampling rate; encoder steps Δ count as
-    noise of Δ/√12 as long as the signal crosses some of them.
+    This is an upper bound where the signal itself is rough at the sampling rate. Encoder steps Δ
+    count as noise of Δ/√12 as long as the signal crosses some of them.
 
     Args:
         y: measured outputs, shape (n, ny), each in a unit of its own.
@@ -38,10 +38,10 @@ def noise_floor(y: np.ndarray, order: int = ORDER) -> np.ndarray:
 
 
 def whitener_of(residual: np.ndarray) -> np.ndarray:
-    """Rows C with Cᵀ C = Λ⁻¹, Λ the covariance of a residual (n, ny), shape (ny, ny)."""
+    """C with Cᵀ C = Λ⁻¹, where Λ is the covariance of a residual (n, ny); shape (ny, ny)."""
     covariance = residual.T @ residual / len(residual)
     variance = np.diag(covariance)
-    # A channel without error must not weigh all; one in another unit must not weigh otherwise.
+    # A channel without error must not get all the weight, and units must not change the weights.
     size = np.sqrt(np.maximum(variance, 1e-16 * variance.max() + np.finfo(float).tiny))
     correlation = covariance / np.outer(size, size) + 1e-10 * np.eye(len(size))
     return np.linalg.inv(np.linalg.cholesky(correlation)) / size
@@ -50,8 +50,8 @@ def whitener_of(residual: np.ndarray) -> np.ndarray:
 def relative_weight(y: np.ndarray, relative: float) -> np.ndarray:
     """Weights of residuals whose noise has the std `relative` |y|, shape (n, ny); ones for 0.
 
-    Scaled so that a sample of the size of the signal's rms weighs 1. A sample near zero has
-    almost no such noise; it counts as if it were 1 % of the rms.
+    They are scaled so that a sample as large as the signal's rms has the weight 1. A sample near
+    zero has almost no such noise; it gets the weight of a sample of 1 % of the rms.
     """
     if relative == 0:
         return np.ones_like(y)

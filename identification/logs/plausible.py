@@ -1,7 +1,8 @@
-"""Numbers too large to be true are mostly numbers in another unit.
+"""Numbers that are too large are most often numbers in another unit.
 
-A size catches milliamperes taken for amperes. A speed catches degrees taken for radians even when
-the angles themselves are small: it too comes out 57 times too large.
+A limit of the size finds milliamperes that were taken for amperes. A limit of the speed finds
+degrees that were taken for radians, even when the angles are small: the speed too is 57 times too
+large.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from identification.logs.names import group, lookup
 from identification.logs.table import Table
 from identification.logs.units import units_that_fit
 
-TURN = 0.1  # of a turn, by which a jump of a wrapped angle differs from one
+TURN = 0.1  # of a turn: a jump of a wrapped angle differs from a whole turn by less
 
 
 def check_plausible(
@@ -31,7 +32,7 @@ def check_plausible(
 
     Args:
         table: columns in SI, with a time column.
-        factors: by column, what its numbers in the file were multiplied by.
+        factors: by column, the factor by which its numbers in the file were multiplied.
         units: SI unit by column, where known.
         limits: largest plausible size by column or group [SI].
         rates: largest plausible speed by column or group [SI/s].
@@ -67,7 +68,7 @@ def check_plausible(
 
 
 def _wrapped(unit: str, jump: float) -> str:
-    """What to do where an angle jumps by a turn."""
+    """The advice for an angle that jumps by a whole turn."""
     if unit != "rad" or abs(abs(jump) - 2 * np.pi) > TURN * 2 * np.pi:
         return ""
     return ", a jump of a whole turn: the angle is wrapped; unwrap it (numpy.unwrap)"

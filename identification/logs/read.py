@@ -33,7 +33,7 @@ def read_log(
     rates: Mapping[str, float] | None = None,
     named_in: Path | None = None,
 ) -> Log:
-    """Read a log; columns may come in any order, and what a file cannot mean is refused.
+    """Read a log; columns may stand in any order, and a file that cannot be right is refused.
 
     The keys of `units`, `limits` and `rates` are columns or groups: "angle" is all of angle_1,
     angle_2, and so on.
@@ -46,15 +46,15 @@ def read_log(
         optional: columns that may be there; they become `Log.extras`.
         units: SI unit of each column; the sidecar may then give another unit of that quantity.
         limits: largest plausible size [SI].
-        rates: largest plausible speed of change [SI/s]; catches degrees taken for radians.
-        named_in: the file that says `inputs` and `outputs`, for messages; the sidecar when None.
+        rates: largest plausible speed of change [SI/s]; this finds degrees taken for radians.
+        named_in: the file that names `inputs` and `outputs`, for messages; the sidecar when None.
 
     Returns:
         The log in SI units, named after the file.
 
     Raises:
-        InputError: the file cannot be read, or cannot be such a log; one sentence says why and how
-            to go on.
+        InputError: the file cannot be read, or cannot be such a log; one sentence says why and what
+            to do.
     """
     path, units, limits, rates = Path(path), units or {}, limits or {}, rates or {}
     columns = (*inputs, *outputs, *optional)
@@ -73,12 +73,12 @@ def read_log(
     check_columns(table, ("time", *inputs, *outputs), optional, sidecar, named_in)
 
     si, factors = _conversions(table, sidecar, {**units, "time": "s"})
-    with np.errstate(over="ignore"):  # what overflows is refused as not finite
+    with np.errstate(over="ignore"):  # a number that overflows is refused later
         table = replace(table, data=table.data * [factors[name] for name in table.names])
     check_finite(table)
     time = table["time"]
     check_time(time, table.place, sidecar.sampling_time)
-    if sidecar.sampling_time:  # then the stamps may be coarse, and the grid is better
+    if sidecar.sampling_time:  # the grid is better than coarse stamps
         time = grid(time[0], sidecar.sampling_time, len(time))
     check_plausible(table, factors, si, limits, rates, sidecar.path)
     return Log(
@@ -115,7 +115,7 @@ def _with_time(table: Table, step: float) -> Table:
 def _conversions(
     table: Table, sidecar: Sidecar, units: Mapping[str, str]
 ) -> tuple[dict[str, str], dict[str, float]]:
-    """The SI unit of each column, where known, and the factor that takes the file to it."""
+    """The SI unit of each column, where known, and the factor from the file's unit to SI."""
     si: dict[str, str] = {}
     factors: dict[str, float] = {}
     for name in table.names:

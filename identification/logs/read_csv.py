@@ -1,7 +1,7 @@
 """CSV to a table: one header row of names, then one row of numbers for each sample.
 
-The happy path is one call of numpy's parser. Only a file that it refuses is read again, cell by
-cell, to say which line is wrong.
+A correct file is read by one call of numpy's parser. Only a file that it refuses is read again,
+cell by cell, to say which line is wrong.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ _WRONG_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"
 def parse_csv(raw: bytes, path: Path) -> Table:
     """The table in a CSV file.
 
-    Comment lines above the header, a BOM, CRLF and blank lines are fine.
+    Comment lines above the header, a byte order mark, CRLF and blank lines are accepted.
 
     Raises:
-        InputError: it is empty, not text, not separated by commas, ragged, or has a cell that is
-            not a number.
+        InputError: it is empty, not text, not separated by commas, has rows of different lengths,
+            or has a cell that is not a number.
     """
     text = _decoded(raw, path).replace("\r\n", "\n").replace("\r", "\n")
     lines = text.split("\n")

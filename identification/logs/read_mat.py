@@ -25,7 +25,7 @@ def parse_mat(
 ) -> Table:
     """The table in a `.mat` file of version 7 or older.
 
-    Optional columns are vectors of their own name; one that is called `u` or `y` cannot be given.
+    An optional column is a vector of the same name; it cannot be called `u` or `y`.
 
     Raises:
         InputError: the file cannot be read, lacks `u` or `y`, or their shapes do not fit.
@@ -65,13 +65,13 @@ def _loaded(raw: bytes, path: Path) -> dict[str, Any]:
 
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # about variables that we do not use
+            warnings.simplefilter("ignore")  # they are about variables that are not used
             return loadmat(io.BytesIO(raw))
     except NotImplementedError as error:
         raise InputError(
             f"{path} is a MATLAB 7.3 (HDF5) file; save it again with save(..., '-v7')"
         ) from error
-    except Exception as error:  # a damaged file raises whatever its bytes happen to mean
+    except Exception as error:  # a damaged file may raise any exception
         raise InputError(
             f"{path} cannot be read as a MATLAB file; save it again with save(..., '-v7')"
         ) from error
@@ -91,7 +91,7 @@ def _step(value: object, path: Path) -> float:
 
 
 def _samples(arrays: dict[str, FloatArray], wanted: dict[str, Sequence[str]], path: Path) -> int:
-    """The one n for which every matrix is (n, names), or else every matrix fits transposed."""
+    """The number of samples n for which all matrices are (n, names), or all are transposed."""
     upright = {a.shape[0] for k, a in arrays.items() if a.shape[1] == len(wanted[k])}
     lying = {a.shape[1] for k, a in arrays.items() if a.shape[0] == len(wanted[k])}
     fits = [

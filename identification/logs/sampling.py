@@ -1,7 +1,7 @@
-"""Constant sampling: t_k = t_0 + k h, as exactly as the digits of a file can say it.
+"""Constant sampling: t_k = t_0 + k h, as exactly as the digits of a file allow.
 
-A predictor steps over a regular grid, so what matters is how far each time stamp lies from that
-grid, not how much neighbouring steps differ (small differences that add up are a drift).
+A predictor steps over a regular grid. So it matters how far each time stamp lies from this grid,
+and not how much neighbouring steps differ: small differences may add up to a drift.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from identification.errors import InputError
 
 FloatArray = NDArray[np.float64]
 
-MIN_ROWS = 3  # two intervals: the least that can show that sampling is constant
+MIN_ROWS = 3  # two intervals are the fewest that can show constant sampling
 
 # A joint at 50 rad/s moves 0.5 mrad, the noise of its encoder, in 1e-3 of a 10 ms step.
 _JITTER = 1e-3
@@ -23,20 +23,20 @@ _JITTER = 1e-3
 _ROUNDING = 0.02
 # ... or this, when the user has said what the sampling time is.
 _ROUNDING_DECLARED = 0.5
-# A step so many times the usual one is a gap, as long as there are but a few.
+# A step that is so many times the usual one is a gap, if there are only a few of them.
 _JUMP, _FEW = 1.5, 5
 
 
 def sampling_time(time: FloatArray) -> float:
-    """The mean step [s], in which the rounding of single stamps has averaged out.
+    """The mean step [s], in which the rounding errors of the stamps average out.
 
-    Twelve digits drop the last bits that the division leaves: 0.01 is 0.01.
+    It is rounded to twelve digits, to remove the rounding error of the division: 0.01 stays 0.01.
     """
     return float(f"{(float(time[-1]) - float(time[0])) / (len(time) - 1):.12g}")
 
 
 def grid(start: float, step: float, n: int) -> FloatArray:
-    """The n stamps start + k step [s]; those beyond the largest float are infinite."""
+    """The n stamps start + k step [s]; infinite where they exceed the largest float."""
     with np.errstate(over="ignore"):
         return start + step * np.arange(n, dtype=np.float64)
 
@@ -44,7 +44,7 @@ def grid(start: float, step: float, n: int) -> FloatArray:
 def rows_between(time: FloatArray, start: float, end: float) -> tuple[int, int]:
     """First row of [start, end) [s] and the row after its last.
 
-    Stamps carry rounding, so a sample begins a tenth of a step before its stamp.
+    Stamps are rounded, so a sample counts from a tenth of a step before its stamp.
     """
     early = 0.1 * sampling_time(time)
     first, last = np.searchsorted(time, [start - early, end - early])
@@ -58,7 +58,7 @@ def check_time(
 
     Args:
         time: stamps (n,) [s], finite.
-        place: says in words where a row is, for messages.
+        place: says in words where a row stands, for messages.
         declared: the sampling time the user gave [s]; None to find it from the stamps.
 
     Raises:
@@ -69,7 +69,7 @@ def check_time(
             f"{place(0)}: a log needs at least {MIN_ROWS} rows, and this one has {len(time)}; "
             "record for longer, or take a wider part"
         )
-    # Stamps near the largest float overflow in here, and are then refused as uneven.
+    # Stamps near the largest float overflow here, and are then refused as uneven.
     with np.errstate(over="ignore", invalid="ignore"):
         _check_increasing(time, place)
         _check_even(time, place, declared)
@@ -113,9 +113,9 @@ def _check_even(time: FloatArray, place: Callable[[int], str], declared: float |
 
 
 def _printed_resolution(time: FloatArray) -> float:
-    """Size of the last decimal [s] that the larger stamps were printed with; 0 if too small to see.
+    """Size of the last printed decimal of the larger stamps [s]; 0 where it is too small to see.
 
-    "%g" gives the largest stamps the fewest decimals, so the coarser half decides.
+    "%g" prints the largest stamps with the fewest decimals, so the coarser half decides.
     """
     late = time[np.abs(time) >= 0.5 * np.abs(time).max()]
     for decimals in range(10):

@@ -1,4 +1,4 @@
-"""The TOML file beside a log, of the same stem: what its columns cannot say.
+"""The TOML file beside a log, with the same stem; it says what the columns cannot say.
 
 sampling_time = 0.01                # [s]
 hold = "zoh"                        # or "foh"
@@ -27,12 +27,12 @@ from identification.files import read_bytes
 from identification.logs.log_checks import HOLDS
 from identification.logs.names import quoted
 
-_LARGEST = 2**20  # [bytes] written by hand, so a megabyte is already a mistake
+_LARGEST = 2**20  # [bytes]; it is written by hand, so a larger file is a mistake
 
 
 @dataclass(frozen=True)
 class Sidecar:
-    """What a sidecar says; every key may be left out, and so may the file."""
+    """The content of a sidecar; every key may be left out, and the file too."""
 
     path: Path
     sampling_time: float | None = None

@@ -1,4 +1,4 @@
-"""Named columns of numbers as a file has them, before units and meaning."""
+"""Named columns of numbers as they stand in a file, before units are converted."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from identification.logs.sidecar import Sidecar
 
 @dataclass(frozen=True)
 class Table:
-    """Columns (n, c) of a file, with their names (c) and the place of each row in words."""
+    """Columns (n, c) of a file, their names (c), and a function that says where a row stands."""
 
     path: Path
     names: tuple[str, ...]
@@ -29,7 +29,7 @@ class Table:
 
 
 def renamed(table: Table, sidecar: Sidecar) -> Table:
-    """The table with the columns of `sidecar.ignore` gone, and those of `sidecar.columns` renamed.
+    """The table without the columns of `sidecar.ignore`, and with those of `columns` renamed.
 
     Raises:
         InputError: the file lacks a column that is named there, or two columns get one name.
@@ -57,17 +57,17 @@ def check_columns(
     sidecar: Sidecar,
     named_in: Path | None = None,
 ) -> None:
-    """Refuse a table that lacks a needed column, or has one that nobody asked for.
+    """Refuse a table that lacks a needed column, or has an unknown one.
 
     Args:
-        table: of the file.
+        table: the table of the file.
         needed: columns that it must have.
         optional: columns that it may have.
         sidecar: the TOML beside the file.
         named_in: another file whose [columns] say what is needed; the sidecar when None.
 
     Raises:
-        InputError: a column is missing or unknown; the likely slip is named.
+        InputError: a column is missing or unknown; the likely correct name is suggested.
     """
     good = [*needed, *optional]
     unknown = [n for n in table.names if n not in good]

@@ -7,7 +7,7 @@ from math import pi
 from identification.errors import InputError
 from identification.logs.names import quoted
 
-# word: (SI unit, how many SI units it is)
+# word: (SI unit, its value in this SI unit)
 UNITS: dict[str, tuple[str, float]] = {
     "s": ("s", 1.0),
     "ms": ("s", 1e-3),

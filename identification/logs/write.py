@@ -1,4 +1,4 @@
-"""A `Log` to a file that `read_log` reads back, bit by bit."""
+"""Write a `Log` to a file that `read_log` reads back to the last bit."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from identification.logs.names import group
 
 
 def write_log(log: Log, path: str | os.PathLike[str], digits: int | None = None) -> None:
-    """Write a CSV, and a TOML beside it when there is something that a CSV cannot say.
+    """Write a CSV, and a TOML beside it if there is something that a CSV cannot say.
 
-    Each file appears whole or not at all. A TOML that is already there is replaced even when there
-    is nothing to say, or it would speak of another log.
+    Each file is written whole or not at all. An old TOML is replaced also when the new log needs
+    none, because it would describe another log.
 
     Args:
         log: what to write.
         path: the `.csv` file; an existing one is replaced.
         digits: significant digits of the columns; None for as many as are exact. Time is always
-            exact: a rounded one is no longer even.
+            exact, because rounded stamps would no longer be even.
 
     Raises:
         InputError: the name is not `.csv`, the folder is missing, or it cannot be written.
@@ -65,7 +65,7 @@ def _toml(log: Log) -> str:
 
 
 def _grouped(log: Log) -> Iterator[tuple[str, str]]:
-    """Units by group where all of a group's columns share one, else by column."""
+    """Units by group where all columns of a group have the same unit, else by column."""
     members: dict[str, list[str]] = {}
     for name in log.columns:
         members.setdefault(group(name), []).append(name)
@@ -79,5 +79,5 @@ def _grouped(log: Log) -> Iterator[tuple[str, str]]:
 
 
 def _quote(text: str) -> str:
-    # A JSON string is a TOML string, but for DEL, which TOML wants escaped.
+    # A JSON string is also a TOML string, except that TOML wants DEL escaped.
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,7 +1,8 @@
 """MJCF text that holds every number to the last bit.
 
-MuJoCo's writer prints six digits and rounds numbers below 1e-12 to zero; a model written so
-does not reload to the model that was saved. The text is its, the numbers are the spec's.
+MuJoCo's writer prints six digits and rounds numbers below 1e-12 to zero, so that such a file does
+not give back the model that was saved. Here the text is written by MuJoCo, and its numbers are
+replaced by those of the spec.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ _SCALARS = {"joint": ("damping", "stiffness", "frictionloss"), "spatial": ("damp
 
 
 def to_xml(spec: mujoco.MjSpec) -> str:
-    """The MJCF of a spec, its parameters exact: compiling the text gives the spec's model.
+    """The MJCF of a spec with exact numbers: compiling the text gives the model of the spec.
 
     Raises:
         ValueError: the spec does not compile.
@@ -42,7 +43,7 @@ def to_xml(spec: mujoco.MjSpec) -> str:
     for tag, element, found in _elements(root, spec):
         _settle(element, found, _EXACT[tag])
         _settle(element, found, {name: name for name in _SCALARS.get(tag, ())})
-        if tag == "spatial" and found.springlength[0] < 0:  # "as in qpos0", found at each compile
+        if tag == "spatial" and found.springlength[0] < 0:  # taken from qpos0 at compilation
             element.attrib.pop("springlength", None)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
@@ -54,7 +55,7 @@ def write_xml(spec: mujoco.MjSpec, path: str | Path) -> Path:
 
 
 def _elements(root: Any, spec: mujoco.MjSpec) -> Iterator[tuple[str, Any, Any]]:
-    """Named elements of the text beside their counterparts in the spec."""
+    """Named elements of the text, each with its counterpart in the spec."""
     for tag, finder in (
         ("body", spec.body),
         ("joint", spec.joint),

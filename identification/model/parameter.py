@@ -24,8 +24,8 @@ class Parameter:
         symbol: letter in the equations; `name` when not given.
         about: what it is, in words.
         source: table, data sheet or paper the value was taken from.
-        ties: further paths that follow it, each with the factor by which they do.
-        scale: a magnitude that matters [unit]; a search counts by it a value that may be zero.
+        ties: further paths that get its value, each multiplied by a factor.
+        scale: a magnitude that matters [unit]; a search divides by it where the value may be zero.
 
     Raises:
         InputError: the bounds are in the wrong order, the value is outside them, or a tie's factor
@@ -65,7 +65,7 @@ class Parameter:
 
     @property
     def places(self) -> tuple[tuple[str, float], ...]:
-        """Every path that it writes, with its factor: `where` times 1, then the ties."""
+        """Every path that it writes, with its factor: `where` with factor 1, then the ties."""
         return ((self.where, 1.0), *self.ties)
 
 
@@ -74,8 +74,8 @@ class ParameterSet:
     """Parameters by name, in a fixed order; `with_values` returns a new set.
 
     Attributes:
-        name: of the set.
-        records: the parameters, each name once.
+        name: name of the set.
+        records: the parameters; each name occurs once.
 
     Raises:
         InputError: a name occurs twice.
@@ -107,8 +107,8 @@ class ParameterSet:
         """The same set with some values replaced.
 
         Args:
-            values: the new ones.
-            source: of them; each keeps that of its old value when empty.
+            values: the new values by name, in their parameters' units.
+            source: where they come from; when empty, each parameter keeps its old source.
 
         Raises:
             InputError: a name is unknown, or a value is outside its parameter's bounds.

@@ -1,8 +1,8 @@
 """Where a parameter goes: a path such as `joint/motor_*.damping` or `body/platform.inertia[0]`.
 
-A path is `kind/name.attribute` or `kind/name.attribute[column]`; a `*` in the name takes all
-objects that match, and the parameter then writes the same number to each. Objects that follow with
-a factor are `ties` of the parameter.
+A path is `kind/name.attribute` or `kind/name.attribute[column]`. A `*` in the name stands for all
+objects that match, and the parameter writes the same number to each of them. Objects that get the
+number multiplied by a factor are `ties` of the parameter.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Slot:
     Attributes:
         field: name of the mjModel array, as `Batch.expand` takes it.
         rows: rows of the array that the path names, shape (k,).
-        column: column, None for an array of one dimension.
+        column: column of the array; None for an array of one dimension.
     """
 
     field: str

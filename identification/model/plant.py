@@ -4,8 +4,8 @@
     θ_j -> entry of x₀                where = "qpos[0]", "qvel[3]", "act[1]"
     c θ_j -> any of these             ties = (("joint/other.damping", c), …)
 
-Nothing else follows from the values. A plant whose start depends on its masses, or whose inertia on
-its shape, implements `identification.model.predictor.Plant` itself.
+The values change nothing else. A plant whose start depends on its masses, or whose inertia depends
+on its shape, implements `identification.model.predictor.Plant` itself.
 """
 
 from __future__ import annotations

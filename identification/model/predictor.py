@@ -2,8 +2,9 @@
 
     ŷ(t_k, θ) = h(x(t_k)),   x(0) = x₀(θ),   ẋ = f(x, u, θ)          (thesis 3.1, free run)
 
-A `Plant` says how values become a MuJoCo model's numbers and initial state. All value sets of a
-call advance in one `Batch.rollout`: a Jacobian of p columns is one call with 2 p simulations.
+A `Plant` says how parameter values become numbers of a MuJoCo model and its initial state. All
+value sets of a call are simulated in one `Batch.rollout`: a Jacobian of p columns is one call with
+2 p simulations.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ class Plant(Protocol):
     def inputs(
         self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
     ) -> np.ndarray:
-        """What of the logged inputs reaches the model, step by step.
+        """The inputs that reach the model, step by step, computed from the logged inputs.
 
         Args:
             names: as above.
@@ -66,8 +67,8 @@ class Predictor:
     Attributes:
         plant: the model.
         log: inputs, outputs and sampling.
-        names: parameters that will vary.
-        fixed: values of parameters that will not, where they are not the plant's own.
+        names: parameters that vary.
+        fixed: values of parameters that do not vary, where they differ from the plant's own.
     """
 
     plant: Plant
@@ -87,7 +88,7 @@ class Predictor:
         return self.plant.settings(*self._every(values))
 
     def inputs(self, values: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-        """What the plant makes of held inputs (steps, nu) for n value sets (n, p)."""
+        """The function from held inputs (steps, nu) to those that reach the model, for (n, p)."""
         names, every = self._every(values)
         timestep = self.plant.model.opt.timestep
         return lambda held: self.plant.inputs(names, every, held, timestep)
@@ -125,7 +126,8 @@ def output_columns(model: mujoco.MjModel, names: Sequence[str]) -> list[tuple[st
     """Where each output stands in the state: its field (qpos or qvel) and index.
 
     Raises:
-        InputError: a name is no sensor of the model, or no joint position or rate.
+        InputError: a name is not a sensor of the model, or its sensor is not a joint position or
+            rate.
     """
     fields = {
         int(mujoco.mjtSensor.mjSENS_JOINTPOS): ("qpos", model.jnt_qposadr),

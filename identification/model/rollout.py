@@ -3,8 +3,8 @@
     u(t) = u_k on [t_k, t_{k+1})          zero-order hold ("zoh")
     u(t) linear from u_k to u_{k+1}       first-order hold ("foh"), sampled at mid-step
 
-Every simulation has its own initial state and, where asked, its own model numbers; all of them
-advance in one `Batch.rollout`, on native threads.
+Every simulation has its own initial state and, if given, its own model numbers. All of them run in
+one `Batch.rollout`, on native threads.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from mujoco.batch import Batch
 from identification.errors import DivergenceError, InputError
 from identification.model.paths import Slot
 
-# From these entries MuJoCo derives nothing: writing them needs no mj_setConst.
+# MuJoCo derives no other number from these entries: after writing them, no mj_setConst is needed.
 UNDERIVED = {
     "actuator_user",
     "tendon_user",
@@ -37,7 +37,7 @@ UNDERIVED = {
 
 @dataclass(frozen=True)
 class State:
-    """Where simulations begin: one row each, or one row for all.
+    """Initial states of simulations: one row for each, or one row for all.
 
     Attributes:
         qpos: positions, shape (n, nq) or (nq,) [m, rad, quaternions].
@@ -51,7 +51,7 @@ class State:
 
 
 def threads() -> int:
-    """Processors this process may use."""
+    """The number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -59,7 +59,7 @@ def substeps(sampling_time: float, timestep: float) -> int:
     """Simulation steps per sample.
 
     Raises:
-        InputError: the sampling time is no whole number of steps.
+        InputError: the sampling time is not a whole number of steps.
     """
     n = round(sampling_time / timestep)
     if n < 1 or abs(n * timestep - sampling_time) > 1e-6 * sampling_time:
@@ -97,19 +97,19 @@ def rollout(
 
     Args:
         model: the model; its timestep divides `sampling_time`.
-        start: initial states; the number of rows, or of `numbers`' entries, sets n.
-        inputs: shape (N, nu) for all, or (n, N, nu) for each its own, in the units of the
+        start: initial states; n is the number of their rows, or of the values in `numbers`.
+        inputs: shape (N, nu), the same for all, or (n, N, nu), one for each, in the units of the
             model's controls.
         sampling_time: time between samples [s].
-        numbers: model entries that differ: slot and its values, shape (n,).
-        record: MjData fields of the state (qpos, qvel, act).
+        numbers: model entries that differ between simulations: slot and its values, shape (n,).
+        record: MjData fields of the state to return (qpos, qvel, act).
         hold_kind: "zoh" or "foh".
         nthread: native threads; all processors when None.
-        before: what happens to the held inputs on their way to the model, step by step:
+        before: changes the held inputs before they reach the model:
             (steps, nu) -> (steps, nu) for all or (n, steps, nu).
 
     Returns:
-        For each recorded field an array (n, N, size), sample 0 being the start.
+        For each recorded field an array (n, N, size); sample 0 is the start.
 
     Raises:
         InputError: shapes or hold do not fit.
@@ -130,7 +130,7 @@ def rollout(
         raise InputError(f"{len(own)} input sequences for {n} simulations; give one, or one each")
 
     model = copy.copy(model)
-    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR  # nobody reads them
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR  # they are not read
     batch = Batch(model, n, nthread or min(threads(), n))
     _expand(batch, numbers)
     for field, row in zip(("qpos", "qvel", "act"), rows, strict=True):
@@ -158,7 +158,7 @@ def _expand(batch: Batch, numbers: Sequence[tuple[Slot, np.ndarray]]) -> None:
 
 @ctypes.CFUNCTYPE(None, ctypes.c_char_p)
 def _ignore(message: bytes) -> None:
-    """Drop a warning: a divergence becomes an error, not a MUJOCO_LOG.TXT in the user's folder."""
+    """Ignore a warning: a divergence raises an error; MuJoCo need not write MUJOCO_LOG.TXT."""
 
 
 @contextmanager
@@ -172,7 +172,7 @@ def _quiet() -> Iterator[None]:
 
 
 def _check_finished(batch: Batch, end: float) -> None:
-    """A simulation with a non-finite state stops, and its clock with it."""
+    """Find simulations that stopped early: a non-finite state stops a simulation and its clock."""
     reached = np.array(batch.bind("time")).ravel()
     late = np.flatnonzero(~(reached > end * (1 - 1e-9)))
     if late.size:

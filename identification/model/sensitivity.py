@@ -3,13 +3,14 @@
     ∂ŷ/∂q_j ≈ (ŷ(q + h e_j) - ŷ(q - h e_j))/(2 h)       central, 2 p simulations
     ∂ŷ/∂q_j ≈ (ŷ(q + h e_j) - ŷ(q))/h                   forward, p simulations where ŷ(q) is known
 
-Central differences err by h² ŷ‴/6 and by round-off over h: for a smooth simulation both stay near
-1e-8 at h = 1e-4. Forward ones err by h ŷ″/2 instead: at h = 1e-6 by 1e-6, which turns a search by
-nothing that its next step does not correct, for half the price. What is reported of a fit rests on
-central ones.
+The error of central differences is h² ŷ‴/6, and round-off divided by h: for a smooth simulation
+both stay near 1e-8 at h = 1e-4. The error of forward differences is h ŷ″/2, which is 1e-6 at h =
+1e-6. This is good enough for a search, whose next step corrects it, and costs half as much. What is
+reported of a fit is computed from central differences.
 
 A simulation need not be smooth: where friction is nearly a jump, ŷ itself is rough by some ε, and
-central differences err by ε/(√2 h). How much they do is seen at twice the step:
+the error of central differences is ε/(√2 h). A second computation at twice the step shows the
+error:
 
     ∂ŷ/∂q_j|_2h - ∂ŷ/∂q_j|_h        3 times the error h² ŷ‴/6 of the shorter step, or
                                     1.1 times its error ε/(√2 h) where ŷ is rough
@@ -39,17 +40,17 @@ def sensitivity(
     """∂ŷ/∂q of the predicted outputs by central differences, from 2 p simulations.
 
     Args:
-        predictor: of the outputs.
+        predictor: predicts the outputs.
         space: coordinates of the p free parameters; see `coordinates`.
-        q: where, shape (p,), in these coordinates.
+        q: the point, shape (p,), in these coordinates.
         samples: how many of the log's samples are predicted; all when None.
-        step: h, of q.
+        step: h, the step of q.
 
     Returns:
         Shape (samples, ny, p), in the outputs' units per unit of q.
 
     Raises:
-        InputError: a start of one of the simulations is none that the plant can have.
+        InputError: the plant cannot start with the values of one of the simulations.
         DivergenceError: a simulation left the finite numbers.
     """
     return _central(predictor, space, q, (step,), samples)[0]
@@ -60,8 +61,8 @@ def two_sensitivities(
 ) -> tuple[np.ndarray, np.ndarray]:
     """∂ŷ/∂q at a step and at twice the step, each (N, ny, p), from 4 p simulations in one batch.
 
-    The first is that of `sensitivity` to the last bit; the second less the first estimates its
-    error.
+    The first is the result of `sensitivity`, to the last bit. The difference between the second and
+    the first estimates its error.
     """
     once, twice = _central(predictor, space, q, (step, 2 * step), None)
     return once, twice
@@ -91,14 +92,14 @@ def forward_sensitivity(
     predicted: np.ndarray,
     step: float = FORWARD_STEP,
 ) -> np.ndarray:
-    """∂ŷ/∂q, shape (samples, ny, p), from p simulations and what is `predicted` at q already.
+    """∂ŷ/∂q, shape (samples, ny, p), from p simulations, where ŷ(q) is known already.
 
     Args:
-        predictor: of the outputs.
+        predictor: predicts the outputs.
         space: coordinates of the parameters.
-        q: where, shape (p,).
+        q: the point, shape (p,).
         predicted: ŷ(q), shape (samples, ny).
-        step: h, of q.
+        step: h, the step of q.
     """
     values = space.decode(q + step * np.eye(len(q)))
     ahead = predictor.predict(values, len(predicted))
@@ -106,13 +107,13 @@ def forward_sensitivity(
 
 
 def without_effect(J: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-    """Which columns of J (samples, ny, p) are nothing but round-off of the outputs, shape (p,)."""
+    """Which columns of J (samples, ny, p) are only round-off of the outputs, shape (p,)."""
     size = np.abs(outputs).max(axis=0)
     return (np.abs(J).max(axis=0) <= ROUND_OFF * size[:, None]).all(axis=0)
 
 
 def refuse_without_effect(J: np.ndarray, names: tuple[str, ...], log: Log) -> None:
-    """Refuse parameters that no output feels: a fit would stop at once and say it converged.
+    """Refuse parameters that no output feels: a fit would stop at once and report convergence.
 
     Args:
         J: sensitivities, shape (samples, ny, p).
@@ -120,7 +121,7 @@ def refuse_without_effect(J: np.ndarray, names: tuple[str, ...], log: Log) -> No
         log: what was measured.
 
     Raises:
-        InputError: a column is zero but for round-off.
+        InputError: a column is zero except for round-off.
     """
     dead = [n for n, idle in zip(names, without_effect(J, log.outputs), strict=True) if idle]
     first, *others = log.output_names

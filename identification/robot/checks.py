@@ -16,15 +16,15 @@ from identification.model.predictor import output_columns
 from identification.quantities import alike
 from identification.robot.file import RobotFile
 
-CLEAR, NEAR = 5.0, 0.01  # of an output's noise, of its travel: a start that is not the model's
-MOST_STEPS = 100.0  # of the model in a sample; more is mostly time in ms
+CLEAR, NEAR = 5.0, 0.01  # of noise and of travel: a larger distance is another start
+MOST_STEPS = 100.0  # of the model in a sample; with more, time is most often in ms
 
 
 def refuse_same_stem(file: RobotFile, log: Path) -> None:
-    """Refuse a robot's file that would be read as the log's own TOML.
+    """Refuse a robot's file that would also be read as the TOML of the log.
 
     Raises:
-        InputError: it has the log's name.
+        InputError: it has the same name as the log.
     """
     if log.with_suffix(".toml").resolve() == file.path.resolve():
         raise InputError(
@@ -34,10 +34,10 @@ def refuse_same_stem(file: RobotFile, log: Path) -> None:
 
 
 def refuse_unnamed(model: mujoco.MjModel, file: RobotFile) -> None:
-    """Refuse actuators without a name, and sensors of positions that may be meant as outputs.
+    """Refuse actuators without a name, and position sensors without a name that may be outputs.
 
     Raises:
-        InputError: there is one.
+        InputError: there is one without a name.
     """
     kind = int(mujoco.mjtSensor.mjSENS_JOINTPOS)
     sensors = [(model.sensor(i).name, int(model.sensor_type[i])) for i in range(model.nsensor)]
@@ -53,7 +53,7 @@ def refuse_unnamed(model: mujoco.MjModel, file: RobotFile) -> None:
 
 
 def refuse_milliseconds(model: mujoco.MjModel, file: RobotFile, log: Log, path: Path) -> None:
-    """Refuse a log so slow beside the model's step that its time is hardly in seconds.
+    """Refuse a log with so many model steps per sample that its time cannot be in seconds.
 
     Raises:
         InputError: a sample lasts more than `MOST_STEPS` steps.
@@ -68,10 +68,10 @@ def refuse_milliseconds(model: mujoco.MjModel, file: RobotFile, log: Log, path: 
 
 
 def refuse_every(file: RobotFile, log: Log) -> None:
-    """Refuse to thin a log whose parts would vanish, or whose inputs are not held.
+    """Refuse to thin a log whose parts would become too short, or whose hold is not "zoh".
 
     Raises:
-        InputError: it is so.
+        InputError: one of the two is the case.
     """
     if file.every == 1:
         return
@@ -89,7 +89,7 @@ def refuse_every(file: RobotFile, log: Log) -> None:
 
 
 def _left(log: Log, every: int) -> bool:
-    """Whether every n-th sample leaves enough of each part of a log."""
+    """Whether every n-th sample is enough for each part of a log."""
     time = log.time[: (len(log) - 1) // every * every + 1 : every]
     if len(time) < 2 * MIN_ROWS:
         return False
@@ -98,10 +98,10 @@ def _left(log: Log, every: int) -> bool:
 
 
 def refuse_start(file: RobotFile, model: mujoco.MjModel, log: Log) -> None:
-    """Refuse a free run that would begin elsewhere than the log does.
+    """Refuse a free run that would begin in another state than the log.
 
     Raises:
-        InputError: a position that the log measured first is neither free nor the model's.
+        InputError: the first measured position of a joint is not the model's, and is not free.
     """
     free = (file.records.get(name, {}).get("path", name) for name in file.free)
     own = {start_place(str(path), model) for path in free}
@@ -118,20 +118,20 @@ def refuse_start(file: RobotFile, model: mujoco.MjModel, log: Log) -> None:
 
 
 def refuse_horizon(file: RobotFile, log: Log) -> None:
-    """Refuse a horizon of which no window fits into both parts of a log.
+    """Refuse a horizon that does not fit into both parts of a log.
 
     Raises:
-        InputError: it is so.
+        InputError: a part is shorter than a window.
     """
     most = min(len(log.part("estimation")), len(log.part("validation")))
     _refuse(file, log, most, _samples(file, log) <= most)
 
 
 def refuse_search_horizon(file: RobotFile, log: Log) -> None:
-    """Refuse a horizon of which no window, as they divide a log, lies in its unseen part.
+    """Refuse a horizon if no window of the divided log begins in its unseen part.
 
     Raises:
-        InputError: it is so.
+        InputError: there is no such window.
     """
     first, n = len(log.part("estimation")), _samples(file, log)
     last = n and len(log) // n * n - n  # first sample of the last window

@@ -1,4 +1,4 @@
-"""What was found, on records to which nothing was fitted."""
+"""Compare models on records to which nothing was fitted."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ WITHOUT = "without what is named", "with it"
 def confirm(robot: Robot, found: RobotFit | Discovery) -> tuple[Confirmation, ...]:
     """Compare two models on every record of a robot to which nothing was fitted.
 
-    Of a fit: the values of the robot's file beside the fitted ones. Of a discovery that names
-    something: the fitted model without it beside the one with it; of another discovery the values
-    of the robot's file beside the fitted ones.
+    For a fit the two models have the values of the robot's file and the fitted values. For a
+    discovery that names something they are the fitted model without the named effects and the one
+    with them. For any other discovery they have the values of the file and the fitted values.
 
     Args:
-        robot: whose `records`; of `read_robot`.
-        found: of `fit` or of `discover`.
+        robot: the result of `read_robot`, with the records.
+        found: the result of `fit` or of `discover`.
 
     Returns:
-        One for each record: the rms errors over the robot's horizon, or of a free run.
+        One comparison for each record: the rms errors over the robot's horizon, or of a free run.
 
     Raises:
         InputError: windows of the robot's horizon do not fit a record.

@@ -43,16 +43,16 @@ def discover(
     Args:
         model: a robot of `read_robot`, which has its log and its candidates; or a nominal model
             with every candidate effect compiled in, its free parameters and what is known of them.
-        log: beside a nominal model: its part `estimation` (or first half) is fitted, the rest
-            confirms.
-        effects: beside a nominal model: the candidates.
+        log: needed with a nominal model: its part `estimation` (or first half) is fitted, and the
+            rest is unseen data for the proof.
+        effects: needed with a nominal model: the candidates.
         progress: is told a line per stage.
-        options: what is believed; the defaults of `DiscoveryOptions` when None.
+        options: the judgement constants; the defaults of `DiscoveryOptions` when None.
 
     Raises:
-        InputError: log and effects are given beside a robot, or are missing beside a nominal
-            model; the log is too short, the horizon does not fit into what is unseen, a free run
-            would begin elsewhere than the log does, or a free parameter has no effect.
+        InputError: log and effects are given with a robot, or are missing with a nominal model;
+            the log is too short, the horizon does not fit into the unseen part, a free run would
+            begin in another state than the log, or a free parameter has no effect.
         DivergenceError: the nominal model cannot be simulated.
     """
     if isinstance(model, Robot):

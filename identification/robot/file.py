@@ -38,7 +38,7 @@ from identification.errors import InputError, unknown_name
 from identification.files import read_bytes
 from identification.logs.names import quoted
 
-_LARGEST = 2**20  # [bytes] written by hand
+_LARGEST = 2**20  # [bytes]; it is written by hand
 _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
     "model": (str, "a path in quotes"),
     "outputs": (list, "a list of sensors"),
@@ -63,17 +63,17 @@ _POSITIVE = ("every", "known", "scale")
 
 @dataclass(frozen=True)
 class RobotFile:
-    """What such a file says; see the module.
+    """The content of a robot's TOML; the docstring of the module shows every key.
 
     Attributes:
-        path: of the file.
+        path: path of the file.
         model: path of the MJCF.
         free: names of the free parameters.
         outputs: sensors; empty for all joint positions.
-        horizon: [s], None for a free run.
-        every: n of every n-th sample.
+        horizon: length of the windows over which predictions are judged [s]; None for a free run.
+        every: n, where every n-th sample is kept.
         columns: column of the log by actuator or sensor.
-        fixed: values of parameters of effects.
+        fixed: values of effects' parameters that are not free.
         records: what is known of free parameters, by name.
         joints: where effects may act; empty for the measured ones.
         only: candidates by name; empty for all.
@@ -95,10 +95,10 @@ class RobotFile:
 
 
 def read_robot_file(path: str | Path) -> RobotFile:
-    """Read such a file.
+    """Read a robot's TOML.
 
     Raises:
-        InputError: it cannot be read, is not TOML, or has a key or value that it may not have.
+        InputError: it cannot be read, is not TOML, or has an unknown key or a wrong value.
     """
     path = Path(path)
     try:

@@ -1,4 +1,4 @@
-"""What a fit of a robot says: plain values for JSON, and sentences."""
+"""A fit of a robot as plain values for JSON, with its verdict in sentences."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from identification.report.fit_verdict import window_sentences
 from identification.robot.fitting import RobotFit
 from identification.robot.record_error import Confirmation
 
-FARTHEST = 100.0  # factor from where a fit began that is hardly an estimate
+FARTHEST = 100.0  # a value that changes by this factor is not believed
 
 
 def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) -> dict[str, Any]:
-    """The numbers and the verdict of a fit; what is unknown or infinite is null.
+    """The numbers and the verdict of a fit; unknown and infinite numbers are null.
 
     Args:
-        result: of `fit`.
-        confirmed: of `confirm`.
+        result: the result of `fit`.
+        confirmed: the result of `confirm`.
     """
     found = result.found
     if isinstance(found, Fit):
@@ -36,7 +36,7 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
 
 
 def _windows(result: RobotFit, found: WindowEstimate) -> dict[str, Any]:
-    """Windows as plain values, with the keys of a fit."""
+    """An estimate over windows as plain values, with the keys of a fit."""
     robot, unseen = result.robot, result.unseen
     floor = float(np.sqrt(np.mean(noise_floor(robot.log.outputs) ** 2)))
     rows = zip(found.values.items(), found.std, found.start, found.at_bound, strict=True)
@@ -55,7 +55,7 @@ def _windows(result: RobotFit, found: WindowEstimate) -> dict[str, Any]:
 
 
 def _far(parameters: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    """A sentence on values that no robot has."""
+    """A sentence about values that changed by a factor that no robot explains."""
     far = [
         n for n, p in parameters.items()
         if p["initial"] and not 1 / FARTHEST < abs(p["value"] / p["initial"]) < FARTHEST

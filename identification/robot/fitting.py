@@ -1,7 +1,7 @@
 """The free parameters of a robot, fitted to the first half of its log.
 
-Two ways: by the error of a free run, or, where the robot's file gives a horizon, by the errors of
-windows of that length that each begin at a state of their own.
+The fit minimises the error of a free run. If the robot's file gives a horizon, it minimises the
+errors in windows of that length, each of which begins at a state of its own.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from identification.robot.checks import refuse_horizon, refuse_start
 from identification.robot.record_error import Confirmation, compare_unseen
 from identification.robot.robot import Robot
 
-FEWEST = 10  # values for each parameter
+FEWEST = 10  # measured values for each parameter
 
 
 @dataclass(frozen=True)
 class RobotFit:
-    """What `fit` found.
+    """The result of `fit`.
 
     Attributes:
-        robot: what was fitted.
-        found: a fit by a free run, or an estimate over windows.
-        unseen: the values of the robot's file beside the fitted ones on the part of the log that
-            was not fitted; None for a fit by a free run, which says it itself.
+        robot: the robot that was fitted.
+        found: a fit of a free run, or an estimate over windows.
+        unseen: the values of the robot's file compared with the fitted ones, on the part of the log
+            that was not fitted; None for a fit of a free run, which contains this comparison.
     """
 
     robot: Robot
@@ -42,21 +42,21 @@ class RobotFit:
 
     @property
     def std(self) -> dict[str, float]:
-        """Their std by name, in the same units; inf where the log does not tell."""
+        """Their std by name, in the same units; inf where the log does not determine them."""
         return dict(zip(self.values, self.found.std.tolist(), strict=True))
 
 
 def fit(robot: Robot, progress: Callable[[str], None] | None = None) -> RobotFit:
-    """Estimate the free parameters of a robot on the part `estimation` of its log, or its half.
+    """Estimate the free parameters of a robot on the part `estimation` of its log, or on its half.
 
     Args:
-        robot: of `read_robot`.
+        robot: the result of `read_robot`.
         progress: is told one line per accepted step.
 
     Raises:
         InputError: the log is too short, the horizon does not fit into it, a free run would begin
-            elsewhere than the log does, or a free parameter has no effect.
-        DivergenceError: the model cannot be simulated at the values that it begins with.
+            in another state than the log, or a free parameter has no effect.
+        DivergenceError: the model cannot be simulated with the values at which the fit begins.
     """
     file, log = robot.file, robot.log
     part = log.part("estimation")

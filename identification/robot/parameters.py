@@ -1,7 +1,7 @@
-"""The free parameters of a robot's TOML, each with what is known of it before the log speaks.
+"""The free parameters of a robot's TOML, each with its prior.
 
-What the file leaves out comes from the model, or from the log: a start that no one gave is what was
-measured first.
+Values that the file leaves out come from the model. A start that is not given comes from the log:
+it is the first measured sample.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from identification.model.plant import own_start, start_place
 from identification.model.predictor import output_columns
 from identification.robot.file import RobotFile
 
-KNOWN = 0.3  # std of what nobody said more of: 30 % where positive, else of the plausible size
-SURE = 0.01  # of a joint's motion in the log: std of a start that was measured
+KNOWN = 0.3  # std of the prior unless given: relative if positive, else of the plausible size
+SURE = 0.01  # of a joint's motion in the log: std of the prior of a start that was measured
 POSITIVE = ("mass", "inertia", "damping", "armature", "stiffness", "frictionloss")
-UNITS = {  # of a slide, of a hinge
+UNITS = {  # unit for a slide, unit for a hinge
     "damping": ("N s/m", "N m s/rad"), "armature": ("kg", "kg m^2"),
     "stiffness": ("N/m", "N m/rad"), "frictionloss": ("N", "N m"),
     "qpos": ("m", "rad"), "qvel": ("m/s", "rad/s"),
@@ -38,10 +38,10 @@ UNITS = {  # of a slide, of a hinge
 def free_parameter(
     file: RobotFile, name: str, model: mujoco.MjModel, effects: Sequence[Effect], log: Log
 ) -> tuple[Parameter, float]:
-    """A free parameter, and the std of what is known of it in the search's coordinates.
+    """A free parameter, and the std of its prior in the coordinates of the search.
 
     Raises:
-        InputError: it is neither a path nor an effect's size, or it needs a value.
+        InputError: it is neither a path nor the size of an effect, or its value is missing.
     """
     said = file.records.get(name, {})
     given: dict[str, Any] = {k: said[k] for k in ("unit", "about") if k in said}
@@ -72,7 +72,7 @@ def free_parameter(
 
 
 def measured_start(model: mujoco.MjModel, path: str, log: Log, own: float) -> float:
-    """The first sample of an entry of the start; its own value where it is not measured."""
+    """The first measured sample of an entry of the start; `own` where it is not measured."""
     place = start_place(path, model)
     columns = output_columns(model, log.output_names)
     return float(log.outputs[0, columns.index(place)]) if place in columns else own
@@ -81,7 +81,7 @@ def measured_start(model: mujoco.MjModel, path: str, log: Log, own: float) -> fl
 def _in_model(
     path: str, name: str, model: mujoco.MjModel, log: Log, given: dict[str, Any]
 ) -> tuple[Parameter, float]:
-    """A parameter that is a place in the model or in its start."""
+    """A parameter that is a path into the model or into its start."""
     fields: dict[str, Any] = {"where": path, "unit": unit_of(model, path)}
     place = start_place(path, model)
     if place is not None:
@@ -97,7 +97,7 @@ def _in_model(
 
 
 def unit_of(model: mujoco.MjModel, path: str) -> str:
-    """Of a body's mass, a joint's number or an entry of the start; "" of what else there is."""
+    """Unit of a body's mass, a joint's number or an entry of the start; "" of anything else."""
     place = start_place(path, model)
     thing, _, attribute = path.partition("[")[0].rpartition(".")
     kind, _, name = thing.partition("/")
@@ -116,7 +116,7 @@ def unit_of(model: mujoco.MjModel, path: str) -> str:
 
 
 def _moved(model: mujoco.MjModel, place: tuple[str, int], log: Log) -> float:
-    """A magnitude that matters for an entry of the start: a little of its motion in the log."""
+    """A magnitude that matters for an entry of the start: a small share of its motion."""
     columns = output_columns(model, log.output_names)
     if place in columns:
         return SURE * float(np.ptp(log.outputs[:, columns.index(place)])) or 1.0

@@ -1,4 +1,4 @@
-"""A robot of the user, read from its files and checked against its logs."""
+"""Read a user's robot from its files, and check it against its logs."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from identification.robot.wiring import refuse_miswired
 def read_robot(
     path: str | Path, log: str | Path | Log, confirm: Sequence[str | Path | Log] = ()
 ) -> Robot:
-    """Read a robot and the log that it is to explain; refuse what cannot belong together.
+    """Read a robot and the log that it is to explain; refuse files that do not belong together.
 
     Args:
-        path: of its TOML (`identification.robot.file` lists every key), which names the model.
+        path: path of its TOML, which names the model (`identification.robot.file` lists every key).
         log: what was measured: a CSV (with a TOML beside it), a MATLAB file with u, y and Ts, or a
             `Log` whose columns bear the names of the model's actuators and sensors.
         confirm: records of the same robot to which nothing will be fitted.
@@ -36,7 +36,7 @@ def read_robot(
     robot = replace(robot_of(file, _log(file, log)), records=records)
     refuse_coarse_steps(robot)
     for record in records:
-        axes(robot.plant.model, record)  # a sensor that froze confirms nothing
+        axes(robot.plant.model, record)  # a sensor that froze is refused
     for measured in (robot.log, *records):
         refuse_miswired(robot, measured)
     return robot

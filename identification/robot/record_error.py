@@ -1,4 +1,4 @@
-"""How far two models of a robot are off on a record, both judged over the same horizon."""
+"""The errors of two models of a robot on a record, both over the same horizon."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ AS_WRITTEN, FITTED = "with the values of the robot's file", "with those that wer
 
 @dataclass(frozen=True)
 class Confirmation:
-    """Two models on one record.
+    """The errors of two models on one record.
 
     Attributes:
         log: name of the record.
-        before: rms error of the first, over all outputs.
-        after: of the second.
-        unit: of the errors, empty where the outputs have several.
-        models: what the two are, in words.
+        before: rms error of the first model, over all outputs.
+        after: rms error of the second model.
+        unit: unit of the errors; empty where the outputs have several.
+        models: what the two models are, in words.
     """
 
     log: str
@@ -50,14 +50,14 @@ def compare_values(
     after: Mapping[str, float],
     models: tuple[str, str] = (AS_WRITTEN, FITTED),
 ) -> Confirmation:
-    """Two sets of values on a record: over the robot's horizon, or in a free run of all of it.
+    """Compare two sets of values on a record, over the robot's horizon or in a free run.
 
     Args:
-        robot: whose plant and horizon.
-        log: the record; it starts where it measured.
-        before: values that are not the plant's own.
-        after: likewise.
-        models: what the two are, in words.
+        robot: the robot, with its plant and its horizon.
+        log: the record; free parameters of the start get its first measured values.
+        before: values of the first model that are not the plant's own.
+        after: values of the second model that are not the plant's own.
+        models: what the two models are, in words.
 
     Raises:
         InputError: the windows do not fit the record.
@@ -70,7 +70,7 @@ def compare_values(
 def compare_unseen(
     robot: Robot, before: Mapping[str, float], after: Mapping[str, float]
 ) -> Confirmation:
-    """Two sets of values on the part of the robot's own log that confirms.
+    """Compare two sets of values on the unseen part of the robot's own log.
 
     Raises:
         InputError: the windows do not fit that part.

@@ -1,4 +1,4 @@
-"""A robot of a TOML file and its log: the plant, what is free of it, what it may lack."""
+"""A robot of a TOML file with its log: plant, free parameters, priors, and candidates."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ class Robot:
     """A robot and the log that it is to explain; `read_robot` makes one.
 
     Attributes:
-        file: what its TOML says.
+        file: the content of its TOML.
         log: what was measured; every n-th sample of it, where the file says so.
         plant: its model with the effects.
-        std: what is known of its free parameters before the log speaks, shape (p,): relative
-            where a parameter must be positive, else in its unit.
-        records: logs to which nothing is fitted: on these a model is confirmed.
+        std: std of the priors of its free parameters, shape (p,): relative where a parameter must
+            be positive, else in its unit.
+        records: logs to which nothing is fitted; models are confirmed on them.
     """
 
     file: RobotFile
@@ -70,7 +70,7 @@ class Robot:
                      if start_place(at[n].where, self.plant.model) is not None)  # fmt: skip
 
     def started(self, log: Log) -> dict[str, float]:
-        """The free parameters of the start as another log of the robot measured them first."""
+        """The free parameters of the start, with the first measured values of another log."""
         at = self.plant.parameters
         return {
             n: measured_start(self.plant.model, at[n].where, log, at[n].value) for n in self.starts
@@ -78,11 +78,11 @@ class Robot:
 
 
 def read_robot_log(file: RobotFile, path: str | Path) -> Log:
-    """A log with the columns of a robot.
+    """Read a log with the columns of a robot.
 
     Raises:
-        InputError: as `read_log`, a name in the robot's file is no actuator or sensor, or its
-            log has too few samples for it, or time that is hardly in seconds.
+        InputError: for the reasons of `read_log`; or a name in the robot's file is no actuator or
+            sensor, the log has too few samples for the file, or its time cannot be in seconds.
     """
     refuse_same_stem(file, Path(path))
     model = read_model(file.model).compile()

@@ -1,11 +1,11 @@
-"""What a model's own integration errs by on a log, beside the log's noise.
+"""The error of a model's integration on a log, compared with the log's noise.
 
     d(t) = ŷ_Δ(t) - ŷ_Δ/2(t)         Δ the model's timestep, the first `SECONDS` of a free run
     e = rms d(t)                     or, where predictions are judged over a horizon H,
-    e = rms (d(t) - d(t - H))        what the two part by in that time
+    e = rms (d(t) - d(t - H))        the difference that grows in that time
 
-Halving a step of order p leaves 2⁻ᵖ of its error: e is half of Euler's, and nearly all of RK4's.
-What is larger than the noise passes for an effect.
+Half the step has 2⁻ᵖ of the error of an integrator of order p. So e is half of Euler's error, and
+nearly all of RK4's. An error that is larger than the noise would be taken for an effect.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor
 from identification.robot.robot import Robot
 
-SECONDS = 2.0  # of a free run; a longer one of an unstable robot would lose itself
-HALVINGS = 6  # of the timestep that are tried for one that would do
-NONE = 1e-6  # of an output's motion, an error that does not matter even where there is no noise
+SECONDS = 2.0  # of a free run; a longer one of an unstable robot would diverge
+HALVINGS = 6  # of the timestep that are tried, to find one that is small enough
+NONE = 1e-6  # of an output's motion: so small an error does not matter even without noise
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")  # as MuJoCo counts them
 RK4 = INTEGRATORS.index("RK4")
 
 
 @dataclass(frozen=True)
 class StepError:
-    """Of one output.
+    """The integration error of one output.
 
     Attributes:
-        output: its name.
+        output: name of the output.
         error: e, in its unit.
         noise: std of its noise, in its unit.
     """
@@ -46,11 +46,11 @@ def refuse_coarse_steps(robot: Robot) -> None:
     """Refuse a model whose integration errs by more than the noise of the log.
 
     Raises:
-        InputError: it does.
+        InputError: the error is larger than the noise.
     """
     try:
         worst = step_error(robot)
-    except DivergenceError:  # its steps or its values: the search will tell
+    except DivergenceError:  # the search will say why
         return
     if worst.error <= worst.noise:
         return
@@ -65,7 +65,7 @@ def refuse_coarse_steps(robot: Robot) -> None:
 
 
 def step_error(robot: Robot) -> StepError:
-    """The error of the output whose error is the largest beside its noise.
+    """The error of the output with the largest ratio of error to noise.
 
     Raises:
         DivergenceError: a simulation left the finite numbers.
@@ -85,14 +85,14 @@ def step_error(robot: Robot) -> StepError:
 
 
 def _noise(y: np.ndarray) -> np.ndarray:
-    """Std of the noise of each output; of an encoder that crosses few of its steps, theirs."""
+    """Std of the noise of each output; for an encoder that crosses few steps, that of its steps."""
     steps = np.abs(np.diff(y, axis=0))
     least = np.min(np.where(steps > 0, steps, np.inf), axis=0)
     return np.maximum.reduce([noise_floor(y), least / 12**0.5, NONE * np.ptp(y, axis=0)])
 
 
 def _cure(robot: Robot) -> str:
-    """The largest step of RK4 that errs by less than the noise, and how to ask for it."""
+    """Advice: the largest step of RK4 with an error below the noise, and how to set it."""
     option = robot.plant.model.opt
     has = int(option.integrator) == RK4
     for halvings in range(int(has), HALVINGS + 1):
@@ -112,7 +112,7 @@ def _cure(robot: Robot) -> str:
 
 
 def _stepped(robot: Robot, factor: float, integrator: int | None = None) -> Robot:
-    """The same robot with another timestep, and perhaps another integrator."""
+    """The same robot with another timestep and, if given, another integrator."""
     model = copy.copy(robot.plant.model)
     model.opt.timestep *= factor
     if integrator is not None:

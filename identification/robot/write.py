@@ -1,4 +1,4 @@
-"""A robot's TOML with what was found: it reads back as the robot that was fitted."""
+"""Write a robot's TOML with the values that were found, so that it can be read again."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from identification.robot.robot import Robot
 
 
 def write_robot(robot: Robot, values: Mapping[str, float], path: Path, place: Path) -> Path:
-    """Write a robot with other values, the sizes of named effects among its free parameters.
+    """Write a robot with new values; sizes of named effects become free parameters.
 
     Args:
-        robot: what was fitted.
-        values: of its free parameters and of effects that it now has, by name.
-        path: of the file to write.
+        robot: the robot that was fitted.
+        values: values of its free parameters and of the effects that it now has, by name.
+        path: path of the file to write.
         place: the folder from which the file will be read.
     """
     file, at = robot.file, robot.plant.parameters
@@ -49,7 +49,7 @@ def write_robot(robot: Robot, values: Mapping[str, float], path: Path, place: Pa
 
 
 def _text(text: str) -> str:
-    """A basic string of TOML: JSON's escapes are among its own."""
+    """A basic string of TOML, written as JSON, whose escapes are valid in TOML too."""
     return json.dumps(text, ensure_ascii=False)
 
 

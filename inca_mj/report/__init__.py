@@ -1,1 +1,1 @@
-"""What reports and JSON say of the robot."""
+"""Sections, figures and JSON for reports about this robot."""

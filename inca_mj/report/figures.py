@@ -19,8 +19,8 @@ _MARKERS = "osD^vPX*"
 def simulation_figures(run: Run) -> dict[str, Figure]:
     """The four figures of the thesis' Figure 2.16, by name.
 
-    The thesis' caption of its part (d) repeats "angles of the motors"; its text speaks of roll,
-    pitch and yaw, and so does this.
+    The caption of part (d) in the thesis repeats "angles of the motors", but its text speaks of
+    roll, pitch and yaw; these are shown here.
     """
     drives = range(1, run.motor_angle.shape[1] + 1)
     series: dict[str, tuple[str, np.ndarray, list[str]]] = {
@@ -36,9 +36,9 @@ def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) ->
     """Largest difference of the two models over the step, with the slope of a 4th-order method.
 
     Args:
-        rows: one of each case and step: `case`, `step` [s], `max_angle_error` [rad],
+        rows: one row for each case and step: `case`, `step` [s], `max_angle_error` [rad],
             `max_position_error` [m], `max_tension_error` [N].
-        order: the order of convergence observed; None when it could not be.
+        order: the observed order of convergence; None when it could not be observed.
     """
     cases = list(dict.fromkeys(str(row["case"]) for row in rows))
     with matplotlib.rc_context(STYLE):
@@ -50,7 +50,7 @@ def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) ->
         ):
             error = f"max_{kind}_error"
             for number, case in enumerate(cases):
-                # No error at all has no place on a logarithmic axis: a gap.
+                # An error of zero cannot stand on a logarithmic axis, so a gap is left.
                 points = sorted((r["step"], r[error] or np.nan) for r in rows
                                 if str(r["case"]) == case)  # fmt: skip
                 ax.plot(*zip(*points, strict=True), color=SERIES[number % len(SERIES)],
@@ -82,7 +82,7 @@ def _over_time(time: np.ndarray, label: str, values: np.ndarray, names: list[str
 
 
 def _slope(ax: Axes, rows: Sequence[Mapping[str, Any]], error: str) -> None:
-    """A dashed line error ~ step⁴ just below the largest errors."""
+    """A dashed line with error ~ step⁴, just below the largest errors."""
     steps = np.array(sorted({row["step"] for row in rows}))
     largest = max((row[error] or 0.0 for row in rows if row["step"] == steps[-1]), default=0.0)
     if largest > 0:

@@ -1,4 +1,4 @@
-"""Figures of what an experiment would say."""
+"""Figures of the information that an experiment would give."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from identification.report.style import INK, SERIES, STYLE
 
 
 def std_figure(names: Sequence[str], stds: Mapping[str, np.ndarray]) -> Figure:
-    """Bars of the std of each parameter, one colour an experiment, on a logarithmic axis.
+    """Bars of the std of each parameter, one colour per experiment, on a logarithmic axis.
 
     Args:
-        names: of the parameters, p of them.
-        stds: of q (relative where logarithmic) by experiment, each of shape (p,); an infinite
-            one has no bar.
+        names: names of the p parameters.
+        stds: std of q (relative where logarithmic) by experiment, each of shape (p,); an infinite
+            std has no bar.
     """
     place = np.arange(len(names))
     width = 0.8 / max(1, len(stds))

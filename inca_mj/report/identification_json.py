@@ -31,7 +31,7 @@ Row = tuple[str, float, float, str, float, bool]
 def identification_json(
     result: Identification, profiles: Sequence[Profile] = (), seed: int = 0
 ) -> dict[str, Any]:
-    """The numbers and the verdict; what is unknown or infinite is null."""
+    """The numbers and the verdict; unknown and infinite numbers are null."""
     record = fit_to_json(result.fit)
     record["steps"] = [fit_to_json(fit) for fit in result.fits]
     record["verdict"] = identification_verdict(result)
@@ -61,7 +61,7 @@ def identification_json(
 
 
 def identification_verdict(result: Identification) -> list[str]:
-    """What the fit to believe says, after what its windows and its starts say."""
+    """The verdict of the fit to believe, after sentences on its windows and its starts."""
     if result.innovations is not None:
         return innovations_verdict(result.innovations)
     if result.windows is not None:
@@ -75,7 +75,7 @@ def identification_verdict(result: Identification) -> list[str]:
 
 
 def rows(result: Identification, fit: Fit) -> list[Row]:
-    """A line of the table of parameters each: of the windows, if any, then of the fit."""
+    """The rows of the table of parameters: first those of the windows, then those of the fit."""
     known = fit.estimate.predictor.plant.parameters
     w, e = result.windows, fit.estimate
     parts: list[tuple[Any, ...]] = []
@@ -93,7 +93,7 @@ def rows(result: Identification, fit: Fit) -> list[Row]:
 
 
 def windows_verdict(found: WindowEstimate, fit: Fit) -> list[str]:
-    """What the windows found, and how far their parameters carry in a free run."""
+    """What the windows found, and how well their parameters predict a free run."""
     floor = float(np.sqrt(np.mean(fit.floor**2)))
     said = window_sentences(found, floor)
     unseen = "" if fit.validation_rms is None else f" and {fit.validation_rms:.3g} on unseen data"
@@ -105,7 +105,7 @@ def windows_verdict(found: WindowEstimate, fit: Fit) -> list[str]:
 
 
 def innovations_verdict(found: InnovationsFit) -> list[str]:
-    """What an estimate by innovations says: of the noise, then of the fit."""
+    """The verdict of an estimate by innovations: first on the noise, then on the fit."""
     fit, noise = found.fit, found.level
     said = [*search_sentences(fit), *identifiable_sentences(fit)]
     if noise.noise.ratio:
@@ -138,7 +138,7 @@ def innovations_verdict(found: InnovationsFit) -> list[str]:
 
 
 def held_sentence(fit: Fit) -> str:
-    """That the start pose was not estimated, which spoils a fit where it is not known exactly."""
+    """Says that the start pose was not estimated, which spoils a fit if the pose is not exact."""
     held = [name for name in POSE if name not in fit.estimate.values]
     if len(held) < len(POSE):
         return ""
@@ -149,7 +149,7 @@ def held_sentence(fit: Fit) -> str:
 
 
 def starts_sentence(errors: np.ndarray) -> str:
-    """How many starts were needed, and how well they agree."""
+    """Says how many starts were needed, and how well they agree."""
     best = float(errors.min())
     same = int((errors < 1.01 * best).sum())
     if len(errors) == 1:

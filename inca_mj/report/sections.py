@@ -1,4 +1,4 @@
-"""What reports say: a section each for a comparison, a run, a check, a film, a model."""
+"""Sections of reports: one for a comparison, a run, a cross-check, a film, and a model."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def compare_verdict(result: Comparison) -> list[str]:
 
 
 def compare_section(result: Comparison) -> Section:
-    """Measured against simulated, as MATLAB's `compare` shows it."""
+    """Measured and simulated angles, as MATLAB's `compare` shows them."""
     log = result.log
     figure = compare_figure(
         log.time, log.outputs, result.run.motor_angle, result.fit_percent, log.output_names, "rad"

@@ -1,4 +1,4 @@
-"""What reports say of an identification."""
+"""Sections of reports on an identification."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def fit_section(result: Identification, fit: Fit, title: str) -> Section:
 
 
 def profile_section(fit: Fit, known: Profile) -> Section:
-    """How well the other parameters can make up for one."""
+    """The profile of one parameter: how well the others can compensate a change of it."""
     unit = fit.estimate.predictor.plant.parameters[known.name].unit
     return Section(
         f"Profile of {known.name}",

@@ -1,4 +1,4 @@
-"""What commands say of an experiment's information: sentences, JSON, report sections."""
+"""The information of an experiment as sentences, JSON and sections of reports."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from inca_mj.report.figures_information import std_figure
 from inca_mj.workflows.bench import Tried
 from inca_mj.workflows.excitation import Design
 
-WEAK = 0.5  # relative std beyond which a value says little
+WEAK = 0.5  # a value with a larger relative std says little
 
 
 def information_verdict(found: Information) -> list[str]:
-    """What can be determined, what cannot, in sentences."""
+    """Sentences on what can be determined and what cannot."""
     kept, held = determinable(found)
     if held:
         said = [*lost_sentences(found), f"Hold {' and '.join(held)} fixed."]
@@ -47,7 +47,7 @@ def information_verdict(found: Information) -> list[str]:
 
 
 def lost_sentences(found: Information) -> list[str]:
-    """What cannot be told, because no output feels it or because differences cannot resolve it."""
+    """Sentences on what cannot be determined, because it is not felt or not resolved."""
     inner, said = found.found, []
     if inner.symmetries:
         scaled = [n for n in inner.names if any(n in s.powers for s in inner.symmetries)]
@@ -93,7 +93,7 @@ def information_json(found: Information) -> dict[str, Any]:
 
 
 def information_section(found: Information, about: str) -> Section:
-    """Least std of every parameter, with the others unknown and known, best determined first."""
+    """Least std of each parameter, if the others are unknown and if they are known."""
     order = [found.names.index(name) for name in found.ranking]
     std, alone = found.std, found.conditional
     return Section(
@@ -115,7 +115,7 @@ def information_section(found: Information, about: str) -> Section:
 
 
 def design_verdict(result: Design) -> list[str]:
-    """By how much the design beats the thesis' PRBS, honestly."""
+    """Sentences on how much better the design is than the thesis' PRBS, also where it is not."""
     worst, gain = result.worst_gain, result.gain
     names = result.best.found.names
     best, least = int(gain.argmax()), int(gain.argmin())
@@ -180,7 +180,7 @@ def _row(tried: Tried) -> tuple[object, ...]:
 
 
 def design_section(result: Design) -> Section:
-    """The designed input against the thesis' PRBS, and a table of standard inputs."""
+    """The designed input compared with the thesis' PRBS, and a table of standard inputs."""
     names = result.best.found.names[: result.best.found.asked]
     stds = {"thesis' PRBS": result.prbs.found.std, "designed": result.best.found.std}
     recipe = ", ".join(f"{k} {v:.3g}" for k, v in result.settings.items())

@@ -1,4 +1,4 @@
-"""How the robot looks: floor, frame, drums, handle, light, cameras; none weighs or touches."""
+"""How the robot looks: floor, frame, drums, handle, light, cameras, without mass or contact."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ STEEL = [0.30, 0.32, 0.36, 1.0]
 MOTOR = [0.12, 0.12, 0.13, 1.0]
 HANDLE = [0.93, 0.45, 0.13, 1.0]
 
-# The handle is 15 cm in a frame of 3 m: its camera stays with it, at a fixed direction [m].
+# The handle has 15 cm in a frame of 3 m, so its camera moves with it, at a fixed direction [m].
 HANDLE_EYE, HANDLE_TARGET = [0.18, -0.50, 0.12], [0.0, 0.0, -0.035]
 
 _BOX, _CYLINDER = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CYLINDER
@@ -76,7 +76,7 @@ def dress_world(spec: mujoco.MjSpec, geometry: Geometry) -> None:
 
 
 def _frame(world: Any, geometry: Geometry) -> None:
-    """Bars along the box that the exit points span, 8 cm outside of it."""
+    """Bars along the edges of the box around the exit points, 8 cm outside of it."""
     low, high = geometry.A.min(0) - [0.12, 0.12, 0.1], geometry.A.max(0) + [0.12, 0.12, 0.06]
     corners = np.array([[(low, high)[i][0], (low, high)[j][1]] for i, j in np.ndindex(2, 2)])
     for x, y in corners:

@@ -1,10 +1,10 @@
-"""What candidate effects change of the start: the ways of the cables, the load, the elasticity.
+"""How candidate effects change the start: the paths of the cables, the load, the elasticity.
 
-The start is that of the nominal model, at the true lengths of the cables: T(0) holds the nominal
-robot, the drum springs balance it, d₀(0) = λ d/(λ + T(0)). The effects act from there on, as on a
-robot that was held until then. A `settled` robot has stood for a while with its effects: T(0)
-balances what they do to the cables' ways and to the platform's load, the drum springs balance
-T(0) on the roller as it is, and d₀(0) follows from the cable's own law:
+The usual start is that of the nominal model, with the true lengths of the cables: T(0) holds the
+nominal robot, the drum springs balance T(0), and d₀(0) = λ d/(λ + T(0)). The effects act from then
+on, as on a robot that was held before. A `settled` robot has stood by itself for a while with its
+effects: T(0) takes into account how they change the cables' paths and the platform's load, the drum
+springs balance T(0) at the true radius of the roller, and d₀(0) follows from the law of the cable:
 
     T(0) = λ ε + ΔT(ε)        solved for ε by secant steps
 """
@@ -24,18 +24,19 @@ from inca_mj.effects.values import drive_values, present
 from inca_mj.robot.geometry import DRIVES, Geometry
 from inca_mj.robot.kinematics import rotation
 
-SECANTS = 12  # more than enough: each adds half as many digits again
+SECANTS = 12  # more than enough, because secant steps converge faster than linearly
 UNKNOWN = dict.fromkeys(Drive._fields, np.nan)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Change:
-    """What the effects that are there change at rest.
+    """How the effects that are present change the robot at rest.
 
     Attributes:
         longer: Δd of each cable, shape (8,) [m].
         turned: ∂Δd/∂r of each cable, in O, shape (8, 3).
-        load: added to the wrench to carry, in O, about the platform's frame, shape (6,) [N, N m].
+        load: what is added to the wrench that the cables carry, in O, about the platform's frame,
+            shape (6,) [N, N m].
         wider: ΔR of each roller, shape (8,) [m].
         d: length of each cable, shape (8,) [m].
         values: of all parameters, in SI units.
@@ -76,12 +77,12 @@ class Change:
 def change_at_rest(
     values: Mapping[str, float], pose: np.ndarray, geometry: Geometry, layout: Layout
 ) -> Change | None:
-    """What the effects present in `values` change at a pose; None when nothing does.
+    """The change by the effects that are present in `values`, at a pose; None without a change.
 
     Args:
         values: of all parameters, in SI units.
-        pose: of the centre of mass.
-        geometry: with connectors as seen from there.
+        pose: pose of the centre of mass.
+        geometry: the geometry, with the connectors relative to the centre of mass.
         layout: the effects, and whether the start is settled.
     """
     there = [e for e in layout.effects if _touches(e, layout.settled) and present(e, values)]
@@ -122,7 +123,7 @@ def change_at_rest(
 
 
 def own_states(values: Mapping[str, float], strain: np.ndarray, layout: Layout) -> np.ndarray:
-    """States of the effects' own at the start, shape (8, states).
+    """The effects' own states at the start, shape (8, states).
 
     Args:
         values: of all parameters, in SI units.

@@ -5,14 +5,15 @@
     mjcb_act_bias   force of a drive is its current [A]; the gear K_t makes it a torque
     mjcb_sensor     user sensors on a drive: tension [N], no-load length [m] of its cable
 
-A drive is an actuator whose `actuator_user` row starts with `law.TAG`: every other actuator,
-sensor and model passes through untouched. The row also holds the key of a set of effects, and only
-the law of that set advances the drive; where no law in this process has the key, the drive gets
-NaN, which MuJoCo reports as a divergence. A compiled callback must not raise: a vanished length
-gives NaN as well.
+A drive is an actuator whose `actuator_user` row starts with `law.TAG`. Every other actuator, sensor
+and model is left unchanged. The row also holds the key of a set of effects, and only the law of
+that set computes the drive. If no law in this process has the key, the drive gets NaN, which MuJoCo
+reports as a divergence. A compiled callback must not raise an error, so a length of zero gives NaN
+as well.
 
-Candidate effects are terms of the same law (see `inca_mj.effects.hooks`), added where their
-letters stand: i + Δi, R + ΔR, d + Δd, T + ΔT, τ + Δτ. A set without effects costs nothing.
+Candidate effects are terms of the same law (see `inca_mj.effects.hooks`). They are added to the
+quantities that they change: i + Δi, R + ΔR, d + Δd, T + ΔT, τ + Δτ. An empty set of effects costs
+no time.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ _USER = int(mujoco.mjtSensor.mjSENS_USER)
 _ACTUATOR = int(mujoco.mjtObj.mjOBJ_ACTUATOR)
 _STAGE_VEL = int(mujoco.mjtStage.mjSTAGE_VEL)
 
-# A drive and what its law makes of it.
+# A drive and the results of its law.
 #   drive: a `Drive`, as the hooks behind the tension see it; d_0_dot: rate of d₀ [m/s]
 #   R: radius of the roller with what effects add to it [m]; gx, gy, gz: ∂Δd/∂r
 Winding: Any = namedtuple("Winding", "drive d_0_dot R gx gy gz")
@@ -115,10 +116,10 @@ def _begun(m, d, i):  # type: ignore[no-untyped-def]
 def callbacks(
     key: float, on_drives: Sequence[Term], on_platform: Sequence[Term]
 ) -> dict[str, Function]:
-    """The four callbacks of the law with a set of candidate effects, to be compiled.
+    """The four callbacks of the law with a set of candidate effects, before they are compiled.
 
     Args:
-        key: of the set, which its drives carry; zero where it has no effects.
+        key: key of the set, which its drives carry; zero for a set without effects.
         on_drives: the effects of the drives, their columns counted in `actuator_user`.
         on_platform: the effects of the platform, their columns counted in `body_user`.
     """
@@ -193,7 +194,7 @@ def callbacks(
         if some:
             out = word(d, D.act_dot) + 8 * integer(m, M.actuator_actadr, i)
             advance(now.drive, _row(m, i), _act(m, d, i), out)
-            store_double(out, now.d_0_dot)  # MuJoCo keeps the answer only of a single activation
+            store_double(out, now.d_0_dot)  # MuJoCo stores the rate of a single activation only
         return now.d_0_dot
 
     def act_bias(m, d, i):  # type: ignore[no-untyped-def]

@@ -2,9 +2,10 @@
 
     env = inca_mj.load_environment("hold", random=0)
 
-Tasks: `hold` keeps the handle where it starts while a hand pulls at it with a constant force
-that is not observed; `reach` brings it to a target. Needs dm_control: pip install inca-mj[control].
-To draw without a display, set MUJOCO_GL=egl before anything of MuJoCo is imported.
+There are two tasks. `hold`: keep the handle where it starts, while a hand pulls at it with a
+constant force that is not observed. `reach`: bring the handle to a target. The module needs
+dm_control: pip install inca-mj[control]. To draw without a display, set MUJOCO_GL=egl before MuJoCo
+is imported.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from inca_mj.twin.statics import start
 from inca_mj.twin.twin import start_state
 
 with warnings.catch_warnings():
-    # dm_control tries GLFW while it is imported, which complains where there is no display.
+    # dm_control tries GLFW while it is imported, which prints warnings without a display.
     warnings.filterwarnings("ignore", ".*DISPLAY")
     from dm_control import mujoco as dm_mujoco
     from dm_control.rl import control
@@ -37,16 +38,16 @@ with warnings.catch_warnings():
 CONTROL_TIMESTEP = 0.01  # [s], the sampling time of the robot's own controller
 TIME_LIMIT = 10.0  # of an episode [s]
 
-# The drum springs hold the handle by themselves; a current winds, so none below zero is needed
-# and none can slacken a cable at rest. 2 A is the largest current of the thesis (Figure 2.16);
-# that the motors bear it continuously is assumed.
+# The drum springs hold the handle without current. A positive current winds the cable in, so that
+# no current below zero is needed, and no current slackens a cable at rest. 2 A is the largest
+# current of the thesis (Figure 2.16); it is assumed that the motors can bear it continuously.
 LOWEST_CURRENT, HIGHEST_CURRENT = 0.0, 2.0  # [A]
 
 START_SPREAD = np.array([0.02] * 3 + [0.05] * 3)  # half-width of the start poses [m, rad]
-HAND = (0.5, 2.0)  # least and largest force of the hand [N]; 8 N would still be within 2 A
-REACH = np.array([0.2, 0.2, 0.2])  # half-width of the box of targets [m]; all can be held
+HAND = (0.5, 2.0)  # least and largest force of the hand [N]; 2 A could hold 8 N
+REACH = np.array([0.2, 0.2, 0.2])  # half-width of the box of targets [m]; all of them can be held
 
-# The reward is 1 within these, and falls to 0.1 at the margin beyond them.
+# The reward is 1 within these limits, and falls to 0.1 at the margin beyond them.
 NEAR, NEAR_MARGIN = 0.005, 0.1  # distance of the handle from its target [m]
 LEVEL, LEVEL_MARGIN = 0.02, 0.3  # angle of the handle from upright [rad]
 
@@ -54,7 +55,7 @@ TARGET = "target"
 
 
 class Physics(dm_mujoco.Physics):
-    """The twin, with names for what the robot and its user can see."""
+    """The twin, with names for what the robot measures and its user sees."""
 
     def motor_angle(self) -> np.ndarray:
         """Motor angles φ, shape (8,) [rad]."""
@@ -86,7 +87,7 @@ class Physics(dm_mujoco.Physics):
 
 
 class Handle(control.Task):
-    """What both tasks share: the start, the currents, what is seen and how it is judged.
+    """What both tasks share: the start, the currents, the observations and the reward.
 
     Args:
         random: seed, or a generator to draw from.
@@ -96,7 +97,7 @@ class Handle(control.Task):
         self.random = np.random.default_rng(random)
 
     def initialize_episode(self, physics: Physics) -> None:
-        """Put the robot at rest near its nominal start, its pretension as the pose demands."""
+        """Put the robot at rest near its nominal start, with the pretension for its pose."""
         nominal = parameter_set()
         names = ("x", "y", "z", "roll", "pitch", "yaw")
         shift = self.random.uniform(-START_SPREAD, START_SPREAD)
@@ -119,7 +120,7 @@ class Handle(control.Task):
         )
 
     def before_step(self, action: Any, physics: Physics) -> None:
-        """Give the motors their currents; the amplifiers cut them to their range.
+        """Give the motors their currents; the amplifiers limit them to their range.
 
         Raises:
             PhysicsError: a current is not a finite number; the state is left as it was.
@@ -141,7 +142,7 @@ class Handle(control.Task):
         )
 
     def get_reward(self, physics: Physics) -> float:
-        """Between 0 and 1: near the target and upright."""
+        """The reward between 0 and 1: it is 1 near the target and upright."""
         distance = np.linalg.norm(physics.handle_position() - physics.target())
         angle = 2 * np.arccos(np.clip(abs(physics.handle_orientation()[0]), 0, 1))
         near = rewards.tolerance(distance, (0, NEAR), NEAR_MARGIN)
@@ -150,17 +151,17 @@ class Handle(control.Task):
 
 
 class Hold(Handle):
-    """Keep the handle where it starts against the constant, unseen force of a hand."""
+    """Keep the handle where it starts, against the constant, unobserved force of a hand."""
 
     def initialize_episode(self, physics: Physics) -> None:
-        """Start, and let the hand pull in a direction of its own."""
+        """Start an episode, and let the hand pull in a random direction."""
         super().initialize_episode(physics)
         direction = self.random.normal(size=3)
         force = self.random.uniform(*HAND) * direction / np.linalg.norm(direction)
         physics.named.data.xfrc_applied["platform", :3] = force
 
     def draw_target(self, begin: np.ndarray) -> np.ndarray:
-        """The start itself."""
+        """The target is the start itself."""
         return begin
 
 
@@ -168,7 +169,7 @@ class Reach(Handle):
     """Bring the handle to a target that it can hold."""
 
     def draw_target(self, begin: np.ndarray) -> np.ndarray:
-        """Somewhere in a box about the nominal start."""
+        """A random target in a box about the nominal start."""
         nominal = parameter_set()
         centre = np.array([nominal[n].value for n in "xyz"])
         return centre + self.random.uniform(-REACH, REACH)
@@ -183,7 +184,7 @@ def load_environment(
     time_limit: float = TIME_LIMIT,
     environment_kwargs: Mapping[str, Any] | None = None,
 ) -> control.Environment:
-    """An environment around the model file, the law of its cables installed.
+    """An environment with the model file and the law of its cables.
 
     Args:
         task: "hold" or "reach".
@@ -192,7 +193,7 @@ def load_environment(
         environment_kwargs: further arguments of `dm_control.rl.control.Environment`.
 
     Raises:
-        InputError: no such task, or another library holds MuJoCo's callbacks.
+        InputError: there is no such task, or another library holds MuJoCo's callbacks.
     """
     if task not in TASKS:
         raise unknown_name("task", task, TASKS)

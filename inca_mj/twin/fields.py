@@ -1,7 +1,7 @@
 """MuJoCo's fields that the callbacks of the cable law touch, and the rows of a drive and a cable.
 
-`M` and `D` hold the word offsets of the fields of mjModel and mjData, frozen into the compiled
-code; the installer checks them against live objects.
+`M` and `D` hold the word offsets of the fields of mjModel and mjData. They are constants of the
+compiled code; the installer checks them against live objects.
 """
 
 from __future__ import annotations

@@ -26,12 +26,12 @@ UNITS = {
     **dict.fromkeys(("vx", "vy", "vz"), "m/s"), **dict.fromkeys(("wx", "wy", "wz"), "rad/s"),
 }  # fmt: skip
 
-# Beyond these a number is in another unit: 20 A is ten times what the motors stand; 400 rad winds
-# 7 m of cable into a 3 m frame; at 300 rad/s a cable runs 5 m/s, more than a hand can.
+# A larger number must be in another unit: 20 A is ten times what the motors can bear; 400 rad are
+# 7 m of cable in a frame of 3 m; at 300 rad/s a cable moves at 5 m/s, faster than a hand.
 LIMITS = {"current": 20.0, "angle": 400.0, "x": 3.0, "y": 3.0, "z": 4.0, "tension": 1000.0}
 RATES = {"angle": 300.0}
 
-SLOWEST = 0.5  # sampling time above which a log's time is in milliseconds [s]
+SLOWEST = 0.5  # a larger sampling time means that time is in milliseconds [s]
 
 ZERO = 0.05  # a log begins at φ = 0; 0.05 rad is 0.9 mm of cable, 30 counts of an encoder [rad]
 
@@ -40,8 +40,8 @@ def read_inca_log(path: str | Path) -> Log:
     """Read a log of the robot: CSV with a TOML beside it, or MATLAB (`u`, `y`, `Ts`).
 
     Raises:
-        InputError: the file cannot be what it says (see `identification.read_log`), or does not
-            begin at zero angles.
+        InputError: the file cannot be a log of this robot (see `identification.read_log`), or does
+            not begin at zero angles.
     """
     log = read_log(path, CURRENTS, ANGLES, OPTIONAL, units=UNITS, limits=LIMITS, rates=RATES)
     if log.sampling_time > SLOWEST:
@@ -71,9 +71,9 @@ def run_to_log(run: Run, name: str = "run", notes: str = "") -> Log:
     """A run as a log, with pose, velocities, tensions and no-load lengths as optional columns.
 
     Args:
-        run: of `simulate`.
+        run: the result of `simulate`.
         name: what to call the log in a report.
-        notes: what to say of it.
+        notes: remarks about it.
     """
     extras = {
         **dict(zip(POSE, np.hstack([run.position, run.angles]).T, strict=True)),

@@ -1,10 +1,10 @@
 """The MJCF of the INCA 6D, built from parameters and geometry.
 
 Bodies `platform` (free) and `drum_1..8` (hinge `motor_i`), tendons `cable_1..8` from the exit
-points to the platform, actuators `current_1..8`, sensors, a keyframe `start`. MuJoCo does the
-rigid bodies, K_t i (gear), b_v (joint damping), J (armature) and the cable lengths; the tension,
-the no-load length, the drum spring and the Coulomb friction are `inca_mj.robot.law`'s, whose
-numbers the builder puts into `actuator_user` and `tendon_user`.
+points to the platform, actuators `current_1..8`, sensors, a keyframe `start`. MuJoCo computes the
+rigid bodies, K_t i (gear), b_v (joint damping), J (armature) and the cable lengths. The tension,
+the no-load length, the drum spring and the Coulomb friction are computed by `inca_mj.robot.law`;
+the builder puts its numbers into `actuator_user` and `tendon_user`.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def build(
     """The robot at its pretensioned start, as an editable `MjSpec`.
 
     Args:
-        parameters: the values, those of the effects included.
+        parameters: the values, including those of the effects.
         geometry: anchors of the cables.
         layout: the candidate effects; none when None.
 
@@ -65,12 +65,12 @@ def _settings(spec: mujoco.MjSpec, layout: Layout) -> None:
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
     spec.option.timestep = TIMESTEP
     spec.option.gravity = [0, 0, -GRAVITY]
-    # Every other integrator adds inertia to custom forces or drops part of them.
+    # Every other integrator adds inertia to custom forces or leaves out a part of them.
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
     spec.option.disableflags = (
         mujoco.mjtDisableBit.mjDSBL_CONTACT
         | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
-        | mujoco.mjtDisableBit.mjDSBL_AUTORESET  # a divergence must be seen, not restarted
+        | mujoco.mjtDisableBit.mjDSBL_AUTORESET  # a divergence must be reported, and not restarted
     )
     spec.nuser_actuator = layout.actuator_columns
     spec.nuser_body = layout.body_columns
@@ -98,10 +98,10 @@ def _platform(
 
 
 def check_inertia(values: Mapping[str, float]) -> None:
-    """Refuse principal inertias that no body has: one exceeds the sum of the other two.
+    """Refuse principal inertias that no body can have, where one exceeds the sum of the others.
 
     Raises:
-        InputError: it does.
+        InputError: one exceeds the sum of the other two.
     """
     I = {name: values[name] for name in ("I_x", "I_y", "I_z")}
     largest = max(I, key=I.__getitem__)
@@ -127,7 +127,7 @@ def _drive(
     exit_point = np.array(geometry.exits[k - 1])
     spec.worldbody.add_site(name=f"exit_{k}", pos=exit_point, size=[0.012, 0.012, 0.012])
 
-    # The roller turns beside the exit point: its place is for the eye, its inertia is J.
+    # The roller turns beside the exit point. Its position is only drawn; its inertia is J.
     outward = np.array([exit_point[0], exit_point[1], 0.0])
     outward = outward / np.linalg.norm(outward) if outward.any() else np.array([1.0, 0.0, 0.0])
     drum = spec.worldbody.add_body(name=f"drum_{k}", pos=exit_point + 0.08 * outward)

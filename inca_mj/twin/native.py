@@ -1,7 +1,8 @@
 """The law of `inca_mj.twin.callbacks`, compiled and installed in this process.
 
-Callbacks are global in MuJoCo: `identification.native.installer` lets the laws of several sets of
-effects work side by side, refuses to displace somebody else's, and leaves alone what is not ours.
+Callbacks are global in MuJoCo. With `identification.native.installer` the laws of several sets of
+effects work side by side; callbacks of other libraries are not displaced, and models of other
+robots are left unchanged.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ class Run:
     Attributes:
         twin: the twin that ran.
         time: sample times, shape (N,) [s].
-        currents: inputs, sample k held until k+1, shape (N, 8) [A].
+        currents: inputs, shape (N, 8) [A]; sample k is held until k+1.
         qpos: MuJoCo positions, shape (N, 15) [m, -, rad].
         qvel: MuJoCo velocities, shape (N, 14) [m/s, rad/s].
         act: no-load lengths d₀, shape (N, 8) [m].
@@ -59,7 +59,7 @@ class Run:
 
     @property
     def motor_angle(self) -> np.ndarray:
-        """Motor angles φ, positive winds in, shape (N, 8) [rad]."""
+        """Motor angles φ, shape (N, 8) [rad]; a positive angle winds the cable in."""
         return self.qpos[:, 7:]
 
     @property
@@ -91,13 +91,14 @@ def simulate(
 
     Args:
         robot: the twin.
-        currents: shape (N, 8) [A], sample k held until sample k+1.
+        currents: shape (N, 8) [A]; sample k is held until sample k+1.
         sampling_time: between samples, a whole number of the model's steps [s].
         start: initial state; the twin's pretensioned start when None.
         hold_kind: "zoh" or "foh".
 
     Raises:
-        InputError: the currents have another shape, or the step does not divide.
+        InputError: the currents have another shape, or the model's step does not divide the
+            sampling time.
         DivergenceError: the simulation left the finite numbers.
     """
     currents = np.asarray(currents, float)
@@ -142,7 +143,7 @@ def save_run(run: Run, path: str | Path) -> Path:
     """Write a run to one .npz file: arrays, and the robot's values and geometry as JSON.
 
     Args:
-        run: of `simulate`.
+        run: the result of `simulate`.
         path: where to write; the name ends in .npz.
 
     Returns:
@@ -178,7 +179,7 @@ def load_run(path: str | Path) -> Run:
         raise InputError(f"no run {path}; inca simulate --out DIR writes one") from None
     except InputError:
         raise
-    except Exception as error:  # zip, JSON and numpy each have errors of their own
+    except Exception as error:  # zip, JSON and numpy raise different errors
         raise InputError(
             f"{path} is not a run of inca simulate, or is damaged ({type(error).__name__});"
             " write it again"
@@ -186,7 +187,7 @@ def load_run(path: str | Path) -> Run:
 
 
 def _robot(header: dict[str, Any]) -> Twin:
-    """The robot that a saved run's header tells."""
+    """The robot that the header of a saved run describes."""
     names = {f.name for f in fields(Geometry)}
     geometry = geometry_of({k: v for k, v in header["geometry"].items() if k in names})
     return build_twin(

@@ -1,7 +1,8 @@
 """A twin with effects as files: model.xml, and effects.json with what MJCF cannot say.
 
-The law of an effect is code: a model reloads where the effects of its names are at hand. Those of
-the catalogue always are; a user's own is passed by the user.
+The law of an effect is code and is not saved. So a model can be loaded only if effects with the
+saved names are given. Those of the catalogue are given by default; the user passes effects of their
+own.
 """
 
 from __future__ import annotations
@@ -57,15 +58,15 @@ def save_twin(robot: Twin, folder: str | Path) -> tuple[Path, Path]:
 
 
 def load_twin(path: str | Path, effects: Sequence[Effect] = CATALOGUE) -> Twin:
-    """Read a twin written by `save_twin`: the same to the last bit.
+    """Read a twin written by `save_twin`; it is the same to the last bit.
 
     Args:
-        path: the folder, or either of the two files.
-        effects: those that the twin may have, by name.
+        path: the folder, or one of the two files.
+        effects: the effects that the twin may have.
 
     Raises:
         InputError: a file is missing or damaged, an effect is not among `effects` or has another
-            law there, or the two files do not belong together.
+            law in them, or the two files do not belong together.
     """
     own_file = Path(path).suffix in (".xml", ".json")
     folder = Path(path).parent if own_file else Path(path)
@@ -145,10 +146,10 @@ def _parameters(name: str, values: dict[str, float], effects: Sequence[Effect]) 
 
 
 def _same(model: mujoco.MjModel, path: Path) -> None:
-    """Refuse a model.xml that was edited after it was saved, or is of another twin.
+    """Refuse a model.xml that was edited after it was saved, or that belongs to another twin.
 
     Raises:
-        InputError: it is, or it cannot be read.
+        InputError: the file was edited, belongs to another twin, or cannot be read.
     """
     if not path.is_file():
         raise InputError(f"no {path}; save the twin again")

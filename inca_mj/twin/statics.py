@@ -4,8 +4,8 @@
     T(0) = t₀ + W⁺ (w - W t₀)                     nearest (least squares) to t₀ = 4 N each
     d₀(0) = λ d/(λ + T(0))                        (thesis 2.24, 2.25 at rest)
 
-w = (0, 0, m g, 0, 0, 0) is the weight to carry. What candidate effects change of it: see
-`inca_mj.twin.at_rest`.
+w = (0, 0, m g, 0, 0, 0) is the weight to carry. `inca_mj.twin.at_rest` says how candidate effects
+change this.
 """
 
 from __future__ import annotations
@@ -36,8 +36,9 @@ class Start:
         tension: T(0), shape (8,) [N].
         no_load_length: d₀(0), shape (8,) [m].
         strain: ε(0) of each cable, shape (8,).
-        balance: what the drum springs balance, at the roller of the model, shape (8,) [N].
-        own: states of the effects' own, shape (8, states).
+        balance: tensions that the drum springs balance, with the radius R of the model, shape (8,)
+            [N].
+        own: the effects' own states, shape (8, states).
     """
 
     pose: np.ndarray
@@ -57,10 +58,10 @@ def pretension(
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
         geometry: anchors of the cables.
         m: mass of the platform [kg].
-        change: what candidate effects change of the cables' ways and of the load.
+        change: how candidate effects change the cables' paths and the load.
 
     Raises:
-        InputError: some cable would have to push, or the cables cannot hold the platform.
+        InputError: a cable would have to push, or the cables cannot hold the platform.
     """
     R = rotation(*pose[3:])
     d = np.linalg.norm(pose[:3] + geometry.B @ R.T - geometry.A, axis=1)
@@ -94,7 +95,7 @@ def start(parameters: ParameterSet, geometry: Geometry, layout: Layout = NO_EFFE
     """The start that parameters and geometry imply: T(0) and d₀(0) follow from pose, m and λ.
 
     Raises:
-        InputError: as `pretension`.
+        InputError: for the reasons of `pretension`.
     """
     return start_from(parameters.values(), geometry, layout)
 
@@ -102,7 +103,7 @@ def start(parameters: ParameterSet, geometry: Geometry, layout: Layout = NO_EFFE
 def start_from(
     values: Mapping[str, float], geometry: Geometry, layout: Layout = NO_EFFECTS
 ) -> Start:
-    """`start` from plain values by name, in SI units; what candidate effects change included."""
+    """`start` from plain values by name, in SI units, with the changes by candidate effects."""
     pose = np.array([values[name] for name in ("x", "y", "z", "roll", "pitch", "yaw")])
     moved = about_centre(geometry, layout.effects, values)
     change = change_at_rest(values, pose, moved, layout)

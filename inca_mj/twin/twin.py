@@ -38,7 +38,7 @@ class Twin:
         parameters: every number of the robot, with unit and source.
         geometry: where its cables begin and end.
         model: the compiled model; treat it as read-only.
-        effects: candidate effects that are compiled into its law, absent while their sizes are 0.
+        effects: candidate effects that are compiled into its law; absent while their sizes are 0.
         settled: see `Layout`.
     """
 
@@ -84,8 +84,8 @@ class Twin:
     def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:
         """Initial states and model numbers of n value sets, for `identification.Predictor`.
 
-        The start closes the loop that the thesis could not: T(0) follows from pose and m, d₀(0)
-        from T(0), pose and λ.
+        The start follows from the parameters, which the thesis could not achieve: T(0) follows from
+        pose and m, and d₀(0) follows from T(0), pose and λ.
 
         Args:
             names: parameters that differ from the twin's own.
@@ -117,7 +117,7 @@ class Twin:
     def inputs(
         self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
     ) -> np.ndarray:
-        """Currents that reach the motors, where an effect acts on their way; see `Plant`.
+        """The currents that reach the motors, after effects that act on them; see `Plant`.
 
         Args:
             names: parameters that differ from the twin's own.
@@ -151,7 +151,8 @@ def build_twin(
         timestep: of the RK4 integrator [s].
         effects: candidate effects to compile into the law; their sizes become parameters.
         settled: see `Layout`.
-        visual: whether it can be drawn; without its shapes it moves the same, and sooner.
+        visual: whether it can be drawn; without its shapes the motion is the same, and faster to
+            compute.
 
     Raises:
         InputError: the start has no pretension, two effects have one name, a function of an effect
@@ -171,7 +172,7 @@ def build_twin(
 def write_values(
     model: mujoco.MjModel, parameters: ParameterSet, geometry: Geometry, layout: Layout
 ) -> None:
-    """Write all model parameters into mjModel, in place; the start's follow in `Twin`."""
+    """Write all model parameters into mjModel, in place; `Twin` writes those of the start."""
     for parameter in parameters:
         if parameter.where not in ("start", "effect"):
             write(model, resolve(model, parameter.where), parameter.value)

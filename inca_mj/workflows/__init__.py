@@ -1,1 +1,1 @@
-"""What a user does with the twin, one verb a file."""
+"""What a user does with the twin, one verb in each file."""

@@ -1,4 +1,4 @@
-"""Where inputs are tried: run on the twin, held against the limits, and weighed."""
+"""Inputs are tried on the twin: they are simulated, compared with the limits, and assessed."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from inca_mj.workflows.recipes import Recipe
 from inca_mj.workflows.sensitivity import robot_information
 
 SAMPLING = 0.01  # of the robot [s]
-SCALES = (1.0, 0.7, 0.5, 0.35, 0.2)  # of a swing that breaks a limit
+SCALES = (1.0, 0.7, 0.5, 0.35, 0.2)  # tried on a swing that breaks a limit
 
 
 @dataclass(frozen=True)
 class Tried:
-    """An input and what it is worth.
+    """An input, its simulation, and the information that it gives.
 
     Attributes:
         name: in words.
         run: the simulated run.
-        extent: how far it went.
-        found: information on the parameters, the start pose being unknown.
+        extent: how far currents, tensions and pose went.
+        found: information on the parameters, where the start pose is unknown.
         allowed: whether it keeps the limits.
     """
 
@@ -42,12 +42,12 @@ class Tried:
 
 @dataclass(frozen=True)
 class Bench:
-    """Where inputs are tried.
+    """The twin, the noise, the parameters and the limits with which inputs are tried.
 
     Attributes:
         robot: the twin at its nominal values.
         sigma: std of the noise on each angle [rad].
-        names: parameters that are asked for; the start pose is unknown too.
+        names: the parameters of interest; the start pose is unknown too.
         limits: what an input may do.
     """
 
@@ -57,12 +57,13 @@ class Bench:
     limits: Limits
 
     def attempt(self, name: str, run: Run, resolved: bool = False) -> Tried:
-        """What a run is worth, from 2 p simulations.
+        """The information that a run gives, from 2 p simulations.
 
         Args:
             name: in words.
             run: the simulated run.
-            resolved: whether the errors of the sensitivities are estimated, for twice as many.
+            resolved: whether the errors of the sensitivities are estimated; this takes twice as
+                many simulations.
         """
         sampling = float(run.time[1] - run.time[0])
         trial = Experiment(self.robot, run.currents, sampling, ANGLES, self.sigma)
@@ -71,7 +72,7 @@ class Bench:
         return Tried(name, run, far, found, far.within(self.limits))
 
     def fitted(self, recipe: Recipe, n: int) -> tuple[Recipe, Run] | None:
-        """The recipe with as much swing as the limits let it have, and its run."""
+        """The recipe with the largest tried swing that keeps the limits, and its run."""
         for scale in SCALES:
             smaller = replace(recipe, scale=scale)
             try:

@@ -1,4 +1,4 @@
-"""A log against the twin's prediction of it: fit % and rms per motor angle."""
+"""A log compared with the twin's prediction: fit in % and rms of each motor angle."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from inca_mj.twin.twin import build_twin
 
 @dataclass(frozen=True)
 class Comparison:
-    """What was measured, and what the twin makes of the same currents.
+    """The measured angles, and those of the twin under the same currents.
 
     Attributes:
         log: the measured log.
@@ -74,7 +74,7 @@ def compare(
 
 
 def start_of(log: Log, parameters: ParameterSet) -> ParameterSet:
-    """The parameters, begun at the log's own pose where it has one and they name no other."""
+    """The parameters with the start pose of the log, if it has one and they give no other."""
     pose = pose_of(log)
     nominal = parameter_set().values()
     if pose is None or any(parameters[name].value != nominal[name] for name in POSE):
@@ -86,7 +86,7 @@ def timestep_for(sampling_time: float, largest: float = TIMESTEP) -> float:
     """The largest step that divides the sampling time and is no more than `largest` [s].
 
     Raises:
-        InputError: `largest` is no sensible step.
+        InputError: `largest` is not between 1e-6 and 0.1 s.
     """
     if not 1e-6 <= largest <= 0.1:
         raise InputError(f"a step of {largest:g} s is not between 1e-6 and 0.1 s; try {TIMESTEP:g}")

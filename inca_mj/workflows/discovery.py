@@ -1,4 +1,4 @@
-"""Discovery on a log of the robot: its nominal model, what is known of it, and its catalogue."""
+"""Discovery on a log of the robot, with its nominal model, its priors and its catalogue."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from inca_mj.workflows.comparison import timestep_for
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery
 
-TIMESTEP = 2e-3  # [s]; RK4 errs by 0.03 mrad, a twentieth of an encoder's noise, at half the price
+TIMESTEP = 2e-3  # [s]; RK4 errs by 0.03 mrad, 1/20 of an encoder's noise, at half the cost of 1 ms
 
-# What the thesis calls measured or arbitrary is known to 30 %; what a data sheet says, better.
+# Values that the thesis calls measured or arbitrary are known to 30 %, those of data sheets better.
 KNOWN = {
     "lambda": 0.3, "b": 0.3, "J": 0.3, "b_v": 0.3, "b_c": 0.3, "beta": 0.3, "K_t": 0.3,
     "k_s": 0.3, "R": 0.005, "m": 0.01, **dict.fromkeys(POSE, 0.1),
@@ -44,15 +44,17 @@ def discover(
     """Name the physical effect that the twin lacks to explain a log, and prove it.
 
     Args:
-        log: what was measured; its part `estimation` (or first half) is fitted, the rest confirms.
+        log: what was measured; its part `estimation` (or first half) is fitted, and the rest is
+            unseen data for the proof.
         parameters: nominal values; the thesis' Table 3.2 when None.
         geometry: anchors of the cables.
         effects: candidates; the catalogue of 25 by default.
         progress: is told a line per stage.
         timestep: largest step of the integrator [s].
-        settled: whether the robot had stood for a while with what the twin lacks when the log
-            began, so that it starts at rest; else it was held where the nominal one rests.
-        options: what is believed; the defaults of `DiscoveryOptions` when None.
+        settled: True if the robot stood by itself for a while before the log began, so that it
+            starts at rest with the effects that the twin lacks; False if it was held where the
+            nominal model rests.
+        options: the judgement constants; the defaults of `DiscoveryOptions` when None.
 
     Raises:
         InputError: the log is too short, is not wired as the robot is, or its start has no
@@ -62,7 +64,7 @@ def discover(
     step = timestep_for(log.sampling_time, timestep)
     refuse_miswired(log, build_twin(parameters, geometry, timestep=step, visual=False))
 
-    # Slow to import: a log that is refused above has not waited for them.
+    # These imports are slow, so they come after the checks that may refuse the log.
     from identification.discovery.nominal_model import NominalModel
     from identification.discovery.search import discover as search
     from identification.discovery.search import refuse_unfit

@@ -1,4 +1,4 @@
-"""The twin that a discovery ends with: the final fit, and in its law the named effects only."""
+"""The twin at the end of a discovery: the values of the final fit, and only the named effects."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Identification of a disturbed robot: over windows that each begin anywhere, or by innovations."""
+"""Identification of a disturbed robot: over windows with free states, or by innovations."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import timestep_for
 from inca_mj.workflows.identification import MECHANICS, UNKNOWN, Identification
 
-FIRST = 4  # windows that a free run explains first, to start the search over all of them near
+FIRST = 4  # windows of the free run that gives the starting values of the search
 
 
 def identify_windows(
@@ -34,23 +34,25 @@ def identify_windows(
 ) -> Identification:
     """Identify the robot over windows of the estimation part, then confirm it in a free run.
 
-    The search starts where a free run over the first few windows ends. A window begins anywhere:
-    pose, rates and the eight no-load lengths, of which the angles measure none, are fitted for each
-    (see `identification.estimation.windows`). The start pose is free all the same, for the springs
-    remember the pretension that it implies. A free run then fits that pose alone, and says with the
-    parameters of the windows how far they carry.
+    A free run over the first few windows gives the starting values of the search. The initial state
+    of each window is free: pose, rates and the eight no-load lengths, which no angle measures, are
+    fitted for each window (see `identification.estimation.windows`). The start pose is a free
+    parameter too, because the drum springs depend on the pretension at the start. At the end a free
+    run fits this pose alone, and shows how well the parameters of the windows predict the whole
+    log.
 
     Args:
         log: what was measured; its split `estimation`, or its first half, is fitted.
         length: of a window [s].
         parameters: nominal values, where the search begins; the thesis' Table 3.2 when None.
         geometry: anchors of the cables.
-        free: parameters to estimate; those of drives, cables and platform mass when empty.
+        free: parameters to estimate; when empty, those of the drives, the cables and the platform's
+            mass.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
 
     Raises:
-        InputError: the windows do not fit the log, or as `identify`.
+        InputError: the windows do not fit the log, or for the reasons of `identify`.
         DivergenceError: the nominal values, or the free run, cannot be simulated.
     """
     if not length > 0:
@@ -82,18 +84,18 @@ def identify_innovations(
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
 ) -> Identification:
-    """Identify the robot by its innovations: the currents may err by more than the log says.
+    """Identify the robot by its innovations, where the true currents differ from the logged ones.
 
     Args:
         log: what was measured; its split `estimation`, or its first half, is fitted.
         parameters: nominal values, where the search begins; the thesis' Table 3.2 when None.
         geometry: anchors of the cables.
-        free: parameters to estimate; all and the pose when empty.
+        free: parameters to estimate; all of them and the pose when empty.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
 
     Raises:
-        InputError: as `identify`.
+        InputError: for the reasons of `identify`.
         DivergenceError: the nominal values cannot be simulated.
     """
     timestep = timestep_for(log.sampling_time, timestep)

@@ -1,11 +1,11 @@
-"""An input that shows the worst determined parameter best, inside what the robot may do.
+"""Design an input that determines the worst determined parameters best, within limits.
 
     u* = argmax_u  λ_min F(u)      (E-optimal)      so that the simulated run keeps the limits
 
-D-optimality (det F) is won by making the well determined directions better still; E-optimality asks
-for the worst one. The search is seeded: random recipes first, then neighbours of the best. A recipe
-that breaks a limit swings less until it keeps it. Information is local: it holds for a robot near
-the values that it was computed at.
+D-optimality (det F) can be improved by directions that are well determined already; E-optimality
+looks at the worst direction. The search begins with random recipes and then changes the best ones;
+its seed makes it repeatable. The swing of a recipe that breaks a limit is reduced until it keeps
+the limit. The information is local: it holds for a robot near the values for which it was computed.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from inca_mj.workflows.limits import Limits
 from inca_mj.workflows.recipes import Recipe, changed, draw
 from inca_mj.workflows.sensitivity import DURATION, NOISE
 
-MOVES = ((0.3, 0.1), (0.1, 0.1), (0.1, 0.3), (0.03, 0.5))  # size, and share of the numbers
-TRIES = 20  # cheap runs that a search may spend per evaluation of the information
+MOVES = ((0.3, 0.1), (0.1, 0.1), (0.1, 0.3), (0.03, 0.5))  # size of a change, share of numbers
+TRIES = 20  # simulations without information, per evaluation of the information
 
 Progress = Callable[[str], None]
 
@@ -39,9 +39,10 @@ class Design:
         best: the designed input.
         prbs: the thesis' PRBS of the same length.
         standard: inputs that people try, the thesis' PRBS first.
-        held: parameters left out because the PRBS cannot tell them from others.
-        limits: what was allowed.
-        settings: of the designed input; empty when a standard one could not be beaten.
+        held: parameters that were held fixed because the PRBS cannot tell them from others.
+        limits: the limits that were kept.
+        settings: settings of the designed input; empty when no better one than a standard input
+            was found.
         evaluations: how often the information was computed.
     """
 
@@ -60,7 +61,7 @@ class Design:
 
     @property
     def worst_gain(self) -> float:
-        """The same of the worst determined direction of each, √(E/E)."""
+        """Std under the PRBS over std under the design, of the worst direction of each: √(E/E)."""
         return float(np.sqrt(self.best.found.e_value / self.prbs.found.e_value))
 
 
@@ -88,7 +89,7 @@ def excite(
         progress: is told of each improvement.
 
     Raises:
-        InputError: a name, the noise, the duration or a limit is bad, or nothing that was tried
+        InputError: a name, the noise, the duration or a limit is bad, or no input that was tried
             keeps the limits.
         DivergenceError: the twin cannot be simulated under the thesis' PRBS.
     """
@@ -134,7 +135,7 @@ def excite(
 
 
 def _search(bench: Bench, n: int, budget: int, seed: int) -> Iterator[tuple[Recipe, Tried]]:
-    """Recipes that keep the limits, with their worth: half at random, half near the best."""
+    """Recipes that keep the limits, with their information: half random, half near the best."""
     rng = np.random.default_rng(seed)
     best: tuple[Recipe, float] | None = None
     count = 0

@@ -1,7 +1,8 @@
-"""The thesis' two-step procedure on a log, with the step that predicts unseen data best kept.
+"""The thesis' two-step procedure on a log; the step that predicts unseen data best is kept.
 
-Step 1 estimates every parameter and the start; step 2 only what no data sheet says, with the others
-fixed at their nominal values and the search begun at step 1's (thesis section 3.3).
+Step 1 estimates every parameter and the start. Step 2 estimates only the parameters that no data
+sheet gives; the others are fixed at their nominal values, and the search begins at the result of
+step 1 (thesis section 3.3).
 """
 
 from __future__ import annotations
@@ -37,9 +38,10 @@ class Identification:
         log: the whole log.
         fits: one, or the two steps.
         best: index of the fit with the smaller error on unseen data.
-        starts: of each fit the rms of its starts [rad], shape (n,), where several were allowed.
-        windows: what the windows found; the fit is then a free run with it, its pose free.
-        innovations: where the fit is one of innovations.
+        starts: for each fit the rms of its starts [rad], shape (n,), where several were allowed.
+        windows: the estimate over windows, if there is one; the fit is then a free run with its
+            values, and only the start pose is fitted.
+        innovations: the estimate by innovations, if the fit is one.
     """
 
     log: Log
@@ -56,7 +58,7 @@ class Identification:
 
     @property
     def stopped(self) -> bool:
-        """Whether a search was cut short; its best values are kept."""
+        """Whether a search was stopped by the user; its best values are kept."""
         return any(fit.estimate.status == "stopped" for fit in self.fits)
 
     @property
@@ -66,13 +68,13 @@ class Identification:
         return searches + (self.windows.seconds if self.windows else 0.0)
 
     def fit_of(self, name: str) -> Fit:
-        """The fit to believe, or where that holds a parameter fixed one that estimates it."""
+        """The fit to believe; if it holds the parameter fixed, another fit that estimates it."""
         has = (f for f in (self.fit, *self.fits) if name in f.estimate.space.names)
         return next(has, self.fit)
 
     @property
     def values(self) -> dict[str, float]:
-        """What was found, by name: of the windows where there are any, and of the fit."""
+        """The values that were found, by name: of the windows, if there are any, and of the fit."""
         return {**(self.windows.values if self.windows else {}), **self.fit.estimate.values}
 
 
@@ -88,7 +90,7 @@ def identify(
     starts: int = 1,
     seed: int = 0,
 ) -> Identification:
-    """Identify the robot from a log: fitted on its estimation part, confirmed on all of it.
+    """Identify the robot from a log: its estimation part is fitted, all of it is predicted.
 
     Args:
         log: what was measured; its split `estimation`, or its first half, is fitted.

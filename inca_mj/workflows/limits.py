@@ -2,9 +2,9 @@
 
     low ≤ i_k ≤ high;    T_k > margin;    |p - p(0)| ≤ reach in x, y, z;    angle(R(0)ᵀ R) ≤ turn
 
-A cable that goes slack slaps when it tightens: from there on the motion is chaotic, and a local
-sensitivity grows without meaning. So the margin of tension is also what makes a Fisher information
-believable.
+When a slack cable becomes taut again, the platform is jerked. After this the motion is chaotic, and
+local sensitivities grow without meaning. So the margin of tension is also needed for a Fisher
+information that can be believed.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ class Limits:
         low: smallest current [A].
         high: largest current [A].
         margin: every tension stays above it at every sample [N].
-        reach: the platform stays so near its start in each of x, y, z [m].
-        turn: and turns no further from its start [rad].
+        reach: largest distance of the platform from its start in each of x, y, z [m].
+        turn: largest rotation of the platform from its start [rad].
 
     Raises:
         InputError: a limit leaves no room.
@@ -58,7 +58,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Extent:
-    """How far a run went.
+    """How far currents, tensions and pose went in a run.
 
     Attributes:
         low: smallest current [A].
@@ -76,7 +76,7 @@ class Extent:
 
     def within(self, limits: Limits) -> bool:
         """Whether a run kept the limits."""
-        slack = 1e-12  # of rounding
+        slack = 1e-12  # for rounding errors
         return (
             self.low >= limits.low - slack
             and self.high <= limits.high + slack

@@ -1,9 +1,10 @@
 """Which input would tell two look-alikes apart.
 
-    d(u) = ‖(I - P) ∂ŷ/∂η η‖/σ,    P: onto what nominal parameters and rival imitate
+    d(u) = ‖(I - P) ∂ŷ/∂η η‖/σ,    P projects onto the nominal parameters and the rival
 
-d is how many std of the noise a record under the input u would lie from all that the rival can do.
-It is computed for the log's own input and for those that people try, over the fitted duration.
+d is the distance, in std of the noise, between a record of the effect under the input u and the
+nearest one that the rival and the nominal parameters can produce. It is computed for the log's own
+input and for standard inputs, over the fitted duration.
 """
 
 from __future__ import annotations
@@ -22,17 +23,17 @@ from identification.logs.log import Log
 from identification.model.predictor import Predictor
 from inca_mj.workflows.bench import standard_inputs
 
-TELLS = 5.0  # std between two look-alikes at which a record decides
+TELLS = 5.0  # distance in std of the noise at which a record tells two look-alikes apart
 
 
 @dataclass(frozen=True)
 class Contrast:
-    """An input and how far apart it puts two look-alikes.
+    """An input, and the distance of two look-alikes under it.
 
     Attributes:
         name: of the input, in words.
         distance: d [std of the noise].
-        own: the same under the log's own input.
+        own: the distance under the log's own input.
     """
 
     name: str
@@ -41,7 +42,7 @@ class Contrast:
 
 
 def tell_apart(found: Discovery, named: NamedEffect) -> Contrast | None:
-    """The input that tells a named effect best from its first rival; None where none can be run."""
+    """The input that tells a named effect best from its first rival; None if none can be run."""
     fit, rival = found.final, named.rivals[0].candidate
     own = _distance(fit.point, fit.point.log, named.candidate, rival, fit.level.sigma)
     tried = {}
@@ -49,7 +50,7 @@ def tell_apart(found: Discovery, named: NamedEffect) -> Contrast | None:
         log = replace(fit.point.log, inputs=currents, extras={})
         try:
             tried[name] = _distance(fit.point, log, named.candidate, rival, fit.level.sigma)
-        except DivergenceError:  # a cable falls slack under it
+        except DivergenceError:  # a cable becomes slack under this input
             continue
     if not tried:
         return None
@@ -58,7 +59,7 @@ def tell_apart(found: Discovery, named: NamedEffect) -> Contrast | None:
 
 
 def told(found: Discovery) -> Discovery:
-    """A discovery whose look-alikes have the input that would tell them apart."""
+    """The discovery, with advice on the input that would tell its look-alikes apart."""
     named = tuple(
         replace(n, advice=sentence(contrast))
         if n.one_of and n.rivals and (contrast := tell_apart(found, n)) is not None
@@ -69,7 +70,7 @@ def told(found: Discovery) -> Discovery:
 
 
 def sentence(contrast: Contrast) -> str:
-    """What to do next."""
+    """The advice: what to do next."""
     if contrast.distance < max(TELLS, 1.5 * contrast.own):
         return (
             "No input that was tried would tell them apart better"
@@ -83,7 +84,7 @@ def sentence(contrast: Contrast) -> str:
 
 
 def _distance(point: Point, log: Log, named: Candidate, rival: Candidate, sigma: float) -> float:
-    """d under the inputs of a log, of two effects linearised where neither is."""
+    """d under the inputs of a log, with both effects linearised about their absence."""
     values = point.values
     gone = dict.fromkeys(named.sizes, 0.0)
     keep = [i for i, n in enumerate(point.space.names) if not n.startswith(f"{named.effect.name}.")]

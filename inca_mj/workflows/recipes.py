@@ -3,8 +3,9 @@
     multisine   i_d(t) = mean + amplitude Σ_j f_j^tilt sin(2π f_j t + θ_dj)/peak_d
     prbs        i_d(t) = low or high, for a bit time each, drive d at its own phase
 
-The band of a multisine and the bit time of a PRBS decide how much of fast motion (cables, inertia)
-and slow motion (friction) a record shows; levels decide how far both go.
+The band of a multisine and the bit time of a PRBS decide how much fast motion (which shows cables
+and inertia) and how much slow motion (which shows friction) a record has. The levels decide how
+large both are.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from inca_mj.robot.inputs import prbs
 from inca_mj.workflows.limits import Limits
 
 TONES = 16
-# Of a multisine's band the lowest tone is below the corner and the highest above it [Hz].
+# The lowest tone of a multisine is below the corner frequency, and the highest above it [Hz].
 SLOWEST, CORNER, FASTEST = 0.2, 3.0, 45.0
 BIT = (0.02, 0.5)  # shortest and longest bit [s]
 BITS = (4, 7)
@@ -35,7 +36,7 @@ class Recipe:
     Attributes:
         kind: "multisine" or "prbs".
         numbers: in [0, 1], levels first, phases last.
-        scale: of the swing about the mean, at most 1.
+        scale: factor of the swing about the mean, at most 1.
     """
 
     kind: Literal["multisine", "prbs"]
@@ -90,7 +91,7 @@ class Recipe:
 def draw(
     kind: Literal["multisine", "prbs"], rng: np.random.Generator, *, guess: bool = False
 ) -> Recipe:
-    """A recipe at random; as a guess only its phases are, the rest is broad and strong."""
+    """A random recipe; if it is a first guess, only its phases are random."""
     numbers = rng.random(_OWN[kind] + _PHASES[kind])
     if guess:
         numbers[: _OWN[kind]] = _GUESS[kind]
@@ -98,7 +99,7 @@ def draw(
 
 
 def changed(recipe: Recipe, rng: np.random.Generator, size: float, share: float = 0.3) -> Recipe:
-    """A neighbour: about a share of the numbers moved by `size`; phases go round, levels stop."""
+    """A neighbour: a share of the numbers moves by about `size`; phases wrap around."""
     moves = (
         size * rng.standard_normal(len(recipe.numbers)) * (rng.random(len(recipe.numbers)) < share)
     )

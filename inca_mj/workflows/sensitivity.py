@@ -18,7 +18,7 @@ from inca_mj.workflows.comparison import timestep_for
 from inca_mj.workflows.identification import UNKNOWN
 
 NOISE = 6.7e-4  # std of an encoder of 4000 counts a turn and its 0.5 mrad of noise [rad]
-DURATION = 5.0  # of the PRBS that is taken where there is no log [s]
+DURATION = 5.0  # of the PRBS that is used without a log [s]
 
 
 def planned_experiment(
@@ -30,10 +30,10 @@ def planned_experiment(
     duration: float = DURATION,
     timestep: float = TIMESTEP,
 ) -> Experiment:
-    """The twin under the currents of a log, or of the thesis' PRBS, with its angles read.
+    """The experiment of the twin under the currents of a log, or under the thesis' PRBS.
 
     Args:
-        log: whose currents are taken; the thesis' PRBS when None.
+        log: the log whose currents are used; the thesis' PRBS when None.
         parameters: the twin's values; the thesis' Table 3.2 when None.
         geometry: anchors of the cables.
         noise: std of the noise on each angle [rad]; when None, what is seen in the log, or that of
@@ -42,7 +42,7 @@ def planned_experiment(
         timestep: largest step of the integrator [s].
 
     Raises:
-        InputError: the noise, the duration or the step makes no sense, or the start has no
+        InputError: the noise, the duration or the step is not admitted, or the start has no
             pretension.
     """
     if log is None:
@@ -72,10 +72,10 @@ def sensitivity(
     duration: float = DURATION,
     timestep: float = TIMESTEP,
 ) -> Information:
-    """How well the angles can tell parameters, and which only together; the start pose is unknown.
+    """How well the angles determine parameters, and which only together; the pose is unknown.
 
     Args:
-        log: whose currents are taken; the thesis' PRBS when None.
+        log: the log whose currents are used; the thesis' PRBS when None.
         parameters: the twin's values; the thesis' Table 3.2 when None.
         geometry: anchors of the cables.
         free: parameters to look at.
@@ -85,7 +85,7 @@ def sensitivity(
         timestep: largest step of the integrator [s].
 
     Raises:
-        InputError: a name is unknown or has no effect, or as `planned_experiment`.
+        InputError: a name is unknown or has no effect, or for the reasons of `planned_experiment`.
         DivergenceError: the twin cannot be simulated under these currents.
     """
     trial = planned_experiment(
@@ -97,12 +97,12 @@ def sensitivity(
 def robot_information(
     trial: Experiment, names: Sequence[str], resolved: bool = True
 ) -> Information:
-    """What an experiment would say of some parameters, the start pose being unknown too.
+    """What an experiment would say of some parameters, where the start pose is unknown too.
 
     Args:
         trial: an experiment with the twin.
-        names: parameters that are asked for.
-        resolved: whether the errors of the sensitivities are estimated, for twice as many
+        names: the parameters of interest.
+        resolved: whether the errors of the sensitivities are estimated; this takes twice as many
             simulations.
 
     Raises:

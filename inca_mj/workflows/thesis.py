@@ -1,8 +1,9 @@
 """The four identification trials of the thesis, on data of its own model (Tables 3.3 to 3.6).
 
-Five seconds of PRBS at 100 Hz, simulated with Table 3.2. Trial 1 estimates everything from starts
-25 % off, trial 2 what no data sheet says from the same starts, trial 3 the same from 5 % off, trial
-4 the same with a random error of up to ±5 % of each sample of the outputs.
+The data are five seconds of PRBS at 100 Hz, simulated with Table 3.2. Trial 1 estimates everything,
+from starting values that are 25 % off. Trial 2 estimates only the parameters that no data sheet
+gives, from the same starting values. Trial 3 does the same from values that are 5 % off. Trial 4
+adds a random error of up to ±5 % of each sample to the outputs.
 """
 
 from __future__ import annotations
@@ -31,14 +32,14 @@ ALL = {
 
 @dataclass(frozen=True)
 class Trial:
-    """A trial: which starts, with or without noise, and what the thesis found.
+    """A trial: its starting values, its noise, and what the thesis found.
 
     Attributes:
         number: 1 to 4.
         start: starting values of the free parameters.
         noisy: whether the outputs carry noise.
         thesis: the thesis' estimates.
-        thesis_fit: its mean output fit [%].
+        thesis_fit: the thesis' mean output fit [%].
     """
 
     number: int

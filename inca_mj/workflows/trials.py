@@ -1,4 +1,4 @@
-"""The trials of the thesis (see `inca_mj.workflows.thesis`), run by our estimator."""
+"""The trials of the thesis (see `inca_mj.workflows.thesis`), with the estimator of this project."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from inca_mj.workflows.thesis import NOISE, TRIALS, Trial, trial_data, with_nois
 
 @dataclass(frozen=True)
 class TrialResult:
-    """A trial run by us.
+    """The result of a trial.
 
     Attributes:
-        trial: which.
+        trial: the trial.
         fit: what the estimator found.
-        output_fit_percent: against the data without noise, shape (8,) [%].
-        loss: thesis 3.5, against the same.
+        output_fit_percent: fit of the outputs to the data without noise, shape (8,) [%].
+        loss: loss function 3.5 of the thesis, for the same data.
     """
 
     trial: Trial
@@ -80,8 +80,8 @@ def run_trial(
     """Run a trial from the thesis' starts.
 
     Args:
-        trial: which.
-        seed: of the noise.
+        trial: the trial.
+        seed: seed of the noise.
         options: how to search; `Options(horizons=(1.0,))` is the thesis' single free-run fit.
         progress: is told one line per accepted step.
     """
@@ -105,11 +105,11 @@ def trials(
     options: Options | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> tuple[TrialResult, ...]:
-    """Run trials of the thesis from its own starts.
+    """Run trials of the thesis from its starting values.
 
     Args:
-        numbers: which, of 1 to 4.
-        seed: of the noise of trial 4.
+        numbers: numbers of the trials, 1 to 4.
+        seed: seed of the noise of trial 4.
         options: how to search; `Options(horizons=(1.0,))` is the thesis' single free-run fit.
         progress: is told which trial is run, and one line per accepted step.
 
@@ -128,19 +128,19 @@ def trials(
 
 
 def monte_carlo(seeds: int, progress: Callable[[str], None] | None = None) -> dict[str, Any]:
-    """Trial 4 over many noises, which the thesis asked for and did not do.
+    """Trial 4 with many realisations of the noise, which the thesis proposed and did not do.
 
     Args:
-        seeds: how many.
+        seeds: number of realisations.
         progress: is told a line per seed.
 
     Returns:
-        By parameter: relative bias and std of the estimates, the mean std that the fits claimed,
-        and the share of seeds whose 95 % interval holds the truth.
+        By parameter: relative bias and std of the estimates, the mean of the std that the fits
+        gave, and the share of seeds whose 95 % interval contains the true value.
 
     Raises:
-        InputError: a noise leads the search to values that admit no start.
-        DivergenceError: a noise leads it to values that cannot be simulated.
+        InputError: a search ends at values with which the robot cannot start.
+        DivergenceError: a search ends at values that cannot be simulated.
     """
     true = parameter_set("trial").values()
     trial = TRIALS[3]
