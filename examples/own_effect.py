@@ -116,7 +116,7 @@ def slider_log(samples=1200, c=1.0, noise=5e-4, step=0.01):
 
 def slider(log):
     """The slider with the own effect beside the catalogue's."""
-    return joint_plant(SLIDER, (MASS, DAMPING), log, own=[GUIDE_FRICTION])
+    return joint_plant(SLIDER, (MASS, DAMPING), log, own_effects=[GUIDE_FRICTION])
 
 
 def find_on_slider(log):

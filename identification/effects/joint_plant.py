@@ -131,7 +131,7 @@ def joint_plant(
     *,
     joints: Sequence[Axis] | None = None,
     effects: Sequence[Effect] | None = None,
-    own: Sequence[Effect] = (),
+    own_effects: Sequence[Effect] = (),
     start: State | None = None,
 ) -> JointPlant:
     """Compile an MJCF whose joints and inputs may have effects.
@@ -142,7 +142,7 @@ def joint_plant(
         log: shows how far joints and inputs move, which says what sizes are plausible.
         joints: the joints that may have effects; those that the log measures when None.
         effects: the candidates; all of the catalogue when None.
-        own: candidates beside them, of the caller's own.
+        own_effects: candidates beside them, of the caller's own.
         start: the initial state; the model's own when None.
 
     Raises:
@@ -153,7 +153,7 @@ def joint_plant(
     known = tuple(joints) if joints is not None else axes(spec.copy().compile(), log)
     if effects is None:
         effects = (*joint_effects(known), *input_effects(drives(log)))
-    effects = (*effects, *own)
+    effects = (*effects, *own_effects)
     records = {p.name: p for e in effects for p in effect_parameters(e)}
     given = {p.name: p for p in parameters}
     paths = ParameterSet("own", tuple(p for p in given.values() if p.name not in records))

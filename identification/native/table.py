@@ -44,7 +44,7 @@ def enter(kind: str, key: float, address: int) -> None:
     keys = words[1 : 1 + 2 * count : 2].view(np.float64) if count else np.empty(0)
     same = np.flatnonzero(keys == key)
     at = int(same[0]) if same.size else count
-    if at == CAPACITY:
+    if at >= CAPACITY:
         raise RuntimeError(f"{CAPACITY} sets of effects were compiled; start a new process")
     words[2 + 2 * at] = address
     words[1 + 2 * at : 2 + 2 * at].view(np.float64)[0] = key

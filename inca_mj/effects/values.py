@@ -23,7 +23,9 @@ from inca_mj.effects.hooks import THINGS, Platform
 from inca_mj.effects.layout import Layout
 from inca_mj.robot.geometry import DRIVES, Geometry
 
-_NOWHERE = Platform(*[np.nan] * len(Platform._fields))  # the centre of mass depends on no state
+_NOWHERE = Platform(
+    **dict.fromkeys(Platform._fields, np.nan)
+)  # the centre of mass depends on no state
 
 
 def records(effects: Sequence[Effect]) -> tuple[Parameter, ...]:

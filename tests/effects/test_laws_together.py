@@ -14,6 +14,7 @@ from identification.effects.effect import Effect, Size
 from identification.effects.joint_plant import joint_plant
 from identification.effects.places import places
 from identification.logs.log import Log
+from identification.native import table
 from identification.native.installer import uninstall
 from inca_mj.effects.layout import KEY
 from inca_mj.twin import native
@@ -30,7 +31,9 @@ def own(function, name="own"):
 
 
 def slider_with(effect):
-    return joint_plant(SLIDER, (MASS, DAMPING), slider_log(steps(400)), effects=(), own=(effect,))
+    return joint_plant(
+        SLIDER, (MASS, DAMPING), slider_log(steps(400)), effects=(), own_effects=(effect,)
+    )
 
 
 def worlds():
@@ -110,6 +113,12 @@ def test_of_two_laws_with_one_key_the_newer_counts():
     assert not np.array_equal(one, other)
     np.testing.assert_array_equal(run(old, log, **values), one)
     np.testing.assert_array_equal(run(new, log, **values), other)
+
+
+def test_a_process_holds_so_many_laws_and_says_when_it_is_full(monkeypatch):
+    monkeypatch.setattr(table, "CAPACITY", 0)
+    with pytest.raises(RuntimeError, match="0 sets of effects were compiled; start a new process"):
+        table.enter("sensor", -1.0, 0)
 
 
 def test_what_all_slides_have_no_hinge_has():

@@ -47,7 +47,7 @@ def named(name, sizes, shapes=(), where=AT_SLIDE, largest=1.0, **hooks):
 
 
 def slider_with(*own):
-    return joint_plant(SLIDER, (MASS, DAMPING), slider_log(steps(400)), effects=(), own=own)
+    return joint_plant(SLIDER, (MASS, DAMPING), slider_log(steps(400)), effects=(), own_effects=own)
 
 
 def test_an_effect_of_seven_parameters_on_the_drives_is_its_function():
@@ -92,7 +92,7 @@ def test_an_own_effect_of_an_input_joins_the_catalogues():
     axis = Axis("slide", "slide", force=5.0, speed=1.0, travel=1.0)
     catalogue = (*joint_effects((axis,)), *input_effects([Drive("force", 1.0)]))
     plant = joint_plant(SLIDER, (MASS, DAMPING), slider_log(u), joints=(axis,),
-                        effects=catalogue, own=(own,))  # fmt: skip
+                        effects=catalogue, own_effects=(own,))  # fmt: skip
     smaller = slider_log(u - np.clip(u, -0.3, 0.3))
     found = run(plant, slider_log(u), **{"dead_zone.width@force": 0.3})
     np.testing.assert_array_equal(found, run(slider(), smaller))
@@ -179,7 +179,7 @@ def test_the_load_is_unknown_where_a_drive_has_dynamics():
     loaded = named("loaded", ["k"], force=njit(lambda s, p: p[0] * s.f_u))
     log = slider_log(steps(20))
     for text, known in ((SLIDER, True), (slow, False)):
-        plant = joint_plant(text, (MASS, DAMPING), log, effects=(), own=(loaded,))
+        plant = joint_plant(text, (MASS, DAMPING), log, effects=(), own_effects=(loaded,))
         assert np.isfinite(run(plant, log)).all()
         if known:
             assert np.isfinite(run(plant, log, **{"loaded.k@slide": 0.1})).all()

@@ -140,6 +140,12 @@ def test_a_field_elsewhere_is_caught(moved, monkeypatch):
         structs.check(model, data)
 
 
+def test_a_field_that_no_live_object_shows_is_refused():
+    structs.require({"qpos", "ten_J"})
+    with pytest.raises(RuntimeError, match="does not show no_such_field"):
+        structs.require({"qpos", "no_such_field"})
+
+
 def test_nan_is_an_error_not_silence(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     robot = build_twin()
