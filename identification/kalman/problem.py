@@ -1,4 +1,4 @@
-"""The criterion about a point, linearised, and its damped steps.
+"""The criterion about a point, linearised, and its damped steps, for `levenberg_marquardt`.
 
     min_δ ‖r + F δ‖² + μ ‖δ‖²,    r: innovations over σ, and the priors
 
@@ -17,12 +17,14 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from identification.errors import DivergenceError, InputError
+from identification.estimation.levenberg_marquardt import Cost
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Whitener, build_whitener
 from identification.kalman.point import Point
 
 LARGEST = 0.5  # step of a logarithm: parameters change by at most 65 % at a time
 ALONG = 0.1  # h, of the step
+SHORT = 0.5  # of the fall that a step promised, below which it is bent
 
 
 @dataclass(frozen=True)
@@ -38,35 +40,40 @@ class Problem:
     target: np.ndarray
 
     @property
-    def cost_here(self) -> float:
+    def cost(self) -> float:
         """The criterion at the point itself."""
         return float(self.target @ self.target)
 
     @property
     def log_posterior(self) -> float:
         """Of the point as it is, where that of its noise lets the parameters move a little."""
-        return self.level.log_likelihood - self.cost_here / 2
+        return self.level.log_likelihood - self.cost / 2
 
     @property
     def left(self) -> np.ndarray:
         """Innovations that the best small change of the parameters would leave, shape (N, ny)."""
-        left = self.target - self.rows @ self.step(0.0)[0]
+        left = self.target - self.rows @ self.step(0.0)
         return left[: self.point.e.size].reshape(self.point.e.shape)
 
-    def step(self, μ: float) -> tuple[np.ndarray, float]:
-        """The step of Levenberg and Marquardt, and how far the criterion would fall."""
-        move = self._least(self.target, μ, np.zeros_like(self.point.q))
-        return move, self.cost_here - float(np.sum((self.target - self.rows @ move) ** 2))
+    def step(self, μ: Cost) -> np.ndarray:
+        """The step of Levenberg and Marquardt, inside the bounds."""
+        return self._least(self.target, μ, np.zeros_like(self.point.q))
 
-    def bent(self, move: np.ndarray, μ: float) -> np.ndarray:
-        """A step that follows the residual's curve; the step itself where that leads nowhere."""
+    def promised(self, move: np.ndarray) -> float:
+        """How far the criterion would fall by a step, were it straight."""
+        return self.cost - float(np.sum((self.target - self.rows @ move) ** 2))
+
+    def bent(self, move: np.ndarray, after: Cost, μ: Cost) -> np.ndarray | None:
+        """A step that follows the residual's curve, where the straight one falls short."""
+        if self.cost - after >= SHORT * self.promised(move):
+            return None
         ahead = self.residual(self.point.q + ALONG * move)
         if ahead is None:
-            return move
+            return None
         curve = 2 / ALONG**2 * (ahead - self.target + ALONG * self.rows @ move)
         return move + self._least(curve / 2, μ, move)
 
-    def _least(self, target: np.ndarray, μ: float, begun: np.ndarray) -> np.ndarray:
+    def _least(self, target: np.ndarray, μ: Cost, begun: np.ndarray) -> np.ndarray:
         """The damped move that leaves the least of a target, where one has begun to move."""
         point, size = self.point, np.where(self.point.space.logarithmic, LARGEST, np.inf)
         lower = np.minimum(np.maximum(point.space.lower - point.q, -size) - begun, 0.0)
@@ -88,9 +95,9 @@ class Problem:
         E = self.filter(point.log.outputs - predicted) / self.level.sigma
         return np.concatenate([E.ravel(), self.prior * (self.mean - q)])
 
-    def cost(self, q: np.ndarray) -> float:
-        """The criterion elsewhere; infinite where nothing can be simulated."""
-        there = self.residual(q)
+    def cost_after(self, move: np.ndarray) -> float:
+        """The criterion after a step; infinite where nothing can be simulated."""
+        there = self.residual(self.point.q + move)
         return np.inf if there is None else float(there @ there)
 
     def std(self) -> np.ndarray:

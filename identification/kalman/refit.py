@@ -12,9 +12,12 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Generator
 from dataclasses import dataclass
+from functools import partial
+from itertools import islice
 
 import numpy as np
 
+from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
 from identification.kalman.innovations import innovation_tests
 from identification.kalman.noise_fit import ALLOWED, NoiseLevel, fit_noise
 from identification.kalman.point import Point, evaluate_point
@@ -22,11 +25,11 @@ from identification.kalman.problem import Problem, linearise_criterion
 
 NEAR = 0.02  # relative change of the parameters after which the linearisation still holds
 ENDED = 0.1  # expected fall of the criterion, in units of the noise, that ends the search
-DAMPED = 1e-4  # μ after the first step that failed; the rows' columns have length 1
+# first Gauss-Newton's steps; the rows' columns have length 1
+DAMPING = Damping(first=0.0, raised=10.0, lowered=10.0, least=1e-4, silent=0.0)
 TRIES = 6  # of a step, each damped ten times as much
 PATIENCE = 2  # steps that gain nothing, after which a search ends
 CLOSER = 0.97  # of innovations or a free run, that is a gain while noise is only roughly known
-SHORT = 0.5  # of the fall that was expected, below which a step is bent
 
 
 @dataclass(frozen=True)
@@ -107,24 +110,21 @@ def descend(
         if fine:
             level = estimate_noise(point, prior, level, fine)
             yield point, level
-        last = point
+        last, largest = point, np.inf if fine else believed
         problem = linearise_criterion(point, level, mean, prior)
-        best, most, least = (point, level), problem.log_posterior, _rms(point)
-        μ, idle = 0.0, 0
+        best, most, least, idle = (point, level), problem.log_posterior, _rms(point), 0
+        trials = levenberg_marquardt(problem, partial(_moved, largest=largest), DAMPING)
         while steps and idle < PATIENCE and not (fine and _blind(problem)):
-            move, μ = _move(problem, μ)
-            if move is None:
+            if problem.promised(problem.step(0.0)) < ENDED:
                 break
-            steps -= 1
-            moved = np.abs(move[point.space.logarithmic]).max(initial=0.0)
-            point = evaluate_point(
-                point.predictor, point.space, point.q + move, point.linear if moved < NEAR else None
-            )
-            level = estimate_noise(point, prior, level, largest=np.inf if fine else believed)
+            trial = next((t for t in islice(trials, TRIES) if t.taken), None)
+            if trial is None:
+                break
+            problem, steps = trial.criterion, steps - 1
+            last = point = problem.point
+            level = problem.level
             yield point, level
-            last = point
             # Each point has a linearisation and a noise of its own, so that likelihood may fall.
-            problem = linearise_criterion(point, level, mean, prior)
             likely, off = problem.log_posterior, _rms(point)
             gain = ENDED if fine else -point.e.size * float(np.log(CLOSER))
             better = likely > most + gain or (not fine and off < CLOSER * least)
@@ -137,6 +137,16 @@ def descend(
     return steps > 0
 
 
+def _moved(problem: Problem, step: np.ndarray, taken: np.ndarray, largest: float) -> Problem:
+    """Simulated after a step, with a noise of its own, and linearised."""
+    point = problem.point
+    small = np.abs(step[point.space.logarithmic]).max(initial=0.0) < NEAR
+    linear = point.linear if small else None
+    point = evaluate_point(point.predictor, point.space, point.q + step, linear)
+    level = estimate_noise(point, problem.prior, problem.level, largest=largest)
+    return linearise_criterion(point, level, problem.mean, problem.prior)
+
+
 def _blind(problem: Problem) -> bool:
     """Whether the noise explains what it is not: inputs that err too much, and not by chance."""
     point = problem.point
@@ -147,23 +157,6 @@ def _blind(problem: Problem) -> bool:
 def _rms(point: Point) -> float:
     """Of the residual of the free run."""
     return float(np.sqrt(np.mean(point.e**2)))
-
-
-def _move(problem: Problem, μ: float) -> tuple[np.ndarray | None, float]:
-    """A step that makes the criterion fall, None where none is left; and the next damping."""
-    if problem.step(0.0)[1] < ENDED:
-        return None, μ
-    for _ in range(TRIES):
-        move, fall = problem.step(μ)
-        cost = problem.cost(problem.point.q + move)
-        if problem.cost_here - cost < SHORT * fall:
-            bent = problem.bent(move, μ)
-            if (other := problem.cost(problem.point.q + bent)) < cost:
-                move, cost = bent, other
-        if cost < problem.cost_here:
-            return move, μ / 10 if μ > DAMPED else 0.0
-        μ = max(10 * μ, DAMPED)
-    return None, μ
 
 
 def conclude(
