@@ -15,11 +15,11 @@ setup: system-packages .venv/.complete  ## make .venv with the locked packages a
 demo: system-packages .venv/.complete  ## the whole work on one example, with report and film
 	@.venv/bin/inca demo $(ARGS)
 
-test: system-packages .venv/.complete  ## run the tests
-	@$(PYTHON_OF_VENV) -m pytest $(ARGS)
+test: system-packages .venv/.complete  ## run the tests, a process on each core
+	@$(PYTHON_OF_VENV) -m pytest -n auto --dist loadfile $(ARGS)
 
 test-mujoco4: system-packages .venv-mujoco4/.complete  ## run the tests with MuJoCo 4
-	@.venv-mujoco4/bin/python -m pytest $(ARGS)
+	@.venv-mujoco4/bin/python -m pytest -n auto --dist loadfile $(ARGS)
 
 lint: .venv/.complete  ## check style, format, types and layers
 	@.venv/bin/ruff check $(ARGS)
