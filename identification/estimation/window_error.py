@@ -13,17 +13,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from identification.errors import DivergenceError
-from identification.estimation.shooting import Shooting, tangent
+from identification.estimation.shooting import Shooting
+from identification.estimation.window_search import search_states
 from identification.estimation.windows import first_states, windows
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Plant, Predictor
-
-STEPS = 20  # largest number of Levenberg-Marquardt steps
-ENDED = 1e-3  # relative change of the mean squared error at which a window is finished
-FIRST_DAMPING, MOST_DAMPING = 1e-9, 1e2  # of the squared norms of X's columns
 
 
 def window_error(
@@ -45,26 +41,7 @@ def window_error(
         DivergenceError: the model cannot be simulated.
     """
     shooting, d = _fixed(plant, log, length, values)
-    none = np.zeros(0)
-    at = tangent(shooting, none, d)
-    damping = np.full(len(d), FIRST_DAMPING)
-    for _ in range(STEPS):
-        # Each window has its own damping: where a joint sticks, the outputs hardly feel its rate.
-        before = np.sum(at.r**2, axis=1)
-        along = np.einsum("wmk,wm->wk", at.U, at.r) * at.s / (at.s**2 + damping[:, None])
-        trial = d + np.einsum("wkx,wk->wx", at.Vt, along) / at.size
-        try:
-            after = np.sum(shooting.residual(none, trial) ** 2, axis=1)
-        except DivergenceError:
-            after = np.full(len(d), np.inf)
-        better = after < before
-        damping = np.where(better, np.maximum(damping / 10, FIRST_DAMPING), 10 * damping)
-        d = np.where(better[:, None], trial, d)
-        at = tangent(shooting, none, d)
-        small = np.abs(after - before) <= ENDED * before.mean()
-        if np.all(small | (damping > MOST_DAMPING)):
-            break
-    return shooting.error(at.r)
+    return shooting.error(search_states(shooting, d).r)
 
 
 def first_error(plant: Plant, log: Log, length: float) -> np.ndarray:

@@ -13,11 +13,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.errors import InputError
 from identification.estimation.identifiability import Identifiability
 from identification.estimation.options import Progress
 from identification.estimation.resolution import resolve_columns, round_off
-from identification.estimation.shooting import Shooting, Tangent, tangent
+from identification.estimation.shooting import Shooting, tangent
+from identification.estimation.window_search import (
+    WindowsAtPoint,
+    search_windows,
+    windows_at,
+)
 from identification.estimation.windows import apart, first_states, windows
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
@@ -28,10 +32,7 @@ from identification.model.sensitivity import FORWARD_STEP, refuse_without_effect
 
 BELIEFS = 3  # the states' belief follows the values that were found with the last one
 ROUGH = 1e-2  # relative gain that ends a search which another follows
-FIRST_DAMPING = 1e-2  # of the squared norms of X's and S's columns
 STEPS = (FORWARD_STEP, 100 * FORWARD_STEP)  # of the differences that the std rest on
-LEAST_DAMPING = 1e-12
-MOST_DAMPING = 1e8
 
 
 @dataclass(frozen=True)
@@ -113,20 +114,24 @@ def estimate_windows(
         shooting = Shooting(predictor, space, cut, believed, C)
         d = apart(plant.model, believed.states, begun)
         enough = tolerance if k == BELIEFS else max(ROUGH, tolerance)
-        end = _search(shooting, q, d, enough, max_evaluations, progress, k == 1)
-        q, begun, tangents = end.q, shooting.states(end.d), tangents + end.tangents
-    found = _resolved(shooting, end)
+        at = windows_at(shooting, q, d)
+        if k == 1:  # later, a friction that the data do not want may well have gone to nothing
+            refuse_without_effect(*_felt(at))
+        end = search_windows(at, enough, max_evaluations, progress)
+        at, tangents = end.at, tangents + end.tangents
+        q, begun = at.q, shooting.states(at.d)
+    found = _resolved(at)
     # A belief counts as one reading for each state that it bears on.
-    readings = cut.outputs.size + len(end.d) * int((shooting.first.weight > 0).sum())
-    freedom = max(1, readings - end.tangent.freedom - len(first))
-    scale = float(np.sqrt(np.sum(end.tangent.r**2) / freedom))
+    readings = cut.outputs.size + len(at.d) * int((shooting.first.weight > 0).sum())
+    freedom = max(1, readings - at.tangent.freedom - len(first))
+    scale = float(np.sqrt(np.sum(at.tangent.r**2) / freedom))
     return WindowEstimate(
         dict(zip(names, space.decode(q).tolist(), strict=True)),
         scale * found.std * space.slope(q),
         first,
         space.on_bound(q),
         found,
-        shooting.error(end.tangent.r),
+        shooting.error(at.tangent.r),
         begun,
         length,
         end.converged,
@@ -135,76 +140,23 @@ def estimate_windows(
     )
 
 
-@dataclass(frozen=True)
-class _End:
-    """Where the search ended: q (p,), d (W, nx), their tangent, and how it got there."""
-
-    q: np.ndarray
-    d: np.ndarray
-    tangent: Tangent
-    converged: bool
-    tangents: int
-
-
-def _search(
-    shooting: Shooting,
-    q: np.ndarray,
-    d: np.ndarray,
-    tolerance: float,
-    most: int,
-    progress: Progress | None,
-    fresh: bool,
-) -> _End:
-    """Levenberg-Marquardt over q and the states of all windows; steps end at the bounds.
-
-    What has no effect is refused where the search is fresh: later, a friction that the data do not
-    want may well have gone to nothing.
-    """
-    low, high = shooting.space.lower, shooting.space.upper
-    at = tangent(shooting, q, d)
-    if fresh:
-        refuse_without_effect(*_felt(shooting, at))
-    damping = FIRST_DAMPING
-    for tangents in range(1, most + 1):
-        cost = float(np.sum(at.r**2))
-        if progress is not None:
-            rms = float(np.sqrt(np.mean(shooting.error(at.r) ** 2)))
-            progress(f"windows: rms {rms:.4g} after {tangents} linearisations")
-        while True:
-            dq, dd = at.step(damping)
-            trial = np.clip(q + dq, low, high)
-            try:
-                after = float(np.sum(shooting.residual(trial, d + dd) ** 2))
-            except InputError:  # it diverged, or has no start: it must go elsewhere
-                after = np.inf
-            if after < cost:
-                break
-            if damping > MOST_DAMPING or np.abs(dq).max() < tolerance:
-                return _End(q, d, at, damping <= MOST_DAMPING, tangents)
-            damping *= 5
-        small = np.abs(trial - q).max() < tolerance or cost - after < tolerance * cost
-        q, d, damping = trial, d + dd, max(damping / 10, LEAST_DAMPING)
-        at = tangent(shooting, q, d)
-        if small:
-            return _End(q, d, at, True, tangents + 1)
-    return _End(q, d, at, False, tangents + 1)
-
-
-def _resolved(shooting: Shooting, end: _End) -> Identifiability:
+def _resolved(at: WindowsAtPoint) -> Identifiability:
     """What the windows show where a search ended, with the errors of their differences."""
+    shooting, q, d = at.shooting, at.q, at.d
 
-    def at(step: float) -> tuple[np.ndarray, np.ndarray]:
-        first = end.tangent if step == STEPS[0] else tangent(shooting, end.q, end.d, step)
-        return first.projected, tangent(shooting, end.q, end.d, 2 * step).projected
+    def at_two_steps(step: float) -> tuple[np.ndarray, np.ndarray]:
+        once = at.tangent if step == STEPS[0] else tangent(shooting, q, d, step)
+        return once.projected, tangent(shooting, q, d, 2 * step).projected
 
-    y = shooting.joined(np.zeros_like(shooting.cut.outputs), end.d) - end.tangent.r
-    return resolve_columns(shooting.space.names, at, round_off(y), STEPS).found
+    y = shooting.joined(np.zeros_like(shooting.cut.outputs), d) - at.tangent.r
+    return resolve_columns(shooting.space.names, at_two_steps, round_off(y), STEPS).found
 
 
-def _felt(shooting: Shooting, at: Tangent) -> tuple[np.ndarray, tuple[str, ...], Log]:
+def _felt(at: WindowsAtPoint) -> tuple[np.ndarray, tuple[str, ...], Log]:
     """Sensitivities of the outputs to q, states projected out, for `refuse_without_effect`."""
-    outputs, p = shooting.cut.outputs, at.S.shape[2]
-    J = at.projected.reshape(*at.r.shape, p)[:, : outputs[0].size]
+    shooting, tangent = at.shooting, at.tangent
+    outputs, p = shooting.cut.outputs, tangent.S.shape[2]
+    J = tangent.projected.reshape(*tangent.r.shape, p)[:, : outputs[0].size]
     J = np.einsum(
         "ij,njp->nip", np.linalg.inv(shooting.whitener), J.reshape(-1, outputs.shape[2], p)
     )

@@ -1,4 +1,4 @@
-"""The criterion of a fit, linearised about a point, and its damped steps.
+"""The criterion of a fit, linearised about a point, with the steps of `levenberg_marquardt`.
 
     min_δ ‖r + F δ‖² + μ ‖δ‖²,    r: innovations over σ, and the priors
 
@@ -17,12 +17,14 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from identification.errors import DivergenceError, InputError
+from identification.estimation.levenberg_marquardt import Cost
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Whitener, build_whitener
 from identification.kalman.point import Point
 
 LARGEST = 0.5  # largest step of a logarithm: a parameter changes by at most 65 % at a time
 ALONG = 0.1  # h: the share of the step at which the second derivative is taken
+SHORT = 0.5  # share of the expected fall below which a step is bent
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +50,7 @@ class Problem:
     target: np.ndarray
 
     @property
-    def cost_here(self) -> float:
+    def cost(self) -> float:
         """The value of the criterion at the point."""
         return float(self.target @ self.target)
 
@@ -58,31 +60,37 @@ class Problem:
 
         `level.log_likelihood` is that after a small change of the parameters.
         """
-        return self.level.log_likelihood - self.cost_here / 2
+        return self.level.log_likelihood - self.cost / 2
 
     @property
     def remaining_innovations(self) -> np.ndarray:
         """Innovations after the best small change of the parameters, shape (N, ny)."""
-        remaining = self.target - self.rows @ self.step(0.0)[0]
+        remaining = self.target - self.rows @ self.step(0.0)
         return remaining[: self.point.e.size].reshape(self.point.e.shape)
 
-    def step(self, μ: float) -> tuple[np.ndarray, float]:
-        """The Levenberg-Marquardt step, shape (p,), and the expected fall of the criterion."""
-        move = self._least(self.target, μ, np.zeros_like(self.point.q))
-        return move, self.cost_here - float(np.sum((self.target - self.rows @ move) ** 2))
+    def step(self, μ: Cost) -> np.ndarray:
+        """The Levenberg-Marquardt step within the bounds, shape (p,)."""
+        return self._least(self.target, μ, np.zeros_like(self.point.q))
 
-    def bend(self, move: np.ndarray, μ: float) -> np.ndarray:
+    def expected_fall(self, move: np.ndarray) -> float:
+        """How far a step would lower the criterion if the residual were linear."""
+        return self.cost - float(np.sum((self.target - self.rows @ move) ** 2))
+
+    def bend(self, move: np.ndarray, after: Cost, μ: Cost) -> np.ndarray | None:
         """The step with its second-order correction, shape (p,).
 
-        It is the step itself where the plant cannot be simulated along it.
+        None where the step itself falls far enough, to the cost `after`, and where the plant
+        cannot be simulated along it.
         """
+        if self.cost - after >= SHORT * self.expected_fall(move):
+            return None
         ahead = self.residual(self.point.q + ALONG * move)
         if ahead is None:
-            return move
+            return None
         curve = 2 / ALONG**2 * (ahead - self.target + ALONG * self.rows @ move)
         return move + self._least(curve / 2, μ, move)
 
-    def _least(self, target: np.ndarray, μ: float, begun: np.ndarray) -> np.ndarray:
+    def _least(self, target: np.ndarray, μ: Cost, begun: np.ndarray) -> np.ndarray:
         """The damped move that makes ‖target - F δ‖ least, within the bounds left after `begun`."""
         point, size = self.point, np.where(self.point.space.logarithmic, LARGEST, np.inf)
         lower = np.minimum(np.maximum(point.space.lower - point.q, -size) - begun, 0.0)
@@ -104,9 +112,9 @@ class Problem:
         E = self.filter(point.log.outputs - predicted) / self.level.sigma
         return np.concatenate([E.ravel(), self.prior * (self.mean - q)])
 
-    def cost(self, q: np.ndarray) -> float:
-        """The criterion at another q; infinite where the plant cannot be simulated."""
-        there = self.residual(q)
+    def cost_after(self, move: np.ndarray) -> float:
+        """The criterion after a step; infinite where the plant cannot be simulated."""
+        there = self.residual(self.point.q + move)
         return np.inf if there is None else float(there @ there)
 
     def std(self) -> np.ndarray:

@@ -13,9 +13,12 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Generator
 from dataclasses import dataclass
+from functools import partial
+from itertools import islice
 
 import numpy as np
 
+from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
 from identification.kalman.innovations import innovation_tests
 from identification.kalman.noise_fit import NoiseLevel, fit_noise
 from identification.kalman.options import KalmanOptions
@@ -24,10 +27,10 @@ from identification.kalman.problem import Problem, linearise_criterion
 
 NEAR = 0.02  # relative change of the parameters after which the linearisation still holds
 ENDED = 0.1  # expected fall of the criterion, in units of the noise, below which a search ends
-DAMPED = 1e-4  # μ after the first step that failed; the columns of the rows have length 1
+# Gauss-Newton steps until one fails; the columns of the rows are scaled to length 1
+DAMPING = Damping(first=0.0, raised=10.0, lowered=10.0, least=1e-4, floor=0.0)
 TRIES = 6  # attempts at a step, each damped ten times as much as the one before
 PATIENCE = 2  # successive steps without progress after which a search ends
-SHORT = 0.5  # share of the expected fall below which a step is bent
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,25 +122,22 @@ def descend(
         if fine:
             level = estimate_noise(point, prior, options, level, fine)
             yield point, level
-        last = point
+        last, largest = point, np.inf if fine else believed
         problem = linearise_criterion(point, level, mean, prior)
-        best, most, least = (point, level), problem.log_posterior, _rms(point)
-        μ, idle = 0.0, 0
+        best, most, least, idle = (point, level), problem.log_posterior, _rms(point), 0
+        move = partial(_move, options=options, largest=largest)
+        trials = levenberg_marquardt(problem, move, DAMPING)
         while steps and idle < PATIENCE and not (fine and _is_refuted(problem, options)):
-            move, μ = _move(problem, μ)
-            if move is None:
+            if problem.expected_fall(problem.step(0.0)) < ENDED:
                 break
-            steps -= 1
-            moved = np.abs(move[point.space.logarithmic]).max(initial=0.0)
-            point = evaluate_point(
-                point.predictor, point.space, point.q + move, point.linear if moved < NEAR else None
-            )
-            largest = np.inf if fine else believed
-            level = estimate_noise(point, prior, options, level, largest=largest)
+            trial = next((t for t in islice(trials, TRIES) if t.taken), None)
+            if trial is None:
+                break
+            problem, steps = trial.criterion, steps - 1
+            last = point = problem.point
+            level = problem.level
             yield point, level
-            last = point
             # Every point has its own linearisation and noise, so the likelihood may also fall.
-            problem = linearise_criterion(point, level, mean, prior)
             likely, off = problem.log_posterior, _rms(point)
             gain = ENDED if fine else -point.e.size * float(np.log(options.approach_factor))
             better = likely > most + gain or (not fine and off < options.approach_factor * least)
@@ -148,6 +148,18 @@ def descend(
     if point is not last:
         yield point, level
     return steps > 0
+
+
+def _move(
+    problem: Problem, step: np.ndarray, taken: np.ndarray, options: KalmanOptions, largest: float
+) -> Problem:
+    """The criterion about the point after a step, with the noise of that point."""
+    point = problem.point
+    change = np.abs(step[point.space.logarithmic]).max(initial=0.0)
+    linear = point.linear if change < NEAR else None
+    point = evaluate_point(point.predictor, point.space, point.q + step, linear)
+    level = estimate_noise(point, problem.prior, options, problem.level, largest=largest)
+    return linearise_criterion(point, level, problem.mean, problem.prior)
 
 
 def _is_refuted(problem: Problem, options: KalmanOptions) -> bool:
@@ -165,23 +177,6 @@ def _is_refuted(problem: Problem, options: KalmanOptions) -> bool:
 def _rms(point: Point) -> float:
     """Rms of the residual of the free run."""
     return float(np.sqrt(np.mean(point.e**2)))
-
-
-def _move(problem: Problem, μ: float) -> tuple[np.ndarray | None, float]:
-    """A step that lowers the criterion, shape (p,), or None; and the next damping."""
-    if problem.step(0.0)[1] < ENDED:
-        return None, μ
-    for _ in range(TRIES):
-        move, fall = problem.step(μ)
-        cost = problem.cost(problem.point.q + move)
-        if problem.cost_here - cost < SHORT * fall:
-            bent = problem.bend(move, μ)
-            if (other := problem.cost(problem.point.q + bent)) < cost:
-                move, cost = bent, other
-        if cost < problem.cost_here:
-            return move, μ / 10 if μ > DAMPED else 0.0
-        μ = max(10 * μ, DAMPED)
-    return None, μ
 
 
 def conclude(

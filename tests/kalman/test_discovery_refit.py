@@ -124,8 +124,9 @@ def test_a_bent_step_follows_the_curve_of_the_residual_to_one_order_more():
     for away in (0.2, 0.1):  # of the logarithm of the mass
         far = begun_at(log, {**TRUE, "mass": TRUE["mass"] * np.exp(away)}).point
         problem = linearise_criterion(far, white, far.q, np.zeros(4))
-        move, _ = problem.step(0.0)
-        left[away] = [problem.cost(far.q + m) ** 0.5 for m in (move, problem.bend(move, 0.0))]
+        move = problem.step(0.0)
+        bent = problem.bend(move, np.inf, 0.0)
+        left[away] = [problem.cost_after(m) ** 0.5 for m in (move, bent)]
     (straight, bent), (straight_half, bent_half) = left[0.2], left[0.1]
     assert bent < 0.5 * straight
     assert straight / straight_half == pytest.approx(4, rel=0.2)  # second order
