@@ -67,7 +67,7 @@ def test_an_effect_is_fitted_along_and_its_size_may_be_zero():
 
 
 def test_a_start_is_kept_where_a_parameter_has_no_upper_bound():
-    mass = Parameter("mass", 2.0, "kg", "body/cart.mass", lower=0.0)
+    mass = Parameter(name="mass", value=2.0, unit="kg", where="body/cart.mass", lower=0.0)
     assert _inside(mass, 2.0) == 2.0
 
 
