@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import DivergenceError
+from identification.estimation.combination import Combination
 from identification.estimation.estimation import Estimate
 from identification.estimation.identifiability import Identifiability, identifiability
 from identification.estimation.information import Information, information_of
@@ -24,7 +25,6 @@ from identification.estimation.metrics import fit_percent, loss, rms
 from identification.estimation.residuals import ResidualTests, residual_tests
 from identification.estimation.resolution import resolve
 from identification.estimation.robust import influence
-from identification.estimation.scaling_symmetry import Combination
 from identification.estimation.whiteness import correlation_time
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
