@@ -35,12 +35,12 @@ F_C, F_0 = "coulomb_friction.f_c@slide", "offset.f_0@slide"
 PUBLISHED = {"M": 95.11, "F_v": 203.5, F_C: 20.39, F_0: 3.16}  # ours pushes: theirs is -3.16
 START = {"M": 70.0, "F_v": 150.0, F_C: 30.0, F_0: 0.1}  # where the fit begins
 RECORDS = (
-    Parameter("M", 95.11, "kg", "body/carriage.mass", lower=0.0),
-    Parameter("F_v", 203.5, "N s/m", "joint/slide.damping", lower=0.0),
-    Parameter(F_C, 20.39, "N", "effect", lower=0.0, about="Coulomb level"),
-    Parameter(F_0, 3.16, "N", "effect", about="constant force"),
-    Parameter("x_0", 0.0, "m", "qpos[0]", scale=1e-3),
-    Parameter("v_0", 0.0, "m/s", "qvel[0]", scale=1e-2),
+    Parameter(name="M", value=95.11, unit="kg", where="body/carriage.mass", lower=0.0),
+    Parameter(name="F_v", value=203.5, unit="N s/m", where="joint/slide.damping", lower=0.0),
+    Parameter(name=F_C, value=20.39, unit="N", where="effect", lower=0.0, about="Coulomb level"),
+    Parameter(name=F_0, value=3.16, unit="N", where="effect", about="constant force"),
+    Parameter(name="x_0", value=0.0, unit="m", where="qpos[0]", scale=1e-3),
+    Parameter(name="v_0", value=0.0, unit="m/s", where="qvel[0]", scale=1e-2),
 )
 KNOWN = np.array([0.3, 0.3, 0.3, 5.0, 1.0, 1.0])  # 30 %, 5 N, and for the start 1 mm, 10 mm/s
 EVERY = 10  # samples of 1 ms
@@ -54,7 +54,14 @@ def read_emps(path, every=EVERY):
     names = {"input_names": ("drive",), "output_names": ("position",)}
     time = np.arange(len(data["qm"])) * 1e-3
     units = {"drive": "V", "position": "m"}
-    log = Log(time, data["vir"], data["qm"], **names, units=units, name=Path(path).stem)
+    log = Log(
+        time=time,
+        inputs=data["vir"],
+        outputs=data["qm"],
+        **names,
+        units=units,
+        name=Path(path).stem,
+    )
     return decimate(log, every)
 
 

@@ -83,8 +83,10 @@ SLIDER = """<mujoco model="slider">
   <actuator><general name="force" joint="slide" gear="5"/></actuator>
   <sensor><jointpos name="position" joint="slide"/></sensor>
 </mujoco>"""
-MASS = Parameter("mass", 2.0, "kg", "body/cart.mass", lower=0.0, upper=100.0)
-DAMPING = Parameter("damping", 3.0, "N s/m", "joint/slide.damping", lower=0.0, upper=100.0)
+MASS = Parameter(name="mass", value=2.0, unit="kg", where="body/cart.mass", lower=0.0, upper=100.0)
+DAMPING = Parameter(
+    name="damping", value=3.0, unit="N s/m", where="joint/slide.damping", lower=0.0, upper=100.0
+)
 
 
 @njit
@@ -108,7 +110,14 @@ def slider_log(samples=1200, c=1.0, noise=5e-4, step=0.01):
     rng, time = np.random.default_rng(0), np.arange(samples) * step
     u = np.repeat(rng.choice([-1.0, 1.0], samples // 20 + 1), 20)[:samples, None]
     moved = 0.5 * np.sin(time)[:, None]  # shows how far the joint moves, before there is a log
-    log = Log(time, u, moved, ("force",), ("position",), units={"position": "m"})
+    log = Log(
+        time=time,
+        inputs=u,
+        outputs=moved,
+        input_names=("force",),
+        output_names=("position",),
+        units={"position": "m"},
+    )
     plant = slider(log)
     y = Predictor(plant, log, ("guide_friction.c@slide",)).predict(np.array([[c]]))[0]
     return replace(log, outputs=y + noise * rng.standard_normal(y.shape))

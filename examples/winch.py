@@ -65,18 +65,24 @@ def winch_log(folder, record, wave=None):
     names = {"input_names": ("motor",), "output_names": ("angle",)}
     units = {"motor": "A", "angle": "rad"}
     u, y = on["motor"][:, None], on["angle"][:, None]
-    return Log(time, u, y, **names, units=units, name=record, hold="foh")
+    return Log(time=time, inputs=u, outputs=y, **names, units=units, name=record, hold="foh")
 
 
 def records(mass, angle=0.0, rate=0.0):
     """What is free; the inertia is that of the load and a guess for the rotor."""
     return (
-        Parameter("J", mass * RADIUS**2 + ROTOR, "kg m^2", "joint/drum.armature", lower=0.0),
-        Parameter("d", 4e-4, "N m s/rad", "joint/drum.damping", lower=0.0),
-        Parameter(F_C, 0.05, "N m", "effect", lower=0.0),
-        Parameter(F_0, -mass * G * RADIUS, "N m", "effect", about="-m g r"),
-        Parameter("q_0", angle, "rad", "qpos[0]", scale=1e-3),
-        Parameter("v_0", rate, "rad/s", "qvel[0]", scale=1e-2),
+        Parameter(
+            name="J",
+            value=mass * RADIUS**2 + ROTOR,
+            unit="kg m^2",
+            where="joint/drum.armature",
+            lower=0.0,
+        ),
+        Parameter(name="d", value=4e-4, unit="N m s/rad", where="joint/drum.damping", lower=0.0),
+        Parameter(name=F_C, value=0.05, unit="N m", where="effect", lower=0.0),
+        Parameter(name=F_0, value=-mass * G * RADIUS, unit="N m", where="effect", about="-m g r"),
+        Parameter(name="q_0", value=angle, unit="rad", where="qpos[0]", scale=1e-3),
+        Parameter(name="v_0", value=rate, unit="rad/s", where="qvel[0]", scale=1e-2),
     )
 
 

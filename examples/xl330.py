@@ -34,13 +34,20 @@ from identification import (
 MODEL = Path(__file__).parents[1] / "models" / "xl330.xml"
 F_C, F_0 = "coulomb_friction.f_c@hinge", "offset.f_0@hinge"
 RECORDS = (
-    Parameter("g", 0.1, "N m/V", "actuator/motor.gear[0]", lower=0.0),
-    Parameter("D", 0.05, "N m s/rad", "joint/hinge.damping", lower=0.0),
-    Parameter("J_a", 0.005, "kg m^2", "joint/hinge.armature", lower=0.0),
-    Parameter(F_C, 0.05, "N m", "effect", lower=0.0, about="Coulomb level"),
-    Parameter(F_0, 0.0, "N m", "effect", scale=0.01, about="an encoder off by f_0/m 9.81 l"),
-    Parameter("q_0", 0.0, "rad", "qpos[0]", scale=1e-2),
-    Parameter("w_0", 0.0, "rad/s", "qvel[0]", scale=1e-1),
+    Parameter(name="g", value=0.1, unit="N m/V", where="actuator/motor.gear[0]", lower=0.0),
+    Parameter(name="D", value=0.05, unit="N m s/rad", where="joint/hinge.damping", lower=0.0),
+    Parameter(name="J_a", value=0.005, unit="kg m^2", where="joint/hinge.armature", lower=0.0),
+    Parameter(name=F_C, value=0.05, unit="N m", where="effect", lower=0.0, about="Coulomb level"),
+    Parameter(
+        name=F_0,
+        value=0.0,
+        unit="N m",
+        where="effect",
+        scale=0.01,
+        about="an encoder off by f_0/m 9.81 l",
+    ),
+    Parameter(name="q_0", value=0.0, unit="rad", where="qpos[0]", scale=1e-2),
+    Parameter(name="w_0", value=0.0, unit="rad/s", where="qvel[0]", scale=1e-1),
 )
 NAMES = tuple(p.name for p in RECORDS[:5])
 KNOWN = np.array([0.3, 0.3, 0.3, 0.5, 0.02, 0.02, 0.5])  # 30 %, 50 %, and what rest may hide

@@ -26,7 +26,8 @@ def read_xl330(path: Path, step: float = STEP) -> Log:
     duty = np.where(load > 2**15 - 1, load - 2**16, load) / FULL
     t, on_grid = on_a_grid(time, {"motor": duty * volts, "angle": angle}, step, WIDEST)
     return Log(
-        t, on_grid["motor"][:, None], on_grid["angle"][:, None], ("motor",), ("angle",),
+        time=t, inputs=on_grid["motor"][:, None], outputs=on_grid["angle"][:, None],
+        input_names=("motor",), output_names=("angle",),
         units={"motor": "V", "angle": "rad"}, name=f"{raw['trajectory']}, k_p {raw['kp']}",
         hold="foh",
     )  # fmt: skip

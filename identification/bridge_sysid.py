@@ -102,7 +102,9 @@ def to_sysid_parameters(
     found = sysid.ParameterDict()
     for record in (plant.parameters[name] for name in names):
         value = (start or {}).get(record.name, record.value)
-        found.add(sysid.Parameter(record.name, value, record.lower, record.upper))
+        found.add(
+            sysid.Parameter(name=record.name, value=value, unit=record.lower, where=record.upper)
+        )
     return found
 
 

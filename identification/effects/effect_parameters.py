@@ -20,12 +20,27 @@ def _size(name: str, size: Size) -> Parameter:
     lower = -size.farthest if size.sign <= 0 else 0.0
     upper = size.farthest if size.sign >= 0 else 0.0
     return Parameter(
-        name, 0.0, size.unit, "effect", lower, upper, size.name, size.about, scale=size.probe
+        name=name,
+        value=0.0,
+        unit=size.unit,
+        where="effect",
+        lower=lower,
+        upper=upper,
+        symbol=size.name,
+        about=size.about,
+        scale=size.probe,
     )
 
 
 def _shape(name: str, shape: Shape) -> Parameter:
     usual = shape.grid[len(shape.grid) // 2] if shape.usual is None else shape.usual
     return Parameter(
-        name, usual, shape.unit, "effect", shape.lower, shape.upper, shape.name, shape.about
+        name=name,
+        value=usual,
+        unit=shape.unit,
+        where="effect",
+        lower=shape.lower,
+        upper=shape.upper,
+        symbol=shape.name,
+        about=shape.about,
     )

@@ -36,7 +36,7 @@ from identification.model.coordinates import Coordinates, coordinates
 from identification.model.predictor import Plant, Predictor
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Estimate:
     """Where a search ended.
 
@@ -125,6 +125,15 @@ def estimate(
     search.refuse_idle()
     status = search.run()
     return Estimate(
-        search.predictor, space, first, search.best, search.whitener, search.weight, options,
-        search.evaluations, search.jacobians, status, time.perf_counter() - began,
-    )  # fmt: skip
+        predictor=search.predictor,
+        space=space,
+        start=first,
+        q=search.best,
+        whitener=search.whitener,
+        weight=search.weight,
+        options=options,
+        evaluations=search.evaluations,
+        jacobians=search.jacobians,
+        status=status,
+        seconds=time.perf_counter() - began,
+    )

@@ -22,7 +22,7 @@ from identification.model.predictor import Plant, Predictor
 from identification.model.sensitivity import refuse_without_effect, sensitivity
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Experiment:
     """A planned experiment.
 
@@ -59,12 +59,12 @@ class Experiment:
         model = self.plant.model
         n = len(self.inputs)
         return Log(
-            np.array(np.arange(n) * self.sampling_time, dtype=np.float64),
-            np.array(self.inputs, dtype=np.float64),
-            np.zeros((n, len(self.outputs))),
-            tuple(mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, i) or f"u{i}"
+            time=np.array(np.arange(n) * self.sampling_time, dtype=np.float64),
+            inputs=np.array(self.inputs, dtype=np.float64),
+            outputs=np.zeros((n, len(self.outputs))),
+            input_names=tuple(mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, i) or f"u{i}"
                   for i in range(model.nu)),
-            self.outputs,
+            output_names=self.outputs,
             hold=self.hold,
         )  # fmt: skip
 

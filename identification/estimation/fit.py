@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import DivergenceError
+from identification.estimation.combination import Combination
 from identification.estimation.estimation import Estimate
 from identification.estimation.identifiability import Identifiability, identifiability
 from identification.estimation.information import Information, information_of
@@ -24,7 +25,6 @@ from identification.estimation.metrics import fit_percent, loss, rms
 from identification.estimation.residuals import ResidualTests, residual_tests
 from identification.estimation.resolution import resolve
 from identification.estimation.robust import influence
-from identification.estimation.scaling_symmetry import Combination
 from identification.estimation.whiteness import correlation_time
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
@@ -32,7 +32,7 @@ from identification.model.predictor import Predictor
 from identification.model.sensitivity import sensitivity
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Fit:
     """The result of an estimation.
 
@@ -115,20 +115,20 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
     fit, unseen, spread = _beyond(estimate, validation, covariance)
     expected = None if unseen is None else float(np.hypot(np.sqrt(np.mean(residual**2)), spread))
     return Fit(
-        estimate,
-        std_q * space.slope(q),
-        covariance / np.outer(scale, scale),
-        space.on_bound(q),
-        found,
-        combinations_of(found, estimate, covariance),
-        residual,
-        fit_percent(log.outputs, predicted),
-        fit,
-        unseen,
-        expected,
-        noise_floor(log.outputs),
-        residual_tests(residual, log.inputs),
-        information_of(resolved, space),
+        estimate=estimate,
+        std=std_q * space.slope(q),
+        correlation=covariance / np.outer(scale, scale),
+        at_bound=space.on_bound(q),
+        found=found,
+        combinations=combinations_of(found, estimate, covariance),
+        residual=residual,
+        fit_percent=fit_percent(log.outputs, predicted),
+        validation_fit_percent=fit,
+        validation_rms=unseen,
+        validation_expected=expected,
+        floor=noise_floor(log.outputs),
+        tests=residual_tests(residual, log.inputs),
+        information=information_of(resolved, space),
     )
 
 

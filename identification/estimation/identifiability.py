@@ -26,7 +26,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.estimation.scaling_symmetry import (
+from identification.estimation.combination import (
     Combination,
     ScalingSymmetry,
     known_products,

@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.errors import InputError, unknown_name
+from identification.estimation.combination import Combination, ScalingSymmetry
 from identification.estimation.identifiability import (
     Identifiability,
     column_errors,
@@ -26,7 +27,6 @@ from identification.estimation.identifiability import (
     unresolved_directions,
 )
 from identification.estimation.resolution import Resolved
-from identification.estimation.scaling_symmetry import Combination, ScalingSymmetry
 from identification.model.coordinates import Coordinates
 
 

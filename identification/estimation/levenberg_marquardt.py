@@ -1,14 +1,14 @@
-"""The descent of Levenberg and Marquardt, one for all searches that linearise by themselves.
+"""The Levenberg-Marquardt method, for every search that linearises its criterion by itself.
 
-    δ(μ) = argmin ‖r - F δ‖² + μ ‖D δ‖²,      D: norms of F's columns
-    taken if ‖r(q ⊕ δ)‖² < ‖r(q)‖², and μ ← μ/lowered;   else μ ← raised μ, and F stays
+    δ(μ) = argmin ‖r - F δ‖² + μ ‖D δ‖²,      D: norms of the columns of F
+    if ‖r(q ⊕ δ)‖² < ‖r(q)‖²:  q ← q ⊕ δ, F anew, μ ← μ / lowered
+    else:                        μ ← raised μ
 
-A criterion knows q, r and F, how a step is found and kept inside its bounds, and what r is
-elsewhere. It may bend a step that falls short of what F promised, to follow a curved valley; of
-the two, the one that falls further is tried.
-Criteria that do not depend on one another, such as the windows of a log, descend together: cost
-and μ are then arrays, and each takes its own steps. The caller sees every trial and decides when
-it is enough.
+A criterion knows q, r and F, computes its step within the bounds, and evaluates its cost after a
+step. A criterion whose valleys are curved may also bend a step whose gain is less than expected;
+the bent step is used where its cost is lower. Criteria that are independent of each other, such as
+the initial states of the windows of a log, descend together: cost and μ are then arrays, and each
+criterion accepts or rejects its own step. The caller receives every trial and decides when to stop.
 
 Source: Marquardt (1963); Moré (1978); for bent steps Transtrum and Sethna (2012).
 """
@@ -22,24 +22,30 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 
 Step = TypeVar("Step")
-Cost = float | np.ndarray  # of one criterion, or of W that descend together, shape (W,)
+Cost = float | np.ndarray  # of one criterion, or of W independent ones, shape (W,)
 
 
 class Criterion(Protocol[Step]):
-    """Sums of squares, linearised at a point."""
+    """A sum of squares that is linearised at a point, or several independent ones."""
 
     @property
     def cost(self) -> Cost:
         """‖r‖² at the point."""
 
     def step(self, μ: Cost) -> Step:
-        """δ(μ), inside the bounds."""
+        """The step δ(μ) within the bounds."""
 
     def cost_after(self, step: Step) -> Cost:
-        """‖r‖² after a step; infinite where nothing can be simulated."""
+        """‖r‖² after a step; infinite where the plant cannot be simulated."""
 
-    def bent(self, step: Step, after: Cost, μ: Cost) -> Step | None:
-        """A step that follows the valley; None where the step is good enough, or it cannot say."""
+    def bend(self, step: Step, after: Cost, μ: Cost) -> Step | None:
+        """The step with a second-order correction; None where the step stays as it is.
+
+        Args:
+            step: δ(μ).
+            after: ‖r‖² after it.
+            μ: the damping of the step.
+        """
 
 
 Linearised = TypeVar("Linearised", bound=Criterion)
@@ -47,41 +53,40 @@ Linearised = TypeVar("Linearised", bound=Criterion)
 
 @dataclass(frozen=True)
 class Damping:
-    """How μ follows the steps.
+    """How the damping μ changes after each step.
 
     Attributes:
         first: μ of the first step.
-        raised: factor after a step that failed.
-        lowered: divisor after a step that was taken.
-        least: smallest μ but `silent`.
-        silent: μ where it would fall below the least: the least itself, or 0 for plain
-            Gauss-Newton steps.
+        raised: factor of μ after a step that was rejected.
+        lowered: divisor of μ after a step that was accepted.
+        least: smallest positive μ.
+        floor: the value of μ instead of one below `least`: `least` itself, or 0 for undamped steps.
     """
 
     first: float
     raised: float
     lowered: float
     least: float
-    silent: float
+    floor: float
 
     def next(self, μ: np.ndarray, taken: np.ndarray) -> np.ndarray:
-        """μ of the next step."""
+        """μ of the next step, elementwise, from μ of the last one and whether it was accepted."""
         low, high = μ / self.lowered, np.maximum(self.raised * μ, self.least)
-        return np.where(taken, np.where(low < self.least, self.silent, low), high)
+        return np.where(taken, np.where(low < self.least, self.floor, low), high)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Trial(Generic[Linearised, Step]):
-    """A step that was tried.
+    """One trial step of a descent; arrays have the shape of the criterion's cost.
 
     Attributes:
-        criterion: linearised where the search now is.
-        step: what was tried.
-        before: cost before it.
-        after: cost after it.
-        taken: whether it was, of each criterion.
-        μ: with which it was tried.
-        next: μ of the next.
+        criterion: the criterion, linearised at the point after the trial.
+        step: the step that was tried.
+        before: cost before the step.
+        after: cost after the step.
+        taken: true where the step was accepted.
+        μ: damping of the step.
+        next: damping of the next step.
     """
 
     criterion: Linearised
@@ -98,19 +103,20 @@ def levenberg_marquardt(
     move: Callable[[Linearised, Step, np.ndarray], Linearised],
     damping: Damping,
 ) -> Iterator[Trial[Linearised, Step]]:
-    """The trials of a descent, without an end: the caller takes as many as it wants.
+    """The trials of a descent; the iterator never ends by itself.
 
     Args:
-        criterion: linearised where the search begins.
-        move: linearises it anew after a step, of those of its criteria that take it.
-        damping: how μ follows the steps.
+        criterion: the criterion, linearised where the search begins.
+        move: returns the criterion linearised after a step; its last argument is true for those
+            criteria that accept the step.
+        damping: how μ changes.
     """
     μ = np.full(np.shape(criterion.cost), damping.first)
     while True:
         before = np.asarray(criterion.cost)
         step = criterion.step(μ)
         after = np.asarray(criterion.cost_after(step))
-        bent = criterion.bent(step, after, μ)
+        bent = criterion.bend(step, after, μ)
         if bent is not None:
             other = np.asarray(criterion.cost_after(bent))
             if np.all(other < after):

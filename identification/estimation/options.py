@@ -15,7 +15,7 @@ Progress = Callable[[str], None]
 Status = Literal["converged", "iterations", "stopped"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Options:
     """Options of a search.
 

@@ -29,7 +29,7 @@ REACH = 3.0  # std to each side, unless points are given
 WIDEST = 0.5  # of q to each side where the std is larger or infinite
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Profile:
     """The smallest cost at given values of one parameter.
 
@@ -92,7 +92,9 @@ def profile(
                 break
     others = {n: np.array([f[n] for f in found]) for n in names if n != name}
     ends = (_crossing(values, rise, best[name], -1), _crossing(values, rise, best[name], 1))
-    return Profile(name, best[name], values, rise, others, ends)
+    return Profile(
+        name=name, estimate=best[name], values=values, rise=rise, others=others, interval=ends
+    )
 
 
 def _std_q(fit: Fit, j: int) -> float:

@@ -1,25 +1,23 @@
-"""Parameters that can be scaled together while no output changes, and what can be known of them.
+"""Scaling symmetries, found in sensitivities and proven by simulations.
 
     θ_j → θ_j c^v_j for all c        a scaling symmetry v: the outputs stay as they are
-    Π θ_j^w_j,  Σ_j w_j v_j = 0       products that no symmetry moves: these can be known
 
-For example, R_s → c R_s, k_s → c⁻² k_s leaves k_s R_s² unchanged. The numbers v are small
-fractions. So they are rounded from sensitivities that are only roughly known, and then proven by
-simulations: a move of 10 % to each side along v must change all outputs together by less than one
-std of the noise. Along a symmetry a long step is as good as a short one. So the roughness of a
-simulation, which spoils short differences, does not matter here (scaling symmetries: Yates, Evans
-and Chappell 2009).
+The numbers v are small fractions. So they are rounded from sensitivities that are only roughly
+known, and then proven by simulations: a move of 10 % to each side along v must change all outputs
+together by less than one std of the noise. Along a symmetry a long step is as good as a short one.
+So the roughness of a simulation, which spoils short differences, does not matter here (scaling
+symmetries: Yates, Evans and Chappell 2009).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
 
 from identification.errors import DivergenceError, InputError
+from identification.estimation.combination import ScalingSymmetry
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
 
@@ -29,48 +27,6 @@ SEEN = 1.0  # norm of a change of all outputs in units of the noise, from which 
 
 # whitens (samples, ny, k) into k columns, shape (n, k), so that the noise has the std 1
 Whiten = Callable[[np.ndarray], np.ndarray]
-
-
-@dataclass(frozen=True)
-class ScalingSymmetry:
-    """Parameters that can be scaled together.
-
-    Attributes:
-        powers: v by name; parameters that are not named have 0.
-    """
-
-    powers: dict[str, Fraction]
-
-    def row(self, names: Sequence[str]) -> np.ndarray:
-        """v as a direction of q, of norm 1, shape (p,)."""
-        v = np.array([float(self.powers.get(name, 0)) for name in names])
-        return v / np.linalg.norm(v)
-
-
-@dataclass(frozen=True)
-class Combination:
-    """A product of powers of parameters that can be known although the parameters cannot.
-
-    Attributes:
-        exponents: the powers, by name.
-    """
-
-    exponents: dict[str, Fraction]
-
-    def __str__(self) -> str:
-        return " ".join(
-            name if power == 1 else f"{name}^{power}" for name, power in self.exponents.items()
-        )
-
-    def value(self, values: dict[str, float]) -> float:
-        """Its value, in the product of the units."""
-        return float(
-            np.prod([values[name] ** float(power) for name, power in self.exponents.items()])
-        )
-
-    def row(self, names: Sequence[str]) -> np.ndarray:
-        """Its exponents, shape (p,)."""
-        return np.array([float(self.exponents.get(name, 0)) for name in names])
 
 
 def scaling_symmetries(
@@ -160,46 +116,3 @@ def _rounded(v: np.ndarray) -> tuple[Fraction, ...]:
     powers = [Fraction(float(x)).limit_denominator(LARGEST_DENOMINATOR) for x in v]
     first = next(x for x in powers if x)
     return tuple(x if first > 0 else -x for x in powers)
-
-
-def known_products(
-    symmetries: Sequence[ScalingSymmetry], names: Sequence[str]
-) -> list[Combination]:
-    """Products that no symmetry changes, made of the parameters that symmetries change.
-
-    A set of k parameters that m symmetries change together gives k - m products.
-    """
-    moved = [name for name in names if any(name in s.powers for s in symmetries)]
-    rows, held = _reduced([[s.powers.get(n, Fraction(0)) for n in moved] for s in symmetries])
-    products = []
-    for free in (j for j in range(len(moved)) if j not in held):
-        powers = {moved[free]: Fraction(1)}
-        for row, pivot in zip(rows, held, strict=True):
-            powers[moved[pivot]] = -row[free]
-        powers = {name: powers[name] for name in moved if powers.get(name)}
-        products.append(_whole(powers))
-    return products
-
-
-def _whole(powers: dict[str, Fraction]) -> Combination:
-    """The product scaled so that its smallest power is 1, in the order of the powers."""
-    least = min(powers.values(), key=abs)
-    return Combination({n: x / least for n, x in sorted(
-        powers.items(), key=lambda item: abs(item[1]))})  # fmt: skip
-
-
-def _reduced(rows: list[list[Fraction]]) -> tuple[list[list[Fraction]], list[int]]:
-    """Reduced row echelon form from the last column on, and the column that each row leads."""
-    rows, held = [list(row) for row in rows], list[int]()
-    for column in reversed(range(len(rows[0]) if rows else 0)):
-        lead = len(held)
-        pivot = next((i for i in range(lead, len(rows)) if rows[i][column]), None)
-        if pivot is None:
-            continue
-        rows[lead], rows[pivot] = rows[pivot], rows[lead]
-        rows[lead] = [x / rows[lead][column] for x in rows[lead]]
-        for i, row in enumerate(rows):
-            if i != lead:
-                rows[i] = [x - row[column] * y for x, y in zip(row, rows[lead], strict=True)]
-        held.append(column)
-    return rows[: len(held)], held

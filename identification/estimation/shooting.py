@@ -105,7 +105,7 @@ class Shooting:
         return made[:, rows].reshape(-1, len(steps), held.shape[1]), every, "zoh"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Tangent:
     """All windows, linearised at a point; X = U s Vᵀ, its columns scaled to the norm 1.
 
@@ -173,4 +173,4 @@ def tangent(
     size = np.where(size > 0, size, 1.0)
     U, s, Vt = np.linalg.svd(X / size[:, None], full_matrices=False)
     s = np.where(s > FELT * s[:, :1], s, 0.0)
-    return Tangent(r[..., 0], S, U, s, Vt, size)
+    return Tangent(r=r[..., 0], S=S, U=U, s=s, Vt=Vt, size=size)

@@ -35,7 +35,7 @@ ROUGH = 1e-2  # relative gain that ends a search which another follows
 STEPS = (FORWARD_STEP, 100 * FORWARD_STEP)  # of the differences that the std rest on
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class WindowEstimate:
     """Where a search over windows ended.
 
@@ -126,17 +126,17 @@ def estimate_windows(
     freedom = max(1, readings - at.tangent.freedom - len(first))
     scale = float(np.sqrt(np.sum(at.tangent.r**2) / freedom))
     return WindowEstimate(
-        dict(zip(names, space.decode(q).tolist(), strict=True)),
-        scale * found.std * space.slope(q),
-        first,
-        space.on_bound(q),
-        found,
-        shooting.error(at.tangent.r),
-        begun,
-        length,
-        end.converged,
-        tangents,
-        time.perf_counter() - began,
+        values=dict(zip(names, space.decode(q).tolist(), strict=True)),
+        std=scale * found.std * space.slope(q),
+        start=first,
+        at_bound=space.on_bound(q),
+        found=found,
+        residual=shooting.error(at.tangent.r),
+        states=begun,
+        length=length,
+        converged=end.converged,
+        tangents=tangents,
+        seconds=time.perf_counter() - began,
     )
 
 

@@ -1,8 +1,8 @@
-"""The search over the windows of a log: for parameters and states, or for the states alone.
+"""The search over the windows of a log, by Levenberg-Marquardt.
 
-All windows have one q, so that their steps are one step and share one μ. Where nothing but their
-states is free, each window has a damping of its own: where a joint sticks, its first rate is
-hardly felt.
+`search_windows` fits the parameters q and the initial states of all windows together: they share
+one step and one damping. `search_states` fits the initial states alone. The windows are then
+independent, and each has its own damping: where a joint sticks, the outputs hardly feel its rate.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from identification.estimation.levenberg_marquardt import Cost, Damping, levenbe
 from identification.estimation.options import Progress
 from identification.estimation.shooting import Shooting, Tangent, tangent
 
-# of the squared norms of X's and S's columns
-DAMPING = Damping(first=1e-2, raised=5.0, lowered=10.0, least=1e-12, silent=1e-12)
+# relative to the squared norms of the columns of X and S
+DAMPING = Damping(first=1e-2, raised=5.0, lowered=10.0, least=1e-12, floor=1e-12)
 MOST_DAMPING = 1e8
-# of the squared norms of X's columns
-DAMPING_OF_STATES = Damping(first=1e-9, raised=10.0, lowered=10.0, least=1e-9, silent=1e-9)
+# relative to the squared norms of the columns of X
+DAMPING_OF_STATES = Damping(first=1e-9, raised=10.0, lowered=10.0, least=1e-9, floor=1e-9)
 MOST_DAMPING_OF_STATES = 1e2
-STEPS_OF_STATES = 20  # at most
-ENDED_OF_STATES = 1e-3  # of the mean squared error: a window that changes by less is at its best
+STEPS_OF_STATES = 20  # largest number of steps
+ENDED_OF_STATES = 1e-3  # relative change of the mean squared error at which a window is finished
 
 
 @dataclass(frozen=True)
 class WindowsAtPoint:
-    """The criterion of parameters and states together.
+    """The criterion of the parameters and the initial states, linearised at a point.
 
     Attributes:
         shooting: the windows.
-        q: parameters, shape (p,).
-        d: moves of the states, shape (W, nx).
-        tangent: the windows linearised there.
+        q: the parameters, shape (p,).
+        d: changes of the initial states, shape (W, nx).
+        tangent: the linearisation of the windows at q and d.
     """
 
     shooting: Shooting
@@ -49,11 +49,11 @@ class WindowsAtPoint:
         return float(np.sum(self.tangent.r**2))
 
     def step(self, μ: Cost) -> tuple[np.ndarray, np.ndarray]:
-        """Δq (p,), which may lead out of its bounds, and Δd (W, nx)."""
+        """The step Δq (p,), which `after` clips to the bounds, and Δd (W, nx)."""
         return self.tangent.step(float(μ))
 
     def after(self, step: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """q, which ends at its bounds, and d after a step."""
+        """q, clipped to its bounds, and d after a step."""
         space = self.shooting.space
         return np.clip(self.q + step[0], space.lower, space.upper), self.d + step[1]
 
@@ -61,14 +61,14 @@ class WindowsAtPoint:
         """The sum of squares after a step."""
         try:
             return float(np.sum(self.shooting.residual(*self.after(step)) ** 2))
-        except InputError:  # it diverged, or has no start: it must go elsewhere
+        except InputError:  # the simulation diverged, or the robot has no such start
             return np.inf
 
-    def bent(self, step: tuple[np.ndarray, np.ndarray], after: Cost, μ: Cost) -> None:
-        """Steps are straight."""
+    def bend(self, step: tuple[np.ndarray, np.ndarray], after: Cost, μ: Cost) -> None:
+        """The steps are never bent."""
 
     def moved(self, step: tuple[np.ndarray, np.ndarray], taken: np.ndarray) -> WindowsAtPoint:
-        """Linearised after a step."""
+        """The criterion after a step."""
         return windows_at(self.shooting, *self.after(step))
 
 
@@ -86,9 +86,9 @@ class WindowsEnd:
     """Where a search ended.
 
     Attributes:
-        at: the windows there.
-        converged: whether it ended by itself.
-        tangents: how often all windows were linearised.
+        at: the criterion at the last point.
+        converged: false where the search ran out of linearisations or of damping.
+        tangents: number of linearisations of all windows.
     """
 
     at: WindowsAtPoint
@@ -99,13 +99,13 @@ class WindowsEnd:
 def search_windows(
     begun: WindowsAtPoint, tolerance: float, most: int, progress: Progress | None
 ) -> WindowsEnd:
-    """Search q and the states of all windows.
+    """Fit q and the initial states of all windows.
 
     Args:
-        begun: where.
+        begun: the criterion where the search begins.
         tolerance: relative change of cost and of q at which the search stops.
-        most: linearisations of the windows, at most, beside the first.
-        progress: is told one line per linearisation.
+        most: largest number of linearisations after the first.
+        progress: receives one line per linearisation.
     """
     at, tangents = begun, 1
     trials = levenberg_marquardt(begun, WindowsAtPoint.moved, DAMPING)
@@ -132,12 +132,12 @@ def _tell(at: WindowsAtPoint, tangents: int, progress: Progress | None) -> None:
 
 @dataclass(frozen=True)
 class EachWindow:
-    """The criteria of the states alone, each window by itself, where no parameter is free.
+    """The criteria of the initial states alone, one per window; no parameter is free.
 
     Attributes:
         shooting: the windows.
-        d: moves of the states, shape (W, nx).
-        tangent: the windows linearised there.
+        d: changes of the initial states, shape (W, nx).
+        tangent: the linearisation of the windows at d.
     """
 
     shooting: Shooting
@@ -163,20 +163,23 @@ class EachWindow:
         except DivergenceError:
             return np.full(len(self.d), np.inf)
 
-    def bent(self, step: np.ndarray, after: Cost, μ: Cost) -> None:
-        """Steps are straight."""
+    def bend(self, step: np.ndarray, after: Cost, μ: Cost) -> None:
+        """The steps are never bent."""
 
     def moved(self, step: np.ndarray, taken: np.ndarray) -> EachWindow:
-        """Linearised after a step of those windows that take it."""
+        """The criteria after a step of those windows that accept it."""
         d = np.where(taken[:, None], self.d + step, self.d)
         return replace(self, d=d, tangent=tangent(self.shooting, np.zeros(0), d))
 
 
 def search_states(shooting: Shooting, d: np.ndarray) -> Tangent:
-    """The windows linearised at the states that explain each best, from moves d (W, nx) on.
+    """Fit the initial state of each window, beginning with the changes d (W, nx).
+
+    Returns:
+        The linearisation of the windows at the fitted states.
 
     Raises:
-        DivergenceError: a window left the finite numbers at the start.
+        DivergenceError: the simulation of a window diverged.
     """
     at = EachWindow(shooting, d, tangent(shooting, np.zeros(0), d))
     trials = levenberg_marquardt(at, EachWindow.moved, DAMPING_OF_STATES)

@@ -120,9 +120,18 @@ def estimate_innovations(
     taken = max(0, len(seen) - 2)
     end = conclude(*seen[-1], mean, prior, taken)
     ends = Estimate(
-        predictor, space, first, end.point.q, np.eye(part.outputs.shape[1]) / end.level.sigma,
-        np.ones_like(part.outputs), weights, taken + 1, taken + 1, status, 0.0,
-    )  # fmt: skip
+        predictor=predictor,
+        space=space,
+        start=first,
+        q=end.point.q,
+        whitener=np.eye(part.outputs.shape[1]) / end.level.sigma,
+        weight=np.ones_like(part.outputs),
+        options=weights,
+        evaluations=taken + 1,
+        jacobians=taken + 1,
+        status=status,
+        seconds=0.0,
+    )
     fit = _of_innovations(end, assess(ends, log))
     E = compute_innovations(end, log)
     fit = replace(fit, estimate=replace(ends, seconds=time.perf_counter() - began))

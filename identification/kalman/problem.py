@@ -1,4 +1,4 @@
-"""The criterion of a fit, linearised about a point, and its damped steps.
+"""The criterion of a fit, linearised about a point, with the steps of `levenberg_marquardt`.
 
     min_δ ‖r + F δ‖² + μ ‖δ‖²,    r: innovations over σ, and the priors
 
@@ -69,20 +69,20 @@ class Problem:
         return remaining[: self.point.e.size].reshape(self.point.e.shape)
 
     def step(self, μ: Cost) -> np.ndarray:
-        """The Levenberg-Marquardt step inside the bounds, shape (p,)."""
+        """The Levenberg-Marquardt step within the bounds, shape (p,)."""
         return self._least(self.target, μ, np.zeros_like(self.point.q))
 
-    def promised(self, move: np.ndarray) -> float:
-        """How far the criterion would fall after a step, were it linear."""
+    def expected_fall(self, move: np.ndarray) -> float:
+        """How far a step would lower the criterion if the residual were linear."""
         return self.cost - float(np.sum((self.target - self.rows @ move) ** 2))
 
-    def bent(self, move: np.ndarray, after: Cost, μ: Cost) -> np.ndarray | None:
-        """The step with its second-order correction, shape (p,), where it falls short without.
+    def bend(self, move: np.ndarray, after: Cost, μ: Cost) -> np.ndarray | None:
+        """The step with its second-order correction, shape (p,).
 
-        It is None where the straight step is good enough, or where the plant cannot be simulated
-        along it.
+        None where the step itself falls far enough, to the cost `after`, and where the plant
+        cannot be simulated along it.
         """
-        if self.cost - after >= SHORT * self.promised(move):
+        if self.cost - after >= SHORT * self.expected_fall(move):
             return None
         ahead = self.residual(self.point.q + ALONG * move)
         if ahead is None:

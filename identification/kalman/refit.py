@@ -27,8 +27,8 @@ from identification.kalman.problem import Problem, linearise_criterion
 
 NEAR = 0.02  # relative change of the parameters after which the linearisation still holds
 ENDED = 0.1  # expected fall of the criterion, in units of the noise, below which a search ends
-# The first steps are those of Gauss and Newton; the columns of the rows have length 1.
-DAMPING = Damping(first=0.0, raised=10.0, lowered=10.0, least=1e-4, silent=0.0)
+# Gauss-Newton steps until one fails; the columns of the rows are scaled to length 1
+DAMPING = Damping(first=0.0, raised=10.0, lowered=10.0, least=1e-4, floor=0.0)
 TRIES = 6  # attempts at a step, each damped ten times as much as the one before
 PATIENCE = 2  # successive steps without progress after which a search ends
 
@@ -125,10 +125,10 @@ def descend(
         last, largest = point, np.inf if fine else believed
         problem = linearise_criterion(point, level, mean, prior)
         best, most, least, idle = (point, level), problem.log_posterior, _rms(point), 0
-        move = partial(_moved, options=options, largest=largest)
+        move = partial(_move, options=options, largest=largest)
         trials = levenberg_marquardt(problem, move, DAMPING)
         while steps and idle < PATIENCE and not (fine and _is_refuted(problem, options)):
-            if problem.promised(problem.step(0.0)) < ENDED:
+            if problem.expected_fall(problem.step(0.0)) < ENDED:
                 break
             trial = next((t for t in islice(trials, TRIES) if t.taken), None)
             if trial is None:
@@ -150,17 +150,13 @@ def descend(
     return steps > 0
 
 
-def _moved(
-    problem: Problem,
-    step: np.ndarray,
-    taken: np.ndarray,
-    options: KalmanOptions,
-    largest: float,
+def _move(
+    problem: Problem, step: np.ndarray, taken: np.ndarray, options: KalmanOptions, largest: float
 ) -> Problem:
-    """The criterion after a step: simulated, with a noise of its own, and linearised."""
+    """The criterion about the point after a step, with the noise of that point."""
     point = problem.point
-    small = np.abs(step[point.space.logarithmic]).max(initial=0.0) < NEAR
-    linear = point.linear if small else None
+    change = np.abs(step[point.space.logarithmic]).max(initial=0.0)
+    linear = point.linear if change < NEAR else None
     point = evaluate_point(point.predictor, point.space, point.q + step, linear)
     level = estimate_noise(point, problem.prior, options, problem.level, largest=largest)
     return linearise_criterion(point, level, problem.mean, problem.prior)

@@ -24,7 +24,7 @@ from identification.logs.units import check_si
 Splits = Mapping[str, tuple[float, float]]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Log:
     """One experiment: n samples of nu inputs and ny outputs; nothing in it can be changed.
 

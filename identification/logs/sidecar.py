@@ -30,7 +30,7 @@ from identification.logs.names import quoted
 _LARGEST = 2**20  # [bytes]; it is written by hand, so a larger file is a mistake
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Sidecar:
     """The content of a sidecar; every key may be left out, and the file too."""
 
@@ -51,7 +51,7 @@ def read_sidecar(path: Path) -> Sidecar:
         InputError: it is not TOML, a key is unknown, or a value is of the wrong kind.
     """
     if not path.exists():
-        return Sidecar(path)
+        return Sidecar(path=path)
     raw = read_bytes(path, _LARGEST)
     try:
         content = tomllib.loads(raw.decode("utf-8-sig"))
@@ -67,7 +67,7 @@ def read_sidecar(path: Path) -> Sidecar:
             values[key] = convert(value)
         except (TypeError, OverflowError) as error:
             raise InputError(f"{key} in {path} must be {kind}; correct it there") from error
-    return Sidecar(path, **values)
+    return Sidecar(path=path, **values)
 
 
 def _text(value: object) -> str:

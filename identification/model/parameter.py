@@ -9,7 +9,7 @@ from math import inf, isfinite
 from identification.errors import InputError, repeated, unknown_name
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Parameter:
     """One number of a model: what it is, how large it may be, and where it goes.
 

@@ -61,7 +61,7 @@ _EFFECTS: dict[str, tuple[type | tuple[type, ...], str]] = {
 _POSITIVE = ("every", "known", "scale")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class RobotFile:
     """The content of a robot's TOML; the docstring of the module shows every key.
 
@@ -126,18 +126,18 @@ def read_robot_file(path: str | Path) -> RobotFile:
     if not model.is_file():
         raise InputError(f"{path} names the model {model}, which is no file; correct it there")
     return RobotFile(
-        path,
-        model,
-        _texts(content["free"], "free", path),
-        _texts(content.get("outputs", []), "outputs", path),
-        content.get("horizon"),
-        content.get("every", 1),
-        dict(zip(columns, _texts([*columns.values()], "columns", path), strict=True)),
-        {name: float(value) for name, value in fixed.items()},
-        records,
-        _texts(effects.get("joints", []), "effects.joints", path),
-        _texts(effects.get("only", []), "effects.only", path),
-        _numbers(effects.get("turns", []), "effects.turns", path),
+        path=path,
+        model=model,
+        free=_texts(content["free"], "free", path),
+        outputs=_texts(content.get("outputs", []), "outputs", path),
+        horizon=content.get("horizon"),
+        every=content.get("every", 1),
+        columns=dict(zip(columns, _texts([*columns.values()], "columns", path), strict=True)),
+        fixed={name: float(value) for name, value in fixed.items()},
+        records=records,
+        joints=_texts(effects.get("joints", []), "effects.joints", path),
+        only=_texts(effects.get("only", []), "effects.only", path),
+        turns=_numbers(effects.get("turns", []), "effects.turns", path),
     )
 
 

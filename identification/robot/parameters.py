@@ -88,12 +88,12 @@ def _in_model(
         own = float(getattr(own_start(model), place[0])[place[1]])
         moved = _moved(model, place, log)
         fields |= {"value": measured_start(model, path, log, own), "scale": moved}
-        return Parameter(name, **{**fields, **given}), moved
+        return Parameter(name=name, **{**fields, **given}), moved
     value = read(model, resolve(model, path))
     attribute = path.rpartition(".")[2].partition("[")[0]
     scale = abs(value) or 1.0
     fields |= {"value": value, "scale": scale, "lower": 0.0 if attribute in POSITIVE else -np.inf}
-    return Parameter(name, **{**fields, **given}), KNOWN * scale
+    return Parameter(name=name, **{**fields, **given}), KNOWN * scale
 
 
 def unit_of(model: mujoco.MjModel, path: str) -> str:

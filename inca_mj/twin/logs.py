@@ -85,5 +85,13 @@ def run_to_log(run: Run, name: str = "run", notes: str = "") -> Log:
     columns = (*CURRENTS, *ANGLES, *extras)
     units = {column: UNITS[column.rstrip("_12345678")] for column in columns}
     return Log(
-        run.time, run.currents, run.motor_angle, CURRENTS, ANGLES, extras, units, name, notes
+        time=run.time,
+        inputs=run.currents,
+        outputs=run.motor_angle,
+        input_names=CURRENTS,
+        output_names=ANGLES,
+        extras=extras,
+        units=units,
+        name=name,
+        notes=notes,
     )

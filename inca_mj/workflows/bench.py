@@ -66,7 +66,13 @@ class Bench:
                 many simulations.
         """
         sampling = float(run.time[1] - run.time[0])
-        trial = Experiment(self.robot, run.currents, sampling, ANGLES, self.sigma)
+        trial = Experiment(
+            plant=self.robot,
+            inputs=run.currents,
+            sampling_time=sampling,
+            outputs=ANGLES,
+            sigma=self.sigma,
+        )
         far = extent(run)
         found = robot_information(trial, self.names, resolved)
         return Tried(name, run, far, found, far.within(self.limits))

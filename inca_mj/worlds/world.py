@@ -173,4 +173,12 @@ def _log(u: np.ndarray, y: np.ndarray, setting: HiddenSetting) -> Log:
     names = [tuple(f"{kind}_{k}" for k in range(1, DRIVES + 1)) for kind in ("current", "angle")]
     units = {**dict.fromkeys(names[0], "A"), **dict.fromkeys(names[1], "rad")}
     time = setting.sampling_time * np.arange(len(u), dtype=np.float64)
-    return Log(time, u, y, names[0], names[1], units=units, name="world")
+    return Log(
+        time=time,
+        inputs=u,
+        outputs=y,
+        input_names=names[0],
+        output_names=names[1],
+        units=units,
+        name="world",
+    )

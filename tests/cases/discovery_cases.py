@@ -102,13 +102,31 @@ SLIDER = """<mujoco>
 </mujoco>"""
 
 RECORDS = (
-    Parameter("mass", 2.0, "kg", "body/cart.mass", lower=0.0, upper=100.0),
-    Parameter("damping", 3.0, "N s/m", "joint/slide.damping", lower=0.0, upper=100.0),
-    Parameter("x0", 0.0, "m", "qpos[0]"),
-    Parameter("v0", 0.0, "m/s", "qvel[0]"),
-    Parameter("spring.k", 0.0, "N/m", "joint/slide.stiffness", lower=0.0, upper=1e3, symbol="k"),
-    Parameter("offset.f", 0.0, "N", "actuator/force.biasprm[0]", symbol="f"),
-    Parameter("rubbing.c", 0.0, "N", "joint/slide.frictionloss", lower=0.0, upper=1e3, symbol="c"),
+    Parameter(name="mass", value=2.0, unit="kg", where="body/cart.mass", lower=0.0, upper=100.0),
+    Parameter(
+        name="damping", value=3.0, unit="N s/m", where="joint/slide.damping", lower=0.0, upper=100.0
+    ),
+    Parameter(name="x0", value=0.0, unit="m", where="qpos[0]"),
+    Parameter(name="v0", value=0.0, unit="m/s", where="qvel[0]"),
+    Parameter(
+        name="spring.k",
+        value=0.0,
+        unit="N/m",
+        where="joint/slide.stiffness",
+        lower=0.0,
+        upper=1e3,
+        symbol="k",
+    ),
+    Parameter(name="offset.f", value=0.0, unit="N", where="actuator/force.biasprm[0]", symbol="f"),
+    Parameter(
+        name="rubbing.c",
+        value=0.0,
+        unit="N",
+        where="joint/slide.frictionloss",
+        lower=0.0,
+        upper=1e3,
+        symbol="c",
+    ),
 )
 EFFECTS = (
     Effect("spring", "-k x", (Size("k", "N/m", 30.0, 1e-2, 1),), places={"joint": ""}),
@@ -144,11 +162,13 @@ def record(plant, samples=500, seed=0, error=None, noise=SENSOR):
     """What the position sensor says when the input has an error that the log does not know."""
     u = steps(samples)
     time = STEP * np.arange(samples)
-    names = ("force",), ("position",)
-    fed = Log(time, u if error is None else u + error, np.zeros_like(u), *names)
+    names = {"input_names": ("force",), "output_names": ("position",)}
+    fed = Log(
+        time=time, inputs=u if error is None else u + error, outputs=np.zeros_like(u), **names
+    )
     y = Predictor(plant, fed, ()).predict(np.empty((1, 0)))[0]
     y = y + noise * np.random.default_rng(seed).standard_normal(y.shape)
-    return Log(time, u, y, *names, units={"force": "N", "position": "m"})
+    return Log(time=time, inputs=u, outputs=y, **names, units={"force": "N", "position": "m"})
 
 
 def wander(samples, rms, time, seed):

@@ -37,7 +37,13 @@ def probes(effect, where=None, factor=1.0) -> dict[str, float]:
 def simulate(twin, names=(), values=None, seconds=0.5) -> np.ndarray:
     """Angles of n value sets under the thesis' input, shape (n, N, 8)."""
     u = make_input("prbs", seconds)
-    log = Log(np.arange(len(u)) * 0.01, u, np.zeros_like(u), CURRENTS, ANGLES)
+    log = Log(
+        time=np.arange(len(u)) * 0.01,
+        inputs=u,
+        outputs=np.zeros_like(u),
+        input_names=CURRENTS,
+        output_names=ANGLES,
+    )
     values = np.zeros((1, 0)) if values is None else np.asarray(values)
     return Predictor(twin, log, tuple(names)).predict(values)
 

@@ -32,7 +32,7 @@ PENDULUM = """<mujoco>
 
 
 def positive(name, value, unit, where):
-    return Parameter(name, value, unit, where, lower=0.0)
+    return Parameter(name=name, value=value, unit=unit, where=where, lower=0.0)
 
 
 SLIDER_PARAMETERS = ParameterSet(
@@ -42,8 +42,8 @@ SLIDER_PARAMETERS = ParameterSet(
         positive("damping", 3.0, "N s/m", "joint/slide.damping"),
         positive("stiffness", 20.0, "N/m", "joint/slide.stiffness"),
         positive("gear", 5.0, "N", "actuator/force.gear[0]"),
-        Parameter("x0", 0.1, "m", "qpos[0]"),
-        Parameter("v0", 0.0, "m/s", "qvel[0]"),
+        Parameter(name="x0", value=0.1, unit="m", where="qpos[0]"),
+        Parameter(name="v0", value=0.0, unit="m/s", where="qvel[0]"),
     ),
 )
 PENDULUM_PARAMETERS = ParameterSet(
@@ -77,10 +77,22 @@ def record(plant, outputs, n=250, noise=0.0, seed=0, inputs=None):
     u = steps(n) if inputs is None else inputs
     y = np.zeros((len(u), len(outputs)))
     names = tuple(plant.model.actuator(i).name for i in range(plant.model.nu))
-    log = Log(STEP * np.arange(len(u)), u, y, names, tuple(outputs))
+    log = Log(
+        time=STEP * np.arange(len(u)),
+        inputs=u,
+        outputs=y,
+        input_names=names,
+        output_names=tuple(outputs),
+    )
     clean = Predictor(plant, log, ()).predict(np.empty((1, 0)))[0]
     return measured(log, clean + noise * np.random.default_rng(seed).standard_normal(y.shape))
 
 
 def measured(log, outputs):
-    return Log(log.time, log.inputs, outputs, log.input_names, log.output_names)
+    return Log(
+        time=log.time,
+        inputs=log.inputs,
+        outputs=outputs,
+        input_names=log.input_names,
+        output_names=log.output_names,
+    )

@@ -53,9 +53,12 @@ def slider() -> Slider:
     return Slider(
         mujoco.MjModel.from_xml_string(XML),
         ParameterSet("slider", (
-            Parameter("mass", M, "kg", "body/cart.mass", 1e-3, 1e3),
-            Parameter("damping", C, "N s/m", "joint/slide.damping", 0.0, 1e3),
-            Parameter("gain", 1.0, "", "actuator/push.gear[0]", 1e-3, 1e3),
+            Parameter(name="mass", value=M, unit="kg", where="body/cart.mass",
+                      lower=1e-3, upper=1e3),
+            Parameter(name="damping", value=C, unit="N s/m", where="joint/slide.damping",
+                      lower=0.0, upper=1e3),
+            Parameter(name="gain", value=1.0, unit="", where="actuator/push.gear[0]",
+                      lower=1e-3, upper=1e3),
         )),
     )  # fmt: skip
 
@@ -63,7 +66,9 @@ def slider() -> Slider:
 def pushed(inputs: np.ndarray | None = None, sigma: float = SIGMA) -> Experiment:
     """A step of 5 N, unless told otherwise."""
     inputs = np.full((101, 1), 5.0) if inputs is None else inputs
-    return Experiment(slider(), inputs, STEP, ("position",), sigma)
+    return Experiment(
+        plant=slider(), inputs=inputs, sampling_time=STEP, outputs=("position",), sigma=sigma
+    )
 
 
 def step_sensitivity(time: np.ndarray, u: float = 5.0) -> np.ndarray:

@@ -35,8 +35,10 @@ ARM = """<mujoco model="arm">
   </actuator>
   <sensor><jointpos name="a" joint="shoulder"/><jointpos name="b" joint="elbow"/></sensor>
 </mujoco>"""
-MASS = Parameter("mass", 2.0, "kg", "body/cart.mass", lower=0.0, upper=100.0)
-DAMPING = Parameter("damping", 3.0, "N s/m", "joint/slide.damping", lower=0.0, upper=100.0)
+MASS = Parameter(name="mass", value=2.0, unit="kg", where="body/cart.mass", lower=0.0, upper=100.0)
+DAMPING = Parameter(
+    name="damping", value=3.0, unit="N s/m", where="joint/slide.damping", lower=0.0, upper=100.0
+)
 
 
 def steps(samples, nu=1, seed=1, hold=20):
@@ -47,12 +49,25 @@ def steps(samples, nu=1, seed=1, hold=20):
 
 def slider_log(u, y=None):
     moved = 0.3 * np.sin(np.arange(len(u)) * STEP)[:, None] if y is None else y
-    return Log(np.arange(len(u)) * STEP, u, moved, ("force",), ("position",), units={"force": "V"})
+    return Log(
+        time=np.arange(len(u)) * STEP,
+        inputs=u,
+        outputs=moved,
+        input_names=("force",),
+        output_names=("position",),
+        units={"force": "V"},
+    )
 
 
 def arm_log(u):
     t = np.arange(len(u)) * STEP
-    return Log(t, u, np.stack([np.sin(2 * t), np.cos(3 * t)], axis=1), ("up", "low"), ("a", "b"))
+    return Log(
+        time=t,
+        inputs=u,
+        outputs=np.stack([np.sin(2 * t), np.cos(3 * t)], axis=1),
+        input_names=("up", "low"),
+        output_names=("a", "b"),
+    )
 
 
 @cache

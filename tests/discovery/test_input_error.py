@@ -58,20 +58,31 @@ SPRING = Effect("spring", "-k x", (Size("k", "N/m", 30.0, 1e-2, 1),), places={"j
 def carts(crosstalk, seed):
     """Two carts, the second of which feels a share of the force on the first, and their log."""
     records = tuple(
-        Parameter(f"{n}_{w}", v, "", f"{kind}/{w}.{n}", lower=0.0, upper=100.0)
+        Parameter(name=f"{n}_{w}", value=v, unit="", where=f"{kind}/{w}.{n}",
+                  lower=0.0, upper=100.0)
         for w, n, v, kind in (("one", "mass", 2.2, "body"), ("two", "mass", 2.8, "body"),
                               ("a", "damping", 2.7, "joint"), ("b", "damping", 4.3, "joint"))
     )  # fmt: skip
-    spring = Parameter("spring.k", 0.0, "N/m", "joint/a.stiffness", lower=0.0, upper=1e3)
+    spring = Parameter(
+        name="spring.k", value=0.0, unit="N/m", where="joint/a.stiffness", lower=0.0, upper=1e3
+    )
     known = ParameterSet("carts", (*records, spring))
     plant = ModelPlant(mujoco.MjModel.from_xml_string(CARTS), known)
     time, u = STEP * np.arange(N), 5 * np.hstack([steps(N, 1), steps(N, 2)])
     error = 0.1 * np.hstack([wander(N, 1.0, 0.1, seed), wander(N, 1.0, 0.1, seed + 50)])
     error[:, 1] += crosstalk * u[:, 0]
-    names = ("f", "g"), ("x", "y")
-    y = Predictor(plant, Log(time, u + error, 0 * u, *names), ()).predict(np.empty((1, 0)))[0]
+    names = {"input_names": ("f", "g"), "output_names": ("x", "y")}
+    y = Predictor(plant, Log(time=time, inputs=u + error, outputs=0 * u, **names), ()).predict(
+        np.empty((1, 0))
+    )[0]
     y += SENSOR * np.random.default_rng(seed).standard_normal(y.shape)
-    log = Log(time, u, y, *names, units=dict.fromkeys("fg", "N") | dict.fromkeys("xy", "m"))
+    log = Log(
+        time=time,
+        inputs=u,
+        outputs=y,
+        **names,
+        units=dict.fromkeys("fg", "N") | dict.fromkeys("xy", "m"),
+    )
     free = tuple(p.name for p in records)
     return NominalModel(plant, free, np.full(len(free), 0.3)), log
 

@@ -68,7 +68,9 @@ def test_what_a_base_parameter_imitates_loses_what_the_wider_prior_holds_against
 def test_a_brake_is_no_more_than_damping_that_nobody_expected():
     records = (
         *RECORDS,
-        Parameter("brake.b", 0.0, "N s/m", "actuator/force.biasprm[2]", symbol="b"),
+        Parameter(
+            name="brake.b", value=0.0, unit="N s/m", where="actuator/force.biasprm[2]", symbol="b"
+        ),
     )
     brake = Effect("brake", "b v", (Size("b", "N s/m", 30.0, 1e-2),), places={"joint": ""})
     plant, braked = (

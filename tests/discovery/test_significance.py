@@ -77,7 +77,9 @@ def test_one_that_explains_less_is_not_named_in_place_of_one_that_may_not_be_so_
 
 
 def test_a_free_parameter_that_no_output_feels_is_refused():
-    idle = Parameter("width", 1.0, "kg m^2", "body/cart.inertia[1]", lower=0.0)
+    idle = Parameter(
+        name="width", value=1.0, unit="kg m^2", where="body/cart.inertia[1]", lower=0.0
+    )
     plant = slider()
     own = replace(plant.parameters, records=(*plant.parameters, idle))
     robot = nominal_model()

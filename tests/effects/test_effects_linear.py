@@ -14,11 +14,27 @@ SMALL = 1e-4  # of a current's error [A]
 def test_the_answer_to_an_unlogged_current_is_that_of_the_simulation():
     """To what the Jacobian changes within a sample; without the activations it is 200 % off."""
     u = make_input("prbs", 2.0)
-    log = Log(0.01 * np.arange(len(u)), u, np.zeros_like(u), CURRENTS, ANGLES)
+    log = Log(
+        time=0.01 * np.arange(len(u)),
+        inputs=u,
+        outputs=np.zeros_like(u),
+        input_names=CURRENTS,
+        output_names=ANGLES,
+    )
     error = SMALL * np.random.default_rng(0).standard_normal(u.shape)
     none = np.empty((1, 0))
     plain, moved = (
-        Predictor(full(), Log(log.time, inputs, log.outputs, CURRENTS, ANGLES), ()).predict(none)[0]
+        Predictor(
+            full(),
+            Log(
+                time=log.time,
+                inputs=inputs,
+                outputs=log.outputs,
+                input_names=CURRENTS,
+                output_names=ANGLES,
+            ),
+            (),
+        ).predict(none)[0]
         for inputs in (u, u + error)
     )
     linear = linearise(Predictor(full(), log, ()), none[0])

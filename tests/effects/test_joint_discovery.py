@@ -15,7 +15,9 @@ from identification.effects.joint_plant import candidates, joint_plant
 
 ROOT = Path(__file__).parents[2]
 NOISE = 1e-3  # std of the sensor [m]
-COULOMB = Parameter("coulomb_friction.f_c@slide", 0.5, "N", "effect", lower=0.0, upper=10.0)
+COULOMB = Parameter(
+    name="coulomb_friction.f_c@slide", value=0.5, unit="N", where="effect", lower=0.0, upper=10.0
+)
 AXIS = Axis("slide", "slide", force=5.0, speed=1.5, travel=3.0)
 FREE = ("mass", "damping", COULOMB.name)
 

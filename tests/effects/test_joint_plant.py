@@ -40,7 +40,9 @@ def test_common_and_single_sizes_add_up():
 
 
 def test_what_is_known_is_a_parameter_and_no_candidate():
-    level = Parameter("coulomb_friction.f_c@slide", 0.4, "N", "effect", lower=0.0)
+    level = Parameter(
+        name="coulomb_friction.f_c@slide", value=0.4, unit="N", where="effect", lower=0.0
+    )
     plant = joint_plant(SLIDER, (MASS, DAMPING, level), slider_log(steps(400)))
     names = {e.name for e in candidates(plant, ("mass", "coulomb_friction.f_c@slide"))}
     assert "coulomb_friction" not in names
@@ -161,7 +163,9 @@ def test_a_window_is_explained_as_well_among_others_where_the_joint_sticks_as_by
 def test_a_friction_that_the_data_do_not_want_goes_to_nothing_and_no_search_fails():
     u = steps(200, hold=10)
     log = slider_log(u, run(slider(), slider_log(u)))
-    unwanted = Parameter("coulomb_friction.f_c@slide", 0.1, "N", "effect", lower=0.0)
+    unwanted = Parameter(
+        name="coulomb_friction.f_c@slide", value=0.1, unit="N", where="effect", lower=0.0
+    )
     plant = joint_plant(SLIDER, (MASS, DAMPING, unwanted), log)
     too_much = {"damping": 4.0}  # so that the rest should push
     fit = estimate_windows(plant, log, ("mass", unwanted.name), 0.2, too_much)

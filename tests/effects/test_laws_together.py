@@ -132,7 +132,13 @@ def test_what_all_slides_have_no_hinge_has():
     known = [Axis(n, k, 1.0, 1.0, 1.0) for n, k in
              (("shoulder", "hinge"), ("elbow", "slide"), ("rail", "slide"))]  # fmt: skip
     t = 0.01 * np.arange(60)
-    log = Log(t, steps(60, 2), np.sin(t)[:, None], ("up", "low"), ("a",))
+    log = Log(
+        time=t,
+        inputs=steps(60, 2),
+        outputs=np.sin(t)[:, None],
+        input_names=("up", "low"),
+        output_names=("a",),
+    )
     plant = joint_plant(text, (), log, joints=known)
     names = ("slide_offset.f_0", "offset.f_0@shoulder")
     _, numbers = plant.settings(names, np.array([[0.3, 0.7]]))

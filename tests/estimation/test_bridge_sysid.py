@@ -113,5 +113,7 @@ def test_misspelt_names_and_wide_parameters_are_refused(robot, log, refusal):
 
     assert "lambda" in refusal(to_sysid_parameters, robot, ["lamda"])
     assert "lambda" in refusal(to_sysid, robot, log, ["lamda"])
-    wide = sysid.ParameterDict({"I": sysid.Parameter("I", [1, 2, 3], [0] * 3, [9] * 3)})
+    wide = sysid.ParameterDict(
+        {"I": sysid.Parameter(name="I", value=[1, 2, 3], unit=[0] * 3, where=[9] * 3)}
+    )
     assert "3 numbers" in refusal(from_sysid, wide)

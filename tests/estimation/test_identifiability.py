@@ -88,7 +88,9 @@ def test_a_parameter_felt_only_as_round_off_is_refused_by_name():
 
 
 def test_a_value_at_its_bound_is_reported():
-    record_ = Parameter("stiffness", 12.0, "N/m", "joint/slide.stiffness", lower=0, upper=15)
+    record_ = Parameter(
+        name="stiffness", value=12.0, unit="N/m", where="joint/slide.stiffness", lower=0, upper=15
+    )
     plant = ModelPlant(slider(x0=0.0).model, parameters(record_))
     for method in ("trf", "dogbox"):
         fit = assess(estimate(plant, LOG, ("stiffness",), options=Options(method=method)))

@@ -14,7 +14,15 @@ def record(n, seed, step=0.01, hold="foh"):
     rng = np.random.default_rng(seed)
     time = step * np.arange(n)
     u, y = rng.standard_normal((n, 2)), rng.standard_normal((n, 1))
-    return Log(time, u, y, ("a", "b"), ("x",), hold=hold, name=f"record {seed}")
+    return Log(
+        time=time,
+        inputs=u,
+        outputs=y,
+        input_names=("a", "b"),
+        output_names=("x",),
+        hold=hold,
+        name=f"record {seed}",
+    )
 
 
 def test_windows_of_joined_records_are_those_of_each():

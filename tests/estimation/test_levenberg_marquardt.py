@@ -8,8 +8,8 @@ import pytest
 
 from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
 
-PLAIN = Damping(first=0.0, raised=10.0, lowered=10.0, least=1e-4, silent=0.0)
-CAREFUL = Damping(first=1e-2, raised=5.0, lowered=10.0, least=1e-12, silent=1e-12)
+PLAIN = Damping(first=0.0, raised=10.0, lowered=10.0, least=1e-4, floor=0.0)
+CAREFUL = Damping(first=1e-2, raised=5.0, lowered=10.0, least=1e-12, floor=1e-12)
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Rosenbrock:
     def cost_after(self, step):
         return np.sum(self.residual(self.q + step) ** 2, axis=-1)
 
-    def bent(self, step, after, μ):
+    def bend(self, step, after, μ):
         if not self.bends:
             return None
         curve = np.stack([-20 * step[:, 0] ** 2, np.zeros(len(step))], axis=-1)
@@ -104,7 +104,7 @@ def test_a_bent_step_is_taken_only_where_it_leads_lower_and_saves_steps():
     begun = Rosenbrock(np.array([[-1.2, 1.0]]), True)
     (trial,) = islice(levenberg_marquardt(begun, Rosenbrock.moved, CAREFUL), 1)
     straight = begun.step(trial.μ)
-    bent = begun.bent(straight, None, trial.μ)
+    bent = begun.bend(straight, None, trial.μ)
     better = min((straight, bent), key=lambda s: begun.cost_after(s)[0])
     np.testing.assert_array_equal(trial.step, better)
 

@@ -70,7 +70,9 @@ def test_only_the_product_is_known_however_steep_the_friction(beta):
 @pytest.mark.parametrize("beta", [0.8, 50.0, 500.0])
 def test_an_experiment_is_judged_as_a_fit_is(beta):
     robot = build_twin(parameter_set("trial", {"beta": beta}), visual=False)
-    trial = Experiment(robot, make_input("prbs", 1.0), 0.01, ANGLES, NOISE)
+    trial = Experiment(
+        plant=robot, inputs=make_input("prbs", 1.0), sampling_time=0.01, outputs=ANGLES, sigma=NOISE
+    )
     found = information(trial, ("R_s", "k_s", "b_v", "K_t"))
     assert np.isinf(found.std[:2]).all()
     assert [str(c) for c in found.combinations] == ["k_s R_s^2"]

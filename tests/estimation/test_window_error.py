@@ -13,7 +13,13 @@ NOISE = 1e-4
 def noisy(**values):
     log = record(slider(**values), ("position",), n=200)
     y = log.outputs + NOISE * np.random.default_rng(3).standard_normal(log.outputs.shape)
-    return Log(log.time, log.inputs, y, log.input_names, log.output_names)
+    return Log(
+        time=log.time,
+        inputs=log.inputs,
+        outputs=y,
+        input_names=log.input_names,
+        output_names=log.output_names,
+    )
 
 
 def test_a_right_model_leaves_the_noise_less_what_each_start_takes():

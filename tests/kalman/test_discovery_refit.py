@@ -67,7 +67,7 @@ def test_an_effect_is_fitted_along_and_its_size_may_be_zero():
 
 
 def test_a_start_is_kept_where_a_parameter_has_no_upper_bound():
-    mass = Parameter("mass", 2.0, "kg", "body/cart.mass", lower=0.0)
+    mass = Parameter(name="mass", value=2.0, unit="kg", where="body/cart.mass", lower=0.0)
     assert _inside(mass, 2.0) == 2.0
 
 
@@ -125,7 +125,7 @@ def test_a_bent_step_follows_the_curve_of_the_residual_to_one_order_more():
         far = begun_at(log, {**TRUE, "mass": TRUE["mass"] * np.exp(away)}).point
         problem = linearise_criterion(far, white, far.q, np.zeros(4))
         move = problem.step(0.0)
-        bent = problem.bent(move, np.inf, 0.0)
+        bent = problem.bend(move, np.inf, 0.0)
         left[away] = [problem.cost_after(m) ** 0.5 for m in (move, bent)]
     (straight, bent), (straight_half, bent_half) = left[0.2], left[0.1]
     assert bent < 0.5 * straight

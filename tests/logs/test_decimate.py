@@ -8,7 +8,13 @@ from identification.logs.decimation import decimate
 
 T = 0.001
 U = np.sin(np.arange(1001) * 0.01)[:, None] * [1.0, 2.0]
-LOG = Log(np.arange(1001) * T, U, np.cumsum(U, axis=0), ("a", "b"), ("x", "y"))
+LOG = Log(
+    time=np.arange(1001) * T,
+    inputs=U,
+    outputs=np.cumsum(U, axis=0),
+    input_names=("a", "b"),
+    output_names=("x", "y"),
+)
 
 
 def test_outputs_are_every_nth_and_means_are_kept():
@@ -36,7 +42,13 @@ def test_straight_lines_are_kept_and_are_the_nearest_ones():
 def test_both_moments_of_a_pulse_between_samples_are_kept():
     pulse = np.zeros((401, 1))
     pulse[203:207] = 1.0
-    log = Log(np.arange(401) * T, pulse, pulse, ("u",), ("y",))
+    log = Log(
+        time=np.arange(401) * T,
+        inputs=pulse,
+        outputs=pulse,
+        input_names=("u",),
+        output_names=("y",),
+    )
     few = decimate(log, 10)
     weight = (np.arange(2000) + 0.5) / 2000
     u = (1 - weight) * few.inputs[:-1] + weight * few.inputs[1:]

@@ -24,7 +24,13 @@ def test_knows_its_sampling():
 def test_printed_digits_do_not_spoil_the_sampling_time(digits, rate):
     time = np.arange(20 * rate) / rate
     printed = np.array([float(f"{t:.{digits}g}") for t in time])
-    log = Log(printed, np.zeros((len(time), 0)), np.zeros((len(time), 1)), (), ("q",))
+    log = Log(
+        time=printed,
+        inputs=np.zeros((len(time), 0)),
+        outputs=np.zeros((len(time), 1)),
+        input_names=(),
+        output_names=("q",),
+    )
     assert log.sampling_time == pytest.approx(1 / rate, rel=1e-5)
 
 
@@ -41,7 +47,13 @@ def test_nothing_in_it_can_be_changed():
 
 def test_later_changes_of_its_sources_do_not_reach_it():
     time = 0.01 * np.arange(10)
-    log = Log(time, np.zeros((10, 0)), np.zeros((10, 1)), (), ("q",))
+    log = Log(
+        time=time,
+        inputs=np.zeros((10, 0)),
+        outputs=np.zeros((10, 1)),
+        input_names=(),
+        output_names=("q",),
+    )
     time[3] = 7
     assert log.time[3] == pytest.approx(0.03)
 
@@ -122,7 +134,13 @@ def _with(**changes):
         (lambda: wave().between(1, 2), ["0 samples", "[1, 2)", "[0, 0.39]"]),
         (lambda: wave().part("validate"), ["did you mean 'validation'", "estimation"]),
         (
-            lambda: Log(np.arange(9.0), np.zeros((9, 0)), np.zeros((9, 0)), (), ()),
+            lambda: Log(
+                time=np.arange(9.0),
+                inputs=np.zeros((9, 0)),
+                outputs=np.zeros((9, 0)),
+                input_names=(),
+                output_names=(),
+            ),
             ["no columns"],
         ),
     ],

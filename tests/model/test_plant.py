@@ -56,7 +56,7 @@ def test_the_users_model_is_left_alone():
     ],
 )
 def test_a_wrong_place_is_refused_at_once(where, said):
-    records = (SLIDER_PARAMETERS["mass"], Parameter("p", 1.0, "", where))
+    records = (SLIDER_PARAMETERS["mass"], Parameter(name="p", value=1.0, unit="", where=where))
     with pytest.raises(InputError, match=said.replace("[", r"\[")):
         ModelPlant(mujoco.MjModel.from_xml_string(SLIDER), ParameterSet("p", records))
 
@@ -72,4 +72,6 @@ def test_an_armature_moves_the_constants_that_follow_from_it():
 
 
 def positive_armature(value):
-    return Parameter("armature", value, "kg", "joint/slide.armature", lower=0.0)
+    return Parameter(
+        name="armature", value=value, unit="kg", where="joint/slide.armature", lower=0.0
+    )

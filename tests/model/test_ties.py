@@ -10,7 +10,7 @@ from identification.estimation.estimation import estimate
 from identification.model.plant import ModelPlant
 
 DAMPING = Parameter(
-    "damping", 0.1, "N m s/rad", "joint/shoulder.damping", 0.0,
+    name="damping", value=0.1, unit="N m s/rad", where="joint/shoulder.damping", lower=0.0,
     ties=(("joint/elbow.damping", 2.0),),
 )  # fmt: skip
 
@@ -38,7 +38,9 @@ def test_a_tied_parameter_is_recovered_and_both_joints_follow():
 
 
 def test_the_start_can_be_tied_too():
-    angle = Parameter("angle", 0.2, "rad", "qpos[0]", ties=(("qpos[1]", -1.0),))
+    angle = Parameter(
+        name="angle", value=0.2, unit="rad", where="qpos[0]", ties=(("qpos[1]", -1.0),)
+    )
     state, _ = plant(angle).settings(("angle",), np.array([[0.5]]))
     np.testing.assert_array_equal(state.qpos, [[0.5, -0.5]])
 
@@ -48,4 +50,4 @@ def test_two_parameters_may_not_write_one_place():
     with pytest.raises(InputError, match="damping and other all go to"):
         plant(DAMPING, other)
     with pytest.raises(InputError, match="factor 0"):
-        Parameter("p", 1.0, "", "qpos[0]", ties=(("qpos[1]", 0.0),))
+        Parameter(name="p", value=1.0, unit="", where="qpos[0]", ties=(("qpos[1]", 0.0),))

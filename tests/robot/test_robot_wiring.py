@@ -50,7 +50,13 @@ def cart(tmp_path_factory):
 def two_joints(tmp_path_factory):
     u = steps(800, 2, hold=30)
     t = np.arange(len(u)) * 0.01
-    log = Log(t, u, np.stack([np.sin(2 * t), np.cos(3 * t)], axis=1), ("up", "low"), ("a", "b"))
+    log = Log(
+        time=t,
+        inputs=u,
+        outputs=np.stack([np.sin(2 * t), np.cos(3 * t)], axis=1),
+        input_names=("up", "low"),
+        output_names=("a", "b"),
+    )
     y = run(arm(), log)
     log = replace(log, outputs=y + 1e-3 * RNG.standard_normal(y.shape))
     return robot(tmp_path_factory.mktemp("arm"), ARM, log, "joint/elbow.damping")
@@ -68,7 +74,13 @@ def crane(z, feedback, samples=600):
         u[k] = data.ctrl[0] = push[k] + np.dot(feedback, [*data.qpos, *data.qvel])
         mujoco.mj_step(model, data, 4)
     y += 3e-4 * RNG.standard_normal(y.shape)
-    return Log(np.arange(samples) * 0.01, u, y, ("push",), ("pos", "ang"))
+    return Log(
+        time=np.arange(samples) * 0.01,
+        inputs=u,
+        outputs=y,
+        input_names=("push",),
+        output_names=("pos", "ang"),
+    )
 
 
 @pytest.fixture(scope="module")

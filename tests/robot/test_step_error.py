@@ -31,7 +31,14 @@ def robot(folder, log, option, records=None, horizon=None):
     model.write_text(SLIDER.replace(OPTION, f'gravity="0 0 0" {option}'))
     records = records or {}
     return robot_of(
-        RobotFile(folder / "r.toml", model, tuple(records), records=records, horizon=horizon), log
+        RobotFile(
+            path=folder / "r.toml",
+            model=model,
+            free=tuple(records),
+            records=records,
+            horizon=horizon,
+        ),
+        log,
     )
 
 

@@ -82,7 +82,14 @@ def record(current, seconds=0.6, step=0.03):
     n = round(seconds / step)
     u = np.broadcast_to(np.asarray(current, dtype=float), (n,))[:, None]
     y = np.linspace(0.0, 1.0, n)[:, None]
-    return Log(step * np.arange(n), u, y, ("motor",), ("angle",), hold="foh")
+    return Log(
+        time=step * np.arange(n),
+        inputs=u,
+        outputs=y,
+        input_names=("motor",),
+        output_names=("angle",),
+        hold="foh",
+    )
 
 
 def test_the_current_m_g_r_over_k_t_holds_the_load_and_no_other():
@@ -102,7 +109,14 @@ def simulated(f_c, f_0):
     t = 0.03 * np.arange(140)
     hunt = 0.3 * np.sin(5 * t) + 0.2 * np.sin(11 * t)
     current = (-f_0 + np.where(t < 2.1, 1, -1) * 1.15 * f_c) / strokes.K_T + hunt
-    log = Log(t, current[:, None], np.sin(t)[:, None], ("motor",), ("angle",), hold="foh")
+    log = Log(
+        time=t,
+        inputs=current[:, None],
+        outputs=np.sin(t)[:, None],
+        input_names=("motor",),
+        output_names=("angle",),
+        hold="foh",
+    )
     plant = winch.winch_plant(log, MASS)
     values = {winch.F_C: f_c, winch.F_0: f_0, "q_0": 0.0, "v_0": 3.0}
     y = Predictor(plant.with_values(values), log, ()).predict(np.empty((1, 0)))[0]

@@ -25,7 +25,14 @@ def made_up(n=300, seed=2):
     levels = np.random.default_rng(seed).uniform(-5, 5, n // 10 + 1)
     u = np.repeat(levels, 10)[:n, None]
     time = xl330_log.STEP * np.arange(n)
-    return Log(time, u, np.sin(3 * time)[:, None], ("motor",), ("angle",), hold="foh")
+    return Log(
+        time=time,
+        inputs=u,
+        outputs=np.sin(3 * time)[:, None],
+        input_names=("motor",),
+        output_names=("angle",),
+        hold="foh",
+    )
 
 
 def test_a_record_is_read_on_an_even_grid_with_signs_and_without_what_the_motor_left_alone(
@@ -72,7 +79,14 @@ def test_known_values_are_recovered_from_the_noisy_angle_of_the_model():
     truth = {"g": 0.12, "D": 0.03, "J_a": 0.003, xl330.F_C: 0.03, xl330.F_0: 0.005}
     y = Predictor(plant, empty, (), truth).predict(np.empty((1, 0)))[0]
     noisy = y + 5e-4 * np.random.default_rng(4).standard_normal(y.shape)
-    log = Log(empty.time, empty.inputs, noisy, ("motor",), ("angle",), hold="foh")
+    log = Log(
+        time=empty.time,
+        inputs=empty.inputs,
+        outputs=noisy,
+        input_names=("motor",),
+        output_names=("angle",),
+        hold="foh",
+    )
     fit = estimate_windows(plant, log, xl330.NAMES, xl330.HORIZON, tolerance=1e-4)
     for (name, value), std in zip(fit.values.items(), fit.std, strict=True):
         assert abs(value - truth[name]) < 4 * std, name
