@@ -1,34 +1,59 @@
-"""The document of the folders names every folder of the packages, and none that is not there."""
+"""The guides for those who change the code name what is there: folders, layers and files."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[2]
+PACKAGES = ("identification", "inca_mj")
+ARCHITECTURE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+GUIDES = [ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
 
 
-@pytest.mark.parametrize("package", ["identification", "inca_mj"])
-def test_every_folder_is_told(package):
-    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
-    tree = text.split(f"\n    {package}/\n")[1].split("\n\n")[0]
-    folders = [p.parent.name for p in (ROOT / package).glob("**/__init__.py")]
-    folders.remove(package)
-    assert sorted(re.findall(r"^ +(\w+)/ ", tree, re.M)) == sorted(folders)
+def section(title):
+    return ARCHITECTURE.split(f"\n## {title}\n")[1].split("\n## ")[0]
 
 
-GUIDES = ("CONTRIBUTING.md", "docs/architecture.md", "docs/glossary.md", "README.md")
-FOLDERS = ("identification", "inca_mj", "docs", "tests", "examples", "models", "benchmarks")
-THERE = [f"/{p.relative_to(ROOT)}" for folder in FOLDERS for p in (ROOT / folder).glob("**/*.*")]
-THERE += [f"/{p.name}" for p in ROOT.glob("*.*")]
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_tree_shows_every_folder_and_none_that_is_not_there(package):
+    tree = section("The folders").split(f"\n    {package}/\n")[1].split("\n\n")[0]
+    shown, above = set(), ""
+    for indent, name in re.findall(r"^( +)(\w+)/ ", tree, re.M):
+        above = name if len(indent) == 6 else above
+        shown.add(name if len(indent) == 6 else f"{above}/{name}")
+    there = {p.parent.relative_to(ROOT / package) for p in (ROOT / package).rglob("__init__.py")}
+    assert shown == {folder.as_posix() for folder in there} - {"."}
 
 
-@pytest.mark.parametrize("guide", GUIDES)
-def test_every_link_and_every_file_that_a_guide_names_is_there(guide):
-    text = (ROOT / guide).read_text(encoding="utf-8")
-    links = re.findall(r"\]\((?!http)([^)#]+)", text)
-    files = re.findall(r"`([a-z0-9_./]+\.(?:py|md|toml|xml))`", text)
-    missing = [link for link in links if not (ROOT / guide).parent.joinpath(link).exists()]
-    missing += [f for f in files if not any(there.endswith(f"/{f}") for there in THERE)]
-    assert links
-    assert not missing
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_layers_are_those_that_lint_checks(package):
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    contracts = settings["tool"]["importlinter"]["contracts"]
+    (layers,) = [c["layers"] for c in contracts if c.get("containers") == [package]]
+    blocks = section("Which folder may import from which").split("\n\n")
+    (table,) = [b.splitlines() for b in blocks if b.startswith("    identification ")]
+    at = [table[0].index(p) for p in PACKAGES]
+    cut = (lambda s: s[: at[1]]) if package == PACKAGES[0] else (lambda s: s[at[1] :])
+    assert [cut(line).strip() for line in table[1:] if cut(line).strip()] == layers
+
+
+@pytest.mark.parametrize("guide", GUIDES, ids=lambda p: p.name)
+def test_links_lead_to_files(guide):
+    text = guide.read_text(encoding="utf-8")
+    links = re.findall(r"\]\((?!https?:)([^)#]+)", text)
+    assert [link for link in links if not (guide.parent / link).exists()] == []
+
+
+def test_files_to_change_are_there():
+    rows = re.findall(r"^\| [^|]+ \| (.*) \|$", section("Where to change what"), re.M)
+    missing = []
+    for row in rows:
+        folder = ROOT
+        for name in re.findall(r"`([\w/]+(?:/|\.\w+))`", row):  # a file alone is beside the last
+            path = ROOT / name if "/" in name else folder / name
+            folder = path if name.endswith("/") else path.parent
+            missing += [] if path.exists() else [name]
+    assert rows
+    assert missing == []
