@@ -252,6 +252,7 @@ def test_a_gap_in_an_even_log_is_found_where_it_is(refusal):
     time = 0.01 * np.arange(200)
     time[120:] += 0.53
     u = np.zeros((200, 1))
-    text = refusal(Log, time, u, u, ("u",), ("y",))
+    named = {"input_names": ("u",), "output_names": ("y",)}
+    text = refusal(Log, time=time, inputs=u, outputs=u, **named)
     assert "time jumps from 1.19 s to 1.73 s where the step is 0.01 s" in text
     assert "cut the log there" in text
