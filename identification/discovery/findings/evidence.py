@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.scoring.scores import Score
@@ -218,8 +219,30 @@ class OversizedEffect:
     limits: Mapping[str, float]
 
 
+@dataclass(frozen=True)
+class RemainingError:
+    """An error on unseen records that no named effect explains.
+
+    Attributes:
+        noise_ratio: its rms over that of the sensors' noise.
+    """
+
+    noise_ratio: float
+
+
+@dataclass(frozen=True)
+class UnprovenEffect:
+    """An effect that predicts unseen records better on average, but not beyond chance.
+
+    Attributes:
+        effect: a `RefittedEffect` of `identification.prediction`.
+    """
+
+    effect: Any
+
+
 Evidence = (
     WorstOutput | WorstInterval | MedianFrequency | ForceEvidence | InputHold | SpectralLine
     | NoisyOutput | CorrelatedInnovations | ParametersAtLimit | LargeInputError | RobotChange
-    | StructuredInputError | DoubtfulEffect | OversizedEffect
+    | StructuredInputError | DoubtfulEffect | OversizedEffect | RemainingError | UnprovenEffect
 )  # fmt: skip

@@ -30,6 +30,8 @@ class FindingKind(StrEnum):
     STRUCTURED_INPUT_ERROR = "structured input error"
     DOUBTFUL_EFFECT = "doubtful effect"
     OVERSIZED_EFFECT = "oversized effect"
+    REMAINING_ERROR = "remaining error"
+    UNPROVEN_EFFECT = "unproven effect"
 
 
 EVIDENCE: dict[FindingKind, type[Evidence]] = {
@@ -47,6 +49,8 @@ EVIDENCE: dict[FindingKind, type[Evidence]] = {
     FindingKind.STRUCTURED_INPUT_ERROR: records.StructuredInputError,
     FindingKind.DOUBTFUL_EFFECT: records.DoubtfulEffect,
     FindingKind.OVERSIZED_EFFECT: records.OversizedEffect,
+    FindingKind.REMAINING_ERROR: records.RemainingError,
+    FindingKind.UNPROVEN_EFFECT: records.UnprovenEffect,
 }
 
 

@@ -1,0 +1,1 @@
+"""Evidence by prediction: windows of several records, whose states are nuisances."""

@@ -1,0 +1,64 @@
+"""Find what a model lacks to explain several records of a robot, and prove it on unseen ones."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
+from identification.effects.effect import Effect
+from identification.errors import InputError
+from identification.logs.log import Log
+from identification.prediction.records import as_records
+from identification.prediction.result import RecordsDiscovery
+from identification.prediction.selection import Progress
+from identification.prediction.state import RecordsTask, first_state, next_state
+from identification.prediction.verdict import conclude
+
+
+def discover_records(
+    nominal_model: NominalModel,
+    fit: Sequence[Log],
+    confirm: Sequence[Log],
+    effects: Sequence[Effect],
+    progress: Progress | None = None,
+    options: DiscoveryOptions | None = None,
+    values: Mapping[str, Mapping[str, float]] | None = None,
+) -> RecordsDiscovery:
+    """Name what a model lacks to explain records, judged by predictions over its horizon.
+
+    Args:
+        nominal_model: the model with every candidate effect compiled in, its free parameters, what
+            is known of them, and the horizon of predictions.
+        fit: logs to fit.
+        confirm: logs that no fit may see; where there is none, the first half of each log is fitted
+            and the second half confirms.
+        effects: the candidates.
+        progress: is told a line per step.
+        options: what is believed; the defaults of `DiscoveryOptions` when None.
+        values: by the name of a log, values of parameters that hold for it alone.
+
+    Raises:
+        InputError: there is no horizon, windows do not fit a log, a name is unknown, or the fitted
+            nominal model predicts worse than the values with which the fit began.
+        DivergenceError: the nominal model cannot be simulated.
+    """
+    if nominal_model.horizon is None:
+        raise InputError(
+            "records are judged by predictions over a horizon, and none is given; write horizon ="
+            " 0.2 (in seconds) into the robot's file"
+        )
+    records = as_records(fit, confirm, values)
+    task = RecordsTask(
+        nominal_model=nominal_model, horizon=nominal_model.horizon, records=records,
+        effects=tuple(effects), options=options or DiscoveryOptions(),
+    )  # fmt: skip
+    say = progress or _say_nothing
+    state = first_state(task, say)
+    while not state.is_finished:
+        state = next_state(state, say)
+    return conclude(state)
+
+
+def _say_nothing(line: str) -> None:
+    """The progress that nobody listens to."""

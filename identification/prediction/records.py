@@ -1,0 +1,83 @@
+"""Records of one robot: some are fitted, the others only confirm.
+
+Physics is shared by all records. Where each begins, and what its file says of it alone (a payload,
+a supply voltage), is its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from identification.errors import InputError
+from identification.logs.log import Log
+
+Role = Literal["fit", "confirm"]
+
+
+@dataclass(frozen=True)
+class Record:
+    """A log and what it is used for.
+
+    Attributes:
+        log: what was measured.
+        role: "fit" or "confirm".
+        values: values of the plant's parameters that hold for this record alone, by name.
+    """
+
+    log: Log
+    role: Role
+    values: Mapping[str, float] = field(default_factory=dict)
+
+
+def as_records(
+    fit: Sequence[Log],
+    confirm: Sequence[Log] = (),
+    values: Mapping[str, Mapping[str, float]] | None = None,
+) -> tuple[Record, ...]:
+    """Records to fit and records to confirm.
+
+    Where nothing confirms, the first half of each log is fitted (its part `estimation`) and the
+    rest of it confirms.
+
+    Args:
+        fit: logs to fit.
+        confirm: logs that no fit may see.
+        values: by the name of a log, values that hold for it alone.
+
+    Raises:
+        InputError: there is no log to fit, the columns differ, or a log is given twice.
+    """
+    if not fit:
+        raise InputError("no log is to be fitted; give at least one")
+    _refuse_different([*fit, *confirm])
+    own = values or {}
+    if confirm:
+        return (
+            *(Record(log, "fit", own.get(log.name, {})) for log in fit),
+            *(Record(log, "confirm", own.get(log.name, {})) for log in confirm),
+        )
+    return tuple(
+        Record(log.part(part), role, own.get(log.name, {})) for part, role in _HALVES for log in fit
+    )
+
+
+_HALVES: tuple[tuple[str, Role], ...] = (("estimation", "fit"), ("validation", "confirm"))
+
+
+def _refuse_different(logs: Sequence[Log]) -> None:
+    first = logs[0]
+    for k, log in enumerate(logs):
+        if any(log is other for other in logs[:k]):
+            raise InputError(
+                f"log {log.name!r} is given twice; a record that was fitted confirms nothing"
+            )
+        for what in ("input_names", "output_names", "hold"):
+            mine, others = getattr(log, what), getattr(first, what)
+            if mine != others:
+                raise InputError(
+                    f"log {log.name!r} has the {what.replace('_', ' ')} {mine} where"
+                    f" {first.name!r} has {others}; give records of one robot and one set of"
+                    " columns"
+                )

@@ -1,0 +1,129 @@
+"""The outcome of a discovery on several records, and what it rests on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from identification.discovery.effect_results import Gap
+from identification.discovery.findings.finding import Finding
+from identification.discovery.options import DiscoveryOptions
+from identification.effects.effect import Candidate
+from identification.prediction.model import WindowModel
+from identification.prediction.records import Record
+from identification.prediction.scores import WindowScore
+from identification.prediction.unseen import Prediction
+
+Verdict = Literal["named", "nothing missing", "unknown effect", "unlisted effect"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RefittedEffect:
+    """An effect as it was refitted, and what it does for unseen records.
+
+    Attributes:
+        candidate: effect, place, and shapes as estimated.
+        parameters: its sizes and shapes by name: value, std, unit.
+        prediction: of unseen records, over the model without it.
+        criterion: by how much it raises the negative BIC on the fitted windows.
+        confidence: share of the resampled unseen blocks in which it predicts best, 0 to 1.
+    """
+
+    candidate: Candidate
+    parameters: Mapping[str, tuple[float, float, str]]
+    prediction: Prediction
+    criterion: float
+    confidence: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class NamedByPrediction:
+    """An effect that is missing from the nominal model.
+
+    Attributes:
+        effect: as it was refitted, its values those of the final model.
+        rivals: other effects that were refitted in its place and are not much worse.
+        one_of: whether the records cannot tell it from its first rival.
+        agrees: names of the records on which it lowers the error.
+        disagrees: names of the records on which it raises the error, beyond chance.
+    """
+
+    effect: RefittedEffect
+    rivals: tuple[RefittedEffect, ...]
+    one_of: bool
+    agrees: tuple[str, ...]
+    disagrees: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordError:
+    """Errors on one record, over windows of the horizon.
+
+    Attributes:
+        name: of the record.
+        role: "fit" or "confirm".
+        before: rms of the nominal model, over all outputs, in the outputs' unit where they have
+            one, else in units of their scale.
+        after: rms of the final model.
+    """
+
+    name: str
+    role: str
+    before: float
+    after: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordsDiscovery:
+    """The outcome.
+
+    Attributes:
+        records: what was fitted and what confirmed.
+        options: the judgement constants that were used.
+        horizon: over which records were predicted [s].
+        verdict: the outcome in a word.
+        named: the missing effects, in the order in which they were found.
+        rejected: effects that were refitted beside them and not proven, the best first.
+        share: of the mean square above the sensors' noise on unseen records, how much the named
+            effects take away, 0 to 1.
+        unexplained: whether something is left that no named effect explains.
+        noise_rms: of the sensors, over all outputs, in the unit of `errors`.
+        unit: of errors and noise; empty where outputs have several and their scale is the unit.
+        before: the gap of the fitted nominal model on the records that confirm.
+        after: the gap of the final model.
+        errors: by record.
+        nominal: the fitted model without effects.
+        final: the fitted model with the named effects.
+        scores: of all candidates on the nominal model, the best first.
+        remaining: of the other candidates on the final model, the best first.
+        findings: what the final model leaves, and what is doubtful.
+        seconds: wall time by kind of work [s].
+    """
+
+    records: tuple[Record, ...]
+    options: DiscoveryOptions
+    horizon: float
+    verdict: Verdict
+    named: tuple[NamedByPrediction, ...]
+    rejected: tuple[RefittedEffect, ...]
+    share: float
+    unexplained: bool
+    noise_rms: float
+    unit: str
+    before: Gap
+    after: Gap
+    errors: tuple[RecordError, ...]
+    nominal: WindowModel
+    final: WindowModel
+    scores: tuple[WindowScore, ...]
+    remaining: tuple[WindowScore, ...]
+    findings: tuple[Finding, ...]
+    seconds: Mapping[str, float]
+
+    @property
+    def output_rms(self) -> np.ndarray:
+        """Rms error of each output under the nominal model on fitted windows, shape (ny,)."""
+        return self.nominal.scale

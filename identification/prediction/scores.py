@@ -1,0 +1,171 @@
+"""What each candidate would explain of the windows' residual, before it is refitted.
+
+    r⊥, S_j⊥       residual and sensitivities without what states and base parameters make up for
+    η̂_j = (S⊥ᵀS⊥)⁻¹ S⊥ᵀ r⊥                    the size, at once
+    fall_j = 1 - ‖r⊥ - S⊥ η̂_j‖²/‖r⊥‖²          share of the residual's square that it takes away
+    W_j = η̂ᵀ H (Σ_b g_b g_bᵀ)⁻¹ H η̂ ~ m F(m, B - m),   g_b = Σ_{w in b} S⊥ᵀ(r⊥ - S⊥ η̂),  H = S⊥ᵀS⊥
+
+W needs no noise model: blocks of windows are its sample (White 1980).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import f as f_distribution
+
+from identification.effects.effect import Candidate
+from identification.errors import InputError
+from identification.model.coordinates import coordinates
+from identification.model.parameter import ParameterSet
+from identification.prediction.fit import BLOCKS, WindowFit, projected
+from identification.prediction.problem import with_space
+
+BATCH = 24  # columns at a time: bounds the memory of their trajectories
+
+
+@dataclass(frozen=True, kw_only=True)
+class WindowScore:
+    """What a candidate would explain.
+
+    Attributes:
+        candidate: which.
+        size: η̂, shape (m,), in the units of its sizes.
+        std: of η̂ by blocks, shape (m,).
+        fall: share of the residual's square that it takes away, 0 to 1.
+        p_value: chance of as much by luck, by blocks.
+    """
+
+    candidate: Candidate
+    size: np.ndarray
+    std: np.ndarray
+    fall: float
+    p_value: float
+
+
+def window_scores(fit: WindowFit, candidates: Sequence[Candidate]) -> tuple[WindowScore, ...]:
+    """Score candidates on a fitted model, the best first; one that diverges is left out.
+
+    Args:
+        fit: the model without them.
+        candidates: which; their sizes are zero in the fit.
+    """
+    base = _Base(fit)
+    out: list[WindowScore] = []
+    for group in _groups(candidates):
+        try:
+            out += base.scores(group)
+        except InputError:
+            for one in group:
+                try:
+                    out += base.scores([one])
+                except InputError:
+                    continue
+    return tuple(sorted(out, key=lambda s: -s.fall))
+
+
+def _groups(candidates: Sequence[Candidate]) -> Iterator[list[Candidate]]:
+    group: list[Candidate] = []
+    for candidate in candidates:
+        if group and sum(len(c.sizes) for c in (*group, candidate)) > BATCH:
+            yield group
+            group = []
+        group.append(candidate)
+    if group:
+        yield group
+
+
+class _Base:
+    """The residual of all windows with states and base parameters projected out."""
+
+    def __init__(self, fit: WindowFit) -> None:
+        self.fit = fit
+        each = [projected(t) for t in fit.tangents]
+        p = len(fit.q)
+        F = np.vstack([S.reshape(-1, p) for S, _ in each] + [np.diag(fit.problem.weight)])
+        scale = np.linalg.norm(F, axis=0)
+        self.Q = np.linalg.qr(F / np.where(scale > 0, scale, 1.0))[0]
+        below = fit.problem.against(fit.q)[:, None]
+        r = np.vstack([r.reshape(-1, 1) for _, r in each] + [below])
+        self.r = self._without_base(r)[:, 0]
+        self.rows = [r.shape for _, r in each]  # (W, m) a record
+
+    def _without_base(self, columns: np.ndarray) -> np.ndarray:
+        return np.asarray(columns - self.Q @ (self.Q.T @ columns))
+
+    def scores(self, group: Sequence[Candidate]) -> list[WindowScore]:
+        S = self._without_base(self._columns(group))
+        ends = np.cumsum([len(c.sizes) for c in group])
+        return [
+            self._score(c, S[:, e - len(c.sizes) : e]) for c, e in zip(group, ends, strict=True)
+        ]
+
+    def _columns(self, group: Sequence[Candidate]) -> np.ndarray:
+        """-∂r/∂η of all sizes of some candidates, the states' part projected out, (rows, k)."""
+        fit = self.fit
+        plant = fit.problem.parts[0].predictor.plant
+        own = {**plant.parameters.values(), **fit.problem.parts[0].predictor.fixed, **fit.values}
+        names = list(dict.fromkeys(
+            [*fit.problem.names, *(n for c in group for n in (*c.sizes, *c.fixed))]
+        ))  # fmt: skip
+        rows, probes = [], []
+        for c in group:
+            for name, size in zip(c.sizes, c.effect.sizes, strict=True):
+                probe = (-size.probe if size.sign < 0 else size.probe) * c.probe
+                rows.append([{**own, **c.fixed, name: own[name] + probe}[n] for n in names])
+                probes.append(probe)
+        values = np.array(rows)
+        # each row has its own coordinates: those of plain values need no logarithm
+        space = coordinates(plant.parameters, names, inside(plant.parameters, names, values[0]),
+                            linear=names)  # fmt: skip
+        problem = with_space(fit.problem, space, {}, np.zeros(len(names)), np.zeros(len(names)))
+        out = []
+        for part, d, t in zip(problem.parts, fit.moves, fit.tangents, strict=True):
+            U = t.U * (t.s > 0)[:, None]
+            y = part.outputs(space.encode(values), [d] * len(values))
+            moved = np.stack([part.joined(one, d) for one in y], axis=-1)  # (W, m, k)
+            S = (t.r[..., None] - moved) / np.array(probes)
+            S = S - U @ (np.swapaxes(U, 1, 2) @ S)
+            out.append(S.reshape(-1, len(probes)))
+        return np.vstack([*out, np.zeros((len(fit.q), len(probes)))])
+
+    def _score(self, candidate: Candidate, S: np.ndarray) -> WindowScore:
+        norm = np.linalg.norm(S, axis=0)
+        unit = S / np.where(norm > 0, norm, 1.0)
+        H = unit.T @ unit
+        size = np.linalg.lstsq(H, unit.T @ self.r, rcond=1e-12)[0]
+        left = self.r - unit @ size
+        fall = 1 - float(left @ left) / max(float(self.r @ self.r), 1e-300)
+        g = self._by_blocks(unit * left[:, None])
+        spread = g.T @ g
+        B, m = len(g), len(size)
+        moved = H @ size
+        wald = float(moved @ np.linalg.pinv(spread, rcond=1e-12, hermitian=True) @ moved)
+        p = float(f_distribution.sf(wald * (B - m) / (B * m), m, B - m)) if m < B else 1.0
+        inverse = np.linalg.pinv(H, rcond=1e-12, hermitian=True)
+        std = np.sqrt(np.maximum(np.diag(inverse @ spread @ inverse), 0.0))
+        back = np.where(norm > 0, 1 / np.where(norm > 0, norm, 1.0), 0.0)
+        return WindowScore(
+            candidate=candidate, size=size * back, std=std * back, fall=fall, p_value=p
+        )
+
+    def _by_blocks(self, rows: np.ndarray) -> np.ndarray:
+        """Sums of rows over blocks of windows, shape (B, k)."""
+        windows, done = [], 0
+        for W, m in self.rows:
+            windows.append(rows[done : done + W * m].reshape(W, m, -1).sum(axis=1))
+            done += W * m
+        each = np.concatenate(windows)
+        return np.array([b.sum(axis=0) for b in np.array_split(each, min(BLOCKS, len(each)))])
+
+
+def inside(parameters: ParameterSet, names: Sequence[str], values: np.ndarray) -> np.ndarray:
+    """Values a little inside the bounds, as coordinates ask of a start."""
+    out = []
+    for name, value in zip(names, values, strict=True):
+        record = parameters[name]
+        margin = 1e-9 * max(abs(value), record.scale)
+        out.append(min(max(value, record.lower + margin), record.upper - margin))
+    return np.array(out)

@@ -1,0 +1,140 @@
+"""The next effect of a model: the best candidates are refitted, and unseen records decide.
+
+    contenders    beyond chance by blocks, of a plausible size, and near the best score
+    proven        predicts unseen windows better: beyond chance, over every length, and by enough
+    chosen        of the proven ones the one with the best criterion on the fitted windows
+
+    criterion = -W n_y ln V - k ln W        W windows, k free parameters: BIC of W n_y errors
+
+Errors within a window go along with each other, so that a window counts as one sample of each
+output. Unseen records prove, but do not choose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.scoring.sensitivities import list_common, list_single
+from identification.effects.effect import Candidate, Effect
+from identification.errors import InputError
+from identification.prediction.model import WindowModel, with_effect
+from identification.prediction.records import Record
+from identification.prediction.scores import WindowScore, window_scores
+from identification.prediction.unseen import Prediction, compare
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contender:
+    """An effect that was refitted.
+
+    Attributes:
+        model: with it.
+        prediction: of unseen records, over the model without it.
+        criterion: of the fitted windows, over the model without it.
+        is_proven: whether unseen records prove it.
+    """
+
+    model: WindowModel
+    prediction: Prediction
+    criterion: float
+    is_proven: bool
+
+    @property
+    def candidate(self) -> Candidate:
+        """The effect, its shapes as they began."""
+        return self.model.candidates[-1]
+
+
+def score_all(model: WindowModel, effects: Sequence[Effect]) -> tuple[WindowScore, ...]:
+    """Scores of what a model lacks: effects everywhere, then their best shapes at one place."""
+    has = {(c.effect.name, c.where) for c in model.candidates}
+    everywhere = {c.effect.name for c in model.candidates if not c.effect.places[c.where]}
+    lacking = [e for e in effects if e.name not in everywhere]
+    common = window_scores(model.fit, _without(list_common(lacking), has))
+    best: dict[str, Candidate] = {}
+    for s in common:
+        best.setdefault(s.candidate.effect.name, s.candidate)
+    single = window_scores(model.fit, _without(list_single([*best.values()]), has))
+    return tuple(sorted((*common, *single), key=lambda s: -s.fall))
+
+
+def _without(candidates: Sequence[Candidate], has: set[tuple[str, str]]) -> list[Candidate]:
+    return [c for c in candidates if (c.effect.name, c.where) not in has]
+
+
+def list_contenders(scores: Sequence[WindowScore], options: DiscoveryOptions) -> list[WindowScore]:
+    """The few best scores that are beyond chance, the best shape of each effect at each place."""
+    each: dict[tuple[str, str], WindowScore] = {}
+    for s in scores:
+        if is_significant(s, len(scores), options) and is_plausible(s, options):
+            each.setdefault((s.candidate.effect.name, s.candidate.where), s)
+    out: list[WindowScore] = []
+    best: dict[str, float] = {}
+    for s in each.values():
+        least = options.refit_share * max([t.fall for t in out], default=0.0)
+        own = options.other_place_share * best.get(s.candidate.effect.name, 0.0)
+        if s.fall > max(least, own):
+            out.append(s)
+            best.setdefault(s.candidate.effect.name, s.fall)
+    return out[: options.max_refits]
+
+
+def is_significant(s: WindowScore, count: int, options: DiscoveryOptions) -> bool:
+    """Whether a score is beyond chance among `count` of them, and large enough to matter."""
+    return s.p_value * count < options.significance and s.fall > options.min_fall
+
+
+def is_plausible(s: WindowScore, options: DiscoveryOptions) -> bool:
+    """Whether sizes have signs and magnitudes that physics admits."""
+    pairs = zip(s.size, s.candidate.effect.sizes, strict=True)
+    return all(z.sign * v >= 0 and abs(v) <= options.size_factor * z.largest for v, z in pairs)
+
+
+def refit_contenders(
+    model: WindowModel,
+    scores: Sequence[WindowScore],
+    horizon: float,
+    confirm: Sequence[Record],
+    options: DiscoveryOptions,
+    progress: Progress,
+) -> tuple[Contender, ...]:
+    """Refit the contenders of a round, the best first: proven ones before others, by criterion."""
+    chosen = list_contenders(scores, options)
+    out = []
+    for s in chosen:
+        label = f"{s.candidate.effect.name}, {s.candidate.where}"
+        try:
+            new = with_effect(model, s, horizon, confirm)
+        except InputError as error:
+            progress(f"{label}: left out, {error}")
+            continue
+        if new is None:
+            progress(f"{label}: explains no more than without it")
+            continue
+        found = compare(model.unseen, new.unseen)
+        gain = criterion(new) - criterion(model)
+        proven = gain > 0 and is_proven(found, len(chosen), options)
+        out.append(Contender(model=new, prediction=found, criterion=gain, is_proven=proven))
+        at = model.unseen.lengths.index(1.0)
+        progress(f"{label}: unseen mean square {-100 * found.falls[at]:+.0f} %, t {found.t:.1f}")
+    return tuple(sorted(out, key=lambda c: (not c.is_proven, -c.criterion)))
+
+
+def is_proven(found: Prediction, refits: int, options: DiscoveryOptions) -> bool:
+    """Whether unseen windows are predicted better: beyond chance, everywhere, by enough."""
+    beyond = found.t > options.min_proof_t and found.chance * refits < options.significance
+    return beyond and found.is_everywhere and min(found.falls) > options.min_fall
+
+
+def criterion(model: WindowModel) -> float:
+    """Negative BIC of the fitted windows, in units of twice the log likelihood."""
+    fit = model.fit
+    W = sum(len(p.cut.starts) for p in fit.problem.parts)
+    ny = len(model.scale)
+    return -W * ny * float(np.log(fit.cost)) - len(fit.q) * float(np.log(W))

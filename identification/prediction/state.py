@@ -1,0 +1,191 @@
+"""The state of a discovery by prediction, and its steps.
+
+fit the nominal model  ->  score all candidates  ->  refit the best  ->  predict unseen records
+                                   ^_____________________________________________|   again, with it
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
+from identification.effects.effect import Candidate, Effect
+from identification.errors import InputError
+from identification.prediction.model import WindowModel, fit_nominal, refitted
+from identification.prediction.records import Record
+from identification.prediction.scores import WindowScore
+from identification.prediction.selection import (
+    Contender,
+    Progress,
+    is_proven,
+    refit_contenders,
+    score_all,
+)
+from identification.prediction.unseen import Unseen, compare, predict
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordsTask:
+    """What is asked.
+
+    Attributes:
+        nominal_model: the model with every candidate effect compiled in, and its free parameters.
+        horizon: over which records are predicted [s].
+        records: to fit and to confirm.
+        effects: the candidates.
+        options: all judgement constants.
+    """
+
+    nominal_model: NominalModel
+    horizon: float
+    records: tuple[Record, ...]
+    effects: tuple[Effect, ...]
+    options: DiscoveryOptions
+
+    @property
+    def confirm(self) -> list[Record]:
+        """Records that no fit may see."""
+        return [r for r in self.records if r.role == "confirm"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordsState:
+    """All that a search knows after a step.
+
+    Attributes:
+        task: what is asked.
+        is_finished: whether there is nothing left to try.
+        begun: errors of the values with which the fit began, on the records that confirm.
+        nominal: the fitted model without effects.
+        nominal_scores: of all candidates on it, the best first.
+        model: the fitted model with the accepted effects.
+        accepted: the effects with the models in which they were accepted, in that order.
+        alternatives: what else was refitted in the place of each.
+        scores: of the candidates that the model lacks, the best first.
+        rejected: what the last round refitted and did not accept, the best first.
+        seconds: wall time by kind of work [s].
+    """
+
+    task: RecordsTask
+    is_finished: bool
+    begun: Unseen
+    nominal: WindowModel
+    nominal_scores: tuple[WindowScore, ...]
+    model: WindowModel
+    accepted: tuple[Contender, ...]
+    alternatives: tuple[tuple[Contender, ...], ...]
+    scores: tuple[WindowScore, ...]
+    rejected: tuple[Contender, ...]
+    seconds: Mapping[str, float]
+
+
+def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
+    """The state after the nominal fit, with all candidates scored.
+
+    Args:
+        task: what is asked.
+        progress: is told a line per step.
+
+    Raises:
+        InputError: windows do not fit a record, or the fitted model predicts the records that
+            confirm worse than the values with which the fit began.
+        DivergenceError: the nominal model cannot be simulated.
+    """
+    watch = Watch()
+    base, plant = task.nominal_model, task.nominal_model.plant
+    nominal = fit_nominal(plant, base.names, base.std, task.horizon, task.records, progress)
+    begun = predict(plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen)
+    _refuse_worse(begun, nominal.unseen, task.options)
+    watch.stop("nominal fit")
+    scores = score_all(nominal, task.effects)
+    watch.stop("scores")
+    if scores:
+        progress(f"{len(scores)} candidates scored, {scores[0].candidate.effect.name} first")
+    return RecordsState(
+        task=task, is_finished=False, begun=begun, nominal=nominal, nominal_scores=scores,
+        model=nominal, accepted=(), alternatives=(), scores=scores, rejected=(),
+        seconds=watch.seconds,
+    )  # fmt: skip
+
+
+def next_state(state: RecordsState, progress: Progress) -> RecordsState:
+    """The state after one more round; a finished state stays as it is.
+
+    Args:
+        state: the state before.
+        progress: is told a line per refit.
+    """
+    if state.is_finished:
+        return state
+    task, watch = state.task, Watch(state.seconds)
+    tried = refit_contenders(
+        state.model, state.scores, task.horizon, task.confirm, task.options, progress
+    )
+    if not tried or not tried[0].is_proven:
+        state = _pruned(replace(state, rejected=tried), progress)
+        watch.stop("refits")
+        return replace(state, is_finished=True, seconds=watch.seconds)
+    best, others = tried[0], tried[1:]
+    watch.stop("refits")
+    scores = score_all(best.model, task.effects)
+    watch.stop("scores")
+    accepted = (*state.accepted, best)
+    return replace(
+        state, is_finished=len(accepted) >= task.options.max_effects, model=best.model,
+        accepted=accepted, alternatives=(*state.alternatives, others), scores=scores, rejected=(),
+        seconds=watch.seconds,
+    )  # fmt: skip
+
+
+def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
+    """Without the effects that later ones made needless; the last one was just proved."""
+    task = state.task
+    for old in state.accepted[:-1]:
+        rest = tuple(c for c in state.model.candidates if not _is_same(c, old.candidate))
+        without = refitted(state.model, rest, task.nominal_model, task.horizon, task.confirm)
+        if without is None:
+            continue
+        if is_proven(compare(without.unseen, state.model.unseen), 1, task.options):
+            continue
+        progress(f"{old.candidate.effect.name}, {old.candidate.where}: no longer needed")
+        keep = [k for k, a in enumerate(state.accepted) if a is not old]
+        state = replace(
+            state, model=without, accepted=tuple(state.accepted[k] for k in keep),
+            alternatives=tuple(state.alternatives[k] for k in keep),
+        )  # fmt: skip
+    return state
+
+
+def _is_same(a: Candidate, b: Candidate) -> bool:
+    return (a.effect.name, a.where) == (b.effect.name, b.where)
+
+
+def _refuse_worse(begun: Unseen, fitted: Unseen, options: DiscoveryOptions) -> None:
+    """Refuse a fit that predicts unseen records worse than the values with which it began."""
+    worse = compare(fitted, begun)
+    if not is_proven(worse, 1, options):
+        return
+    percent = 100 * (1 / (1 - worse.falls[fitted.lengths.index(1.0)]) - 1)
+    raise InputError(
+        "the fitted nominal model predicts the records that confirm worse than the values with"
+        f" which the fit began (mean square {percent:+.0f} %), so that nothing can be built on it;"
+        " fit more records, state in the robot's file what is known of the free parameters (known),"
+        " or leave some of them out"
+    )
+
+
+class Watch:
+    """Wall time by kind of work [s], added to what was measured before."""
+
+    def __init__(self, before: Mapping[str, float] | None = None) -> None:
+        self.seconds = dict(before or {})
+        self.last = time.perf_counter()
+
+    def stop(self, work: str) -> None:
+        """Count the time since the last stop as this kind of work."""
+        now = time.perf_counter()
+        self.seconds[work] = self.seconds.get(work, 0.0) + now - self.last
+        self.last = now

@@ -1,0 +1,181 @@
+"""Prediction of records that no fit has seen: two models over windows of several lengths.
+
+    g_w = ln(‖e_w(without)/s‖²/L + ε²) - ln(‖e_w(with)/s‖²/L + ε²)      of each window w
+
+Both models begin each window at the state that explains it best, found by the same smoother. Means
+over blocks of neighbouring windows are the sample of a t-test, and each record has the same number
+of blocks at most; ε, the sensors' noise, keeps windows in which nothing happens from deciding. A
+logarithm lets no single record decide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import ttest_1samp
+
+from identification.errors import InputError
+from identification.estimation.metrics import fit_percent
+from identification.estimation.shooting import Shooting
+from identification.estimation.windows import Windows, first_states, windows
+from identification.logs.noise import noise_floor
+from identification.model.coordinates import Coordinates
+from identification.model.predictor import Plant, Predictor
+from identification.prediction.records import Record
+from identification.prediction.smoother import smoothed
+
+LENGTHS = (0.5, 1.0, 2.0)  # of the horizon
+PER_RECORD = 10  # blocks of a record at most
+MOST_WINDOWS = 120  # of a record at each length, spread over it: more cost time and tell little
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unseen:
+    """Errors of one model on the records that confirm.
+
+    Attributes:
+        lengths: of windows, in units of the horizon.
+        squares: mean square of each window in units of s², shape (W,), by length and record.
+        moves: where each window begins, shape (W, nx), by length and record.
+        floor: mean square of the sensors' noise in units of s².
+        fit_percent: over windows of the horizon, of each output, shape (ny,) [%].
+    """
+
+    lengths: tuple[float, ...]
+    squares: tuple[tuple[np.ndarray, ...], ...]
+    moves: tuple[tuple[np.ndarray, ...], ...]
+    floor: float
+    fit_percent: np.ndarray
+
+    @property
+    def at_horizon(self) -> tuple[np.ndarray, ...]:
+        """Mean squares over windows of the horizon itself, one array a record."""
+        return self.squares[self.lengths.index(1.0)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prediction:
+    """What one model predicts better than another.
+
+    Attributes:
+        t: of the mean gain over blocks, at the horizon.
+        chance: of as much by luck.
+        gains: mean gain by length.
+        falls: relative fall of the mean square over all records, by length.
+        records: mean gain by record, at the horizon.
+        blocks: mean gain by block, at the horizon, over all records.
+    """
+
+    t: float
+    chance: float
+    gains: tuple[float, ...]
+    falls: tuple[float, ...]
+    records: tuple[float, ...]
+    blocks: np.ndarray
+
+    @property
+    def is_everywhere(self) -> bool:
+        """Whether windows of every length are predicted better on average."""
+        return min(self.gains) > 0 and min(self.falls) > 0
+
+
+def predict(
+    plant: Plant,
+    records: Sequence[Record],
+    horizon: float,
+    scale: np.ndarray,
+    values: Mapping[str, float],
+    near: Unseen | None = None,
+) -> Unseen:
+    """Errors of a model on records, over windows of several lengths.
+
+    Args:
+        plant: the model.
+        records: that no fit has seen.
+        horizon: [s].
+        scale: s of each output, shape (ny,), in its unit.
+        values: parameters that are not the plant's own.
+        near: errors of a model nearby, at whose states the windows' search begins.
+
+    Raises:
+        InputError: no window of the horizon fits a record.
+        DivergenceError: the model cannot be simulated.
+    """
+    squares, moves, lengths = [], [], []
+    percent = np.zeros(len(scale))
+    for factor in LENGTHS:
+        try:
+            cuts = [_spread(windows(r.log, factor * horizon)) for r in records]
+        except InputError:
+            if factor == 1.0:
+                raise
+            continue  # fewer than 3 samples, or longer than a record
+        begun = None if near is None else near.moves[near.lengths.index(factor)]
+        each = [
+            _errors(
+                plant, r, cut, scale, {**values, **r.values}, None if begun is None else begun[k]
+            )
+            for k, (r, cut) in enumerate(zip(records, cuts, strict=True))
+        ]
+        if factor == 1.0:
+            measured = np.concatenate([c.outputs.reshape(-1, len(scale)) for c in cuts])
+            errors = np.concatenate([e.reshape(-1, len(scale)) for _, e in each])
+            percent = fit_percent(measured, measured - errors)
+        lengths.append(factor)
+        moves.append(tuple(d for d, _ in each))
+        squares.append(tuple(np.mean((e / scale) ** 2, axis=(1, 2)) for _, e in each))
+    noise = [np.mean((noise_floor(r.log.outputs) / scale) ** 2) for r in records]
+    return Unseen(
+        lengths=tuple(lengths), squares=tuple(squares), moves=tuple(moves),
+        floor=float(np.mean(noise)), fit_percent=percent,
+    )  # fmt: skip
+
+
+def compare(without: Unseen, with_it: Unseen) -> Prediction:
+    """What the second of two models predicts better than the first, window by window."""
+    falls, gains = [], []
+    for a, b in zip(without.squares, with_it.squares, strict=True):
+        falls.append(1 - float(np.concatenate(b).mean() / np.concatenate(a).mean()))
+        gains.append([np.log(x + without.floor) - np.log(y + without.floor)
+                      for x, y in zip(a, b, strict=True)])  # fmt: skip
+    here = gains[without.lengths.index(1.0)]
+    blocks = np.concatenate([
+        [b.mean() for b in np.array_split(g, min(PER_RECORD, max(1, len(g) // 2)))] for g in here
+    ])  # fmt: skip
+    t, chance = 0.0, 1.0
+    if len(blocks) > 2 and blocks.std() > 0:
+        test = ttest_1samp(blocks, 0.0, alternative="greater")
+        t, chance = float(test.statistic), float(test.pvalue)
+    return Prediction(
+        t=t, chance=chance, gains=tuple(float(np.concatenate(g).mean()) for g in gains),
+        falls=tuple(falls), records=tuple(float(g.mean()) for g in here), blocks=blocks,
+    )  # fmt: skip
+
+
+def _spread(cut: Windows) -> Windows:
+    """At most `MOST_WINDOWS` of some windows, in pairs of neighbours spread over the record."""
+    n = len(cut.starts)
+    if n <= MOST_WINDOWS:
+        return cut
+    keep = np.linspace(0, n - 1, MOST_WINDOWS).astype(int)
+    return Windows(cut.inputs[keep], cut.outputs[keep], cut.starts[keep])
+
+
+def _errors(
+    plant: Plant,
+    record: Record,
+    cut: Windows,
+    scale: np.ndarray,
+    values: Mapping[str, float],
+    begun: np.ndarray | None,
+) -> tuple[np.ndarray, np.ndarray]:
+    none = np.zeros(0)
+    predictor = Predictor(plant, record.log, (), dict(values))
+    space = Coordinates((), none.astype(bool), none, none, none)
+    first = first_states(predictor, none, cut)
+    shooting = Shooting(predictor, space, cut, first, np.diag(1 / scale))
+    model = plant.model
+    moves = np.zeros((len(cut.starts), 2 * model.nv + model.na)) if begun is None else begun
+    return smoothed(shooting, moves)

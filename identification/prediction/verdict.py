@@ -1,0 +1,190 @@
+"""The verdict of a discovery by prediction.
+
+    P_j = share of resamples of the unseen blocks in which contender j predicts best
+
+Blocks are drawn with replacement (bootstrap). A name below even odds is no name: what was tried is
+then told, and the verdict is "unknown effect".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.stats import ttest_1samp
+
+from identification.discovery.effect_results import Gap
+from identification.discovery.findings.evidence import RemainingError, UnprovenEffect
+from identification.discovery.findings.finding import Finding, FindingKind
+from identification.prediction.model import WindowModel
+from identification.prediction.result import (
+    NamedByPrediction,
+    RecordError,
+    RecordsDiscovery,
+    RefittedEffect,
+    Verdict,
+)
+from identification.prediction.selection import Contender
+from identification.prediction.state import RecordsState
+from identification.prediction.unseen import PER_RECORD, Unseen
+
+RESAMPLES = 2000
+SEED = 0  # of the resampling, so that a verdict repeats
+LIKELY = 0.02  # a rival less likely than this is not listed
+UNLISTED = "curve"  # names of effects that begin so are curves drawn from the data
+
+
+def conclude(state: RecordsState) -> RecordsDiscovery:
+    """The outcome of a finished search.
+
+    Args:
+        state: the finished state.
+    """
+    task, nominal, model = state.task, state.nominal, state.model
+    options = task.options
+    named = tuple(
+        _named(state, a, others)
+        for a, others in zip(state.accepted, state.alternatives, strict=True)
+    )
+    rejected = tuple(_refitted(c.model, c, 0.0) for c in state.rejected)
+    sure = all(n.effect.confidence >= 0.5 or n.one_of for n in named)
+    findings = _findings(state, rejected)
+    doubtful = any(f.kind is FindingKind.UNPROVEN_EFFECT for f in findings)
+    verdict: Verdict = "nothing missing"
+    if named and sure:
+        curves = [n.effect.candidate.effect.name.startswith(UNLISTED) for n in named]
+        verdict = "unlisted effect" if all(curves) else "named"
+    elif named or doubtful:
+        verdict = "unknown effect"
+    if verdict == "unknown effect":
+        rejected, named, model = (*(n.effect for n in named), *rejected), (), nominal
+    floor = model.unseen.floor
+    before, after = (float(np.mean(np.concatenate(m.unseen.at_horizon))) for m in (nominal, model))
+    above = before - min(floor, after)
+    scale, unit = _unit(state)
+    return RecordsDiscovery(
+        records=task.records, options=options, horizon=task.horizon, verdict=verdict, named=named,
+        rejected=rejected, share=float((before - after) / above) if above > 0 else 0.0,
+        unexplained=verdict != "nothing missing" and (bool(findings) or not named),
+        noise_rms=scale * float(np.sqrt(floor)), unit=unit,
+        before=_gap(nominal.unseen, scale), after=_gap(model.unseen, scale),
+        errors=_errors(state, model, scale), nominal=nominal, final=model,
+        scores=state.nominal_scores, remaining=state.scores if named else state.nominal_scores,
+        findings=findings, seconds=state.seconds,
+    )  # fmt: skip
+
+
+def _named(
+    state: RecordsState, accepted: Contender, others: Sequence[Contender]
+) -> NamedByPrediction:
+    """An accepted effect at the values of the final model, with its rivals."""
+    options, mine = state.task.options, accepted.candidate
+    is_final = any(_key(c) == _key(mine) for c in state.model.candidates)
+    near = [accepted, *others]
+    shares = compute_confidence(near)
+    rivals = [
+        _refitted(o.model, o, float(share))
+        for o, share in zip(others, shares[1:], strict=True)
+        if share > LIKELY
+    ]
+    effect = _refitted(
+        state.model if is_final else accepted.model, accepted,
+        min(options.max_confidence, float(shares[0])),
+    )  # fmt: skip
+    confirm = state.task.confirm
+    gains = accepted.prediction.records
+    worse = [
+        r.log.name
+        for r, blocks in zip(confirm, _by_record(accepted.prediction.blocks, state), strict=True)
+        if len(blocks) > 2
+        and ttest_1samp(blocks, 0.0, alternative="less").pvalue < options.significance
+    ]
+    return NamedByPrediction(
+        effect=effect, rivals=tuple(rivals),
+        one_of=bool(shares[1:].size and shares[1:].max() > options.set_confidence),
+        agrees=tuple(r.log.name for r, g in zip(confirm, gains, strict=True) if g > 0),
+        disagrees=tuple(worse),
+    )  # fmt: skip
+
+
+def compute_confidence(contenders: Sequence[Contender]) -> np.ndarray:
+    """Share of resamples in which each contender predicts unseen blocks best, shape (k,).
+
+    Args:
+        contenders: models that were refitted from one parent.
+    """
+    gains = np.array([c.prediction.blocks for c in contenders])  # (k, B)
+    rng = np.random.default_rng(SEED)
+    drawn = rng.integers(0, gains.shape[1], (RESAMPLES, gains.shape[1]))
+    best = gains[:, drawn].mean(axis=2).argmax(axis=0)
+    return np.bincount(best, minlength=len(contenders)) / RESAMPLES
+
+
+def _refitted(model: WindowModel, contender: Contender, confidence: float) -> RefittedEffect:
+    """An effect at the values of a model that has it."""
+    c = contender.candidate
+    plant = model.fit.problem.parts[0].predictor.plant
+    values, std = model.values, model.std
+    parameters = {}
+    for name in (*c.sizes, *c.fixed):
+        record = plant.parameters[name]
+        parameters[record.symbol or record.name] = (
+            float(values[name]), float(std.get(name, 0.0)), record.unit,
+        )  # fmt: skip
+    shape = {s.name: values[c.effect.parameter(s.name, c.where)] for s in c.effect.shapes}
+    return RefittedEffect(
+        candidate=replace(c, shape=shape), parameters=parameters,
+        prediction=contender.prediction, criterion=contender.criterion, confidence=confidence,
+    )  # fmt: skip
+
+
+def _findings(state: RecordsState, rejected: Sequence[RefittedEffect]) -> tuple[Finding, ...]:
+    """What the final model leaves: errors above the sensors' noise, and doubtful effects."""
+    out = []
+    for r in rejected:
+        if r.prediction.is_everywhere and r.prediction.t > state.task.options.min_proof_t:
+            out.append(Finding(FindingKind.UNPROVEN_EFFECT, UnprovenEffect(r)))
+    square = float(np.mean(np.concatenate(state.model.unseen.at_horizon)))
+    ratio = (
+        float(np.sqrt(square / state.model.unseen.floor)) if state.model.unseen.floor else np.inf
+    )
+    if state.accepted and ratio > 1 + state.task.options.min_gap_share:
+        out.append(Finding(FindingKind.REMAINING_ERROR, RemainingError(ratio)))
+    return tuple(out)
+
+
+def _by_record(blocks: np.ndarray, state: RecordsState) -> list[np.ndarray]:
+    """Blocks of each record that confirms."""
+    sizes = [min(PER_RECORD, max(1, len(s) // 2)) for s in state.nominal.unseen.at_horizon]
+    return np.split(blocks, np.cumsum(sizes)[:-1])
+
+
+def _unit(state: RecordsState) -> tuple[float, str]:
+    """What one unit of scaled error is, and its unit: rms over all outputs where they share one."""
+    unit = state.task.records[0].log.output_unit
+    scale = state.nominal.scale
+    return (float(np.sqrt(np.mean(scale**2))), unit) if unit else (1.0, "")
+
+
+def _gap(unseen: Unseen, scale: float) -> Gap:
+    square = float(np.mean(np.concatenate(unseen.at_horizon)))
+    return Gap(scale * float(np.sqrt(square)), unseen.fit_percent)
+
+
+def _errors(state: RecordsState, model: WindowModel, scale: float) -> tuple[RecordError, ...]:
+    out = []
+    confirm = zip(state.nominal.unseen.at_horizon, model.unseen.at_horizon, strict=True)
+    seen = zip(state.nominal.fit.errors, model.fit.errors, strict=True)
+    for record in state.task.records:
+        if record.role == "confirm":
+            a, b = next(confirm)
+        else:
+            a, b = (np.mean((e / state.nominal.scale) ** 2, axis=(1, 2)) for e in next(seen))
+        before, after = (scale * float(np.sqrt(x.mean())) for x in (a, b))
+        out.append(RecordError(name=record.log.name, role=record.role, before=before, after=after))
+    return tuple(out)
+
+
+def _key(candidate: object) -> tuple[str, str]:
+    return candidate.effect.name, candidate.where  # type: ignore[attr-defined]
