@@ -24,7 +24,7 @@ from identification.model.predictor import output_columns
 
 Kind = Literal["hinge", "slide"]
 HUGE = 1e50  # of any unit
-SMOOTH = 0.01  # v₀ of the smooth sign, of the top speed
+POSES = 5  # random ones, to see on which joints gravity acts
 NOISE, SHARE = 5.0, 0.1  # a difference of noise, in its std, may be so much of the largest
 
 _KINDS: dict[int, Kind] = {
@@ -44,6 +44,7 @@ class Axis:
         speed: top speed [rad/s or m/s].
         travel: how far it moves [rad or m].
         plain: whether its drives' force is gain·u + bias: their load is then known.
+        heavy: whether gravity acts on it anywhere.
 
     Raises:
         InputError: a magnitude is not positive.
@@ -55,6 +56,7 @@ class Axis:
     speed: float
     travel: float
     plain: bool = True
+    heavy: bool = False
 
     def __post_init__(self) -> None:
         for word in ("force", "speed", "travel"):
@@ -63,11 +65,6 @@ class Axis:
                 raise InputError(
                     f"joint {self.joint!r} has {word} {value:g}; give a positive finite one"
                 )
-
-    @property
-    def smooth(self) -> float:
-        """v₀ of its smooth sign [rad/s or m/s]."""
-        return SMOOTH * self.speed
 
 
 def axes(model: mujoco.MjModel, log: Log) -> tuple[Axis, ...]:
@@ -126,7 +123,19 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
         force = float(model.dof_M0[model.jnt_dofadr[j]]) * speed**2 / travel
     name = model.joint(j).name
     return Axis(name, _KINDS[int(model.jnt_type[j])], force, speed, travel,
-                all(_plain(model, i) for i in drives))  # fmt: skip
+                all(_plain(model, i) for i in drives), _heavy(model, j))  # fmt: skip
+
+
+def _heavy(model: mujoco.MjModel, j: int) -> bool:
+    """Whether gravity acts on joint j in one of several poses."""
+    data, rng = mujoco.MjData(model), np.random.default_rng(0)
+    dof, largest = int(model.jnt_dofadr[j]), 0.0
+    for _ in range(POSES):
+        mujoco.mj_integratePos(model, data.qpos, rng.normal(0, 1, model.nv), 1.0)
+        mujoco.mj_forward(model, data)  # at rest: all of the bias is gravity
+        largest = max(largest, abs(float(data.qfrc_bias[dof])))
+    weight = float(np.linalg.norm(model.opt.gravity) * model.body_mass.sum())
+    return largest > 1e-9 * weight
 
 
 def _rate(way: np.ndarray, h: float) -> np.ndarray:

@@ -1,6 +1,6 @@
 """An MJCF model whose joints carry the numbers of their effects as user data.
 
-    user data of a joint = (what the file gave it, v₀, parameters of the effects, key, TAG)
+    user data of a joint = (what the file gave it, T, parameters of the effects, key, TAG)
 
 The row stands at the end, so that a model's own user data stay where they were; its layout is that
 of `identification.native.joint_callback`.
@@ -18,7 +18,7 @@ from identification.effects.axes import Axis
 from identification.effects.joint_layout import JointLayout
 from identification.errors import InputError, unknown_name
 from identification.logs.names import quoted
-from identification.native.joint_callback import SMOOTH, TAG
+from identification.native.joint_callback import STEPS, STOP, TAG
 
 _LONGEST = 200  # of MuJoCo's words in a message
 _HELD = {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}
@@ -63,7 +63,7 @@ def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis], layout: JointLayout) ->
             raise unknown_name("hinge or slide joint", axis.joint, joints)
         given = own.jnt_user[own.joint(axis.joint).id]
         row = np.zeros(layout.entries)
-        row[SMOOTH], row[-2], row[-1] = axis.smooth, layout.key, TAG
+        row[STOP], row[-2], row[-1] = STEPS * own.opt.timestep, layout.key, TAG
         joints[axis.joint].userdata = np.concatenate([given, row])
     spec.nuser_jnt = own.nuser_jnt + layout.entries
     return spec.compile()

@@ -1,10 +1,15 @@
 """The effects of joints inside MuJoCo's passive forces.
 
-    qfrc_passive[v_j] += Σ_e force_e(s_j, p_e,j)          s_j: the `Joint` state of joint j
+    f = Σ_e force_e(s, p_e)                               s: the `Joint` state of a joint
+    b = max(0, Σ_e friction_e(s, p_e))                    the largest friction there
+    r = M v/T + f_u + f_g + qfrc_passive + f              what would have to be resisted to stop
+    qfrc_passive += f - min(max(r, -b), b)
 
+Friction holds a joint that less than b drives, without creeping, and brakes with b what it cannot
+stop within T = 3 steps (Coulomb's law as Duclusaud et al. 2024 integrate it: BAM, equation 3).
 The numbers stand at the end of a joint's user data, in a row
 
-    (v₀, parameters of the effects, key of the set of effects, TAG)
+    (T, parameters of the effects, key of the set of effects, TAG)
 
 Every joint without such a row and every other model passes through untouched. Sizes of zero add
 nothing, so that the bare model's trajectory is kept to the bit. A compiled callback must not
@@ -16,12 +21,12 @@ from __future__ import annotations
 
 from collections import namedtuple
 from collections.abc import Sequence
-from math import tanh
 from typing import Any
 
 import mujoco
 import numpy as np
 
+from identification.native import structs
 from identification.native.access import double, integer, offsets, word
 from identification.native.compose import total
 from identification.native.decorators import inlined
@@ -30,28 +35,39 @@ from identification.native.memory import load_byte, load_constant, load_double, 
 from identification.native.table import is_compiled
 
 TAG = 7351.0609  # last entry of a row of ours
-SMOOTH, FIRST, LAST = 0, 1, 2  # columns of v₀ and of the first parameter; entries behind the last
+STOP, FIRST, LAST = 0, 1, 2  # columns of T and of the first parameter; entries behind the last
+STEPS = 3.0  # T over the step: where joints are coupled, the inertia of one is less than M
 
 # What an effect sees of a hinge or slide joint.
 #   time [s]; q, v: position [rad or m] and velocity [rad/s or m/s]
-#   v_0 [rad/s or m/s]: below this speed friction creeps, as a fixed step demands
-#   sign = tanh(v/v₀): a smooth sign of the velocity
 #   f_u [N m or N]: force of the joint's own drives; NaN where it is not gain·u + bias
-Joint: Any = namedtuple("Joint", "time q v v_0 sign f_u")
+#   f_g [N m or N]: force of gravity on the joint, of all that hangs on it
+#   sign: direction of the motion that friction resists, 1 or -1; 0 for a force
+Joint: Any = namedtuple("Joint", "time q v f_u f_g sign")
 
-JOINT = Element("joint", Joint, (Hook("force", ("force [N] or torque [N m] on the joint",)),))
+JOINT = Element(
+    "joint",
+    Joint,
+    (
+        Hook("force", ("force [N] or torque [N m] on the joint",)),
+        Hook("friction", ("largest friction [N] or [N m], zero or more",)),
+    ),
+)
 
 M = offsets(
     "mjModel",
     "njnt nuser_jnt jnt_user jnt_qposadr jnt_dofadr nactuator actuator_trntype actuator_trnid"
     " actuator_gear actuator_gainprm actuator_biasprm actuator_dyntype actuator_gaintype"
     " actuator_biastype actuator_ctrladr actuator_ctrllimited actuator_ctrlrange"
-    " actuator_forcelimited actuator_forcerange",
+    " actuator_forcelimited actuator_forcerange jnt_type jnt_bodyid body_subtreemass M_rowadr"
+    " M_rownnz",
 )
-D = offsets("mjData", "time qpos qvel ctrl qfrc_passive")
-FIELDS = frozenset((*M._fields, *D._fields))  # everything the callback touches
+D = offsets("mjData", "time qpos qvel ctrl qfrc_passive M subtree_com xanchor xaxis")
+GRAVITY = structs.inner_word("mjModel", "opt", "gravity")
+FIELDS = frozenset((*M._fields, *D._fields, "opt.gravity"))  # everything the callback touches
 
 _JOINT = int(mujoco.mjtTrn.mjTRN_JOINT)
+_HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
 _NO_DYNAMICS = int(mujoco.mjtDyn.mjDYN_NONE)
 _FIXED = int(mujoco.mjtGain.mjGAIN_FIXED)
 _NO_BIAS, _AFFINE = int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtBias.mjBIAS_AFFINE)
@@ -104,14 +120,39 @@ def drive_force(m, d, j, q, v):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def joint(m, d, j, row):  # type: ignore[no-untyped-def]
-    """The state of joint j whose row is at an address."""
+def gravity_force(m, d, j):  # type: ignore[no-untyped-def]
+    """Force of gravity on joint j, of its body and all that hang on it [N or N m]."""
+    body = integer(m, M.jnt_bodyid, j)
+    mass = double(m, M.body_subtreemass, body)
+    gx = mass * load_constant(m + 8 * GRAVITY)
+    gy = mass * load_constant(m + 8 * GRAVITY + 8)
+    gz = mass * load_constant(m + 8 * GRAVITY + 16)
+    ax, ay, az = (
+        double(d, D.xaxis, 3 * j), double(d, D.xaxis, 3 * j + 1), double(d, D.xaxis, 3 * j + 2)
+    )  # fmt: skip
+    if integer(m, M.jnt_type, j) != _HINGE:
+        return ax * gx + ay * gy + az * gz
+    rx = double(d, D.subtree_com, 3 * body) - double(d, D.xanchor, 3 * j)
+    ry = double(d, D.subtree_com, 3 * body + 1) - double(d, D.xanchor, 3 * j + 1)
+    rz = double(d, D.subtree_com, 3 * body + 2) - double(d, D.xanchor, 3 * j + 2)
+    return ax * (ry * gz - rz * gy) + ay * (rz * gx - rx * gz) + az * (rx * gy - ry * gx)
+
+
+@inlined
+def inertia(m, d, dof):  # type: ignore[no-untyped-def]
+    """Entry of the mass matrix of a degree of freedom with itself [kg or kg m²]."""
+    last = integer(m, M.M_rowadr, dof) + integer(m, M.M_rownnz, dof) - 1
+    return double(d, D.M, last)
+
+
+@inlined
+def joint(m, d, j):  # type: ignore[no-untyped-def]
+    """The state of joint j, as a force sees it."""
     q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
     v = double(d, D.qvel, integer(m, M.jnt_dofadr, j))
-    v_0 = load_constant(row + 8 * SMOOTH)
     return Joint(
-        time=load_constant(d + 8 * D.time), q=q, v=v, v_0=v_0, sign=tanh(v / v_0),
-        f_u=drive_force(m, d, j, q, v),
+        time=load_constant(d + 8 * D.time), q=q, v=v, f_u=drive_force(m, d, j, q, v),
+        f_g=gravity_force(m, d, j), sign=0.0,
     )  # fmt: skip
 
 
@@ -122,7 +163,8 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
         terms: the effects, their columns counted from the first parameter of a row.
         key: of the set.
     """
-    force, entries = total(JOINT, terms, "force"), width(terms)
+    force, friction = total(JOINT, terms, "force"), total(JOINT, terms, "friction")
+    entries = width(terms)
 
     def passive(m, d):  # type: ignore[no-untyped-def]
         columns = word(m, M.nuser_jnt)
@@ -138,8 +180,17 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
                 if not is_compiled(own):
                     store_double(at, np.nan)
                 continue
-            row = end - 8 * entries
-            f = force(joint(m, d, j, row), row + 8 * FIRST, 0)
+            row, dof = end - 8 * entries, integer(m, M.jnt_dofadr, j)
+            s = joint(m, d, j)
+            f = force(s, row + 8 * FIRST, 0)
+            driven = f + s.f_g + load_double(at)
+            if s.f_u == s.f_u:  # where it is known
+                driven += s.f_u
+            r = driven + inertia(m, d, dof) * s.v / load_constant(row + 8 * STOP)
+            ahead = 1.0 if r > 0.0 else -1.0
+            there = Joint(time=s.time, q=s.q, v=s.v, f_u=s.f_u, f_g=s.f_g, sign=ahead)
+            b = max(0.0, friction(there, row + 8 * FIRST, 0))
+            f -= max(-b, min(b, r))
             if f != 0.0:
                 store_double(at, load_double(at) + f)
 

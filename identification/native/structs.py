@@ -81,6 +81,16 @@ def word(struct: str, field: str) -> int:
     return offset // 8
 
 
+def inner_word(struct: str, field: str, inner: str) -> int:
+    """Offset of a field of a struct inside a struct, e.g. mjModel's opt.gravity, in words."""
+    declared = next(f for f in structs.STRUCTS[struct].fields if f.name == field).type
+    offset = getattr(layout(struct), field).offset
+    offset += getattr(_c_type(declared), inner).offset
+    if offset % 8:
+        raise NotImplementedError(f"{struct}.{field}.{inner} is at byte {offset}, not on a word")
+    return int(offset // 8)
+
+
 def check(model: mujoco.MjModel, data: mujoco.MjData) -> set[str]:
     """Compare every offset that live objects show with the declared one.
 
@@ -90,7 +100,7 @@ def check(model: mujoco.MjModel, data: mujoco.MjData) -> set[str]:
     Raises:
         RuntimeError: a field lies elsewhere; compiled callbacks would read foreign memory.
     """
-    agreed = set()
+    agreed: set[str] = set()
     for struct, live in (("mjModel", model), ("mjData", data)):
         for field in structs.STRUCTS[struct].fields:
             seen = getattr(live, field.name, None)
@@ -112,6 +122,10 @@ def check(model: mujoco.MjModel, data: mujoco.MjData) -> set[str]:
                     " declaration puts it; install the mujoco version of the lock file"
                 )
             agreed.add(field.name)
+    if model.opt.gravity.ctypes.data == model._address + 8 * inner_word(
+        "mjModel", "opt", "gravity"
+    ):
+        agreed.add("opt.gravity")
     return agreed
 
 
