@@ -27,6 +27,7 @@ from identification.prediction.scores import WindowScore, inside
 from identification.prediction.unseen import Unseen, predict
 
 GROWTH = (0.25, 0.5, 1.0)  # of the horizon
+ROUGH = 1e-2  # relative fall of the criterion that ends a fit which another follows
 FEWEST = 4  # samples of the shortest windows
 SHARES = (1.0, 0.5, 0.2, 0.05, 0.01)  # of the size that a score gives, to begin with
 SHAPE_STD = 1.0  # prior of a shape's coordinate about the value that scored best
@@ -99,7 +100,7 @@ def fit_nominal(
         if any(length < FEWEST * r.log.sampling_time for r in fitted) and factor < 1:
             continue
         task = problem(plant, fitted, space, length, values, mean, weight, scale)
-        found = solve(task, q, no_moves(task), progress=progress)
+        found = solve(task, q, no_moves(task), tolerance=ROUGH, progress=progress)
         q, values = found.q, found.values
         scale = _rms(found)
     if found is None:

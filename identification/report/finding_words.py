@@ -146,6 +146,21 @@ def _oversized_effect(e: records.OversizedEffect) -> str:
     )
 
 
+def _remaining_error(e: records.RemainingError) -> str:
+    return (
+        f"an error on unseen data that is {e.noise_ratio:.3g} times the sensors' noise is left, and"
+        " no candidate explains it"
+    )
+
+
+def _unproven_effect(e: records.UnprovenEffect) -> str:
+    seen = e.effect.prediction
+    return (
+        f"{describe_effect(e.effect.candidate)} predicts unseen data better on average (mean square"
+        f" {-100 * max(seen.falls):+.0f} %), but not surely (t = {seen.t:.1f})"
+    )
+
+
 WORDS: dict[FindingKind, Callable[[Any], str]] = {
     FindingKind.WORST_OUTPUT: _worst_output,
     FindingKind.WORST_INTERVAL: _worst_interval,
@@ -161,4 +176,6 @@ WORDS: dict[FindingKind, Callable[[Any], str]] = {
     FindingKind.STRUCTURED_INPUT_ERROR: _structured_input_error,
     FindingKind.DOUBTFUL_EFFECT: _doubtful_effect,
     FindingKind.OVERSIZED_EFFECT: _oversized_effect,
+    FindingKind.REMAINING_ERROR: _remaining_error,
+    FindingKind.UNPROVEN_EFFECT: _unproven_effect,
 }

@@ -1,0 +1,81 @@
+"""A discovery on several records as plain values, for JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+from identification.discovery.findings.finding import Finding
+from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
+from identification.report.discovery_json import finite
+from identification.report.finding_words import describe_finding
+
+
+def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
+    """The outcome as plain values; what is unknown or not finite is None."""
+    record = {
+        "verdict": found.verdict,
+        "effects": [_named_to_json(named) for named in found.named],
+        "rejected": [_refitted_to_json(effect) for effect in found.rejected],
+        "unexplained": found.unexplained,
+        "share": found.share,
+        "gap": {
+            "noise_rms": found.noise_rms,
+            "before": {"rms": found.before.rms, "fit_percent": found.before.fit_percent.tolist()},
+            "after": {"rms": found.after.rms, "fit_percent": found.after.fit_percent.tolist()},
+        },
+        "records": [
+            {"file": e.name, "role": e.role, "before": e.before, "after": e.after}
+            for e in found.errors
+        ],
+        "horizon": found.horizon,
+        "located": [describe_finding(finding) for finding in found.findings],
+        "findings": [_finding_to_json(finding) for finding in found.findings],
+        "nominal": _values_to_json(found.nominal.values, found.nominal.std),
+        "final": _values_to_json(found.final.values, found.final.std),
+        "options": asdict(found.options),
+        "seconds": float(sum(found.seconds.values())),
+    }
+    return {key: finite(value) for key, value in record.items()}
+
+
+def _values_to_json(values: Mapping[str, float], std: Mapping[str, float]) -> dict[str, Any]:
+    return {name: {"value": value, "std": std.get(name)} for name, value in values.items()}
+
+
+def _finding_to_json(finding: Finding) -> dict[str, Any]:
+    evidence = finding.evidence
+    effect = getattr(evidence, "effect", None)
+    if isinstance(effect, RefittedEffect):
+        return {"kind": finding.kind.value, **_refitted_to_json(effect)}
+    return {"kind": finding.kind.value, **asdict(evidence)}
+
+
+def _refitted_to_json(effect: RefittedEffect) -> dict[str, Any]:
+    seen = effect.prediction
+    return {
+        "name": effect.candidate.effect.name,
+        "where": effect.candidate.where,
+        "confidence": effect.confidence,
+        "parameters": {
+            name: {"value": value, "std": std, "unit": unit}
+            for name, (value, std, unit) in effect.parameters.items()
+        },
+        "gain": effect.criterion,
+        "proof": {"t": seen.t, "falls": list(seen.falls), "records": list(seen.records)},
+    }
+
+
+def _named_to_json(named: NamedByPrediction) -> dict[str, Any]:
+    return {
+        **_refitted_to_json(named.effect),
+        "rivals": [
+            {"name": r.candidate.effect.name, "where": r.candidate.where,
+             "confidence": r.confidence}
+            for r in named.rivals
+        ],
+        "one_of": named.one_of,
+        "agrees": list(named.agrees),
+        "disagrees": list(named.disagrees),
+    }  # fmt: skip

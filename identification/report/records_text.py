@@ -1,0 +1,110 @@
+"""A discovery on several records in sentences: the verdict first, then what it rests on."""
+
+from __future__ import annotations
+
+from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
+from identification.quantities import alike, quantity
+from identification.report.effect_words import describe_effect
+from identification.report.finding_words import describe_finding, sentence
+
+SHOWN = 6  # candidates with the best scores that are listed
+
+
+def records_verdict(found: RecordsDiscovery) -> list[str]:
+    """The verdict first, then what supports it."""
+    if found.verdict == "nothing missing":
+        before, noise = alike([found.before.rms, found.noise_rms], found.unit)
+        return [
+            "Nothing is missing, as far as these records can tell: no candidate lowers the error of"
+            f" prediction on unseen data beyond chance. It is {before} rms over"
+            f" {found.horizon:g} s, where the sensors make {noise}."
+        ]
+    if found.verdict == "unknown effect":
+        return [_unknown(found)]
+    said = [_named(found, named) for named in found.named]
+    said.append(_proof(found))
+    said += [sentence(describe_finding(finding)) for finding in found.findings]
+    return said
+
+
+def records_text(found: RecordsDiscovery) -> str:
+    """All of it, in paragraphs."""
+    parts = ["\n".join(records_verdict(found)), "\n".join(_records(found))]
+    if found.rejected:
+        lines = [f"  {describe_refitted(r)}" for r in found.rejected]
+        parts.append("\n".join(["tried, and not proven on unseen data:", *lines]))
+    scores = [
+        f"  {describe_effect(s.candidate)}: {100 * s.fall:.0f} % of the fitted error, chance"
+        f" {s.p_value:.2g}"
+        for s in found.scores[:SHOWN]
+    ]
+    if scores:
+        parts.append(
+            "\n".join(["what each candidate would explain, before it is fitted:", *scores])
+        )
+    parts.append(f"{sum(found.seconds.values()):.1f} s")
+    return "\n\n".join(parts)
+
+
+def describe_refitted(effect: RefittedEffect) -> str:
+    """An effect with its sizes, and what it does for unseen records."""
+    fall = 100 * max(effect.prediction.falls)
+    return (
+        f"{describe_effect(effect.candidate)}, {_sizes(effect)}; unseen mean square"
+        f" {-fall:+.0f} % at best, t = {effect.prediction.t:.1f}"
+    )
+
+
+def _sizes(effect: RefittedEffect) -> str:
+    pairs = effect.parameters.items()
+    return ", ".join(f"{name} = {quantity(v, std, unit)}" for name, (v, std, unit) in pairs)
+
+
+def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
+    first = "Missing from the model" if named is found.named[0] else "Missing too"
+    if found.verdict == "unlisted effect":
+        first += ", in no catalogue and drawn from the data"
+    said = (
+        f"{first}: {describe_effect(named.effect.candidate)}, {_sizes(named.effect)}; confidence"
+        f" {100 * named.effect.confidence:.0f} % among the effects that were tried."
+    )
+    if named.rivals:
+        each = ", ".join(
+            f"{describe_effect(r.candidate)} ({100 * r.confidence:.0f} %)" for r in named.rivals
+        )
+        said += (
+            f" {'These records cannot tell it from' if named.one_of else 'Less likely:'} {each}."
+        )
+    confirm = [r.log.name for r in found.records if r.role == "confirm"]
+    said += f" It lowers the error on {len(named.agrees)} of {len(confirm)} unseen records."
+    if named.disagrees:
+        said += f" It raises the error on {', '.join(named.disagrees)}, beyond chance."
+    return said
+
+
+def _proof(found: RecordsDiscovery) -> str:
+    was, now, noise = alike([found.before.rms, found.after.rms, found.noise_rms], found.unit)
+    fall = 1 - (found.after.rms / found.before.rms) ** 2
+    return (
+        f"On records that no fit has seen, the error of prediction over {found.horizon:g} s falls"
+        f" from {was} to {now} rms (mean square {-100 * fall:+.0f} %); the sensors make {noise}."
+        f" That is {100 * found.share:.0f} % of the power above the sensors' noise."
+    )
+
+
+def _unknown(found: RecordsDiscovery) -> str:
+    before, noise = alike([found.before.rms, found.noise_rms], found.unit)
+    return (
+        "Something is missing that none of the known effects surely explains: the fitted model is"
+        f" {before} rms off over {found.horizon:g} s on unseen data, where the sensors make"
+        f" {noise}. It is not named here rather than named wrongly."
+        + "".join(f" {sentence(describe_finding(finding))}" for finding in found.findings)
+    )
+
+
+def _records(found: RecordsDiscovery) -> list[str]:
+    lines = [f"error of prediction over {found.horizon:g} s, without and with what is named:"]
+    for e in found.errors:
+        before, after = alike([e.before, e.after], found.unit)
+        lines.append(f"  {e.name} ({e.role}): {before}" + (f" -> {after}" if found.named else ""))
+    return lines
