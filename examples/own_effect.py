@@ -1,7 +1,7 @@
 """An effect of your own: one compiled function, one record; then ask whether a log needs it.
 
     Δτ = -c |φ| tanh(β ω)      INCA: the cable rubs on what is wound already
-    f  = -c |q| tanh(v/v₀)     any joint of any MJCF: the guide is tighter at its ends
+    b  = c |q|                 friction of any joint of any MJCF: the guide is tighter at its ends
 
 Run it: python examples/own_effect.py
 """
@@ -91,17 +91,17 @@ DAMPING = Parameter(
 
 @njit
 def guide_friction(s, p):
-    """Force on a joint [N]: s is what is known of it, s.sign a smooth sign of its velocity."""
-    return -p[0] * abs(s.q) * s.sign
+    """Largest friction on a joint [N]: s is what is known of it, p the effect's parameters."""
+    return p[0] * abs(s.q)
 
 
 GUIDE_FRICTION = Effect(
     "guide_friction",
-    law="-c |q| tanh(v/v₀)",
+    law="at most c |q|, against the motion",
     sizes=(Size("c", "N/m", largest=5.0, probe=0.05, sign=1, about="growth along the way"),),
     places=places("joint", ("slide",)),
     phrase="friction: grows towards the ends",
-    hooks={"force": guide_friction},
+    hooks={"friction": guide_friction},
 )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from identification.commands.common import (
     note,
@@ -14,6 +14,10 @@ from identification.commands.common import (
     write_result,
 )
 from identification.commands.robots import OnRobot
+
+if TYPE_CHECKING:
+    from identification.prediction.result import RecordsDiscovery
+    from identification.robot.robot import Robot
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,7 @@ class Discover(OnRobot):
         from identification.discovery.final_values import collect_final_values
         from identification.discovery.options import read_options
         from identification.files import whole_folder
+        from identification.prediction.result import RecordsDiscovery
         from identification.report.discovery_json import discovery_to_json
         from identification.report.discovery_report import write_discovery_report
         from identification.report.discovery_text import discovery_text
@@ -39,6 +44,8 @@ class Discover(OnRobot):
         options = None if self.options is None else read_options(self.options)
         robot = self.read()
         found = discover(robot, progress=note, options=options)
+        if isinstance(found, RecordsDiscovery):
+            return self._keep_records(robot, found)
         pairs = confirm(robot, found)
         record: dict[str, Any] = discovery_to_json(found)
         record = {**record, "confirm": [vars(c) for c in pairs]}
@@ -60,5 +67,25 @@ class Discover(OnRobot):
                     if n in (*robot.file.free, *has)
                 }
                 write_robot(robot, values, out / "robot.toml", self.output.out)
+                write_result(out / "result.json", self, record)
+        return 0
+
+    def _keep_records(self, robot: Robot, found: RecordsDiscovery) -> int:
+        """Say and keep a discovery on several records."""
+        from identification.files import whole_folder
+        from identification.report.records_json import records_to_json
+        from identification.report.records_report import write_records_report
+        from identification.report.records_text import records_text
+        from identification.robot.write import write_robot
+
+        record = records_to_json(found)
+        if self.output.json:
+            say_json(record)
+        else:
+            say(records_text(found))
+        if self.output.out is not None:
+            with whole_folder(self.output.out) as out:
+                write_records_report(found, out)
+                write_robot(robot, found.final.values, out / "robot.toml", self.output.out)
                 write_result(out / "result.json", self, record)
         return 0

@@ -20,9 +20,11 @@ class OnRobot:
 
     robot: Annotated[Path, tyro.conf.Positional]
     """TOML that names model, columns, free parameters and candidates."""
-    log: Annotated[Path, tyro.conf.Positional]
-    """CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts."""
-    confirm: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="LOG")] = ()
+    logs: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
+    """CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts; several are fitted together."""
+    confirm: Annotated[
+        tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")
+    ] = ()
     """Records to which nothing is fitted."""
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
@@ -32,6 +34,9 @@ class OnRobot:
         Raises:
             InputError: as `identification.read_robot`.
         """
+        from identification.errors import InputError
         from identification.robot.reading import read_robot
 
-        return read_robot(self.robot, self.log, self.confirm)
+        if not self.logs:
+            raise InputError("no log is given; write LOG behind the robot's file")
+        return read_robot(self.robot, self.logs, [path for group in self.confirm for path in group])

@@ -9,7 +9,8 @@ needs.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import mujoco
@@ -24,6 +25,7 @@ from identification.model.predictor import output_columns
 
 Kind = Literal["hinge", "slide"]
 HUGE = 1e50  # of any unit
+MAGNITUDES = ("force", "speed", "travel")
 POSES = 5  # random ones, to see on which joints gravity acts
 NOISE, SHARE = 5.0, 0.1  # a difference of noise, in its std, may be so much of the largest
 
@@ -59,7 +61,7 @@ class Axis:
     heavy: bool = False
 
     def __post_init__(self) -> None:
-        for word in ("force", "speed", "travel"):
+        for word in MAGNITUDES:
             value = getattr(self, word)
             if not (np.isfinite(value) and value > 0):
                 raise InputError(
@@ -91,6 +93,20 @@ def axes(model: mujoco.MjModel, log: Log) -> tuple[Axis, ...]:
         _axis(model, log, j, {field: log.outputs[:, k] for field, k in seen[j].items()})
         for j in sorted(seen)
     )
+
+
+def reach(each: Sequence[Sequence[Axis]]) -> tuple[Axis, ...]:
+    """The joints of several logs, each with the largest force, speed and travel of all.
+
+    Args:
+        each: the joints that each log shows.
+    """
+    found: dict[str, Axis] = {}
+    for axis in (axis for known in each for axis in known):
+        old = found.get(axis.joint, axis)
+        most = {word: max(getattr(old, word), getattr(axis, word)) for word in MAGNITUDES}
+        found[axis.joint] = replace(axis, **most)
+    return tuple(found.values())
 
 
 def _refuse_useless(log: Log) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import overload
 
 from identification.discovery import search
@@ -12,6 +13,8 @@ from identification.discovery.result import Discovery
 from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.logs.log import Log
+from identification.prediction.discovery import discover_records
+from identification.prediction.result import RecordsDiscovery
 from identification.robot.checks import refuse_search_horizon, refuse_start
 from identification.robot.robot import Robot
 
@@ -22,7 +25,7 @@ def discover(
     *,
     progress: Callable[[str], None] | None = None,
     options: DiscoveryOptions | None = None,
-) -> Discovery: ...
+) -> Discovery | RecordsDiscovery: ...
 @overload
 def discover(
     model: NominalModel,
@@ -37,8 +40,11 @@ def discover(
     effects: Sequence[Effect] | None = None,
     progress: Callable[[str], None] | None = None,
     options: DiscoveryOptions | None = None,
-) -> Discovery:
+) -> Discovery | RecordsDiscovery:
     """Name what a model lacks to explain a log, and prove it on the part that was not fitted.
+
+    A robot with several logs is judged by predictions over its horizon, on its records that confirm
+    or on the second half of each log (`identification.prediction`).
 
     Args:
         model: a robot of `read_robot`, which has its log and its candidates; or a nominal model
@@ -58,9 +64,29 @@ def discover(
     if isinstance(model, Robot):
         if log is not None or effects is not None:
             raise InputError("a robot has its own log and candidates; leave log and effects out")
+        if model.others:
+            return _discover_records(model, progress, options)
         refuse_search_horizon(model.file, model.log)
         refuse_start(model.file, model.plant.model, model.log)
         return search.discover(model.nominal_model, model.log, model.candidates, progress, options)
     if log is None or effects is None:
         raise InputError("discover needs a log and candidate effects beside a nominal model")
     return search.discover(model, log, effects, progress, options)
+
+
+def _discover_records(
+    robot: Robot, progress: Callable[[str], None] | None, options: DiscoveryOptions | None
+) -> RecordsDiscovery:
+    """Discovery on several logs; where a window begins is no parameter but found for each."""
+    whole = robot.nominal_model
+    keep = [k for k, name in enumerate(whole.names) if name not in robot.starts]
+    names = tuple(whole.names[k] for k in keep)
+    nominal_model = replace(whole, names=names, std=whole.std[keep])
+    return discover_records(
+        nominal_model,
+        (robot.log, *robot.others),
+        robot.records,
+        robot.candidates,
+        progress,
+        options,
+    )

@@ -59,6 +59,10 @@ def fit(robot: Robot, progress: Callable[[str], None] | None = None) -> RobotFit
         DivergenceError: the model cannot be simulated with the values at which the fit begins.
     """
     file, log = robot.file, robot.log
+    if robot.others:
+        raise InputError(
+            "fit takes one log; discover takes several, and gives the fitted values with them"
+        )
     part = log.part("estimation")
     if part.outputs.size < FEWEST * len(file.free):
         raise InputError(

@@ -15,14 +15,17 @@ from identification.robot.wiring import refuse_miswired
 
 
 def read_robot(
-    path: str | Path, log: str | Path | Log, confirm: Sequence[str | Path | Log] = ()
+    path: str | Path,
+    log: str | Path | Log | Sequence[str | Path | Log],
+    confirm: Sequence[str | Path | Log] = (),
 ) -> Robot:
-    """Read a robot and the log that it is to explain; refuse files that do not belong together.
+    """Read a robot and the logs that it is to explain; refuse files that do not belong together.
 
     Args:
         path: path of its TOML, which names the model (`identification.robot.file` lists every key).
         log: what was measured: a CSV (with a TOML beside it), a MATLAB file with u, y and Ts, or a
-            `Log` whose columns bear the names of the model's actuators and sensors.
+            `Log` whose columns bear the names of the model's actuators and sensors. Several of
+            them are fitted together.
         confirm: records of the same robot to which nothing will be fitted.
 
     Raises:
@@ -33,11 +36,14 @@ def read_robot(
     """
     file = read_robot_file(path)
     records = tuple(_log(file, record) for record in confirm)
-    robot = replace(robot_of(file, _log(file, log)), records=records)
+    first, *others = (
+        _log(file, each) for each in ([log] if isinstance(log, str | Path | Log) else log)
+    )
+    robot = replace(robot_of(file, first, others), records=records)
     refuse_coarse_steps(robot)
     for record in records:
         axes(robot.plant.model, record)  # a sensor that froze is refused
-    for measured in (robot.log, *records):
+    for measured in (robot.log, *robot.others, *records):
         refuse_miswired(robot, measured)
     return robot
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import mujoco
 import numpy as np
 
 from identification.discovery.nominal_model import NominalModel
-from identification.effects.axes import axes
+from identification.effects.axes import axes, reach
 from identification.effects.effect import Effect
 from identification.effects.input_effects import drives, input_effects
 from identification.effects.joint_catalogue import TURNS, joint_effects
@@ -43,6 +44,7 @@ class Robot:
         std: std of the priors of its free parameters, shape (p,): relative where a parameter must
             be positive, else in its unit.
         records: logs to which nothing is fitted; models are confirmed on them.
+        others: further logs that are fitted together with `log`.
     """
 
     file: RobotFile
@@ -50,6 +52,7 @@ class Robot:
     plant: JointPlant
     std: np.ndarray
     records: tuple[Log, ...] = ()
+    others: tuple[Log, ...] = ()
 
     @property
     def nominal_model(self) -> NominalModel:
@@ -116,15 +119,15 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     return decimate(log, file.every) if file.every > 1 else log
 
 
-def robot_of(file: RobotFile, log: Log) -> Robot:
-    """Compile a robot for a log.
+def robot_of(file: RobotFile, log: Log, others: Sequence[Log] = ()) -> Robot:
+    """Compile a robot for a log, and for others that are to be fitted together with it.
 
     Raises:
         InputError: a name, a path, a joint or an effect is unknown, or a value is missing.
     """
     spec = read_model(file.model)
     model = spec.copy().compile()
-    known = axes(model, log)
+    known = reach([axes(model, each) for each in (log, *others)])
     for joint in file.joints:
         if joint not in {a.joint for a in known}:
             raise unknown_name("measured joint", joint, (a.joint for a in known))
@@ -143,4 +146,5 @@ def robot_of(file: RobotFile, log: Log) -> Robot:
                 f"{name!r} under fixed in {file.path} is no number of an effect; write its value"
                 f" into {file.model}, or name it under free"
             )
-    return Robot(file, log, plant.with_values(file.fixed), np.array([std for _, std in records]))
+    std = np.array([std for _, std in records])
+    return Robot(file, log, plant.with_values(file.fixed), std, others=tuple(others))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from math import tanh
 
 import numpy as np
 
@@ -86,20 +85,30 @@ def run(plant, log, **values):
     return Predictor(plant, log, names).predict(np.array([[values[n] for n in names]]))[0]
 
 
-def smooth(plant, joint):
-    """v₀ of a joint: its row is the one before the user data end with key and tag."""
-    width = 3 + sum(len(e.names) for e in plant.effects if "force" in e.hooks)
+def stopping_time(plant, joint):
+    """T of a joint: its row is the one before the user data end with key and tag [s]."""
+    on_joints = [e for e in plant.effects if {"force", "friction"} & {*e.hooks}]
+    width = 3 + sum(len(e.names) for e in on_joints)
     return float(plant.model.jnt_user[plant.model.joint(joint).id, -width])
 
 
 def forces(plant, joint, values):
-    """The force of a joint's effects in plain Python: (q, v, f_u) -> f."""
-    every, v_0 = {**plant.parameters.values(), **values}, smooth(plant, joint)
-    terms = [(e.hooks["force"].py_func, tuple(numbers_at(e, joint, every)))
-             for e in plant.effects if "force" in e.hooks]  # fmt: skip
+    """The force of a joint's effects in plain Python: (q, v, f_u, f_g, passive, M) -> f."""
+    every, T = {**plant.parameters.values(), **values}, stopping_time(plant, joint)
+    laws = {
+        hook: [(e.hooks[hook].py_func, tuple(numbers_at(e, joint, every)), len(e.sizes))
+               for e in plant.effects if hook in e.hooks]
+        for hook in ("force", "friction")
+    }  # fmt: skip
 
-    def force(q, v, f_u):
-        s = Joint(time=0.0, q=q, v=v, v_0=v_0, sign=tanh(v / v_0), f_u=f_u)
-        return sum(law(s, p) for law, p in terms)
+    def total(hook, s):
+        return sum(law(s, p) for law, p, sizes in laws[hook] if any(p[:sizes]))
+
+    def force(q, v, f_u, f_g, passive, M):
+        s = Joint(time=0.0, q=q, v=v, f_u=f_u, f_g=f_g, sign=0.0)
+        f = total("force", s)
+        r = M * v / T + f_u + f_g + passive + f
+        b = max(0.0, total("friction", s._replace(sign=1.0 if r > 0 else -1.0)))
+        return f - max(-b, min(b, r))
 
     return force

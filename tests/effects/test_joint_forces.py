@@ -1,7 +1,5 @@
 """The compiled forces against slow obvious integrations, and their absence to the bit."""
 
-from math import tanh
-
 import mujoco
 import numpy as np
 import pytest
@@ -20,13 +18,14 @@ from joint_cases import (
     steps,
 )
 
-from identification import InputError
+from identification import InputError, Log, Parameter
 from identification.effects.joint_plant import joint_plant
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor
 from identification.native.joint_callback import TAG, Joint
 
-FORCES = {e.name: e for e in slider().effects if "force" in e.hooks}
+HOOKS = ("force", "friction")
+FORCES = {e.name: e for e in (*slider().effects, *arm().effects) if {*HOOKS} & {*e.hooks}}
 
 
 def some(effect, where, factor=20.0):
@@ -38,7 +37,8 @@ def by_hand(plant, u, step, values):
     force = forces(plant, "slide", values)
 
     def rate(s, u):
-        return np.array([s[1], (5 * u - 3 * s[1] + force(s[0], s[1], 5 * u)) / 2])
+        passive = -3 * s[1]
+        return np.array([s[1], (5 * u + passive + force(s[0], s[1], 5 * u, 0, passive, 2)) / 2])
 
     s, out = np.zeros(2), []
     for k in u:
@@ -62,7 +62,10 @@ def test_sizes_of_zero_keep_the_bare_model_to_the_bit():
         assert np.ptp(run(plant, log)) > 0.05
 
 
-@pytest.mark.parametrize("effect", FORCES.values(), ids=lambda e: e.name)
+ON_SLIDER = [e for e in FORCES.values() if "joint slide" in e.places]
+
+
+@pytest.mark.parametrize("effect", ON_SLIDER, ids=lambda e: e.name)
 def test_each_force_is_that_of_a_slow_integration(effect):
     plant = slider()
     u = steps(400)
@@ -73,21 +76,27 @@ def test_each_force_is_that_of_a_slow_integration(effect):
     assert np.abs(expected - run(plant, slider_log(u))[1:, 0]).max() > 1e-4
 
 
-S = Joint(time=2.0, q=0.3, v=0.5, v_0=0.1, sign=tanh(5.0), f_u=-7.0)
-BACK = S._replace(v=-0.5, sign=-tanh(5.0))
+S = Joint(time=2.0, q=0.3, v=0.5, f_u=-7.0, f_g=3.0, sign=1.0)
+BACK = S._replace(v=-0.5, sign=-1.0)
 LAWS = [
-    ("coulomb_friction", (2.0,), S, -2 * tanh(5)),
-    ("coulomb_friction", (2.0,), BACK, 2 * tanh(5)),
-    ("asymmetric_friction", (2.0,), S, -2 * tanh(5)),
-    ("asymmetric_friction", (2.0,), BACK, -2 * tanh(5)),
+    ("coulomb_friction", (2.0,), S, 2.0),
+    ("coulomb_friction", (2.0,), BACK, 2.0),
+    ("asymmetric_friction", (2.0,), S, 2.0),
+    ("asymmetric_friction", (2.0,), BACK, -2.0),
     ("asymmetric_viscous_friction", (3.0,), S, -1.5),
     ("asymmetric_viscous_friction", (3.0,), BACK, -1.5),
-    ("stribeck_friction", (2.0, 0.25), S, -2 * np.exp(-4) * tanh(5)),
+    ("stribeck_friction", (2.0, 0.25, 2.0), S, 2 * np.exp(-4)),
+    ("stribeck_friction", (2.0, 0.25, 1.0), BACK, 2 * np.exp(-2)),
     ("quadratic_friction", (3.0,), BACK, 0.75),
-    ("load_dependent_friction", (0.1,), S, -0.7 * tanh(5)),
-    ("position_dependent_friction", (2.0,), S, -0.6 * tanh(5)),
+    ("sublinear_friction", (3.0, 0.5), BACK, 3 * 0.5**0.5),
+    ("sublinear_friction", (3.0, 0.5), S._replace(v=0.0), 0.0),
+    ("load_dependent_friction", (0.1,), S, 0.7),
+    ("transmitted_load_friction", (0.1,), S, 1.0),
+    ("gravity_load_friction", (0.1,), S, 0.3),
+    ("load_stribeck_friction", (0.1, 0.25), S, np.exp(-2)),
+    ("position_dependent_friction", (2.0,), S, 0.6),
     ("position_dependent_damping", (2.0,), BACK, 0.3),
-    ("periodic_friction", (2.0, 3.0, 4.0), S, -(2 * np.cos(1.2) + 3 * np.sin(1.2)) * tanh(5)),
+    ("periodic_friction", (2.0, 3.0, 4.0), S, 2 * np.cos(1.2) + 3 * np.sin(1.2)),
     ("cogging", (2.0, 3.0, 4.0), S, 2 * np.cos(1.2) + 3 * np.sin(1.2)),
     ("offset", (1.0,), S, 1.0),
     ("stiffness", (4.0,), S, -1.2),
@@ -97,7 +106,8 @@ LAWS = [
 
 @pytest.mark.parametrize(("name", "p", "s", "expected"), LAWS)
 def test_a_force_is_what_the_equation_says(name, p, s, expected):
-    assert FORCES[name].hooks["force"].py_func(s, p) == pytest.approx(expected, rel=1e-14)
+    (law,) = FORCES[name].hooks.values()
+    assert law.py_func(s, p) == pytest.approx(expected, rel=1e-14)
 
 
 def test_every_force_is_held_against_its_equation():
@@ -107,7 +117,7 @@ def test_every_force_is_held_against_its_equation():
 def test_on_an_arm_the_forces_are_those_of_qfrc_applied():
     plant, u = arm(), steps(60, 2)
     values = {}
-    for effect in (e for e in plant.effects if "force" in e.hooks):
+    for effect in (e for e in plant.effects if e.name in FORCES):
         values |= some(effect, "all joints", 3.0) | some(effect, "joint elbow", 5.0)
     simulated = run(plant, arm_log(u), **values)
     by_joint = [forces(plant, joint, values) for joint in ("shoulder", "elbow")]
@@ -127,18 +137,78 @@ def test_on_an_arm_the_forces_are_those_of_qfrc_applied():
 
 
 def applied(model, by_joint, inputs):
-    data, out = mujoco.MjData(model), []
+    data, still, out = mujoco.MjData(model), mujoco.MjData(model), []
+    M = np.empty((2, 2))
     for u in inputs:
         data.ctrl = u
         load = (
             2 * (u[0] + 0.1 - 0.3 * 2 * data.qpos[0] - 0.05 * 2 * data.qvel[0]),
             0.5 * np.clip(u[1], -0.4, 0.4),
         )
+        still.qpos = data.qpos
+        mujoco.mj_forward(model, still)  # at rest, all of the bias is gravity
+        mujoco.mj_forward(model, data)
+        mujoco.mj_fullM(model, M, data.qM) if hasattr(data, "qM") else mujoco.mj_fullM(
+            model, data, M
+        )
         for j in range(2):
-            data.qfrc_applied[j] = by_joint[j](data.qpos[j], data.qvel[j], load[j])
+            data.qfrc_applied[j] = by_joint[j](
+                data.qpos[j], data.qvel[j], load[j], -still.qfrc_bias[j], data.qfrc_passive[j],
+                M[j, j],
+            )  # fmt: skip
         mujoco.mj_step(model, data)
         out.append(np.array(data.qpos))
     return np.array(out)
+
+
+PENDULUM = """<mujoco model="pendulum">
+  <option timestep="0.005" integrator="RK4"/>
+  <worldbody><body><joint name="hinge" axis="0 1 0"/>
+    <inertial pos="0 0 -0.1" mass="0.5" diaginertia="1e-3 1e-3 1e-3"/></body></worldbody>
+  <actuator><motor name="drive" joint="hinge"/></actuator>
+  <sensor><jointpos name="angle" joint="hinge"/></sensor>
+</mujoco>"""
+WEIGHT = 0.5 * 9.81 * 0.1  # of the arm, level [N m]
+
+
+def released(angle, seconds=5.0, **values):
+    """Angle of a pendulum that is let go without a drive, shape (N,)."""
+    t = np.arange(round(seconds / STEP)) * STEP
+    log = Log(t, 1e-12 * np.sin(t)[:, None], np.sin(t)[:, None], ("drive",), ("angle",))
+    plant = joint_plant(PENDULUM, (Parameter("q", 0.0, "rad", "qpos[0]", scale=0.1),), log)
+    return run(plant, log, q=angle, **values)[:, 0]
+
+
+@pytest.mark.parametrize(
+    ("name", "size"),
+    [("coulomb_friction.f_c", 1.02 * WEIGHT * np.sin(0.6)), ("gravity_load_friction.mu", 1.02),
+     ("transmitted_load_friction.mu", 1.02)],
+)  # fmt: skip
+def test_friction_holds_what_drives_less_and_does_not_creep(name, size):
+    q = released(0.6, **{f"{name}@hinge": size})
+    assert np.abs(q - 0.6).max() < 1e-12
+
+
+@pytest.mark.parametrize("name", ["gravity_load_friction.mu", "transmitted_load_friction.mu"])
+def test_friction_under_load_lets_go_what_drives_more(name):
+    q = released(0.6, **{f"{name}@hinge": 0.98})
+    assert q[-1] < 0.59
+
+
+def test_coulomb_friction_stops_a_pendulum_where_it_holds():
+    f_c = 0.3 * WEIGHT
+    q = released(1.2, seconds=8.0, **{"coulomb_friction.f_c@hinge": f_c})
+    assert np.ptp(q[-100:]) < 1e-12  # at rest
+    assert abs(WEIGHT * np.sin(q[-1])) < f_c
+
+
+def test_coulomb_friction_takes_its_work_from_a_swing():
+    """From rest to rest the weight's work is f_c times the way."""
+    f_c = 0.1 * WEIGHT
+    q = released(1.0, seconds=2.0, **{"coulomb_friction.f_c@hinge": f_c})
+    turn = int(np.argmin(q))
+    fallen = WEIGHT * (np.cos(q[turn]) - np.cos(q[0]))
+    assert fallen == pytest.approx(f_c * (q[0] - q[turn]), rel=5e-3)
 
 
 def test_a_batch_has_sizes_of_its_own_in_each_simulation():

@@ -12,16 +12,17 @@ from joint_cases import (
     run,
     slider,
     slider_log,
-    smooth,
     steps,
+    stopping_time,
 )
 
 from identification import InputError, Parameter
-from identification.effects.axes import SMOOTH, Axis, axes
+from identification.effects.axes import Axis, axes, reach
 from identification.effects.joint_catalogue import joint_effects
 from identification.effects.joint_plant import candidates, joint_plant
 from identification.estimation.window_error import window_error
 from identification.estimation.window_estimate import estimate_windows
+from identification.native.joint_callback import STEPS
 
 
 def test_a_single_joint_has_one_place_and_two_have_a_common_one():
@@ -57,7 +58,7 @@ def test_axes_are_read_off_the_log_and_hinges_apart_from_slides():
     u = 0.5 * np.ones((200, 1))
     t = np.arange(200) * STEP
     plant = joint_plant(SLIDER, (), slider_log(u, 0.2 * np.sin(3 * t)[:, None]))
-    assert smooth(plant, "slide") == pytest.approx(SMOOTH * 0.6, rel=1e-3)
+    assert stopping_time(plant, "slide") == STEPS * plant.model.opt.timestep
     (size,) = next(e for e in plant.effects if e.name == "offset").sizes
     assert size.largest == pytest.approx(0.2 * 2.5)
     assert size.unit == "N"
@@ -180,3 +181,19 @@ def test_what_grows_along_the_way_may_take_its_share_of_the_drive_at_the_end_of_
     (k,), (k_3,) = effects["stiffness"].sizes, effects["hardening"].sizes
     assert k.largest * A == pytest.approx(share)
     assert k_3.largest * A**3 == pytest.approx(share)
+
+
+def test_several_logs_reach_as_far_as_the_farthest_of_them():
+    slow, fast = Axis("j", "hinge", 1.0, 2.0, 3.0), Axis("j", "hinge", 0.5, 4.0, 1.0)
+    assert reach([(slow,), (fast,)]) == (Axis("j", "hinge", 1.0, 4.0, 3.0),)
+    assert reach([(fast,), (slow,)]) == reach([(slow,), (fast,)])
+
+
+def test_a_wave_is_tried_only_where_two_periods_of_it_are_seen():
+    def waves(travel):
+        known = (Axis("j", "hinge", 1.0, 2.0, travel),)
+        return next((e.shapes[0].grid for e in joint_effects(known) if e.name == "cogging"), ())
+
+    assert waves(0.1) == ()  # less than two periods of the highest harmonic
+    assert min(waves(2 * np.pi)) == 2.0
+    assert min(waves(4 * np.pi)) == 1.0

@@ -1,0 +1,80 @@
+"""The one-file report of a discovery on several records."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from identification.prediction.result import RecordsDiscovery
+from identification.prediction.scores import WindowScore
+from identification.report.discovery_figures import gains_figure
+from identification.report.effect_words import describe_effect
+from identification.report.page import Section, Table, save_figures, write_report
+from identification.report.records_text import describe_refitted, records_verdict
+
+BEST = 10  # candidates shown
+
+
+def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
+    """Write report.html and its figures into a folder; returns the path of the page.
+
+    Args:
+        found: the discovery.
+        folder: exists.
+
+    Raises:
+        InputError: a file cannot be written.
+    """
+    shown = [_records(found), _candidates(found), _values(found)]
+    save_figures(shown, folder)
+    names = ", ".join(r.log.name for r in found.records if r.role == "fit")
+    return write_report(
+        folder / "report.html", f"{names}: what the model lacks", records_verdict(found), shown,
+        good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
+    )  # fmt: skip
+
+
+def _records(found: RecordsDiscovery) -> Section:
+    unit = f" [{found.unit}]" if found.unit else ""
+    rows = tuple((e.name, e.role, e.before, e.after) for e in found.errors)
+    return Section(
+        "Error of prediction by record",
+        f"Rms error over windows of {found.horizon:g} s, each from the state that explains it best."
+        " Nothing was fitted to the records that confirm.",
+        table=Table(("record", "role", f"nominal model{unit}", f"final model{unit}"), rows),
+    )
+
+
+def _candidates(found: RecordsDiscovery) -> Section:
+    each: dict[str, WindowScore] = {}
+    for score in found.scores:
+        each.setdefault(score.candidate.effect.name, score)
+    best = [*each.values()][:BEST]
+    named = {n.effect.candidate.effect.name for n in found.named}
+    text = "Share of the fitted error that each effect would explain at its best place and shape."
+    if found.rejected:
+        tried = "\n\n".join(describe_refitted(r) for r in found.rejected)
+        text += f"\n\nTried, and not proven on unseen data:\n\n{tried}"
+    if not best:
+        return Section("Who could explain it", text)
+    figure = gains_figure(
+        [describe_effect(s.candidate) for s in best], np.array([s.fall for s in best]),
+        [s.candidate.effect.name in named for s in best],
+    )  # fmt: skip
+    return Section("Who could explain it", text, figures=(("Share of the fitted error", figure),))
+
+
+def _values(found: RecordsDiscovery) -> Section:
+    parameters = found.final.fit.problem.parts[0].predictor.plant.parameters
+    std = found.final.std
+    before = found.nominal.values
+    rows = tuple(
+        (name, before.get(name), value, std.get(name), parameters[name].unit)
+        for name, value in found.final.values.items()
+    )
+    return Section(
+        "Parameters",
+        "Std by blocks of windows, whose errors need not be white.",
+        table=Table(("parameter", "nominal model", "final model", "std", "unit"), rows),
+    )
