@@ -41,7 +41,7 @@ def window_error(
         DivergenceError: the model cannot be simulated.
     """
     shooting, d = _fixed(plant, log, length, values)
-    return shooting.error(search_states(shooting, d).r)
+    return shooting.error(search_states(shooting, d).tangent.r)
 
 
 def first_error(plant: Plant, log: Log, length: float) -> np.ndarray:

@@ -172,11 +172,11 @@ class EachWindow:
         return replace(self, d=d, tangent=tangent(self.shooting, np.zeros(0), d))
 
 
-def search_states(shooting: Shooting, d: np.ndarray) -> Tangent:
+def search_states(shooting: Shooting, d: np.ndarray) -> EachWindow:
     """Fit the initial state of each window, beginning with the changes d (W, nx).
 
     Returns:
-        The linearisation of the windows at the fitted states.
+        The windows at the fitted states, and their linearisation there.
 
     Raises:
         DivergenceError: the simulation of a window diverged.
@@ -188,4 +188,4 @@ def search_states(shooting: Shooting, d: np.ndarray) -> Tangent:
         small = np.abs(trial.after - trial.before) <= ENDED_OF_STATES * trial.before.mean()
         if np.all(small | (trial.next > MOST_DAMPING_OF_STATES)):
             break
-    return at.tangent
+    return at

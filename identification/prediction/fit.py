@@ -11,18 +11,24 @@ is that of a sum over blocks of windows, whose residuals need not be white (Whit
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from identification.errors import DivergenceError, InputError
+from identification.estimation.levenberg_marquardt import Cost, Damping, levenberg_marquardt
+from identification.estimation.options import Progress
 from identification.estimation.shooting import Tangent
 from identification.model.rollout import State
 from identification.prediction.problem import Problem
 
-FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1e6
+# Of the squared norms of the columns of X and S.
+DAMPING = Damping(first=1e-3, raised=5.0, lowered=10.0, least=1e-9, silent=1e-9)
+MOST_DAMPING = 1e3  # beyond, a step is too short to gain anything
 BLOCKS = 40  # of windows, over all records, for the std
+
+_Step = tuple[np.ndarray, tuple[np.ndarray, ...]]  # Δq (p,), and Δd (W, nx) of each record
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,13 +95,49 @@ def projected(t: Tangent) -> tuple[np.ndarray, np.ndarray]:
     return S, t.r - np.einsum("wmk,wk->wm", U, np.einsum("wmk,wm->wk", U, t.r))
 
 
+@dataclass(frozen=True)
+class _AtPoint:
+    """The criterion linearised at parameters and states, for `levenberg_marquardt`."""
+
+    problem: Problem
+    q: np.ndarray
+    moves: tuple[np.ndarray, ...]
+    tangents: tuple[Tangent, ...]
+
+    @property
+    def cost(self) -> float:
+        data = sum(float(np.sum(t.r**2)) for t in self.tangents)
+        return data + float(np.sum(self.problem.against(self.q) ** 2))
+
+    def step(self, μ: Cost) -> _Step:
+        return _step(self.problem, self.q, self.tangents, float(μ))
+
+    def after(self, step: _Step) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
+        space = self.problem.space
+        q = np.clip(self.q + step[0], space.lower, space.upper)
+        return q, tuple(d + more for d, more in zip(self.moves, step[1], strict=True))
+
+    def cost_after(self, step: _Step) -> float:
+        try:
+            return self.problem.cost(*self.after(step))
+        except InputError:  # it diverged, or has no start: the search must go elsewhere
+            return np.inf
+
+    def bent(self, step: _Step, after: Cost, μ: Cost) -> None:
+        """Steps are straight."""
+
+    def moved(self, step: _Step, taken: np.ndarray) -> _AtPoint:
+        q, moves = self.after(step)
+        return _AtPoint(self.problem, q, moves, self.problem.tangents(q, moves))
+
+
 def solve(
     problem: Problem,
     q: np.ndarray,
     moves: Sequence[np.ndarray],
     tolerance: float = 1e-4,
     most: int = 25,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress | None = None,
 ) -> WindowFit:
     """Search the least V from a start.
 
@@ -103,57 +145,35 @@ def solve(
         problem: windows and priors.
         q: where to begin, shape (p,).
         moves: of the windows' states, one array (W, nx) a record.
-        tolerance: relative fall of V, and change of q, at which the search ends.
+        tolerance: relative fall of V at which the search ends.
         most: linearisations at most.
         progress: is told one line per linearisation.
 
     Raises:
         DivergenceError: the start cannot be simulated.
     """
-    low, high = problem.space.lower, problem.space.upper
-    q, moves = np.clip(q, low, high), tuple(moves)
-    tangents = problem.tangents(q, moves)
-    cost, damping = _cost(problem, q, tangents), FIRST_DAMPING
-    for step in range(1, most + 1):
-        if progress is not None:
-            samples = sum(p.cut.outputs.size for p in problem.parts)
-            progress(f"windows: error {np.sqrt(cost / samples):.4g} of its scale, step {step}")
-        while True:
-            dq, dd = _step(problem, q, tangents, damping)
-            trial = np.clip(q + dq, low, high)
-            there = tuple(d + more for d, more in zip(moves, dd, strict=True))
-            try:
-                after = problem.cost(trial, there)
-            except InputError:  # it diverged, or has no start: the search must go elsewhere
-                after = np.inf
-            if after < cost:
-                break
-            if damping > MOST_DAMPING or np.abs(dq).max(initial=0.0) < tolerance * 1e-2:
-                return WindowFit(
-                    problem=problem, q=q, moves=moves, tangents=tangents, cost=cost,
-                    converged=damping <= MOST_DAMPING, steps=step,
-                )  # fmt: skip
-            damping *= 5
-        small = cost - after < tolerance * cost
-        q, moves, damping = trial, there, max(damping / 10, LEAST_DAMPING)
+    q, moves = problem.space.inside(q), tuple(moves)
+    at = _AtPoint(problem, q, moves, problem.tangents(q, moves))
+    converged, steps = False, 1
+    samples = sum(p.cut.outputs.size for p in problem.parts)
+    trials = levenberg_marquardt(at, _AtPoint.moved, DAMPING)
+    while not converged and steps < most:
         try:
-            tangents = problem.tangents(q, moves)
-        except DivergenceError:  # a moved neighbour is lost: the point itself is good
-            small = True
-        cost = after
-        if small:
-            return WindowFit(
-                problem=problem, q=q, moves=moves, tangents=tangents, cost=cost, converged=True,
-                steps=step,
-            )  # fmt: skip
+            trial = next(trials)
+        except DivergenceError:  # a neighbour of the new point: the last one stands
+            break
+        if trial.taken:
+            at, steps = trial.criterion, steps + 1
+            if progress is not None:
+                error = np.sqrt(at.cost / samples)
+                progress(f"windows: error {error:.4g} of its scale, step {steps}")
+            converged = bool(trial.before - trial.after < tolerance * trial.before)
+        else:
+            converged = bool(trial.next > MOST_DAMPING)
     return WindowFit(
-        problem=problem, q=q, moves=moves, tangents=tangents, cost=cost, converged=False, steps=most
-    )
-
-
-def _cost(problem: Problem, q: np.ndarray, tangents: Sequence[Tangent]) -> float:
-    data = sum(float(np.sum(t.r**2)) for t in tangents)
-    return data + float(np.sum(problem.against(q) ** 2))
+        problem=problem, q=at.q, moves=at.moves, tangents=at.tangents, cost=at.cost,
+        converged=converged, steps=steps,
+    )  # fmt: skip
 
 
 def _normal(t: Tangent) -> tuple[np.ndarray, np.ndarray]:
@@ -164,7 +184,7 @@ def _normal(t: Tangent) -> tuple[np.ndarray, np.ndarray]:
 
 def _step(
     problem: Problem, q: np.ndarray, tangents: Sequence[Tangent], damping: float
-) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
+) -> _Step:
     """The damped step of the parameters and of the windows' states."""
     H, g = np.diag(problem.weight**2), problem.weight * problem.against(q)
     for t in tangents:

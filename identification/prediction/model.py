@@ -101,6 +101,7 @@ def fit_nominal(
             continue
         task = problem(plant, fitted, space, length, values, mean, weight, scale)
         found = solve(task, q, no_moves(task), tolerance=ROUGH, progress=progress)
+        _refuse_idle(found)
         q, values = found.q, found.values
         scale = _rms(found)
     if found is None:
@@ -229,6 +230,23 @@ def _away(parameters: ParameterSet, name: str, value: float) -> float:
     record = parameters[name]
     least = SMALL * record.scale
     return value if abs(value) > least else least * (1 if record.upper > 0 else -1)
+
+
+def _refuse_idle(found: WindowFit) -> None:
+    """Refuse parameters that no output of any window feels.
+
+    Raises:
+        InputError: there is one.
+    """
+    felt = sum(np.sum(t.S**2, axis=(0, 1)) for t in found.tangents)
+    idle = [n for n, square in zip(found.problem.names, np.atleast_1d(felt), strict=True)
+            if square == 0]  # fmt: skip
+    if idle:
+        raise InputError(
+            f"{', '.join(idle)} ha{'s' if len(idle) == 1 else 've'} no effect on any window of the"
+            " records, where each window begins at a state of its own; leave it fixed, or check"
+            " where it goes in the model"
+        )
 
 
 def _rms(found: WindowFit) -> np.ndarray:

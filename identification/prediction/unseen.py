@@ -19,12 +19,12 @@ from scipy.stats import ttest_1samp
 from identification.errors import InputError
 from identification.estimation.metrics import fit_percent
 from identification.estimation.shooting import Shooting
+from identification.estimation.window_search import search_states
 from identification.estimation.windows import Windows, first_states, windows
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.prediction.records import Record
-from identification.prediction.smoother import smoothed
 
 LENGTHS = (0.5, 1.0, 2.0)  # of the horizon
 PER_RECORD = 10  # blocks of a record at most
@@ -178,4 +178,5 @@ def _errors(
     shooting = Shooting(predictor, space, cut, first, np.diag(1 / scale))
     model = plant.model
     moves = np.zeros((len(cut.starts), 2 * model.nv + model.na)) if begun is None else begun
-    return smoothed(shooting, moves)
+    at = search_states(shooting, moves)
+    return at.d, shooting.error(at.tangent.r)
