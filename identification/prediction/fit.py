@@ -24,7 +24,7 @@ from identification.model.rollout import State
 from identification.prediction.problem import Problem
 
 # Of the squared norms of the columns of X and S.
-DAMPING = Damping(first=1e-3, raised=5.0, lowered=10.0, least=1e-9, silent=1e-9)
+DAMPING = Damping(first=1e-3, raised=5.0, lowered=10.0, least=1e-9, floor=1e-9)
 MOST_DAMPING = 1e3  # beyond, a step is too short to gain anything
 BLOCKS = 40  # of windows, over all records, for the std
 
@@ -123,8 +123,8 @@ class _AtPoint:
         except InputError:  # it diverged, or has no start: the search must go elsewhere
             return np.inf
 
-    def bent(self, step: _Step, after: Cost, μ: Cost) -> None:
-        """Steps are straight."""
+    def bend(self, step: _Step, after: Cost, μ: Cost) -> None:
+        """The steps are never bent."""
 
     def moved(self, step: _Step, taken: np.ndarray) -> _AtPoint:
         q, moves = self.after(step)
@@ -182,9 +182,7 @@ def _normal(t: Tangent) -> tuple[np.ndarray, np.ndarray]:
     return np.einsum("wmp,wmq->pq", S, S), np.einsum("wmp,wm->p", S, r)
 
 
-def _step(
-    problem: Problem, q: np.ndarray, tangents: Sequence[Tangent], damping: float
-) -> _Step:
+def _step(problem: Problem, q: np.ndarray, tangents: Sequence[Tangent], damping: float) -> _Step:
     """The damped step of the parameters and of the windows' states."""
     H, g = np.diag(problem.weight**2), problem.weight * problem.against(q)
     for t in tangents:
