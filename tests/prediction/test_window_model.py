@@ -1,0 +1,135 @@
+"""Fits over the windows of records, scores and comparisons, against slow obvious ways."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from records_cases import FREE, HORIZON, nominal_model, pendulum, record, records
+
+from identification.discovery.scoring.sensitivities import list_common
+from identification.effects.joint_plant import candidates
+from identification.prediction.model import fit_nominal, with_effect
+from identification.prediction.records import as_records
+from identification.prediction.scores import window_scores
+from identification.prediction.unseen import compare, predict
+
+LOAD = {"transmitted_load_friction.mu@hinge": 0.15}
+
+
+def fitted(logs, confirm):
+    base = nominal_model()
+    return fit_nominal(base.plant, base.names, base.std, HORIZON, as_records(logs, confirm))
+
+
+@cache
+def clean():
+    logs = records(3, noise=1e-9)
+    return fitted(logs[:2], logs[2:])
+
+
+@cache
+def rubbed():
+    logs = records(4, LOAD)
+    return fitted(logs[:2], logs[2:])
+
+
+def effects():
+    return {e.name: e for e in candidates(pendulum(), FREE)}
+
+
+def scored(model, *names):
+    known = effects()
+    return window_scores(model.fit, list_common([known[n] for n in names]))
+
+
+def test_clean_records_give_the_values_that_made_them():
+    assert clean().values["J"] == pytest.approx(2e-3, rel=1e-4)
+    assert clean().values["d"] == pytest.approx(0.02, rel=1e-4)
+
+
+def test_the_order_of_records_changes_nothing():
+    logs = records(4)
+    a, b = fitted(logs[:2], logs[2:]), fitted(logs[1::-1], logs[:1:-1])
+    for name in FREE:
+        assert a.values[name] == pytest.approx(b.values[name], rel=1e-9)
+    assert a.fit.cost == pytest.approx(b.fit.cost, rel=1e-9)
+
+
+def test_the_same_records_twice_halve_the_variance():
+    logs = records(3)
+    again = [replace(log, name=f"{log.name} again") for log in logs[:2]]
+    once, twice = fitted(logs[:2], logs[2:]), fitted([*logs[:2], *again], logs[2:])
+    for name in FREE:
+        assert twice.values[name] == pytest.approx(once.values[name], rel=1e-3)
+        assert once.std[name] / twice.std[name] == pytest.approx(2**0.5, rel=0.3)
+
+
+def test_a_score_is_that_of_least_squares_with_columns_by_hand():
+    model = rubbed()
+    (score,) = scored(model, "quadratic_friction")
+    fit, (name,) = model.fit, score.candidate.sizes
+    part, t, d = fit.problem.parts[0], fit.tangents[0], fit.moves[0]
+    assert len(fit.problem.parts) == 2
+    columns, rests, bases = [], [], []
+    probe = score.candidate.effect.sizes[0].probe
+    for part, t, d in zip(fit.problem.parts, fit.tangents, fit.moves, strict=True):
+        plant = part.predictor.plant.with_values({name: probe})
+        moved = type(part)(
+            type(part.predictor)(plant, part.predictor.log, part.predictor.names,
+                                 part.predictor.fixed),
+            part.space, part.cut, part.first, part.whitener,
+        )  # fmt: skip
+        r = moved.residual(fit.q, d)
+        for w in range(len(d)):  # states of each window by hand: project on all that they can do
+            U = t.U[w][:, t.s[w] > 0]
+            P = np.eye(len(U)) - U @ U.T
+            columns.append(P @ (t.r[w] - r[w]) / probe)
+            rests.append(P @ t.r[w])
+            bases.append(P @ t.S[w])
+    below = np.diag(fit.problem.weight)
+    F = np.vstack([*bases, below])
+    S = np.concatenate([*columns, np.zeros(len(below))])
+    e = np.concatenate([*rests, fit.problem.against(fit.q)])
+    S, e = (x - F @ np.linalg.lstsq(F, x, rcond=None)[0] for x in (S, e))
+    size = S @ e / (S @ S)
+    assert score.size[0] == pytest.approx(size, rel=1e-6)
+    assert score.fall == pytest.approx(size**2 * (S @ S) / (e @ e), rel=1e-6)
+
+
+def test_the_hidden_law_explains_most():
+    best = scored(rubbed(), *effects())[0]
+    assert best.candidate.effect.name == "transmitted_load_friction"
+    assert best.p_value < 1e-6
+
+
+@pytest.mark.parametrize("name", ["transmitted_load_friction", "quadratic_friction", "offset"])
+def test_a_child_never_explains_less_than_its_parent(name):
+    parent, logs = rubbed(), records(4, LOAD)
+    (score, *_) = scored(parent, name)
+    child = with_effect(parent, score, HORIZON, as_records(logs[:2], logs[2:])[2:])
+    assert child is None or child.fit.cost < parent.fit.cost
+
+
+def test_a_model_predicts_no_better_than_itself():
+    seen = clean().unseen
+    same = compare(seen, seen)
+    assert same.t == 0
+    assert same.chance == 1
+    assert set(same.gains) == {0.0} == set(same.falls)
+
+
+def test_the_truth_predicts_unseen_records_down_to_the_noise():
+    plant, confirm = pendulum(), as_records([record(9)], records(4)[3:])[1:]
+    seen = predict(plant, confirm, HORIZON, np.array([3e-4]), {})
+    (squares,) = seen.at_horizon
+    # of 20 readings of a window two are spent on its state
+    assert squares.mean() == pytest.approx(0.9, abs=0.15)
+
+
+def test_a_parameter_without_effect_is_refused(refusal):
+    base, logs = nominal_model(), records(2)
+    plant = base.plant
+    names, std = (*base.names, "cogging.n"), np.append(base.std, 1.0)
+    said = refusal(fit_nominal, plant, names, std, HORIZON, as_records(logs[:1], logs[1:]))
+    assert "cogging.n has no effect" in said
