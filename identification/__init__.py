@@ -65,16 +65,16 @@ _PUBLIC = {
     "Fit": "estimation.fit",
     "profile": "estimation.profiles",
     "Profile": "estimation.profiles",
-    "estimate_windows": "estimation.window_estimate",
-    "WindowEstimate": "estimation.window_estimate",
-    "joined": "estimation.joined",
+    "estimate_windows": "windows.window_estimate",
+    "WindowEstimate": "windows.window_estimate",
+    "joined": "windows.joined",
     "estimate_innovations": "kalman.estimate",
     "InnovationsFit": "kalman.estimate",
     # how good a model is
     "fit_percent": "estimation.metrics",
     "rms": "estimation.metrics",
     "loss": "estimation.metrics",
-    "window_error": "estimation.window_error",
+    "window_error": "windows.window_error",
     "residual_tests": "estimation.residuals",
     "ResidualTests": "estimation.residuals",
     # what an experiment can say
@@ -136,7 +136,6 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.estimation.fit import assess as assess
     from identification.estimation.information import Information as Information
     from identification.estimation.information import determinable as determinable
-    from identification.estimation.joined import joined as joined
     from identification.estimation.metrics import fit_percent as fit_percent
     from identification.estimation.metrics import loss as loss
     from identification.estimation.metrics import rms as rms
@@ -147,9 +146,6 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.estimation.profiles import profile as profile
     from identification.estimation.residuals import ResidualTests as ResidualTests
     from identification.estimation.residuals import residual_tests as residual_tests
-    from identification.estimation.window_error import window_error as window_error
-    from identification.estimation.window_estimate import WindowEstimate as WindowEstimate
-    from identification.estimation.window_estimate import estimate_windows as estimate_windows
     from identification.kalman.estimate import InnovationsFit as InnovationsFit
     from identification.kalman.estimate import estimate_innovations as estimate_innovations
     from identification.logs.decimation import decimate as decimate
@@ -185,5 +181,9 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.robot.record_error import Confirmation as Confirmation
     from identification.robot.robot import Robot as Robot
     from identification.robot.write import write_robot as write_robot
+    from identification.windows.joined import joined as joined
+    from identification.windows.window_error import window_error as window_error
+    from identification.windows.window_estimate import WindowEstimate as WindowEstimate
+    from identification.windows.window_estimate import estimate_windows as estimate_windows
 else:
     __getattr__, __dir__ = lazy(__name__, _PUBLIC)

@@ -8,7 +8,7 @@
 Both residuals pass the filter of the model without the effect, so that neither predictor follows
 the data more closely than the other. rms is that of the free run, and d is what input errors do to
 it. Where the nominal model has a horizon, rms and d are those of windows of that length (see
-`identification.estimation.window_error`).
+`identification.windows.window_error`).
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from identification.discovery.effect_results import Gap, Proof
 from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
 from identification.estimation.metrics import fit_percent
-from identification.estimation.window_error import window_error
-from identification.estimation.windows import windows
 from identification.kalman.noise_model import Whitener, build_whitener
 from identification.kalman.point import extend_point
 from identification.kalman.refit import Refit
 from identification.logs.log import Log
+from identification.windows.window_error import window_error
+from identification.windows.windows import windows
 
 SHORTEST = 5  # samples of a block at least
 

@@ -19,9 +19,9 @@ import numpy as np
 from identification.errors import DivergenceError, InputError
 from identification.estimation.levenberg_marquardt import Cost, Damping, levenberg_marquardt
 from identification.estimation.options import Progress
-from identification.estimation.shooting import Tangent
 from identification.model.rollout import State
 from identification.prediction.problem import Problem
+from identification.windows.shooting import Tangent
 
 # Of the squared norms of the columns of X and S.
 DAMPING = Damping(first=1e-3, raised=5.0, lowered=10.0, least=1e-9, floor=1e-9)

@@ -4,7 +4,7 @@
 
 r: record, w: window of it, d_rw: its state at the start, s: rms of each output's error under the
 nominal model, q̄, σ: what was known of a parameter before the records spoke. The states of a window
-are eliminated by themselves (`identification.estimation.shooting`), so that records add up.
+are eliminated by themselves (`identification.windows.shooting`), so that records add up.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.estimation.shooting import Shooting, Tangent, tangent
-from identification.estimation.windows import apart, first_states, windows
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.model.rollout import State
 from identification.prediction.records import Record
+from identification.windows.shooting import Shooting, Tangent, tangent
+from identification.windows.windows import apart, first_states, windows
 
 
 @dataclass(frozen=True)

@@ -18,13 +18,13 @@ from scipy.stats import ttest_1samp
 
 from identification.errors import InputError
 from identification.estimation.metrics import fit_percent
-from identification.estimation.shooting import Shooting
-from identification.estimation.window_search import search_states
-from identification.estimation.windows import Windows, first_states, windows
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.prediction.records import Record
+from identification.windows.shooting import Shooting
+from identification.windows.window_search import search_states
+from identification.windows.windows import Windows, first_states, windows
 
 LENGTHS = (0.5, 1.0, 2.0)  # of the horizon
 PER_RECORD = 10  # blocks of a record at most

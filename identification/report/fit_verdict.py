@@ -11,7 +11,7 @@ from identification.estimation.identifiability import in_words
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
     from identification.estimation.identifiability import Identifiability
-    from identification.estimation.window_estimate import WindowEstimate
+    from identification.windows.window_estimate import WindowEstimate
 
 # A residual above this multiple of the noise floor is more than noise; the floor itself is an upper
 # bound of the noise that errs by a few percent.

@@ -8,10 +8,10 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from identification.estimation.window_error import window_error
 from identification.logs.log import Log
 from identification.model.predictor import Plant
 from identification.report.style import INK, SERIES, STYLE
+from identification.windows.window_error import window_error
 
 
 def windows_figure(

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from identification.estimation.fit import Fit
-from identification.estimation.window_estimate import WindowEstimate
 from identification.logs.noise import noise_floor
 from identification.quantities import finite_or_none
 from identification.report.fit_json import fit_to_json
 from identification.report.fit_verdict import window_sentences
 from identification.robot.fitting import RobotFit
 from identification.robot.record_error import Confirmation
+from identification.windows.window_estimate import WindowEstimate
 
 FARTHEST = 100.0  # a value that changes by this factor is not believed
 

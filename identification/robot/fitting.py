@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from identification.errors import InputError
 from identification.estimation.estimation import estimate
 from identification.estimation.fit import Fit, assess
-from identification.estimation.window_estimate import WindowEstimate, estimate_windows
 from identification.robot.checks import refuse_horizon, refuse_start
 from identification.robot.record_error import Confirmation, compare_unseen
 from identification.robot.robot import Robot
+from identification.windows.window_estimate import WindowEstimate, estimate_windows
 
 FEWEST = 10  # measured values for each parameter
 

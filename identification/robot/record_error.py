@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.estimation.window_error import window_error
 from identification.logs.log import Log
 from identification.model.predictor import Predictor
 from identification.quantities import alike
 from identification.robot.robot import Robot
+from identification.windows.window_error import window_error
 
 AS_WRITTEN, FITTED = "with the values of the robot's file", "with those that were fitted"
 

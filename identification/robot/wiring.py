@@ -12,8 +12,6 @@ from itertools import chain
 import numpy as np
 
 from identification.errors import DivergenceError, InputError
-from identification.estimation.window_error import first_error
-from identification.estimation.windows import windows
 from identification.logs.log import Log
 from identification.logs.readings import (
     UNEXPLAINED,
@@ -25,6 +23,8 @@ from identification.logs.readings import (
 )
 from identification.logs.sampling import MIN_ROWS
 from identification.robot.robot import Robot
+from identification.windows.window_error import first_error
+from identification.windows.windows import windows
 
 READINGS = (unit_readings, output_readings, input_readings)
 LENGTHS = (0.1, 1.0)  # of windows, shares of a log, where the robot has no horizon of its own

@@ -9,7 +9,6 @@ import numpy as np
 
 from identification.estimation.fit import Fit
 from identification.estimation.profiles import Profile
-from identification.estimation.window_estimate import WindowEstimate
 from identification.kalman.estimate import InnovationsFit
 from identification.quantities import finite_or_none
 from identification.report.fit_json import fit_to_json
@@ -21,6 +20,7 @@ from identification.report.fit_verdict import (
     search_sentences,
     window_sentences,
 )
+from identification.windows.window_estimate import WindowEstimate
 from inca_mj.twin.logs import POSE
 from inca_mj.workflows.identification import Identification
 

@@ -8,9 +8,9 @@ from identification import Log
 from identification.errors import InputError
 from identification.estimation.estimation import estimate
 from identification.estimation.fit import assess
-from identification.estimation.window_estimate import estimate_windows
 from identification.kalman.estimate import estimate_innovations
 from identification.model.parameter import ParameterSet
+from identification.windows.window_estimate import estimate_windows
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.twin.logs import POSE
 from inca_mj.twin.mjcf import TIMESTEP
@@ -36,7 +36,7 @@ def identify_windows(
 
     A free run over the first few windows gives the starting values of the search. The initial state
     of each window is free: pose, rates and the eight no-load lengths, which no angle measures, are
-    fitted for each window (see `identification.estimation.windows`). The start pose is a free
+    fitted for each window (see `identification.windows.windows`). The start pose is a free
     parameter too, because the drum springs depend on the pretension at the start. At the end a free
     run fits this pose alone, and shows how well the parameters of the windows predict the whole
     log.

@@ -16,9 +16,9 @@ from identification import Log
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import Fit, assess
 from identification.estimation.multistart import estimate_from
-from identification.estimation.window_estimate import WindowEstimate
 from identification.kalman.estimate import InnovationsFit
 from identification.model.parameter import ParameterSet
+from identification.windows.window_estimate import WindowEstimate
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.twin.logs import POSE
 from inca_mj.twin.mjcf import TIMESTEP

@@ -3,8 +3,8 @@
 import numpy as np
 from discovery_cases import record, slider
 
-from identification.estimation.window_error import window_error
 from identification.report.windows_figure import windows_figure
+from identification.windows.window_error import window_error
 
 
 def test_its_lower_curves_are_the_errors_of_the_windows():

@@ -20,9 +20,9 @@ from identification import InputError, Parameter
 from identification.effects.axes import Axis, axes, reach
 from identification.effects.joint_catalogue import joint_effects
 from identification.effects.joint_plant import candidates, joint_plant
-from identification.estimation.window_error import window_error
-from identification.estimation.window_estimate import estimate_windows
 from identification.native.joint_callback import STEPS
+from identification.windows.window_error import window_error
+from identification.windows.window_estimate import estimate_windows
 
 
 def test_a_single_joint_has_one_place_and_two_have_a_common_one():

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from identification import InputError, Log
-from identification.estimation.joined import joined
-from identification.estimation.windows import windows
+from identification.windows.joined import joined
+from identification.windows.windows import windows
 
 
 def record(n, seed, step=0.01, hold="foh"):

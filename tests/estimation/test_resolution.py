@@ -12,12 +12,12 @@ from identification.estimation.fit import assess
 from identification.estimation.identifiability import identifiability
 from identification.estimation.information import information_of
 from identification.estimation.resolution import STEPS, resolve, resolve_columns
-from identification.estimation.window_estimate import estimate_windows
 from identification.kalman.estimate import estimate_innovations
 from identification.model.coordinates import Coordinates, coordinates
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Predictor
 from identification.report.fit_verdict import fit_verdict
+from identification.windows.window_estimate import estimate_windows
 
 NAMES = ("a", "b", "c", "d")
 BLIND = np.array([2.0, -1.0, 0.0, 0.0]) / 5**0.5

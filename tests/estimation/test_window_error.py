@@ -5,7 +5,7 @@ import pytest
 from estimation_plants import record, slider
 
 from identification import Log
-from identification.estimation.window_error import window_error
+from identification.windows.window_error import window_error
 
 NOISE = 1e-4
 

@@ -9,10 +9,10 @@ from estimation_plants import SLIDER, STEP, measured, record, slider, steps
 
 from identification import InputError, ParameterSet
 from identification.estimation.estimation import estimate
-from identification.estimation.shooting import Tangent
-from identification.estimation.window_estimate import estimate_windows
-from identification.estimation.windows import windows
 from identification.model.plant import ModelPlant
+from identification.windows.shooting import Tangent
+from identification.windows.window_estimate import estimate_windows
+from identification.windows.windows import windows
 
 NAMES = ("mass", "damping")
 START = {"mass": 2.4, "damping": 2.3}

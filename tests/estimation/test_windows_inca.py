@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from identification import InputError
-from identification.estimation.window_estimate import estimate_windows
-from identification.estimation.windows import apart, moved
+from identification.windows.window_estimate import estimate_windows
+from identification.windows.windows import apart, moved
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.logs import POSE, run_to_log

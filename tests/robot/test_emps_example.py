@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from identification.effects.joint_plant import joint_plant
-from identification.estimation.window_error import window_error
-from identification.estimation.window_estimate import estimate_windows
+from identification.windows.window_error import window_error
+from identification.windows.window_estimate import estimate_windows
 
 PATH = Path(__file__).parents[2] / "examples" / "emps.py"
 DATA = Path(os.environ.get("EMPS_DATA", "data/emps"))

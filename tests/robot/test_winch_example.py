@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from identification import Log, Predictor
-from identification.estimation.window_estimate import estimate_windows
+from identification.windows.window_estimate import estimate_windows
 
 PATH = Path(__file__).parents[2] / "examples" / "winch.py"
 DATA = Path(os.environ.get("TTK4900_DATA", "data/ttk4900")) / "lifting"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from identification import Log, Predictor
-from identification.estimation.window_estimate import estimate_windows
+from identification.windows.window_estimate import estimate_windows
 
 PATH = Path(__file__).parents[2] / "examples" / "xl330.py"
 RAW = Path(__file__).parents[3] / "shared" / "data" / "xl330" / "raw"

@@ -5,7 +5,7 @@
     s_j  = rms motion of state j on that run         std of the prior of x_w about x̄_w
 
 In a free run the effects of all disturbances add up, and an unstable robot leaves the log after a
-short time. A window starts again after its length. `identification.estimation.shooting` says how
+short time. A window starts again after its length. `identification.windows.shooting` says how
 d_w is found.
 
 States that no output measures are treated like the others: a pose, a rate, or an activation such as

@@ -13,13 +13,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from identification.estimation.shooting import Shooting
-from identification.estimation.window_search import search_states
-from identification.estimation.windows import first_states, windows
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Plant, Predictor
+from identification.windows.shooting import Shooting
+from identification.windows.window_search import search_states
+from identification.windows.windows import first_states, windows
 
 
 def window_error(

@@ -2,7 +2,7 @@
 
     V(q) = Σ_w min over d_w of ‖r_w(q, d_w)‖²,   cov(q) = s² (SᵀS)⁺
 
-r, d and the projected S are those of `identification.estimation.shooting`.
+r, d and the projected S are those of `identification.windows.shooting`.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ import numpy as np
 from identification.estimation.identifiability import Identifiability
 from identification.estimation.options import Progress
 from identification.estimation.resolution import resolve_columns, round_off
-from identification.estimation.shooting import Shooting, tangent
-from identification.estimation.window_search import (
-    WindowsAtPoint,
-    search_windows,
-    windows_at,
-)
-from identification.estimation.windows import apart, first_states, windows
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.model.rollout import State
 from identification.model.sensitivity import FORWARD_STEP, refuse_without_effect
+from identification.windows.shooting import Shooting, tangent
+from identification.windows.window_search import (
+    WindowsAtPoint,
+    search_windows,
+    windows_at,
+)
+from identification.windows.windows import apart, first_states, windows
 
 BELIEFS = 3  # the states' belief follows the values that were found with the last one
 ROUGH = 1e-2  # relative gain that ends a search which another follows

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from identification.errors import InputError
-from identification.estimation.windows import windows
 from identification.logs.log import Log
+from identification.windows.windows import windows
 
 
 def joined(logs: Sequence[Log], length: float, name: str = "joined") -> Log:

@@ -17,11 +17,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.estimation.windows import FirstStates, Windows, moved
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor, output_columns
 from identification.model.rollout import State, hold, rollout, substeps
 from identification.model.sensitivity import FORWARD_STEP
+from identification.windows.windows import FirstStates, Windows, moved
 
 FELT = 1e-6  # of the strongest direction of a state; weaker ones are not felt
 
