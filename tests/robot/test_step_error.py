@@ -16,7 +16,7 @@ from identification.robot.step_error import refuse_coarse_steps, step_error
 NOISE = 1e-4  # [m]
 OPTION = 'timestep="0.002" gravity="0 0 0" integrator="RK4"'
 # A cart that sticks within a step.
-STIFF = {"stiffness.k@slide": {"value": 5000.0, "upper": 1e4}}
+STIFF = {"stiffness.k@slide": {"value": 2e4, "upper": 1e5}}
 
 
 @pytest.fixture(scope="module")
