@@ -144,7 +144,7 @@ def _findings(state: RecordsState, rejected: Sequence[RefittedEffect]) -> tuple[
     out = []
     for r in rejected:
         if r.prediction.is_everywhere and r.prediction.t > state.task.options.min_proof_t:
-            out.append(Finding(FindingKind.UNPROVEN_EFFECT, UnprovenEffect(r)))
+            out.append(Finding(FindingKind.UNPROVEN_EFFECT, _unproven(r)))
     square = float(np.mean(np.concatenate(state.model.unseen.at_horizon)))
     ratio = (
         float(np.sqrt(square / state.model.unseen.floor)) if state.model.unseen.floor else np.inf
@@ -152,6 +152,11 @@ def _findings(state: RecordsState, rejected: Sequence[RefittedEffect]) -> tuple[
     if state.accepted and ratio > 1 + state.task.options.min_gap_share:
         out.append(Finding(FindingKind.REMAINING_ERROR, RemainingError(ratio)))
     return tuple(out)
+
+
+def _unproven(r: RefittedEffect) -> UnprovenEffect:
+    c = r.candidate
+    return UnprovenEffect(c.effect.name, c.where, max(r.prediction.falls), r.prediction.t)
 
 
 def _by_record(blocks: np.ndarray, state: RecordsState) -> list[np.ndarray]:

@@ -154,10 +154,9 @@ def _remaining_error(e: records.RemainingError) -> str:
 
 
 def _unproven_effect(e: records.UnprovenEffect) -> str:
-    seen = e.effect.prediction
     return (
-        f"{describe_effect(e.effect.candidate)} predicts unseen data better on average (mean square"
-        f" {-100 * max(seen.falls):+.0f} %), but not surely (t = {seen.t:.1f})"
+        f"{e.name.replace('_', ' ')}, {e.where}, predicts unseen data better on average (mean"
+        f" square {-100 * e.fall:+.0f} %), but not beyond chance (t = {e.t:.1f})"
     )
 
 

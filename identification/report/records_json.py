@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from identification.discovery.findings.finding import Finding
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
-from identification.report.discovery_json import finite
+from identification.report.discovery_json import finding_to_json, finite
 from identification.report.finding_words import describe_finding
 
 
@@ -31,7 +30,7 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
         ],
         "horizon": found.horizon,
         "located": [describe_finding(finding) for finding in found.findings],
-        "findings": [_finding_to_json(finding) for finding in found.findings],
+        "findings": [finding_to_json(finding) for finding in found.findings],
         "nominal": _values_to_json(found.nominal.values, found.nominal.std),
         "final": _values_to_json(found.final.values, found.final.std),
         "options": asdict(found.options),
@@ -42,14 +41,6 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
 
 def _values_to_json(values: Mapping[str, float], std: Mapping[str, float]) -> dict[str, Any]:
     return {name: {"value": value, "std": std.get(name)} for name, value in values.items()}
-
-
-def _finding_to_json(finding: Finding) -> dict[str, Any]:
-    evidence = finding.evidence
-    effect = getattr(evidence, "effect", None)
-    if isinstance(effect, RefittedEffect):
-        return {"kind": finding.kind.value, **_refitted_to_json(effect)}
-    return {"kind": finding.kind.value, **asdict(evidence)}
 
 
 def _refitted_to_json(effect: RefittedEffect) -> dict[str, Any]:

@@ -32,6 +32,8 @@ SAYS = {
     FindingKind.STRUCTURED_INPUT_ERROR: "follows the rate of its output, most of all on current_3",
     FindingKind.DOUBTFUL_EFFECT: "tau = 250 ± 100 µs (delay), explains",
     FindingKind.OVERSIZED_EFFECT: "tau = 0.300 s where 0.100 s is thought to be the most",
+    FindingKind.REMAINING_ERROR: "7.1 times the sensors' noise",
+    FindingKind.UNPROVEN_EFFECT: "mean square -20 %), but not beyond chance (t = 1.9)",
 }
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.scoring.scores import Score
@@ -235,10 +234,16 @@ class UnprovenEffect:
     """An effect that predicts unseen records better on average, but not beyond chance.
 
     Attributes:
-        effect: a `RefittedEffect` of `identification.prediction`.
+        name: of the effect.
+        where: its place.
+        fall: relative fall of the unseen mean square, at best.
+        t: of its gain over blocks.
     """
 
-    effect: Any
+    name: str
+    where: str
+    fall: float
+    t: float
 
 
 Evidence = (
