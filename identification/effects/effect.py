@@ -103,6 +103,7 @@ class Effect:
         reference: table, paper or book of the law.
         probes: multiples of the sizes' probes at which its sensitivity is taken, where the outputs
             follow its size only nearly in proportion.
+        own: whether its sizes are each record's own, as the stamps of a record's time are.
         hooks: where it adds to the law of a robot, e.g. "force", and the njit function (state,
             parameters) that says what. None are needed where its sizes are paths into a model.
 
@@ -119,6 +120,7 @@ class Effect:
     phrase: str = ""
     reference: str = ""
     probes: tuple[float, ...] = (1.0,)
+    own: bool = False
     hooks: Mapping[str, Callable[..., Any]] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:

@@ -71,14 +71,15 @@ def substeps(sampling_time: float, timestep: float) -> int:
 
 
 def hold(inputs: np.ndarray, n: int, kind: str = "zoh") -> np.ndarray:
-    """Controls of the simulation steps between the samples: (N, nu) -> ((N-1) n, nu)."""
+    """Controls of the simulation steps between the samples: (..., N, nu) -> (..., (N-1) n, nu)."""
     if kind == "zoh":
-        return np.repeat(inputs[:-1], n, axis=0)
+        return np.repeat(inputs[..., :-1, :], n, axis=-2)
     if kind != "foh":
         raise InputError(f"unknown hold {kind!r}; known: foh, zoh")
-    weight = ((np.arange(n) + 0.5) / n)[None, :, None]
-    held = (1 - weight) * inputs[:-1, None] + weight * inputs[1:, None]
-    return held.reshape(-1, inputs.shape[1])
+    weight = ((np.arange(n) + 0.5) / n)[:, None]
+    before, after = inputs[..., :-1, None, :], inputs[..., 1:, None, :]
+    held = (1 - weight) * before + weight * after
+    return np.asarray(held.reshape(*inputs.shape[:-2], -1, inputs.shape[-1]))
 
 
 def rollout(
@@ -122,7 +123,7 @@ def rollout(
     n = max([len(r) for r in rows] + [len(values) for _, values in numbers])
     every = substeps(sampling_time, model.opt.timestep)
     own = inputs[None] if inputs.ndim == 2 else inputs
-    controls = np.stack([hold(u, every, hold_kind) for u in own])
+    controls = hold(own, every, hold_kind)
     if before is not None and len(own) == 1:
         controls = before(controls[0])
         controls = controls if controls.ndim == 3 else controls[None]

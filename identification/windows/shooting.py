@@ -13,7 +13,7 @@ one. The information on q is that of S_w after the initial states are projected 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -43,6 +43,10 @@ class Shooting:
     cut: Windows
     first: FirstStates
     whitener: np.ndarray
+
+    def rows(self, keep: np.ndarray) -> Shooting:
+        """Some of the windows, by mask or by index."""
+        return replace(self, cut=self.cut.rows(keep), first=self.first.rows(keep))
 
     def states(self, d: np.ndarray) -> State:
         """x̄ ⊕ d, W rows."""
@@ -124,6 +128,18 @@ class Tangent:
     s: np.ndarray
     Vt: np.ndarray
     size: np.ndarray
+
+    def rows(self, keep: np.ndarray) -> Tangent:
+        """Some of the windows, by mask or by index."""
+        return Tangent(**{f.name: getattr(self, f.name)[keep] for f in fields(self)})
+
+    def with_rows(self, at: np.ndarray, other: Tangent) -> Tangent:
+        """The same with other values of the windows `at`, a mask or indices."""
+        changed = {}
+        for f in fields(self):
+            changed[f.name] = np.array(getattr(self, f.name))
+            changed[f.name][at] = getattr(other, f.name)
+        return Tangent(**changed)
 
     @property
     def projected(self) -> np.ndarray:
