@@ -55,6 +55,7 @@ def read(data: Path) -> MeasuredRobot:
     return MeasuredRobot(
         name="emps", title="EMPS, one axis with a ball screw", source=SOURCE, model=MODEL,
         free=FREE, horizon=0.2, fit=(first,), confirm=(second, pulses),
+        second=((second,), (first, pulses)),
         expected=("asymmetric_viscous_friction",), published=PUBLISHED,
     )  # fmt: skip
 

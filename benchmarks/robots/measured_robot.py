@@ -7,7 +7,7 @@ project. `robots.written` writes one as the files that `python -m identification
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -100,6 +100,9 @@ class MeasuredRobot:
         horizon: over which predictions are judged [s].
         fit: records to fit.
         confirm: records that no fit may see.
+        second: another split of records, those to fit and those that confirm; None for the same
+            records with their roles exchanged.
+        fixed: values of effects' shapes that the model has.
         expected: effects one of which should be named first; empty where nobody knows.
         apart: records of the robot as it was changed.
         starts: other values with which the whole work begins once more, by what they are.
@@ -117,6 +120,8 @@ class MeasuredRobot:
     horizon: float
     fit: tuple[Log, ...]
     confirm: tuple[Log, ...]
+    second: tuple[tuple[Log, ...], tuple[Log, ...]] | None = None
+    fixed: Mapping[str, float] = field(default_factory=dict)
     expected: tuple[str, ...] = ()
     apart: tuple[Apart, ...] = ()
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
@@ -128,3 +133,15 @@ class MeasuredRobot:
     def records(self) -> tuple[Log, ...]:
         """All records but those of the changed robot."""
         return (*self.fit, *self.confirm)
+
+    def split(self, number: int) -> MeasuredRobot:
+        """The robot with its first or its second split of records."""
+        if number == 1:
+            return self
+        fit, confirm = self.second or (self.confirm, self.fit)
+        return replace(self, fit=fit, confirm=confirm)
+
+    def started(self, values: Mapping[str, float]) -> MeasuredRobot:
+        """The robot with other values at which the search begins."""
+        free = (replace(p, value=values.get(p.name, p.value)) for p in self.free)
+        return replace(self, free=tuple(free))

@@ -65,7 +65,7 @@ def read(data: Path) -> MeasuredRobot:
     )
     return MeasuredRobot(
         name="winch", title="Winch of a cable robot that lifts 5 kg", source=SOURCE,
-        model=MODELS / "winch.xml", free=FREE, horizon=1.0, fit=fit, confirm=confirm,
+        model=MODELS / "winch.xml", free=FREE, horizon=0.96, fit=fit, confirm=confirm,
         apart=(Apart(what="1 kg instead of 5 kg", logs=light, model=MODELS / "winch_1kg.xml"),),
         published=PUBLISHED,
     )  # fmt: skip

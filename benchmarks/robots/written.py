@@ -38,18 +38,16 @@ def write_files(robot: MeasuredRobot, folder: Path) -> tuple[Path, dict[str, lis
     return path, paths
 
 
-def write_model(
-    robot: MeasuredRobot, folder: Path, values: Mapping[str, float] | None = None
-) -> Path:
-    """Write the model and the robot's TOML; `values` replace those where the search begins."""
+def write_model(robot: MeasuredRobot, folder: Path) -> Path:
+    """Write the model and the robot's TOML."""
     folder.mkdir(parents=True, exist_ok=True)
     shutil.copyfile(robot.model, folder / robot.model.name)
     path = folder / f"{robot.name}_robot.toml"
-    path.write_text(robot_toml(robot, values or {}), encoding="utf-8")
+    path.write_text(robot_toml(robot), encoding="utf-8")
     return path
 
 
-def robot_toml(robot: MeasuredRobot, values: Mapping[str, float]) -> str:
+def robot_toml(robot: MeasuredRobot) -> str:
     """The content of the robot's TOML (`identification.robot.file` lists every key)."""
     outputs, free = (json.dumps(list(n)) for n in (robot.fit[0].output_names,
                                                    [p.name for p in robot.free]))  # fmt: skip
@@ -60,10 +58,12 @@ def robot_toml(robot: MeasuredRobot, values: Mapping[str, float]) -> str:
         f"free = {free}",
         f"horizon = {robot.horizon!r}",
     ]
+    if robot.fixed:
+        lines += ["", "[fixed]", *(f"{json.dumps(n)} = {v!r}" for n, v in robot.fixed.items())]
     for p in robot.free:
         lines += ["", f"[parameters.{json.dumps(p.name)}]"]
         lines += [f"path = {json.dumps(p.path)}"] if p.path else []
-        lines += [f"value = {float(values.get(p.name, p.value))!r}", f"known = {p.known!r}"]
+        lines += [f"value = {float(p.value)!r}", f"known = {p.known!r}"]
         lines += [f"unit = {json.dumps(p.unit, ensure_ascii=False)}"] if p.unit else []
         lines += [f"scale = {p.scale!r}"] if p.scale else []
     return "\n".join(lines) + "\n"
