@@ -48,6 +48,12 @@ class Shooting:
         """Some of the windows, by mask or by index."""
         return replace(self, cut=self.cut.rows(keep), first=self.first.rows(keep))
 
+    @property
+    def times(self) -> np.ndarray:
+        """When each window begins in its record, shape (W,) [s]."""
+        log = self.predictor.log
+        return log.begun + log.sampling_time * self.cut.starts
+
     def states(self, d: np.ndarray) -> State:
         """x̄ ⊕ d, W rows."""
         return moved(self.predictor.plant.model, self.first.states, d)
@@ -82,7 +88,7 @@ class Shooting:
         run = rollout(
             model, State(*rows), inputs, predictor.log.sampling_time / every,
             numbers=[(slot, np.repeat(column, W)) for slot, column in numbers],
-            record=("qpos", "qvel"), hold_kind=hold_kind,
+            record=("qpos", "qvel"), hold_kind=hold_kind, time=np.tile(self.times, len(q)),
         )  # fmt: skip
         run = {field: states[:, ::every] for field, states in run.items()}
         columns = output_columns(model, predictor.log.output_names)

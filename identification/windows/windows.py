@@ -101,7 +101,7 @@ def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> Firs
     try:
         run = rollout(
             model, start, log.inputs, log.sampling_time, numbers=numbers, record=fields,
-            hold_kind=log.hold, before=predictor.inputs(values),
+            hold_kind=log.hold, before=predictor.inputs(values), time=log.begun,
         )  # fmt: skip
         rows = {f: np.array(run[f][0, cut.starts]) for f in fields}
         weight = 1 / _motion(model, State(*(run[f][0] for f in fields)))
