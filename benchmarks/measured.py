@@ -1,13 +1,13 @@
 """What is missing in robots that were measured: fit, discover, confirm; one JSON a robot, one page.
 
     python benchmarks/measured.py [ROBOT…] [--data ../shared/data] [--page docs/measured.md]
-    python benchmarks/measured.py silverbox --split 2         does another split contradict the name?
-    python benchmarks/measured.py emps --null 20              how many nulls of the robot get a name?
-    python benchmarks/measured.py --write FOLDER              records as CSV, models and TOML
-    python benchmarks/measured.py --only-page                 the page anew, from the JSON records
+    python benchmarks/measured.py silverbox --split 2     does another split contradict the name?
+    python benchmarks/measured.py emps --null 20          how many nulls of the robot get a name?
+    python benchmarks/measured.py --write FOLDER          records as CSV, models and TOML
+    python benchmarks/measured.py --only-page             the page anew, from the JSON records
 
-A robot whose data are absent is skipped, with a sentence. What the page tells is in the JSON records
-of `--records`, and nothing else is.
+A robot whose data are absent is skipped, with a sentence. What the page tells is in the JSON
+records of `--records`, and nothing else is.
 """
 
 from __future__ import annotations

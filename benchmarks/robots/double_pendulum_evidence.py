@@ -2,8 +2,8 @@
 
     τ = M(q) q̈ + C q̇ + G(q) + b q̇ + c_f atan(100 q̇)         their equations, their numbers
 
-Torques are compared joint by joint below each frequency of `BANDS`. In two records nothing is asked of
-motor 1, and joint 1 moves because link 2 does: what its motion needs there, friction must give.
+Torques are compared joint by joint below each frequency of `BANDS`. In two records nothing is asked
+of motor 1, and joint 1 moves because link 2 does: what its motion needs there, friction must give.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import mujoco
 import numpy as np
 
 from robots.double_pendulum import CONFIRM, FIT, UNPOWERED, changed, published_model, read_table
@@ -54,19 +53,3 @@ def friction(p: Mapping[str, float], speed: np.ndarray) -> np.ndarray:
     """The authors' friction at both joints, shape (n, 2) [N m]."""
     viscous, dry = (np.array([p[f"{what}1"], p[f"{what}2"]]) for what in ("b", "cf"))
     return viscous * speed + dry * np.arctan(STEEP * speed)
-
-
-def mass_matrix(model: mujoco.MjModel, angles: np.ndarray) -> np.ndarray:
-    """M at some angles, shape (2, 2) [kg m^2]."""
-    data = mujoco.MjData(model)
-    data.qpos[:] = angles
-    mujoco.mj_forward(model, data)
-    columns = []
-    for unit in np.eye(model.nv):
-        data.qvel[:], data.qacc[:] = 0.0, 0.0
-        mujoco.mj_inverse(model, data)
-        still = data.qfrc_inverse.copy()
-        data.qacc[:] = unit
-        mujoco.mj_inverse(model, data)
-        columns.append(data.qfrc_inverse - still)
-    return np.column_stack(columns)

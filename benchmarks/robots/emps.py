@@ -16,6 +16,7 @@ from scipy.io import loadmat
 
 from identification import Log, decimate
 from robots import needed
+from robots.emps_evidence import protocol
 from robots.measured_robot import MODELS, Free, MeasuredRobot, PublishedSize
 
 MODEL = MODELS / "emps.xml"
@@ -57,6 +58,7 @@ def read(data: Path) -> MeasuredRobot:
         free=FREE, horizon=0.2, fit=(first,), confirm=(second, pulses),
         second=((second,), (first, pulses)),
         expected=("asymmetric_viscous_friction",), published=PUBLISHED,
+        evidence=lambda outcome: protocol(MODEL, log, pulses, outcome),
     )  # fmt: skip
 
 

@@ -18,7 +18,7 @@ from identification.prediction.result import RecordsDiscovery
 from identification.report.records_json import records_to_json
 from identification.report.records_text import records_text
 from identification.robot.robot import Robot
-from robots.measured_robot import MeasuredRobot
+from robots.measured_robot import MeasuredRobot, Outcome
 from robots.unseen import compare, errors_of
 from robots.written import write_model
 
@@ -81,7 +81,10 @@ def measure(robot: MeasuredRobot, say: Callable[[str], None]) -> dict[str, Any]:
     record["unseen"] = compare(models, robot.confirm, robot.horizon)
     record["published_models"] = {m.name: m.source for m in robot.models}
     if robot.evidence:
-        record["evidence"] = robot.evidence(found.final.values)
+        record["evidence"] = robot.evidence(
+            Outcome(values=found.final.values, nominal=models[NOMINAL],
+                    final=models.get(FINAL, models[NOMINAL]))
+        )  # fmt: skip
     return plain(record)
 
 

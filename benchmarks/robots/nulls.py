@@ -2,8 +2,8 @@
 
     y* = ŷ_w + e_v,    w each window of a record, v drawn with replacement from its windows
 
-The windows have twice the horizon, the longest over which a discovery judges, and each begins at the
-state that explains it best; so all windows of a discovery lie within one. The errors keep their
+The windows have twice the horizon, the longest over which a discovery judges, and each begins at
+the state that explains it best; so all windows of a discovery lie within one. The errors keep their
 colour and their size, and lose what ties them to the motion.
 """
 
@@ -25,9 +25,7 @@ LENGTH = 2.0  # of the windows, in units of the horizon
 SEEDS = 1000  # of a null: one for each record
 
 
-def null_log(
-    plant: Plant, log: Log, horizon: float, values: Mapping[str, float], seed: int
-) -> Log:
+def null_log(plant: Plant, log: Log, horizon: float, values: Mapping[str, float], seed: int) -> Log:
     """A log that the model with these values explains but for errors as large as its own.
 
     Args:
@@ -58,7 +56,9 @@ def best_model(robot: MeasuredRobot, found: RecordsDiscovery) -> MeasuredRobot:
     return replace(begun, free=(*begun.free, *sizes), fixed=fixed)
 
 
-def null_of(robot: MeasuredRobot, plant: Plant, values: Mapping[str, float], k: int) -> MeasuredRobot:
+def null_of(
+    robot: MeasuredRobot, plant: Plant, values: Mapping[str, float], k: int
+) -> MeasuredRobot:
     """The k-th null of a robot, whose records a model with these values made."""
     seed = iter(range(SEEDS * k, SEEDS * (k + 1)))
     fit, confirm = (

@@ -3,11 +3,12 @@
     τ(t - δ) = J q̈ + F_v q̇ + F_c tanh(q̇/v₀) + g m l sin q - f_0       J = m l² + J_a
 
 Both sides are compared below a frequency of `BANDS`: above the first of them arm and drive vibrate
-against each other, and a shift is that vibration's. δ > 0 where the motion is stamped later than the torque that made it.
+against each other, and a shift is that vibration's. δ > 0 where the motion is stamped later than
+the torque that made it.
 
 Physics comes from two records whose torques are trajectories, with a shift for each. Under energy
-shaping and sequential action control the torque is ±0.9 N m by the sign of the speed; a regression of
-that torque on Coulomb friction finds the controller, so those records get a shift and no physics.
+shaping and sequential action control the torque is ±0.9 N m by the sign of the speed; a regression
+of that torque on Coulomb friction finds the controller, so those records get a shift and no physics.
 """
 
 from __future__ import annotations
@@ -59,8 +60,8 @@ def evidence(folder: Path) -> dict[str, Any]:
 
     Returns:
         `physics`: J, m l and frictions; `records`: by frequency and name the rms torque, what is
-        left at a shift of zero and at the best one [N m], and that shift [ms]; `heavy`: J and m l of
-        the record with 1 kg, the frictions being those of the others.
+        left at a shift of zero and at the best one [N m], and that shift [ms]; `heavy`: J and m l
+        of the record with 1 kg, the frictions being those of the others.
     """
     x = physics(folder, BANDS[0])
     rows: dict[str, Any] = {f"{band:g} Hz": {} for band in BANDS}

@@ -1,18 +1,17 @@
 """Errors of several models on the same windows of the same records, and the mean squares' change.
 
-    e_w = y_w - ŷ_w,   each model from the first state of each window that explains it best
+e_w = y_w - ŷ_w,   each model from the first state of each window that explains it best
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from identification import InputError, Log, Plant, window_error
-
-Errors = Callable[[Log, float], np.ndarray]
+from robots.measured_robot import Errors
 
 
 def errors_of(plant: Plant, values: Mapping[str, float]) -> Errors:
