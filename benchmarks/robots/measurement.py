@@ -70,7 +70,7 @@ def measure(robot: MeasuredRobot, say: Callable[[str], None]) -> dict[str, Any]:
         {"name": s.candidate.effect.name, "where": s.candidate.where, "fall": s.fall}
         for s in found.scores[:5]
     ]
-    record["sizes"] = _sizes(found, known)
+    record["sizes"] = _sizes(compiled, found, known)
     models = {
         NOMINAL: errors_of(compiled.plant, found.nominal.values),
         BEGUN: errors_of(compiled.plant, {}),
@@ -88,16 +88,17 @@ def measure(robot: MeasuredRobot, say: Callable[[str], None]) -> dict[str, Any]:
     return plain(record)
 
 
-def _sizes(found: RecordsDiscovery, published: dict[str, float]) -> dict[str, Any]:
+def _sizes(compiled: Robot, found: RecordsDiscovery, published: dict[str, float]) -> dict[str, Any]:
     """Values of the nominal and of the final model by name, beside what others published."""
-    own = found.final.fit.problem.parts[0].predictor.plant.parameters
-    sizes = {}
-    for name in (*found.final.values, *(n for n in published if n in own)):
+    own = compiled.plant.parameters
+    sizes, every = {}, own.values()
+    shared = [n for n in published if n in every and n not in found.final.values]
+    for name in (*found.final.values, *shared):
         sizes[name] = {
             "nominal": found.nominal.values.get(name),
             "nominal_std": found.nominal.std.get(name), "final": found.final.values.get(name),
             "final_std": found.final.std.get(name), "published": published.get(name),
-            "unit": own[name].unit if name in own else "",
+            "unit": own[name].unit if name in every else "",
         }  # fmt: skip
     return sizes
 

@@ -8,7 +8,7 @@ the torque that made it.
 
 Physics comes from two records whose torques are trajectories, with a shift for each. Under energy
 shaping and sequential action control the torque is ±0.9 N m by the sign of the speed; a regression
-of that torque on Coulomb friction finds the controller, so those records get a shift and no physics.
+of that torque on Coulomb friction finds the controller, so those records give no physics.
 """
 
 from __future__ import annotations
