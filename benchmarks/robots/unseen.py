@@ -33,9 +33,9 @@ def compare(models: Mapping[str, Errors], logs: Sequence[Log], horizon: float) -
         horizon: length of the windows [s].
 
     Returns:
-        `windows`: their number; `rms`: by model, over all windows; `change`: relative change of the mean square, by model;
-        `better`: number of records on which each model is better than the first; `records`: rms by
-        record and model; `outputs`: rms by model, of each output.
+        `windows`: their number; `rms`: by model, over all windows; `change`: relative change of the
+        mean square, by model; `better`: number of records on which each model is better than the
+        first; `records`: rms by record and model; `outputs`: rms by model, of each output.
     """
     squares = {name: [_square(errors, log, horizon) for log in logs]
                for name, errors in models.items()}  # fmt: skip
