@@ -108,7 +108,7 @@ def test_written_files_are_read_back_as_they_were(tmp_path):
         assert np.array_equal(log.inputs, same.inputs)
         assert np.array_equal(log.outputs, same.outputs)
         assert log.hold == same.hold
-    assert command(path, paths).split()[3:5] == [str(path), str(paths["fit"][0])]
+    assert command(path, paths).split()[4:6] == [str(path), str(paths["fit"][0])]
 
 
 def test_the_second_split_exchanges_records_and_another_start_changes_nothing_else():
