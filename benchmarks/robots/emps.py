@@ -42,7 +42,7 @@ def read_record(path: Path, every: int = EVERY) -> Log:
     """A record with every n-th sample; the voltage between them as straight lines."""
     data = loadmat(needed(path))
     log = Log(
-        time=np.arange(len(data["qm"])) * 1e-3, inputs=data["vir"], outputs=data["qm"],
+        time=np.arange(len(data["qm"]), dtype=float) * 1e-3, inputs=data["vir"], outputs=data["qm"],
         input_names=("drive",), output_names=("position",),
         units={"drive": "V", "position": "m"}, name=path.stem,
     )  # fmt: skip

@@ -99,11 +99,13 @@ class Apart:
         what: how the robot differs.
         logs: the records.
         model: MJCF of the changed robot, None where the model is to show that something changed.
+        refit: parameters that the change should move.
     """
 
     what: str
     logs: tuple[Log, ...]
     model: Path | None = None
+    refit: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,6 +18,7 @@ from identification.prediction.result import RecordsDiscovery
 from identification.report.records_json import records_to_json
 from identification.report.records_text import records_text
 from identification.robot.robot import Robot
+from robots.changed import on_changed
 from robots.measured_robot import MeasuredRobot, Outcome
 from robots.unseen import compare, errors_of
 from robots.written import write_model
@@ -80,6 +81,9 @@ def measure(robot: MeasuredRobot, say: Callable[[str], None]) -> dict[str, Any]:
     models |= {m.name: m.errors for m in robot.models}
     record["unseen"] = compare(models, robot.confirm, robot.horizon)
     record["published_models"] = {m.name: m.source for m in robot.models}
+    fitted = {NOMINAL: found.nominal.values}
+    fitted |= {FINAL: found.final.values} if found.named else {}
+    record["apart"] = [on_changed(robot, each, compiled.plant, fitted) for each in robot.apart]
     if robot.evidence:
         record["evidence"] = robot.evidence(
             Outcome(values=found.final.values, nominal=models[NOMINAL],

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from identification import Log, Plant, window_error
+from identification import JointPlant, Log, Plant, window_error
 from identification.prediction.result import RecordsDiscovery
 from identification.windows.windows import windows
 from robots.measured_robot import Free, MeasuredRobot
@@ -43,10 +43,9 @@ def null_log(plant: Plant, log: Log, horizon: float, values: Mapping[str, float]
     return replace(log, time=log.time[rows], inputs=log.inputs[rows], outputs=outputs, splits={})
 
 
-def best_model(robot: MeasuredRobot, found: RecordsDiscovery) -> MeasuredRobot:
+def best_model(robot: MeasuredRobot, own: JointPlant, found: RecordsDiscovery) -> MeasuredRobot:
     """The robot whose model has the named effects: their sizes are free, their shapes fixed."""
     values = found.final.values
-    own = found.final.fit.problem.parts[0].predictor.plant
     shapes = {f"{e.name}.{s.name}" for e in own.effects for s in e.shapes}
     more = [n for n in values if n not in {p.name for p in robot.free}]
     sizes = [Free(name=n, value=values[n], known=0.5 if own.parameters[n].lower >= 0 < values[n]
@@ -81,7 +80,7 @@ def null_study(robot: MeasuredRobot, count: int, say: Callable[[str], None]) -> 
         DivergenceError: the nominal model cannot be simulated.
     """
     compiled, found, _ = discovered(robot, say)
-    best, rows = best_model(robot, found), []
+    best, rows = best_model(robot, compiled.plant, found), []
     for k in range(count):
         null = null_of(best, compiled.plant, found.final.values, k)
         _, answer, seconds = discovered(null, say)

@@ -115,6 +115,7 @@ def _section(name: str, kept: dict[str, Any]) -> str:
     lines += [table(("unseen record", *models), rows),
               f"As begun, before any fit: {amount(record['unseen']['rms'][BEGUN], unit)}.\n",
               _fitted(record)]  # fmt: skip
+    lines += [line for each in record.get("apart", []) for line in _apart(each, unit)]
     lines += _again(name, kept)
     lines += evidence_lines(name, record.get("evidence", {}))
     return "\n".join(lines)
@@ -137,6 +138,21 @@ def _fitted(record: dict[str, Any]) -> str:
         cells = [number(s[k], s.get(f"{k}_std"), s["unit"]) for k in ("nominal", "final")]
         rows.append((name, *cells, number(s["published"], None, s["unit"])))
     return table(("parameter", "nominal, fitted", "with what is named", "published"), rows)
+
+
+def _apart(apart: dict[str, Any], unit: str) -> list[str]:
+    """What the models make of the robot as it was changed."""
+    seen = apart["unseen"]
+    rows = [(log, *(amount(v, unit) for v in each.values()))
+            for log, each in seen["records"].items()]  # fmt: skip
+    lines = [table((apart["what"], *seen["rms"]), rows)]
+    for log, found in apart["refitted"].items():
+        said = ", ".join(f"{n} {number(v['before'], None, '')} becomes"
+                         f" {number(v['value'], v['std'], '')}"
+                         for n, v in found["values"].items())  # fmt: skip
+        lines.append(f"Fitted to {log}, all else held: {said}; {amount(found['rms'], unit)}"
+                     " is left.\n")  # fmt: skip
+    return lines
 
 
 def _again(name: str, kept: dict[str, Any]) -> list[str]:

@@ -107,7 +107,8 @@ def read(data: Path) -> MeasuredRobot:
     return MeasuredRobot(
         name="pendulum", title="Torque-limited pendulum, quasi-direct drive", source=SOURCE,
         model=MODELS / "pendulum.xml", free=FREE, horizon=0.2, fit=fit, confirm=confirm,
-        apart=(Apart(what="1 kg instead of 0.5 kg", logs=heavy),), published=PUBLISHED,
+        apart=(Apart(what="1 kg instead of 0.5 kg", logs=heavy, refit=("m", "J_a")),),
+        published=PUBLISHED,
         models=(PublishedModel(name="their fit", source=SOURCE, errors=published_errors),),
         evidence=lambda _: evidence_of(folder),
     )  # fmt: skip

@@ -55,7 +55,7 @@ def read_voltages(data: Path) -> np.ndarray:
 def log_of(voltages: np.ndarray, name: str) -> Log:
     """A part of the file as a log that begins at 0 s."""
     return Log(
-        time=SAMPLING_TIME * np.arange(len(voltages)), inputs=voltages[:, :1],
+        time=np.arange(len(voltages), dtype=float) * SAMPLING_TIME, inputs=voltages[:, :1],
         outputs=voltages[:, 1:], input_names=("V1",), output_names=("V2",), name=name, hold="foh",
     )  # fmt: skip
 
