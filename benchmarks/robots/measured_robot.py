@@ -34,6 +34,7 @@ class Free:
         known: std of the prior: relative where the value must be positive, else in its unit.
         unit: of the value.
         scale: a magnitude that matters, where the value may be zero.
+        bounds: smallest and largest value; those of the effect or of the model when None.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Free:
     known: float = 0.5
     unit: str = ""
     scale: float | None = None
+    bounds: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from identification import JointPlant, Log, Plant, window_error
+from identification import JointPlant, Log, Parameter, Plant, window_error
 from identification.prediction.result import RecordsDiscovery
 from identification.windows.windows import windows
 from robots.measured_robot import Free, MeasuredRobot
@@ -48,11 +48,16 @@ def best_model(robot: MeasuredRobot, own: JointPlant, found: RecordsDiscovery) -
     values = found.final.values
     shapes = {f"{e.name}.{s.name}" for e in own.effects for s in e.shapes}
     more = [n for n in values if n not in {p.name for p in robot.free}]
-    sizes = [Free(name=n, value=values[n], known=0.5 if own.parameters[n].lower >= 0 < values[n]
-                  else abs(values[n]) or 1.0) for n in more if n not in shapes]  # fmt: skip
+    sizes = [_free(own.parameters[n], values[n]) for n in more if n not in shapes]
     fixed = {**robot.fixed, **{n: values[n] for n in more if n in shapes}}
     begun = robot.started(values)
     return replace(begun, free=(*begun.free, *sizes), fixed=fixed)
+
+
+def _free(p: Parameter, value: float) -> Free:
+    """The size of a named effect, within the bounds that it had: those of a null may be others."""
+    known = 0.5 if p.lower >= 0 < value else abs(value) or 1.0
+    return Free(name=p.name, value=value, known=known, bounds=(p.lower, p.upper))
 
 
 def null_of(

@@ -1,6 +1,7 @@
 """The bench of measured robots: its records, its files, its nulls and its page."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,11 +9,11 @@ from measured_cases import DATA, oscillator, oscillator_log, with_data
 from robots import ROBOTS, reader
 from robots.gridded import gridded
 from robots.measured_robot import PROJECT_MODELS
-from robots.nulls import null_log
+from robots.nulls import best_model, null_log, null_of
 from robots.page import page
 from robots.unseen import MOST, compare, errors_of, spread
 from robots.words import amount, number
-from robots.written import command, write_files
+from robots.written import command, write_files, write_model
 
 from identification import read_model, read_robot, window_error
 
@@ -142,6 +143,18 @@ def test_a_null_of_an_exact_model_is_the_log_and_else_its_errors_are_only_mixed(
     added = null.outputs - (cubic.outputs[: len(null)] - errors.reshape(-1, 1))
     added = added.reshape(errors.shape)
     assert all(np.any(np.all(np.isclose(errors, e, atol=1e-12), axis=(1, 2))) for e in added)
+
+
+def test_the_best_model_has_what_was_named_and_its_nulls_are_read(plant, tmp_path):
+    robot, own = plant
+    values = {**TRUE, "hardening.k_3@slide": 2.0}
+    found = SimpleNamespace(final=SimpleNamespace(values=values))
+    best = best_model(robot, own, found)
+    null = null_of(best, own, values, 2)
+    read = read_robot(write_model(null, tmp_path), list(null.fit), list(null.confirm))
+    assert read.plant.parameters.values()["hardening.k_3@slide"] == 2.0
+    assert "hardening.k_3@slide" in read.nominal_model.names
+    assert not np.array_equal(null.fit[0].outputs, null_of(best, own, values, 3).fit[0].outputs)
 
 
 def test_a_true_model_predicts_better_than_one_with_a_wrong_mass(plant):
