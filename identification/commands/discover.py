@@ -48,7 +48,7 @@ class Discover(OnRobot):
             return self._keep_records(robot, found)
         pairs = confirm(robot, found)
         record: dict[str, Any] = discovery_to_json(found)
-        record = {**record, "confirm": [vars(c) for c in pairs]}
+        record = {**record, "confirm": [vars(c) for c in pairs], "remarks": list(robot.remarks)}
         if self.output.json:
             say_json(record)
         else:
@@ -78,7 +78,7 @@ class Discover(OnRobot):
         from identification.report.records_text import records_text
         from identification.robot.write import write_robot
 
-        record = records_to_json(found)
+        record = {**records_to_json(found), "remarks": list(robot.remarks)}
         if self.output.json:
             say_json(record)
         else:

@@ -15,7 +15,7 @@ from identification.errors import InputError
 from identification.logs.log import Log
 from identification.prediction.discovery import discover_records
 from identification.prediction.result import RecordsDiscovery
-from identification.robot.checks import refuse_search_horizon, refuse_start
+from identification.robot.checks import refuse_search_horizon
 from identification.robot.robot import Robot
 
 
@@ -57,8 +57,8 @@ def discover(
 
     Raises:
         InputError: log and effects are given with a robot, or are missing with a nominal model;
-            the log is too short, the horizon does not fit into the unseen part, a free run would
-            begin in another state than the log, or a free parameter has no effect.
+            the log is too short, the horizon does not fit into the unseen part, or a free
+            parameter has no effect.
         DivergenceError: the nominal model cannot be simulated.
     """
     if isinstance(model, Robot):
@@ -67,7 +67,6 @@ def discover(
         if model.others:
             return _discover_records(model, progress, options)
         refuse_search_horizon(model.file, model.log)
-        refuse_start(model.file, model.plant.model, model.log)
         return search.discover(model.nominal_model, model.log, model.candidates, progress, options)
     if log is None or effects is None:
         raise InputError("discover needs a log and candidate effects beside a nominal model")

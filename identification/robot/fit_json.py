@@ -32,7 +32,10 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     else:
         record = _windows(result, found)
     verdict = [*_far(record["parameters"]), *record["verdict"], *map(str, confirmed)]
-    return {**record, "confirm": [vars(c) for c in confirmed], "verdict": verdict}
+    return {
+        **record, "confirm": [vars(c) for c in confirmed], "verdict": verdict,
+        "remarks": list(result.robot.remarks),
+    }  # fmt: skip
 
 
 def _windows(result: RobotFit, found: WindowEstimate) -> dict[str, Any]:

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from identification.effects.axes import axes
 from identification.logs.log import Log
-from identification.robot.file import RobotFile, read_robot_file
+from identification.robot.file import RobotFile, read_robot_file, trusted
 from identification.robot.robot import Robot, read_robot_log, robot_of
+from identification.robot.start import start_sentence
 from identification.robot.step_error import refuse_coarse_steps
 from identification.robot.wiring import refuse_miswired
 
@@ -18,6 +19,7 @@ def read_robot(
     path: str | Path,
     log: str | Path | Log | Sequence[str | Path | Log],
     confirm: Sequence[str | Path | Log] = (),
+    trust: Sequence[str] = (),
 ) -> Robot:
     """Read a robot and the logs that it is to explain; refuse files that do not belong together.
 
@@ -27,6 +29,8 @@ def read_robot(
             `Log` whose columns bear the names of the model's actuators and sensors. Several of
             them are fitted together.
         confirm: records of the same robot to which nothing will be fitted.
+        trust: judgements that are not to refuse a log, beside those of the file's key `trust`:
+            words of `identification.robot.file.TRUST`.
 
     Raises:
         InputError: a file cannot be what it should be, a name is unknown, a sensor froze, the
@@ -35,6 +39,7 @@ def read_robot(
         DivergenceError: the model cannot be simulated.
     """
     file = read_robot_file(path)
+    file = replace(file, trust=(*file.trust, *trusted(trust, "what was called")))
     records = tuple(_log(file, record) for record in confirm)
     first, *others = (
         _log(file, each) for each in ([log] if isinstance(log, str | Path | Log) else log)
@@ -43,9 +48,18 @@ def read_robot(
     refuse_coarse_steps(robot)
     for record in records:
         axes(robot.plant.model, record)  # a sensor that froze is refused
-    for measured in (robot.log, *robot.others, *records):
+    every = (robot.log, *robot.others, *records)
+    for measured in every:
         refuse_miswired(robot, measured)
-    return robot
+    return replace(robot, remarks=_remarks(robot, every))
+
+
+def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
+    """What was taken for granted, a sentence each."""
+    file, own = robot.file, robot.plant.model
+    # Over a horizon each window begins where it was measured.
+    begun = (start_sentence(file, own, log) for log in logs if file.horizon is None)
+    return tuple(sentence for sentence in begun if sentence)
 
 
 def _log(file: RobotFile, log: str | Path | Log) -> Log:

@@ -31,6 +31,7 @@ from identification.robot.checks import (
 )
 from identification.robot.file import RobotFile
 from identification.robot.parameters import free_parameter, measured_start, unit_of
+from identification.robot.start import start_of
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,7 @@ class Robot:
             be positive, else in its unit.
         records: logs to which nothing is fitted; models are confirmed on them.
         others: further logs that are fitted together with `log`.
+        remarks: what was taken for granted when its files were read, a sentence each.
     """
 
     file: RobotFile
@@ -53,6 +55,7 @@ class Robot:
     std: np.ndarray
     records: tuple[Log, ...] = ()
     others: tuple[Log, ...] = ()
+    remarks: tuple[str, ...] = ()
 
     @property
     def nominal_model(self) -> NominalModel:
@@ -78,6 +81,11 @@ class Robot:
         return {
             n: measured_start(self.plant.model, at[n].where, log, at[n].value) for n in self.starts
         }
+
+    def plant_of(self, log: Log) -> JointPlant:
+        """The plant as it begins in a log."""
+        start = start_of(self.file, self.plant.model, log)
+        return replace(self.plant, bare=replace(self.plant.bare, start=start))
 
 
 def read_robot_log(file: RobotFile, path: str | Path) -> Log:
@@ -137,7 +145,10 @@ def robot_of(file: RobotFile, log: Log, others: Sequence[Log] = ()) -> Robot:
         if name not in {e.name for e in effects}:
             raise unknown_name("effect", name, (e.name for e in effects))
     records = [free_parameter(file, name, model, effects, log) for name in file.free]
-    plant = joint_plant(file.model, [r for r, _ in records], log, joints=known, effects=effects)
+    plant = joint_plant(
+        file.model, [r for r, _ in records], log, joints=known, effects=effects,
+        start=start_of(file, model, log),
+    )  # fmt: skip
     for name in file.fixed:
         if name not in plant.parameters.values():
             if means_effect(name, effects):
