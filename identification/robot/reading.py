@@ -47,7 +47,7 @@ def read_robot(
     robot = replace(robot_of(file, first, others), records=records)
     refuse_coarse_steps(robot)
     for record in records:
-        axes(robot.plant.model, record)  # a sensor that froze is refused
+        axes(robot.plant.model, record, file.trust)  # a sensor that froze is refused
     every = (robot.log, *robot.others, *records)
     for measured in every:
         refuse_miswired(robot, measured)

@@ -135,7 +135,7 @@ def robot_of(file: RobotFile, log: Log, others: Sequence[Log] = ()) -> Robot:
     """
     spec = read_model(file.model)
     model = spec.copy().compile()
-    known = reach([axes(model, each) for each in (log, *others)])
+    known = reach([axes(model, each, file.trust) for each in (log, *others)])
     for joint in file.joints:
         if joint not in {a.joint for a in known}:
             raise unknown_name("measured joint", joint, (a.joint for a in known))
