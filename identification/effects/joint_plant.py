@@ -125,7 +125,7 @@ class JointPlant:
 
 
 def joint_plant(
-    source: str | Path,
+    source: str | Path | mujoco.MjSpec,
     parameters: Iterable[Parameter],
     log: Log,
     *,
@@ -137,7 +137,7 @@ def joint_plant(
     """Compile an MJCF whose joints and inputs may have effects.
 
     Args:
-        source: path of an MJCF file, or its text.
+        source: path of an MJCF file, or its text, or the result of `read_model`.
         parameters: its own, with paths; those called as an effect's are that effect's.
         log: shows how far joints and inputs move, which says what sizes are plausible.
         joints: the joints that may have effects; those that the log measures when None.

@@ -39,6 +39,7 @@ class Log:
         name: what to call the log in a report.
         notes: remarks of its author.
         hold: the input between samples: "zoh" keeps the last value, "foh" draws a straight line.
+        remarks: what was changed when it was read from a file, a sentence each.
         splits: named parts [start, end) [s], such as estimation and validation.
 
     Raises:
@@ -57,6 +58,7 @@ class Log:
     notes: str = ""
     hold: str = "zoh"
     splits: Splits = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         def put(attribute: str, value: object) -> None:

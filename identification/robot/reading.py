@@ -44,7 +44,7 @@ def read_robot(
     first, *others = (
         _log(file, each) for each in ([log] if isinstance(log, str | Path | Log) else log)
     )
-    robot = replace(robot_of(file, first, others), records=records)
+    robot = robot_of(file, first, others, records)
     refuse_coarse_steps(robot)
     for record in records:
         axes(robot.plant.model, record, file.trust)  # a sensor that froze is refused
@@ -59,7 +59,8 @@ def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
     file, own = robot.file, robot.plant.model
     # Over a horizon each window begins where it was measured.
     begun = (start_sentence(file, own, log) for log in logs if file.horizon is None)
-    return tuple(sentence for sentence in begun if sentence)
+    resampled = (remark for log in logs for remark in log.remarks)
+    return (*robot.remarks, *resampled, *(sentence for sentence in begun if sentence))
 
 
 def _log(file: RobotFile, log: str | Path | Log) -> Log:
