@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from identification.errors import InputError
+from identification.errors import InputError, refuse_kind
 from identification.estimation.estimation import estimate
 from identification.estimation.fit import Fit, assess
 from identification.robot.checks import refuse_horizon
@@ -58,6 +58,7 @@ def fit(robot: Robot, progress: Callable[[str], None] | None = None) -> RobotFit
             no effect.
         DivergenceError: the model cannot be simulated with the values at which the fit begins.
     """
+    refuse_kind(robot, Robot, "fit takes a robot (read_robot)")
     file, log = robot.file, robot.log
     if robot.others:
         raise InputError(

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from identification.effects.axes import axes
+from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.robot.file import RobotFile, read_robot_file, trusted
 from identification.robot.robot import Robot, read_robot_log, robot_of
@@ -38,6 +39,9 @@ def read_robot(
             log's columns would explain it far better.
         DivergenceError: the model cannot be simulated.
     """
+    refuse_kind(path, (str, Path), "read_robot takes the path of a robot's TOML")
+    for records, of in ((log, "log"), (confirm, "confirm")):
+        _refuse_records(records, of)
     file = read_robot_file(path)
     file = replace(file, trust=(*file.trust, *trusted(trust, "what was called")))
     records = tuple(_log(file, record) for record in confirm)
@@ -52,6 +56,19 @@ def read_robot(
     for measured in every:
         refuse_miswired(robot, measured)
     return replace(robot, remarks=_remarks(robot, every))
+
+
+def _refuse_records(records: object, of: str) -> None:
+    """Refuse what is neither a path nor a log, nor several of them."""
+    what = f"{of} of read_robot takes paths of files or Logs (read_log)"
+    one = isinstance(records, (str, Path, Log))
+    if of == "confirm" and one:
+        raise InputError(f"{what} in a list; write confirm=[...] around it")
+    if of == "log" and isinstance(records, Sequence) and not len(records):
+        raise InputError(f"{what}, and none is given; give at least one")
+    refuse_kind(records, (str, Path, Log, Sequence), what)
+    for each in [] if one else records:  # type: ignore[attr-defined]
+        refuse_kind(each, (str, Path, Log), what)
 
 
 def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
