@@ -25,6 +25,7 @@ from identification.model.predictor import output_columns
 
 Kind = Literal["hinge", "slide"]
 HUGE = 1e50  # of any unit
+OVERRULE = ', or write trust = ["sensors"] into the robot\'s file'
 MAGNITUDES = ("force", "speed", "travel")
 POSES = 5  # random ones, to see on which joints gravity acts
 NOISE, SHARE = 5.0, 0.1  # a difference of noise, in its std, may be so much of the largest
@@ -71,12 +72,13 @@ class Axis:
                 )
 
 
-def axes(model: mujoco.MjModel, log: Log) -> tuple[Axis, ...]:
+def axes(model: mujoco.MjModel, log: Log, trust: Sequence[str] = ()) -> tuple[Axis, ...]:
     """The joints whose motion a log shows, in the model's order.
 
     Args:
         model: with the log's sensors.
         log: its inputs are those of the model's actuators.
+        trust: with "sensors" in it, an output that repeats one value is not frozen.
 
     Raises:
         InputError: an output is no sensor of a joint, never changes, freezes, or is huge.
@@ -90,7 +92,8 @@ def axes(model: mujoco.MjModel, log: Log) -> tuple[Axis, ...]:
         inputs = [_control(model, i) for i in drives_of(model, j)] or [*range(model.nu)]
         for k in own.values():
             others = [i for i in own.values() if i != k]
-            refuse_frozen(log, k, log.inputs[:, inputs], log.outputs[:, others])
+            if "sensors" not in trust:
+                refuse_frozen(log, k, log.inputs[:, inputs], log.outputs[:, others], OVERRULE)
     return tuple(
         _axis(model, log, j, {field: log.outputs[:, k] for field, k in seen[j].items()})
         for j in sorted(seen)

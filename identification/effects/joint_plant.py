@@ -24,6 +24,7 @@ from identification.effects.effect_parameters import effect_parameters
 from identification.effects.input_effects import drives, input_effects
 from identification.effects.joint_catalogue import joint_effects
 from identification.effects.joint_layout import JointLayout
+from identification.effects.own_effects import refuse_unfit_own
 from identification.effects.rows import read_model, with_rows
 from identification.logs.log import Log
 from identification.model.parameter import Parameter, ParameterSet
@@ -125,7 +126,7 @@ class JointPlant:
 
 
 def joint_plant(
-    source: str | Path,
+    source: str | Path | mujoco.MjSpec,
     parameters: Iterable[Parameter],
     log: Log,
     *,
@@ -137,7 +138,7 @@ def joint_plant(
     """Compile an MJCF whose joints and inputs may have effects.
 
     Args:
-        source: path of an MJCF file, or its text.
+        source: path of an MJCF file, or its text, or the result of `read_model`.
         parameters: its own, with paths; those called as an effect's are that effect's.
         log: shows how far joints and inputs move, which says what sizes are plausible.
         joints: the joints that may have effects; those that the log measures when None.
@@ -147,7 +148,8 @@ def joint_plant(
 
     Raises:
         InputError: the model or a path is unusable, a joint does not move in the log, or an effect
-            has a hook that is neither a joint's nor an input's.
+            has a hook that is neither a joint's nor an input's; or an own effect has a place that
+            is not there, or a function that fails when it is tried.
     """
     spec = read_model(source)
     known = tuple(joints) if joints is not None else axes(spec.copy().compile(), log)
@@ -158,7 +160,11 @@ def joint_plant(
     given = {p.name: p for p in parameters}
     paths = ParameterSet("own", tuple(p for p in given.values() if p.name not in records))
     every = (*paths, *(given.get(name, record) for name, record in records.items()))
-    bare = ModelPlant(with_rows(spec, known, JointLayout(effects)), paths, start)
+    layout = JointLayout(effects)
+    if own_effects:
+        inputs = [actuator.name for actuator in spec.actuators]
+        refuse_unfit_own(own_effects, [a.joint for a in known], inputs)
+    bare = ModelPlant(with_rows(spec, known, layout), paths, start)
     name = spec.modelname or "robot"
     return JointPlant(bare, ParameterSet(name, every), effects, tuple(a.joint for a in known))
 

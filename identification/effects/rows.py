@@ -24,15 +24,18 @@ _LONGEST = 200  # of MuJoCo's words in a message
 _HELD = {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}
 
 
-def read_model(source: str | Path) -> mujoco.MjSpec:
+def read_model(source: str | Path | mujoco.MjSpec) -> mujoco.MjSpec:
     """An MJCF as MuJoCo edits it.
 
     Args:
-        source: path of the file, or its text, which begins with "<".
+        source: path of the file, or its text, which begins with "<"; or a model that is read
+            already, which is copied.
 
     Raises:
         InputError: it cannot be read or compiled.
     """
+    if isinstance(source, mujoco.MjSpec):
+        return source.copy()
     text = str(source)
     given = text.lstrip().startswith("<")
     try:

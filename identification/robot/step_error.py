@@ -48,6 +48,8 @@ def refuse_coarse_steps(robot: Robot) -> None:
     Raises:
         InputError: the error is larger than the noise.
     """
+    if "steps" in robot.file.trust:
+        return
     try:
         worst = step_error(robot)
     except DivergenceError:  # the search will say why
@@ -60,7 +62,7 @@ def refuse_coarse_steps(robot: Robot) -> None:
         + f" in {worst.output} with integrator {INTEGRATORS[int(option.integrator)]} and timestep"
         f" {option.timestep:g} s, more than the noise of log {robot.log.name!r},"
         f" {worst.noise:.2g} {unit}".rstrip()
-        + f"; {_cure(robot)}"
+        + f'; {_cure(robot)}, or trust = ["steps"] into {robot.file.path}'
     )
 
 
