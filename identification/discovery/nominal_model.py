@@ -30,12 +30,14 @@ class NominalModel:
             unit, shape (p,).
         horizon: length of the windows over which predictions are judged [s]; None for a free run
             of the whole log, which says little of a robot that integrates what disturbs it.
+        own: those of the names of which each record has a value of its own.
     """
 
     plant: Plant
     names: tuple[str, ...]
     std: np.ndarray
     horizon: float | None = None
+    own: tuple[str, ...] = ()
 
 
 def fit_with_effects(

@@ -31,7 +31,8 @@ def discover(
         nominal_model: the model with every candidate effect compiled in, its free parameters and
             what is known of them.
         log: its part `estimation` (or first half) is fitted; the rest is unseen and confirms.
-        effects: the candidates.
+        effects: the candidates. Those whose size is each record's own are left out: one record
+            cannot tell them from what is the same in all.
         progress: is told a line per step.
         options: what is believed; the defaults of `DiscoveryOptions` when None.
 
@@ -41,7 +42,8 @@ def discover(
     """
     options, say = options or DiscoveryOptions(), progress or _say_nothing
     refuse_unfit(log, options)
-    state = first_state(DiscoveryTask(nominal_model, log, tuple(effects), options), say)
+    shared = tuple(effect for effect in effects if not effect.own)
+    state = first_state(DiscoveryTask(nominal_model, log, shared, options), say)
     while not state.is_finished:
         state = next_state(state, say)
     return conclude(state)

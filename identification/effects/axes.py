@@ -47,6 +47,7 @@ class Axis:
         travel: how far it moves [rad or m].
         plain: whether its drives' force is gain·u + bias: their load is then known.
         heavy: whether gravity acts on it anywhere.
+        duration: of the record [s]; 0 where it is not known.
 
     Raises:
         InputError: a magnitude is not positive.
@@ -59,6 +60,7 @@ class Axis:
     travel: float
     plain: bool = True
     heavy: bool = False
+    duration: float = 0.0
 
     def __post_init__(self) -> None:
         for word in MAGNITUDES:
@@ -104,7 +106,8 @@ def reach(each: Sequence[Sequence[Axis]]) -> tuple[Axis, ...]:
     found: dict[str, Axis] = {}
     for axis in (axis for known in each for axis in known):
         old = found.get(axis.joint, axis)
-        most = {word: max(getattr(old, word), getattr(axis, word)) for word in MAGNITUDES}
+        words = (*MAGNITUDES, "duration")
+        most = {word: max(getattr(old, word), getattr(axis, word)) for word in words}
         found[axis.joint] = replace(axis, **most)
     return tuple(found.values())
 
@@ -139,7 +142,8 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
         force = float(model.dof_M0[model.jnt_dofadr[j]]) * speed**2 / travel
     name = model.joint(j).name
     return Axis(name, _KINDS[int(model.jnt_type[j])], force, speed, travel,
-                all(_plain(model, i) for i in drives), _heavy(model, j))  # fmt: skip
+                all(_plain(model, i) for i in drives), _heavy(model, j),
+                log.begun + log.duration)  # fmt: skip
 
 
 def _heavy(model: mujoco.MjModel, j: int) -> bool:

@@ -102,7 +102,9 @@ class Effect:
         phrase: "{where}: " follows; e.g. "friction: Stribeck peak".
         reference: table, paper or book of the law.
         probes: multiples of the sizes' probes at which its sensitivity is taken, where the outputs
-            follow its size only nearly in proportion.
+            follow its size only nearly in proportion; below zero the other way.
+        own: whether its size is each record's own, such as a shift of that record's time stamps;
+            one record cannot tell it from what is the same in all.
         hooks: where it adds to the law of a robot, e.g. "force", and the njit function (state,
             parameters) that says what. None are needed where its sizes are paths into a model.
 
@@ -119,6 +121,7 @@ class Effect:
     phrase: str = ""
     reference: str = ""
     probes: tuple[float, ...] = (1.0,)
+    own: bool = False
     hooks: Mapping[str, Callable[..., Any]] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:

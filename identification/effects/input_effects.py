@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.effects.effect import BEFORE, Effect, Shape, Size
-from identification.effects.input_laws import DELAY, LAG, clipped, drifting
+from identification.effects.input_laws import DELAY, LAG, clipped, drifting, time_shift
 from identification.effects.places import places
 from identification.errors import InputError
 from identification.logs.log import Log
 
+SHIFT = 0.08  # largest shift of a record's clocks against each other, four cycles of 50 Hz [s]
+SHIFTS = (1.0, 5.0, 20.0, -5.0, -20.0)  # of 2 ms, to try: a shift past a wave's half is not linear
 LIMITS = (0.5, 0.6, 0.7, 0.8, 0.9, 0.97)  # to try, of the largest input
 
 
@@ -68,6 +70,10 @@ def input_effects(drives: Sequence[Drive]) -> tuple[Effect, ...]:
     return (
         Effect("delay", "u(t - τ)", (Size("tau", "s", 0.02, 5e-4, 1, "delay"),), (BEFORE,),
                places=at, phrase="input: comes late", probes=(1.0, 40**0.5, 40.0), hooks=DELAY),
+        Effect("time_shift", "u(t - τ), τ of each record's own, of either sign",
+               (Size("tau", "s", SHIFT, 2e-3, 0, "how much later it acts than its stamps say"),),
+               places=at, phrase="input: its clock is not the outputs'", probes=SHIFTS, own=True,
+               hooks={"input": time_shift}),
         Effect("lag", "τ u̇' = u - u'", (Size("tau", "s", 0.01, 5e-4, 1, tau),), (BEFORE,),
                places=at, phrase="input: lags", probes=(1.0, 20**0.5, 20.0), hooks=LAG),
         Effect("saturation", "u clipped at ±u_max", (share,), (limit,), places=at,

@@ -2,14 +2,15 @@
 
     delay        u(t - τ)                     τ = (n + f) h
                    m_k = (1 - f) u_(k-n) + f u_(k-n-1),  D_k = ½ f (1 - f) (u_(k-n) - u_(k-n-1))
+    time shift   u(t - τ)                     the same, τ of either sign; u(0) before, u(T) after
     lag          τ ẋ = u - x                  c = x - u, s = τ/h, k = e^(-1/s)
                    m = u + c s (1 - k),  D = c s (s - (s + 1) k - ½ (1 - k)),  x(t + h) = u + c k
     saturation   u + c (clip(u, ±u_max) - u)  c = 1 where there is a limit
     gain drift   (1 - α t) u                  t in the middle of the step
 
 Before the first sample p u(0) comes: nothing (p = 0), or what had been there (p = 1). Mean m and
-moment D of a step (see `identification.native.input_filter`) are exact for delay and lag, for every
-τ >= 0. Each function takes the state of an input and the effect's parameters, sizes first.
+moment D of a step (see `identification.native.input_filter`) are exact for delay, shift and lag,
+for every τ. Each function takes the state of an input and the effect's parameters, sizes first.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from math import exp, floor
 
 from numba import njit
 
-from identification.native.input_filter import past
+from identification.native.input_filter import past, shifted
 
 
 @njit
@@ -30,6 +31,15 @@ def delayed(s, p):  # type: ignore[no-untyped-def]
     n = floor(tau / s.step)
     f = tau / s.step - n
     new, old = past(s, n, before), past(s, n + 1, before)
+    return (1 - f) * new + f * old, f * (1 - f) / 2 * (new - old)
+
+
+@njit
+def time_shift(s, p):  # type: ignore[no-untyped-def]
+    """The input τ later, or earlier where τ < 0: its mean over the step, and moment."""
+    n = floor(p[0] / s.step)
+    f = p[0] / s.step - n
+    new, old = shifted(s, n), shifted(s, n + 1)
     return (1 - f) * new + f * old, f * (1 - f) / 2 * (new - old)
 
 

@@ -9,6 +9,8 @@ Friction resists the motion ahead, whose sign is s, with at most
         + μ |f_u - f_g|                         ... with the load that the gears transmit
         + μ |f_g|                               ... with gravity's force f_g alone
         + μ_s |f_u - f_g| exp(-|v/v_s|)         ... a Stribeck peak that grows with that load
+        + |μ_m f_u - μ_e f_g|                   ... with drive's force and gravity's, by shares
+        + exp(-|v/v_s|) (q_e f_g² or q_m f_u²)  ... with the square of the smaller, if they oppose
         + f_q q                                 Coulomb friction that changes along the way
         + a cos n q + b sin n q                 friction that repeats along the way
 
@@ -22,6 +24,7 @@ and holds what drives less than that (see `identification.native.joint_callback`
         + f_0                                   constant force
         - k q                                   spring
         - k_3 q³                                its hardening
+        - c f_u³                                a drive that weakens where it pushes hard
 
 q, v: position and velocity [rad, rad/s or m, m/s]; f: torque or force [N m or N], as MuJoCo's
 qfrc_passive counts it. Gears transmit |f_u - f_g|: what the drive pushes against what pulls at the
@@ -78,6 +81,23 @@ def load_stribeck_friction(s, p):  # type: ignore[no-untyped-def]
     """μ_s |f_u - f_g| exp(-|v/v_s|)."""
     mu_s, v_s = p
     return mu_s * abs(s.f_u - s.f_g) * exp(-abs(s.v / v_s))
+
+
+@njit
+def two_load_friction(s, p):  # type: ignore[no-untyped-def]
+    """|μ_m f_u - μ_e f_g|."""
+    mu_m, mu_e = p
+    return abs(mu_m * s.f_u - mu_e * s.f_g)
+
+
+@njit
+def quadratic_load_friction(s, p):  # type: ignore[no-untyped-def]
+    """q_e f_g² where |f_u| > |f_g|, else q_m f_u²; times exp(-|v/v_s|), where the two oppose."""
+    q_e, q_m, v_s = p
+    if s.f_u * s.f_g >= 0.0:
+        return 0.0
+    load = q_e * s.f_g * s.f_g if abs(s.f_u) > abs(s.f_g) else q_m * s.f_u * s.f_u
+    return load * exp(-abs(s.v / v_s))
 
 
 @njit
@@ -144,3 +164,9 @@ def stiffness(s, p):  # type: ignore[no-untyped-def]
 def hardening(s, p):  # type: ignore[no-untyped-def]
     """-k_3 q³."""
     return -p[0] * s.q * s.q * s.q
+
+
+@njit
+def torque_saturation(s, p):  # type: ignore[no-untyped-def]
+    """-c f_u³."""
+    return -p[0] * s.f_u * s.f_u * s.f_u

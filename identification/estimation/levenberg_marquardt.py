@@ -102,6 +102,7 @@ def levenberg_marquardt(
     criterion: Linearised,
     move: Callable[[Linearised, Step, np.ndarray], Linearised],
     damping: Damping,
+    μ: Cost | None = None,
 ) -> Iterator[Trial[Linearised, Step]]:
     """The trials of a descent; the iterator never ends by itself.
 
@@ -110,8 +111,9 @@ def levenberg_marquardt(
         move: returns the criterion linearised after a step; its last argument is true for those
             criteria that accept the step.
         damping: how μ changes.
+        μ: of the first step; `damping.first` when None.
     """
-    μ = np.full(np.shape(criterion.cost), damping.first)
+    μ = np.full(np.shape(criterion.cost), damping.first) if μ is None else np.asarray(μ)
     while True:
         before = np.asarray(criterion.cost)
         step = criterion.step(μ)

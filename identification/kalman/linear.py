@@ -59,15 +59,14 @@ def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = 
     states = rollout(
         plant.model, start, log.inputs, log.sampling_time, numbers=numbers,
         record=("qpos", "qvel", "act") if plant.model.na else ("qpos", "qvel"),
-        hold_kind=log.hold,
-        before=predictor.inputs(values),
+        hold_kind=log.hold, before=predictor.inputs(values), time=log.begun,
     )  # fmt: skip
     model = copy.copy(plant.model)
     for slot, column in numbers:
         getattr(model, slot.field)[slot.index()] = column[0]
     mujoco.mj_setConst(model, mujoco.MjData(model))
     along = {field: values[0] for field, values in states.items()}
-    F, G = _derivatives(model, along, log.inputs, log.sampling_time, forces)
+    F, G = _derivatives(model, along, log.inputs, log.sampling_time, log.begun, forces)
     C = np.zeros((log.outputs.shape[1], F.shape[1]))
     for row, (field, i) in enumerate(output_columns(model, log.output_names)):
         C[row, _tangent(model, field, i)] = 1
@@ -96,6 +95,7 @@ def _derivatives(
     states: dict[str, np.ndarray],
     inputs: np.ndarray,
     sampling_time: float,
+    begun: float,
     forces: Sequence[int],
 ) -> tuple[np.ndarray, np.ndarray]:
     """F (N, nx, nx) and G (N, nx, nu) at all samples."""
@@ -107,7 +107,7 @@ def _derivatives(
     F, G = np.empty((n, nx, nx)), np.zeros((n, nx, len(forces) or model.nu))
     unit, pushed = np.eye(model.nv)[list(forces)], np.empty((len(forces), model.nv))
     for k in range(n):
-        data.time = k * sampling_time
+        data.time = begun + k * sampling_time
         data.qpos, data.qvel, data.ctrl = states["qpos"][k], states["qvel"][k], inputs[k]
         if model.na:
             data.act = states["act"][k]

@@ -40,6 +40,8 @@ class Log:
         notes: remarks of its author.
         hold: the input between samples: "zoh" keeps the last value, "foh" draws a straight line.
         splits: named parts [start, end) [s], such as estimation and validation.
+        begun: time between the first sample of the whole record and the first one of this part of
+            it [s]; what changes with time in a robot goes on from part to part.
 
     Raises:
         InputError: shapes disagree, a number is not finite, time is uneven, a name is unusable, a
@@ -57,6 +59,7 @@ class Log:
     notes: str = ""
     hold: str = "zoh"
     splits: Splits = field(default_factory=dict)
+    begun: float = 0.0
 
     def __post_init__(self) -> None:
         def put(attribute: str, value: object) -> None:
@@ -147,6 +150,7 @@ class Log:
             outputs=self.outputs[rows],
             extras={name: column[rows] for name, column in self.extras.items()},
             splits={},
+            begun=self.begun + float(self.time[first] - self.time[0]),
         )
 
     def part(self, name: str) -> Log:

@@ -64,6 +64,10 @@ class Coordinates:
         return (q - self.lower < near) | (self.upper - q < near)
 
 
+_NONE = np.zeros(0)
+NOTHING = Coordinates((), _NONE.astype(bool), _NONE, _NONE, _NONE)  # where nothing is free
+
+
 def coordinates(
     parameters: ParameterSet,
     names: Sequence[str],

@@ -118,6 +118,7 @@ class Predictor:
             record=sorted({field for field, _ in columns}),
             hold_kind=log.hold,
             before=self.inputs(values),
+            time=log.begun,
         )
         return np.stack([states[field][:, :, i] for field, i in columns], axis=-1)
 

@@ -71,14 +71,15 @@ def substeps(sampling_time: float, timestep: float) -> int:
 
 
 def hold(inputs: np.ndarray, n: int, kind: str = "zoh") -> np.ndarray:
-    """Controls of the simulation steps between the samples: (N, nu) -> ((N-1) n, nu)."""
+    """Controls of the simulation steps between the samples: (..., N, nu) -> (..., (N-1) n, nu)."""
     if kind == "zoh":
-        return np.repeat(inputs[:-1], n, axis=0)
+        return np.repeat(inputs[..., :-1, :], n, axis=-2)
     if kind != "foh":
         raise InputError(f"unknown hold {kind!r}; known: foh, zoh")
-    weight = ((np.arange(n) + 0.5) / n)[None, :, None]
-    held = (1 - weight) * inputs[:-1, None] + weight * inputs[1:, None]
-    return held.reshape(-1, inputs.shape[1])
+    weight = ((np.arange(n) + 0.5) / n)[:, None]
+    before, after = inputs[..., :-1, None, :], inputs[..., 1:, None, :]
+    held = (1 - weight) * before + weight * after
+    return np.asarray(held.reshape(*inputs.shape[:-2], -1, inputs.shape[-1]))
 
 
 def rollout(
@@ -92,6 +93,7 @@ def rollout(
     hold_kind: str = "zoh",
     nthread: int | None = None,
     before: Callable[[np.ndarray], np.ndarray] | None = None,
+    time: float | np.ndarray = 0.0,
 ) -> Mapping[str, np.ndarray]:
     """Simulate n copies of a model under one input sequence.
 
@@ -107,6 +109,7 @@ def rollout(
         nthread: native threads; all processors when None.
         before: changes the held inputs before they reach the model:
             (steps, nu) -> (steps, nu) for all or (n, steps, nu).
+        time: at the start, one for all or one for each, shape (n,) [s]; laws may depend on it.
 
     Returns:
         For each recorded field an array (n, N, size); sample 0 is the start.
@@ -122,7 +125,7 @@ def rollout(
     n = max([len(r) for r in rows] + [len(values) for _, values in numbers])
     every = substeps(sampling_time, model.opt.timestep)
     own = inputs[None] if inputs.ndim == 2 else inputs
-    controls = np.stack([hold(u, every, hold_kind) for u in own])
+    controls = hold(own, every, hold_kind)
     if before is not None and len(own) == 1:
         controls = before(controls[0])
         controls = controls if controls.ndim == 3 else controls[None]
@@ -136,11 +139,13 @@ def rollout(
     for field, row in zip(("qpos", "qvel", "act"), rows, strict=True):
         if row.shape[1]:
             batch.bind(field)[:] = row
+    begun = np.broadcast_to(np.asarray(time, float), n)
+    batch.bind("time")[:] = begun.reshape(batch.bind("time").shape)
     first = {field: np.array(batch.bind(field)) for field in record}
     shared = np.broadcast_to(controls, (n, *controls.shape[1:]))
     with _quiet():
         steps = batch.rollout(shared.shape[1], shared, record=tuple(record))
-    _check_finished(batch, shared.shape[1] * model.opt.timestep)
+    _check_finished(batch, begun, shared.shape[1], model.opt.timestep)
     return {
         field: np.concatenate([first[field][:, None], steps[field][:, every - 1 :: every]], axis=1)
         for field in record
@@ -171,10 +176,10 @@ def _quiet() -> Iterator[None]:
         mujoco.set_mju_user_warning(before)
 
 
-def _check_finished(batch: Batch, end: float) -> None:
+def _check_finished(batch: Batch, begun: np.ndarray, steps: int, timestep: float) -> None:
     """Find simulations that stopped early: a non-finite state stops a simulation and its clock."""
     reached = np.array(batch.bind("time")).ravel()
-    late = np.flatnonzero(~(reached > end * (1 - 1e-9)))
+    late = np.flatnonzero(~(reached > begun + (steps - 0.5) * timestep))
     if late.size:
         raise DivergenceError(
             f"the simulation diverged at t = {reached[late[0]]:.4g} s"

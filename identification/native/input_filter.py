@@ -28,8 +28,8 @@ from identification.native.tuples import loader
 
 # What an effect sees of an input at step k.
 #   k; step h [s]; u: the input, held over the step; x: the effect's own state
-#   signal: address of the input of all steps, which `past` reads
-Input: Any = namedtuple("Input", "k step u x signal")
+#   signal: address of the input of all steps, which `past` and `shifted` read; steps: their number
+Input: Any = namedtuple("Input", "k step u x signal steps")
 
 INPUT = Element(
     "input",
@@ -39,7 +39,7 @@ INPUT = Element(
         Hook("start", ("own state before the first step",)),
         Hook("next", ("own state after the step",)),
     ),
-    integers=("k", "signal"),
+    integers=("k", "signal", "steps"),
 )
 
 _SIGNATURE = types.void(types.int64, types.int64, types.float64, types.int64)
@@ -52,6 +52,13 @@ def past(s, n, before):  # type: ignore[no-untyped-def]
     if n > s.k:
         return before * load_double(s.signal)
     return load_double(s.signal + 8 * (s.k - int(n)))
+
+
+@internal
+def shifted(s, n):  # type: ignore[no-untyped-def]
+    """The input n steps ago, or ahead where n < 0; its first and last values last for ever."""
+    at = min(max(s.k - n, 0.0), s.steps - 1.0)  # n may be larger than any whole number
+    return load_double(s.signal + 8 * int(at))
 
 
 @internal
@@ -74,10 +81,12 @@ def _link(rest: Function, term: Term, place: int) -> Function:
             for k in range(steps):
                 store_double(out + 8 * k, load_double(signal + 8 * k))
             return
-        x = float(start(Input(k=0, step=step, u=load_double(signal), x=0.0, signal=signal), p))
+        u = load_double(signal)
+        x = float(start(Input(k=0, step=step, u=u, x=0.0, signal=signal, steps=steps), p))
         last = 0.0
         for k in range(steps):
-            s = Input(k=k, step=step, u=load_double(signal + 8 * k), x=x, signal=signal)
+            u = load_double(signal + 8 * k)
+            s = Input(k=k, step=step, u=u, x=x, signal=signal, steps=steps)
             mean, moment = change(s, p)
             store_double(out + 8 * k, mean - moment + last)
             x, last = float(after(s, p)), float(moment)

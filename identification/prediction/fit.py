@@ -26,6 +26,7 @@ from identification.windows.shooting import Tangent
 # Of the squared norms of the columns of X and S.
 DAMPING = Damping(first=1e-3, raised=5.0, lowered=10.0, least=1e-9, floor=1e-9)
 MOST_DAMPING = 1e3  # beyond, a step is too short to gain anything
+ROUGH = 1e-2  # relative fall of the criterion that ends a fit whose last digits do not matter
 BLOCKS = 40  # of windows, over all records, for the std
 
 _Step = tuple[np.ndarray, tuple[np.ndarray, ...]]  # Δq (p,), and Δd (W, nx) of each record
@@ -55,9 +56,22 @@ class WindowFit:
 
     @property
     def values(self) -> dict[str, float]:
-        """Estimates by name, in their units."""
-        space = self.problem.space
+        """Estimates by name, in their units; a record's own ones are `name [record]`."""
+        space = self.problem.prior.space
         return dict(zip(space.names, space.decode(self.q).tolist(), strict=True))
+
+    @property
+    def shared(self) -> dict[str, float]:
+        """Estimates of the parameters that all records share, by name, in their units."""
+        values = self.values
+        return {n: values[n] for n in self.problem.unknowns.shared.names}
+
+    def of_record(self, record: int) -> dict[str, float]:
+        """Estimates that one record feels, by name in the plant, in their units."""
+        unknowns = self.problem.unknowns
+        at = self.q[unknowns.columns(record)]
+        space = unknowns.local.space
+        return dict(zip(space.names, space.decode(at).tolist(), strict=True))
 
     @property
     def states(self) -> tuple[State, ...]:
@@ -74,7 +88,7 @@ class WindowFit:
     def std(self) -> np.ndarray:
         """Std of each value by blocks of windows, in its unit, shape (p,)."""
         q = self.q
-        return np.sqrt(np.diag(self.covariance)) * self.problem.space.slope(q)
+        return np.sqrt(np.diag(self.covariance)) * self.problem.prior.space.slope(q)
 
     @property
     def covariance(self) -> np.ndarray:
@@ -82,7 +96,7 @@ class WindowFit:
         scores = np.concatenate([np.einsum("wmp,wm->wp", *projected(t)) for t in self.tangents])
         blocks = min(BLOCKS, max(2, len(scores)))
         g = np.array([part.sum(axis=0) for part in np.array_split(scores, blocks)])
-        W2 = np.diag(self.problem.weight**2)
+        W2 = np.diag(self.problem.prior.weight**2)
         H = sum(_normal(t)[0] for t in self.tangents) + W2
         inverse = np.linalg.pinv(H, rcond=1e-14, hermitian=True)
         return np.asarray(inverse @ (g.T @ g * blocks / (blocks - 1) + W2) @ inverse)
@@ -113,7 +127,7 @@ class _AtPoint:
         return _step(self.problem, self.q, self.tangents, float(μ))
 
     def after(self, step: _Step) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-        space = self.problem.space
+        space = self.problem.prior.space
         q = np.clip(self.q + step[0], space.lower, space.upper)
         return q, tuple(d + more for d, more in zip(self.moves, step[1], strict=True))
 
@@ -127,8 +141,7 @@ class _AtPoint:
         """The steps are never bent."""
 
     def moved(self, step: _Step, taken: np.ndarray) -> _AtPoint:
-        q, moves = self.after(step)
-        return _AtPoint(self.problem, q, moves, self.problem.tangents(q, moves))
+        return _linearised(self.problem, *self.after(step))
 
 
 def solve(
@@ -152,8 +165,7 @@ def solve(
     Raises:
         DivergenceError: the start cannot be simulated.
     """
-    q, moves = problem.space.inside(q), tuple(moves)
-    at = _AtPoint(problem, q, moves, problem.tangents(q, moves))
+    at = _linearised(problem, problem.prior.space.inside(q), tuple(moves))
     converged, steps = False, 1
     samples = sum(p.cut.outputs.size for p in problem.parts)
     trials = levenberg_marquardt(at, _AtPoint.moved, DAMPING)
@@ -162,18 +174,27 @@ def solve(
             trial = next(trials)
         except DivergenceError:  # a neighbour of the new point: the last one stands
             break
+        before = at.cost
         if trial.taken:
-            at, steps = trial.criterion, steps + 1
-            if progress is not None:
-                error = np.sqrt(at.cost / samples)
-                progress(f"windows: error {error:.4g} of its scale, step {steps}")
-            converged = bool(trial.before - trial.after < tolerance * trial.before)
+            at = trial.criterion
+        elif trial.next > MOST_DAMPING:  # one window may bar the way of all: each for itself
+            at = _linearised(problem, at.q, problem.settled(at.q, at.moves))
+            trials = levenberg_marquardt(at, _AtPoint.moved, DAMPING)
         else:
-            converged = bool(trial.next > MOST_DAMPING)
+            continue
+        steps += 1
+        converged = bool(before - at.cost < tolerance * before)
+        if progress is not None:
+            error = np.sqrt(at.cost / samples)
+            progress(f"windows: error {error:.4g} of its scale, step {steps}")
     return WindowFit(
         problem=problem, q=at.q, moves=at.moves, tangents=at.tangents, cost=at.cost,
         converged=converged, steps=steps,
     )  # fmt: skip
+
+
+def _linearised(problem: Problem, q: np.ndarray, moves: tuple[np.ndarray, ...]) -> _AtPoint:
+    return _AtPoint(problem, q, moves, problem.tangents(q, moves))
 
 
 def _normal(t: Tangent) -> tuple[np.ndarray, np.ndarray]:
@@ -184,7 +205,7 @@ def _normal(t: Tangent) -> tuple[np.ndarray, np.ndarray]:
 
 def _step(problem: Problem, q: np.ndarray, tangents: Sequence[Tangent], damping: float) -> _Step:
     """The damped step of the parameters and of the windows' states."""
-    H, g = np.diag(problem.weight**2), problem.weight * problem.against(q)
+    H, g = np.diag(problem.prior.weight**2), problem.prior.weight * problem.against(q)
     for t in tangents:
         against, left, share = _states(t, damping)
         H = H + np.einsum("wmp,wmq->pq", t.S, t.S)

@@ -8,7 +8,7 @@ with an effect:    the fit begins at its parent, with the size that the score gi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,18 +17,26 @@ from identification.discovery.nominal_model import NominalModel
 from identification.effects.effect import Candidate
 from identification.errors import InputError
 from identification.logs.noise import noise_floor
-from identification.model.coordinates import Coordinates, coordinates
+from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
 from identification.model.predictor import Plant
-from identification.prediction.fit import WindowFit, solve
-from identification.prediction.problem import moves_from, no_moves, problem, with_space
+from identification.prediction.fit import ROUGH, WindowFit, solve
+from identification.prediction.problem import (
+    Problem,
+    no_moves,
+    problem,
+    with_scale,
+    with_unknowns,
+)
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore, inside
-from identification.prediction.unseen import Unseen, predict
+from identification.prediction.unknowns import Prior
+from identification.prediction.unseen import Own, Unseen, predict
 
 GROWTH = (0.25, 0.5, 1.0)  # of the horizon
-ROUGH = 1e-2  # relative fall of the criterion that ends a fit which another follows
 FEWEST = 4  # samples of the shortest windows
+SAME = 0.05  # relative change of the errors' scale below which it is settled
+MOST_SCALES = 6  # fits at most until it is
 SHARES = (1.0, 0.5, 0.2, 0.05, 0.01)  # of the size that a score gives, to begin with
 SHAPE_STD = 1.0  # prior of a shape's coordinate about the value that scored best
 SMALL = 1e-3  # of a probe: where the search for a size begins that must not be zero
@@ -36,7 +44,7 @@ SMALL = 1e-3  # of a probe: where the search for a size begins that must not be 
 Progress = Callable[[str], None]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class WindowModel:
     """A model with some effects.
 
@@ -53,10 +61,15 @@ class WindowModel:
     scale: np.ndarray
 
     @property
+    def plant(self) -> Plant:
+        """The plant with its own values."""
+        return self.fit.problem.parts[0].predictor.plant
+
+    @property
     def values(self) -> dict[str, float]:
-        """Values of all parameters that are not the plant's own, by name."""
+        """Values of all parameters that are not the plant's own and hold for all records."""
         fixed = {n: v for c in self.candidates for n, v in (*c.fixed.items(), *c.whole.items())}
-        return {**fixed, **self.fit.values}
+        return {**fixed, **self.fit.shared}
 
     @property
     def std(self) -> dict[str, float]:
@@ -65,54 +78,50 @@ class WindowModel:
 
 
 def fit_nominal(
-    plant: Plant,
-    names: Sequence[str],
-    std: np.ndarray,
-    horizon: float,
-    records: Sequence[Record],
-    progress: Progress | None = None,
+    nominal_model: NominalModel, records: Sequence[Record], progress: Progress | None = None
 ) -> WindowModel:
-    """Fit a model without effects, over windows that grow to the horizon.
+    """Fit a model without effects, over windows that grow to its horizon.
+
+    The scale of the errors, against which priors count, is that of the fit itself: fits are
+    repeated until it is settled.
 
     Args:
-        plant: the model; its own values are where the search begins, and the priors' means.
-        names: the free parameters.
-        std: prior std of each, relative where it is logarithmic, shape (p,).
-        horizon: [s].
+        nominal_model: the model; its plant's own values are where the search begins, and the
+            priors' means.
         records: to fit and to confirm.
         progress: is told one line per linearisation.
 
     Raises:
-        InputError: windows do not fit a record, or a start lies on a bound.
+        InputError: there is no horizon, windows do not fit a record, or a start lies on a bound.
         DivergenceError: the start cannot be simulated.
     """
+    plant, horizon = nominal_model.plant, nominal_model.horizon
+    if horizon is None:
+        raise InputError("windows need a horizon; give one in seconds")
+    shared, own = _priors(nominal_model)
     fitted = [r for r in records if r.role == "fit"]
-    own = plant.parameters.values()
-    first = np.array([own[n] for n in names])
-    space = coordinates(plant.parameters, names, first)
-    q = mean = space.encode(first)
-    weight = 1 / np.asarray(std, float)
     scale = _scale_of_change(fitted)
-    values: dict[str, float] = dict(zip(names, first, strict=True))
+    values: dict[str, float] = {}
     found: WindowFit | None = None
     for factor in GROWTH:
         length = factor * horizon
         if any(length < FEWEST * r.log.sampling_time for r in fitted) and factor < 1:
             continue
-        task = problem(plant, fitted, space, length, values, mean, weight, scale)
-        found = solve(task, q, no_moves(task), tolerance=ROUGH, progress=progress)
+        task = problem(plant, fitted, shared, own, length, values, scale)
+        q = task.prior.mean if found is None else found.q
+        found = solve(task, q, task.settled(q, no_moves(task)), tolerance=ROUGH, progress=progress)
         _refuse_idle(found)
-        q, values = found.q, found.values
-        scale = _rms(found)
+        values, scale = found.shared, _rms(found)
     if found is None:
         raise InputError(f"windows of {horizon:g} s fit no record; choose another horizon")
-    task = problem(plant, fitted, space, horizon, values, mean, weight, scale)
-    found = solve(task, q, moves_from(task, found.states), progress=progress)
+    for _ in range(MOST_SCALES):
+        task, old = with_scale(found.problem, scale), scale
+        found = solve(task, found.q, found.moves, progress=progress)
+        scale = _rms(found)
+        if np.all(np.abs(np.log(scale / old)) < SAME):
+            break
     confirm = [r for r in records if r.role == "confirm"]
-    return WindowModel(
-        candidates=(), fit=found, unseen=predict(plant, confirm, horizon, scale, found.values),
-        scale=scale,
-    )  # fmt: skip
+    return WindowModel((), found, _unseen(plant, confirm, horizon, old, found, {}), old)
 
 
 def with_effect(
@@ -129,51 +138,40 @@ def with_effect(
     Raises:
         InputError: its start cannot be simulated, whatever the size.
     """
-    c, fit = score.candidate, parent.fit
-    plant = fit.problem.parts[0].predictor.plant
-    free = [*c.free, *_shapes(c)]
-    names = (*fit.problem.names, *(n for n in free if n not in fit.problem.names))
-    fixed = {n: v for n, v in (*c.fixed.items(), *c.whole.items()) if n not in names}
-    sizes = dict(zip(c.sizes, score.size, strict=True))
-    own = {**plant.parameters.values(), **fit.values, **c.fixed}
+    c, fit, plant = score.candidate, parent.fit, parent.plant
+    old = fit.problem.unknowns
+    sizes = _free(plant, c, [n for n in c.free if n not in old.local.names])
+    shapes = _free(plant, c, [n for n in _shapes(c) if n not in old.local.names])
+    shared, own = old.shared.plus(shapes), old.own
+    shared, own = (shared, own.plus(sizes)) if c.effect.own else (shared.plus(sizes), own)
+    free = (*shared.names, *own.names)
+    fixed = {n: v for n, v in (*c.fixed.items(), *c.whole.items()) if n not in free}
+    task = with_unknowns(fit.problem, shared, own, fixed)
     begun = []
     for share in SHARES:
-        start = {**own, **{n: _away(plant.parameters, n, share * sizes[n]) for n in c.free}}
-        first = inside(plant.parameters, names, np.array([start[n] for n in names]))
-        space = coordinates(plant.parameters, names, first, linear=c.sizes)
-        more = len(names) - len(fit.q)
-        prior = np.array([0.0 if n in c.sizes else 1 / SHAPE_STD for n in names[len(fit.q) :]])
-        q = space.encode(first)
-        q[: len(fit.q)] = fit.q
-        mean = np.concatenate([fit.problem.mean, q[len(fit.q) :]]) if more else fit.problem.mean
-        weight = np.concatenate([fit.problem.weight, prior])
-        task = with_space(fit.problem, _bounded(space, fit), fixed, mean, weight)
+        q = _begin(task, parent, score, share)
         try:
             cost = task.cost(q, fit.moves)
         except InputError:
             continue
-        begun.append((cost, task, q))
+        begun.append((cost, q))
         if cost < fit.cost or not c.free:
             break
     if not begun:
         raise InputError(f"{c.effect.name}, {c.where} cannot be simulated at any size")
-    _, task, q = min(begun, key=lambda b: b[0])
+    _, q = min(begun, key=lambda b: b[0])
     found = solve(task, q, fit.moves)
     if found.cost >= fit.cost:
         return None
     values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}
-    values |= {**fixed, **found.values}
-    seen = predict(plant, confirm, horizon, parent.scale, values, parent.unseen)
-    return WindowModel(
-        candidates=(*parent.candidates, c), fit=found, unseen=seen, scale=parent.scale
-    )
+    seen = _unseen(plant, confirm, horizon, parent.scale, found, {**values, **fixed}, parent.unseen)
+    return WindowModel((*parent.candidates, c), found, seen, parent.scale)
 
 
 def refitted(
     model: WindowModel,
     candidates: Sequence[Candidate],
     nominal_model: NominalModel,
-    horizon: float,
     confirm: Sequence[Record],
 ) -> WindowModel | None:
     """A model with fewer effects, refitted from where it is; None where it cannot be simulated.
@@ -181,48 +179,83 @@ def refitted(
     Args:
         model: with more effects.
         candidates: those that it keeps.
-        nominal_model: its other free parameters.
-        horizon: [s].
+        nominal_model: its other free parameters, and the horizon.
         confirm: records that no fit may see.
     """
-    fit, keep = model.fit, [*nominal_model.names]
-    for c in candidates:
-        keep += [n for n in (*c.free, *_shapes(c)) if n not in keep]
-    at = [fit.problem.names.index(n) for n in keep]
-    old = fit.problem.space
-    put = {f: getattr(old, f)[at] for f in ("logarithmic", "lower", "upper", "scale")}
+    fit, old = model.fit, model.fit.problem.unknowns
+    keep = {*nominal_model.names, *(n for c in candidates for n in (*c.free, *_shapes(c)))}
     values = {n: v for c in candidates for n, v in (*c.fixed.items(), *c.whole.items())}
     absent = {
         n: 0.0 for c in model.candidates for n in c.sizes if n not in values and n not in keep
     }
     fixed = {**absent, **values}
-    task = with_space(
-        fit.problem, Coordinates(tuple(keep), **put), fixed, fit.problem.mean[at],
-        fit.problem.weight[at],
-    )  # fmt: skip
-    plant = fit.problem.parts[0].predictor.plant
+    task = with_unknowns(fit.problem, old.shared.only([*keep]), old.own.only([*keep]), fixed)
+    q = np.array([fit.q[fit.problem.names.index(n)] for n in task.names])
+    horizon = float(nominal_model.horizon or 0.0)
     try:
-        found = solve(task, fit.q[at], fit.moves)
-        own = {**fixed, **found.values}
-        seen = predict(plant, confirm, horizon, model.scale, own, model.unseen)
+        found = solve(task, q, fit.moves)
+        seen = _unseen(model.plant, confirm, horizon, model.scale, found, fixed, model.unseen)
     except InputError:
         return None
-    return WindowModel(candidates=tuple(candidates), fit=found, unseen=seen, scale=model.scale)
+    return WindowModel(tuple(candidates), found, seen, model.scale)
+
+
+def _priors(nominal_model: NominalModel) -> tuple[Prior, Prior]:
+    """What is known of the free parameters of a nominal model: shared ones, and own ones."""
+    plant, names, own = nominal_model.plant, nominal_model.names, nominal_model.own
+    values = plant.parameters.values()
+    first = np.array([values[n] for n in names])
+    space = coordinates(plant.parameters, names, first)
+    prior = Prior(space, space.encode(first), 1 / np.asarray(nominal_model.std, float))
+    return prior.only([n for n in names if n not in own]), prior.only(own)
+
+
+def _free(plant: Plant, c: Candidate, names: Sequence[str]) -> Prior:
+    """Parameters of an effect: of sizes nothing is known, shapes are near the grid's value."""
+    if not names:
+        return Prior()
+    values = {**plant.parameters.values(), **c.fixed}
+    start = [_away(plant.parameters, n, 0.0) if n in c.sizes else values[n] for n in names]
+    first = inside(plant.parameters, names, np.array(start))
+    space = coordinates(plant.parameters, names, first, linear=c.sizes)
+    weight = np.array([0.0 if n in c.sizes else 1 / SHAPE_STD for n in names])
+    return Prior(space, space.encode(first), weight)
+
+
+def _begin(task: Problem, parent: WindowModel, score: WindowScore, share: float) -> np.ndarray:
+    """Where a child's q begins: at its parent, with a share of the sizes that the score gives."""
+    c, unknowns = score.candidate, task.unknowns
+    q = np.array(task.prior.mean)
+    old = dict(zip(parent.fit.problem.names, parent.fit.q, strict=True))
+    sizes = score.size.reshape(-1, len(c.sizes)) * np.ones((len(unknowns.records), 1))
+    parameters = parent.plant.parameters
+    for k in range(len(unknowns.records)):
+        for name, value in zip(c.sizes, sizes[k], strict=True):
+            if name in unknowns.local.names:
+                at = unknowns.columns(k)[unknowns.local.names.index(name)]
+                q[at] = _away(parameters, name, share * value) / task.prior.space.scale[at]
+    for k, name in enumerate(task.names):
+        q[k] = old.get(name, q[k])
+    return np.asarray(task.prior.space.inside(q))
+
+
+def _unseen(
+    plant: Plant, confirm: Sequence[Record], horizon: float, scale: np.ndarray, found: WindowFit,
+    fixed: Mapping[str, float], near: Unseen | None = None,
+) -> Unseen:  # fmt: skip
+    """Errors on unseen records; of parameters that each has for itself, its own halves tell."""
+    unknowns, values = found.problem.unknowns, {**fixed, **found.shared}
+    m = len(unknowns.own.names)
+    start = unknowns.own.mean
+    if m:
+        start = found.q[len(unknowns.shared.names) :].reshape(-1, m).mean(axis=0)
+    own = Own(unknowns.own, start)
+    return predict(plant, confirm, horizon, scale, values, near, own)
 
 
 def _shapes(c: Candidate) -> list[str]:
     """The plant's parameters of an effect's free shapes."""
     return [c.effect.parameter(s.name, c.where) for s in c.effect.shapes if s.free]
-
-
-def _bounded(space: Coordinates, fit: WindowFit) -> Coordinates:
-    """Coordinates that keep those of the parent, bounds included."""
-    p, old = len(fit.q), fit.problem.space
-    put = {
-        field: np.concatenate([getattr(old, field), getattr(space, field)[p:]])
-        for field in ("logarithmic", "lower", "upper", "scale")
-    }
-    return Coordinates(space.names, **put)
 
 
 def _away(parameters: ParameterSet, name: str, value: float) -> float:

@@ -9,17 +9,19 @@ are eliminated by themselves (`identification.windows.shooting`), so that record
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from identification.model.coordinates import Coordinates
+from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
-from identification.model.rollout import State
 from identification.prediction.records import Record
+from identification.prediction.unknowns import Prior, Unknowns
 from identification.windows.shooting import Shooting, Tangent, tangent
-from identification.windows.windows import apart, first_states, windows
+from identification.windows.window_search import search_states
+from identification.windows.windows import first_states, windows
 
 
 @dataclass(frozen=True)
@@ -27,25 +29,26 @@ class Problem:
     """What does not change while parameters and states of windows are sought.
 
     Attributes:
-        parts: the windows of each record that is fitted.
-        space: coordinates of the p free parameters.
-        mean: q̄ of the priors, shape (p,).
-        weight: 1/σ of the priors, zero where there is none, shape (p,).
+        parts: the windows of each record that is fitted; each feels its own columns of q.
+        unknowns: the free parameters, and what is known of them.
     """
 
     parts: tuple[Shooting, ...]
-    space: Coordinates
-    mean: np.ndarray
-    weight: np.ndarray
+    unknowns: Unknowns
+
+    @cached_property
+    def prior(self) -> Prior:
+        """Of all p free parameters."""
+        return self.unknowns.all
 
     @property
     def names(self) -> tuple[str, ...]:
         """The free parameters."""
-        return self.space.names
+        return self.prior.names
 
     def against(self, q: np.ndarray) -> np.ndarray:
         """What the priors hold against q, in their std, shape (p,)."""
-        return self.weight * (self.mean - q)
+        return self.prior.weight * (self.prior.mean - q)
 
     def cost(self, q: np.ndarray, d: Sequence[np.ndarray]) -> float:
         """V at q and at the moves of the windows' states, one array (W, nx) a record.
@@ -54,23 +57,53 @@ class Problem:
             DivergenceError: a window left the finite numbers.
         """
         data = sum(
-            float(np.sum(p.residual(q, own) ** 2)) for p, own in zip(self.parts, d, strict=True)
+            float(np.sum(part.residual(own, moves) ** 2)) for part, own, moves in self._each(q, d)
         )
         return data + float(np.sum(self.against(q) ** 2))
 
     def tangents(self, q: np.ndarray, d: Sequence[np.ndarray]) -> tuple[Tangent, ...]:
-        """All windows linearised, one tangent a record."""
-        return tuple(tangent(p, q, own) for p, own in zip(self.parts, d, strict=True))
+        """All windows linearised, one tangent a record, its S with a column for each of q."""
+        return tuple(
+            self.widened(k, tangent(part, own, moves))
+            for k, (part, own, moves) in enumerate(self._each(q, d))
+        )
+
+    def widened(self, record: int, t: Tangent) -> Tangent:
+        """A tangent of the record's own columns with columns of zeros for all others."""
+        if not self.unknowns.own.names:
+            return t
+        S = np.zeros((*t.S.shape[:2], len(self.names)))
+        S[..., self.unknowns.columns(record)] = t.S
+        return replace(t, S=S)
+
+    def settled(self, q: np.ndarray, d: Sequence[np.ndarray]) -> tuple[np.ndarray, ...]:
+        """The moves of the states that are best at q, each window for itself, from d on."""
+        return tuple(
+            search_states(at_values(part, own), moves).d for part, own, moves in self._each(q, d)
+        )
+
+    def _each(
+        self, q: np.ndarray, d: Sequence[np.ndarray]
+    ) -> Iterator[tuple[Shooting, np.ndarray, np.ndarray]]:
+        for k, (part, moves) in enumerate(zip(self.parts, d, strict=True)):
+            yield part, q[self.unknowns.columns(k)], moves
+
+
+def at_values(part: Shooting, q: np.ndarray) -> Shooting:
+    """The windows of a record with all parameters held at q (p,), in coordinates."""
+    names = part.predictor.names
+    values = dict(zip(names, part.space.decode(q).tolist(), strict=True))
+    predictor = replace(part.predictor, names=(), fixed={**part.predictor.fixed, **values})
+    return replace(part, predictor=predictor, space=NOTHING)
 
 
 def problem(
     plant: Plant,
     records: Sequence[Record],
-    space: Coordinates,
+    shared: Prior,
+    own: Prior,
     length: float,
     values: Mapping[str, float],
-    mean: np.ndarray,
-    weight: np.ndarray,
     scale: np.ndarray,
 ) -> Problem:
     """Cut records into windows, each of which begins where the robot was measured.
@@ -78,25 +111,26 @@ def problem(
     Args:
         plant: the model.
         records: to be fitted.
-        space: coordinates of the free parameters.
+        shared: the free parameters that all records share.
+        own: the free parameters that each record has for itself.
         length: of a window [s].
         values: of all parameters that are not the plant's own; they say where unmeasured states
             begin.
-        mean: see `Problem`.
-        weight: see `Problem`.
         scale: s of each output, shape (ny,), in its unit.
 
     Raises:
         InputError: windows do not fit a record.
     """
     parts = []
+    space = shared.plus(own).space
+    begun = {**plant.parameters.values(), **values}
     for record in records:
         fixed = {n: v for n, v in {**values, **record.values}.items() if n not in space.names}
         predictor = Predictor(plant, record.log, space.names, fixed)
         cut = windows(record.log, length)
-        first = first_states(predictor, np.array([values[n] for n in space.names]), cut)
+        first = first_states(predictor, np.array([begun[n] for n in space.names]), cut)
         parts.append(Shooting(predictor, space, cut, first, np.diag(1 / scale)))
-    return Problem(tuple(parts), space, mean, weight)
+    return Problem(tuple(parts), Unknowns(shared, own, tuple(r.log.name for r in records)))
 
 
 def no_moves(problem_: Problem) -> tuple[np.ndarray, ...]:
@@ -108,26 +142,20 @@ def no_moves(problem_: Problem) -> tuple[np.ndarray, ...]:
     return tuple(out)
 
 
-def moves_from(problem_: Problem, states: Sequence[State]) -> tuple[np.ndarray, ...]:
-    """The moves that lead to states found earlier for the same windows."""
-    return tuple(
-        apart(part.predictor.plant.model, part.first.states, own)
-        for part, own in zip(problem_.parts, states, strict=True)
-    )
-
-
-def with_space(
-    problem_: Problem,
-    space: Coordinates,
-    fixed: Mapping[str, float],
-    mean: np.ndarray,
-    weight: np.ndarray,
+def with_unknowns(
+    problem_: Problem, shared: Prior, own: Prior, fixed: Mapping[str, float]
 ) -> Problem:
     """The same windows with other free parameters, and other values of those that are not free."""
-    parts = []
+    parts, space = [], shared.plus(own).space
     for part in problem_.parts:
-        own = {**part.predictor.fixed, **fixed}
-        rest = {n: v for n, v in own.items() if n not in space.names}
+        values = {**part.predictor.fixed, **fixed}
+        rest = {n: v for n, v in values.items() if n not in space.names}
         predictor = replace(part.predictor, names=space.names, fixed=rest)
         parts.append(replace(part, space=space, predictor=predictor))
-    return Problem(tuple(parts), space, mean, weight)
+    return Problem(tuple(parts), Unknowns(shared, own, problem_.unknowns.records))
+
+
+def with_scale(problem_: Problem, scale: np.ndarray) -> Problem:
+    """The same windows whose errors count in units of another scale s, shape (ny,)."""
+    whitener = np.diag(1 / scale)
+    return replace(problem_, parts=tuple(replace(p, whitener=whitener) for p in problem_.parts))

@@ -11,9 +11,10 @@ W needs no noise model: blocks of windows are its sample (White 1980).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import block_diag
 from scipy.stats import f as f_distribution
 
 from identification.effects.effect import Candidate
@@ -21,7 +22,6 @@ from identification.errors import InputError
 from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
 from identification.prediction.fit import BLOCKS, WindowFit, projected
-from identification.prediction.problem import with_space
 
 BATCH = 24  # columns at a time: bounds the memory of their trajectories
 
@@ -32,7 +32,8 @@ class WindowScore:
 
     Attributes:
         candidate: which.
-        size: η̂, shape (m,), in the units of its sizes.
+        size: η̂, shape (m,), in the units of its sizes; where they are each record's own, those of
+            the first record come first.
         std: of η̂ by blocks, shape (m,).
         fall: share of the residual's square that it takes away, 0 to 1.
         p_value: chance of as much by luck, by blocks.
@@ -84,7 +85,7 @@ class _Base:
         self.fit = fit
         each = [projected(t) for t in fit.tangents]
         p = len(fit.q)
-        F = np.vstack([S.reshape(-1, p) for S, _ in each] + [np.diag(fit.problem.weight)])
+        F = np.vstack([S.reshape(-1, p) for S, _ in each] + [np.diag(fit.problem.prior.weight)])
         scale = np.linalg.norm(F, axis=0)
         self.Q = np.linalg.qr(F / np.where(scale > 0, scale, 1.0))[0]
         below = fit.problem.against(fit.q)[:, None]
@@ -96,40 +97,49 @@ class _Base:
         return np.asarray(columns - self.Q @ (self.Q.T @ columns))
 
     def scores(self, group: Sequence[Candidate]) -> list[WindowScore]:
-        S = self._without_base(self._columns(group))
+        columns = self._columns(group)
         ends = np.cumsum([len(c.sizes) for c in group])
-        return [
-            self._score(c, S[:, e - len(c.sizes) : e]) for c, e in zip(group, ends, strict=True)
-        ]
+        out = []
+        for c, end in zip(group, ends, strict=True):
+            own = [S[:, end - len(c.sizes) : end] for S in columns]
+            S = block_diag(*own) if c.effect.own else np.vstack(own)
+            below = np.zeros((len(self.fit.q), S.shape[1]))
+            out.append(self._score(c, self._without_base(np.vstack([S, below]))))
+        return out
 
-    def _columns(self, group: Sequence[Candidate]) -> np.ndarray:
-        """-∂r/∂η of all sizes of some candidates, the states' part projected out, (rows, k)."""
+    def _columns(self, group: Sequence[Candidate]) -> list[np.ndarray]:
+        """-∂r/∂η of the sizes of candidates, without the states' part, (rows, k) a record."""
         fit = self.fit
         plant = fit.problem.parts[0].predictor.plant
-        own = {**plant.parameters.values(), **fit.problem.parts[0].predictor.fixed, **fit.values}
         names = list(dict.fromkeys(
-            [*fit.problem.names, *(n for c in group for n in (*c.sizes, *c.fixed))]
+            [*fit.problem.unknowns.local.names, *(n for c in group for n in (*c.sizes, *c.fixed))]
         ))  # fmt: skip
-        rows, probes = [], []
-        for c in group:
-            for name, size in zip(c.sizes, c.effect.sizes, strict=True):
-                probe = (-size.probe if size.sign < 0 else size.probe) * c.probe
-                rows.append([{**own, **c.fixed, name: own[name] + probe}[n] for n in names])
-                probes.append(probe)
-        values = np.array(rows)
-        # each row has its own coordinates: those of plain values need no logarithm
-        space = coordinates(plant.parameters, names, inside(plant.parameters, names, values[0]),
-                            linear=names)  # fmt: skip
-        problem = with_space(fit.problem, space, {}, np.zeros(len(names)), np.zeros(len(names)))
         out = []
-        for part, d, t in zip(problem.parts, fit.moves, fit.tangents, strict=True):
+        for k, (part, d, t) in enumerate(
+            zip(fit.problem.parts, fit.moves, fit.tangents, strict=True)
+        ):
+            own = {**plant.parameters.values(), **part.predictor.fixed, **fit.of_record(k)}
+            rows, probes = [], []
+            for c in group:
+                for name, size in zip(c.sizes, c.effect.sizes, strict=True):
+                    probe = (-size.probe if size.sign < 0 else size.probe) * c.probe
+                    rows.append([{**own, **c.fixed, name: own[name] + probe}[n] for n in names])
+                    probes.append(probe)
+            values = np.array(rows)
+            # the coordinates of plain values need no logarithm
+            space = coordinates(
+                plant.parameters, names, inside(plant.parameters, names, values[0]), linear=names
+            )
+            rest = {n: v for n, v in part.predictor.fixed.items() if n not in names}
+            predictor = replace(part.predictor, names=tuple(names), fixed=rest)
+            moved = replace(part, space=space, predictor=predictor)
+            y = moved.outputs(space.encode(values), [d] * len(values))
+            r = np.stack([part.joined(one, d) for one in y], axis=-1)  # (W, m, k)
+            S = (t.r[..., None] - r) / np.array(probes)
             U = t.U * (t.s > 0)[:, None]
-            y = part.outputs(space.encode(values), [d] * len(values))
-            moved = np.stack([part.joined(one, d) for one in y], axis=-1)  # (W, m, k)
-            S = (t.r[..., None] - moved) / np.array(probes)
             S = S - U @ (np.swapaxes(U, 1, 2) @ S)
             out.append(S.reshape(-1, len(probes)))
-        return np.vstack([*out, np.zeros((len(fit.q), len(probes)))])
+        return out
 
     def _score(self, candidate: Candidate, S: np.ndarray) -> WindowScore:
         norm = np.linalg.norm(S, axis=0)

@@ -92,7 +92,8 @@ def is_significant(s: WindowScore, count: int, options: DiscoveryOptions) -> boo
 
 def is_plausible(s: WindowScore, options: DiscoveryOptions) -> bool:
     """Whether sizes have signs and magnitudes that physics admits."""
-    pairs = zip(s.size, s.candidate.effect.sizes, strict=True)
+    sizes = s.candidate.effect.sizes
+    pairs = zip(s.size, sizes * (len(s.size) // len(sizes)), strict=True)
     return all(z.sign * v >= 0 and abs(v) <= options.size_factor * z.largest for v, z in pairs)
 
 

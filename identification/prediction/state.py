@@ -95,9 +95,9 @@ def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
         DivergenceError: the nominal model cannot be simulated.
     """
     watch = Watch()
-    base, plant = task.nominal_model, task.nominal_model.plant
-    nominal = fit_nominal(plant, base.names, base.std, task.horizon, task.records, progress)
-    begun = predict(plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen)
+    base = task.nominal_model
+    nominal = fit_nominal(base, task.records, progress)
+    begun = predict(base.plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen)
     _refuse_worse(begun, nominal.unseen, task.options)
     watch.stop("nominal fit")
     scores = score_all(nominal, task.effects)
@@ -145,7 +145,7 @@ def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
     task = state.task
     for old in state.accepted[:-1]:
         rest = tuple(c for c in state.model.candidates if not _is_same(c, old.candidate))
-        without = refitted(state.model, rest, task.nominal_model, task.horizon, task.confirm)
+        without = refitted(state.model, rest, task.nominal_model, task.confirm)
         if without is None:
             continue
         if is_proven(compare(without.unseen, state.model.unseen), 1, task.options):

@@ -11,7 +11,7 @@ logarithm lets no single record decide.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import ttest_1samp
@@ -19,9 +19,12 @@ from scipy.stats import ttest_1samp
 from identification.errors import InputError
 from identification.estimation.metrics import fit_percent
 from identification.logs.noise import noise_floor
-from identification.model.coordinates import Coordinates
+from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
+from identification.prediction.fit import ROUGH, solve
+from identification.prediction.problem import no_moves, problem
 from identification.prediction.records import Record
+from identification.prediction.unknowns import Prior
 from identification.windows.shooting import Shooting
 from identification.windows.window_search import search_states
 from identification.windows.windows import Windows, first_states, windows
@@ -41,6 +44,7 @@ class Unseen:
         moves: where each window begins, shape (W, nx), by length and record.
         floor: mean square of the sensors' noise in units of s².
         fit_percent: over windows of the horizon, of each output, shape (ny,) [%].
+        own: values of the parameters that each record has for itself, one mapping a record.
     """
 
     lengths: tuple[float, ...]
@@ -48,6 +52,7 @@ class Unseen:
     moves: tuple[tuple[np.ndarray, ...], ...]
     floor: float
     fit_percent: np.ndarray
+    own: tuple[Mapping[str, float], ...] = ()
 
     @property
     def at_horizon(self) -> tuple[np.ndarray, ...]:
@@ -81,6 +86,19 @@ class Prediction:
         return min(self.gains) > 0 and min(self.falls) > 0
 
 
+@dataclass(frozen=True)
+class Own:
+    """Parameters of which each record has a value of its own.
+
+    Attributes:
+        prior: what is known of them.
+        start: where their search begins, shape (m,), in coordinates.
+    """
+
+    prior: Prior = field(default_factory=Prior)
+    start: np.ndarray = field(default_factory=lambda: np.zeros(0))
+
+
 def predict(
     plant: Plant,
     records: Sequence[Record],
@@ -88,8 +106,12 @@ def predict(
     scale: np.ndarray,
     values: Mapping[str, float],
     near: Unseen | None = None,
+    own: Own | None = None,
 ) -> Unseen:
     """Errors of a model on records, over windows of several lengths.
+
+    Parameters that a record has for itself are fitted to one half of its windows, and judged on
+    the other half.
 
     Args:
         plant: the model.
@@ -98,6 +120,7 @@ def predict(
         scale: s of each output, shape (ny,), in its unit.
         values: parameters that are not the plant's own.
         near: errors of a model nearby, at whose states the windows' search begins.
+        own: parameters that each record has for itself.
 
     Raises:
         InputError: no window of the horizon fits a record.
@@ -105,6 +128,7 @@ def predict(
     """
     squares, moves, lengths = [], [], []
     percent = np.zeros(len(scale))
+    halves = [_own_values(plant, r, horizon, scale, values, own or Own()) for r in records]
     for factor in LENGTHS:
         try:
             cuts = [_spread(windows(r.log, factor * horizon)) for r in records]
@@ -114,11 +138,10 @@ def predict(
             continue  # fewer than 3 samples, or longer than a record
         begun = None if near is None else near.moves[near.lengths.index(factor)]
         each = [
-            _errors(
-                plant, r, cut, scale, {**values, **r.values}, None if begun is None else begun[k]
-            )
+            _errors(plant, r, cut, scale, {**values, **r.values}, halves[k],
+                    None if begun is None else begun[k])
             for k, (r, cut) in enumerate(zip(records, cuts, strict=True))
-        ]
+        ]  # fmt: skip
         if factor == 1.0:
             measured = np.concatenate([c.outputs.reshape(-1, len(scale)) for c in cuts])
             errors = np.concatenate([e.reshape(-1, len(scale)) for _, e in each])
@@ -130,6 +153,7 @@ def predict(
     return Unseen(
         lengths=tuple(lengths), squares=tuple(squares), moves=tuple(moves),
         floor=float(np.mean(noise)), fit_percent=percent,
+        own=tuple({n: float(np.mean([v[n] for v in h])) for n in h[0]} for h in halves),
     )  # fmt: skip
 
 
@@ -160,7 +184,7 @@ def _spread(cut: Windows) -> Windows:
     if n <= MOST_WINDOWS:
         return cut
     keep = np.linspace(0, n - 1, MOST_WINDOWS).astype(int)
-    return Windows(cut.inputs[keep], cut.outputs[keep], cut.starts[keep])
+    return cut.rows(keep)
 
 
 def _errors(
@@ -169,14 +193,41 @@ def _errors(
     cut: Windows,
     scale: np.ndarray,
     values: Mapping[str, float],
+    own: tuple[Mapping[str, float], Mapping[str, float]],
     begun: np.ndarray | None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    none = np.zeros(0)
-    predictor = Predictor(plant, record.log, (), dict(values))
-    space = Coordinates((), none.astype(bool), none, none, none)
-    first = first_states(predictor, none, cut)
-    shooting = Shooting(predictor, space, cut, first, np.diag(1 / scale))
+    """States at the starts of windows and errors, with each half's own values."""
     model = plant.model
     moves = np.zeros((len(cut.starts), 2 * model.nv + model.na)) if begun is None else begun
-    at = search_states(shooting, moves)
-    return at.d, shooting.error(at.tangent.r)
+    is_late = cut.starts >= len(record.log) // 2
+    if not own[0]:
+        is_late = np.zeros(len(cut.starts), bool)
+    d, errors = np.array(moves), np.zeros(cut.outputs.shape)
+    for half, mine in zip((~is_late, is_late), own, strict=True):
+        if not half.any():
+            continue
+        predictor = Predictor(plant, record.log, (), {**values, **mine})
+        part = cut.rows(half)
+        first = first_states(predictor, np.zeros(0), part)
+        shooting = Shooting(predictor, NOTHING, part, first, np.diag(1 / scale))
+        at = search_states(shooting, moves[half])
+        d[half], errors[half] = at.d, shooting.error(at.tangent.r)
+    return d, errors
+
+
+def _own_values(
+    plant: Plant, record: Record, horizon: float, scale: np.ndarray, values: Mapping[str, float],
+    own: Own,
+) -> tuple[dict[str, float], dict[str, float]]:  # fmt: skip
+    """A record's own values for its first half, told by the second one, and the reverse."""
+    if not own.prior.names:
+        return {}, {}
+    task = problem(plant, [record], Prior(), own.prior, horizon, values, scale)
+    (part,) = task.parts
+    is_late = part.cut.starts >= len(record.log) // 2
+    out = []
+    for half in (is_late, ~is_late):
+        mine = replace(task, parts=(part.rows(half if half.any() else ~half),))
+        found = solve(mine, own.start, no_moves(mine), tolerance=ROUGH)
+        out.append(found.of_record(0))
+    return out[0], out[1]

@@ -13,7 +13,7 @@ one. The information on q is that of S_w after the initial states are projected 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -43,6 +43,16 @@ class Shooting:
     cut: Windows
     first: FirstStates
     whitener: np.ndarray
+
+    def rows(self, keep: np.ndarray) -> Shooting:
+        """Some of the windows, by mask or by index."""
+        return replace(self, cut=self.cut.rows(keep), first=self.first.rows(keep))
+
+    @property
+    def times(self) -> np.ndarray:
+        """When each window begins in its record, shape (W,) [s]."""
+        log = self.predictor.log
+        return log.begun + log.sampling_time * self.cut.starts
 
     def states(self, d: np.ndarray) -> State:
         """x̄ ⊕ d, W rows."""
@@ -78,7 +88,7 @@ class Shooting:
         run = rollout(
             model, State(*rows), inputs, predictor.log.sampling_time / every,
             numbers=[(slot, np.repeat(column, W)) for slot, column in numbers],
-            record=("qpos", "qvel"), hold_kind=hold_kind,
+            record=("qpos", "qvel"), hold_kind=hold_kind, time=np.tile(self.times, len(q)),
         )  # fmt: skip
         run = {field: states[:, ::every] for field, states in run.items()}
         columns = output_columns(model, predictor.log.output_names)
@@ -124,6 +134,18 @@ class Tangent:
     s: np.ndarray
     Vt: np.ndarray
     size: np.ndarray
+
+    def rows(self, keep: np.ndarray) -> Tangent:
+        """Some of the windows, by mask or by index."""
+        return Tangent(**{f.name: getattr(self, f.name)[keep] for f in fields(self)})
+
+    def with_rows(self, at: np.ndarray, other: Tangent) -> Tangent:
+        """The same with other values of the windows `at`, a mask or indices."""
+        changed = {}
+        for f in fields(self):
+            changed[f.name] = np.array(getattr(self, f.name))
+            changed[f.name][at] = getattr(other, f.name)
+        return Tangent(**changed)
 
     @property
     def projected(self) -> np.ndarray:

@@ -15,7 +15,7 @@ import numpy as np
 
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
-from identification.model.coordinates import Coordinates
+from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
 from identification.windows.shooting import Shooting
 from identification.windows.window_search import search_states
@@ -69,8 +69,7 @@ def _fixed(
     """Windows of a model without free parameters, and zero changes of their states (W, nx)."""
     none, cut = np.zeros(0), windows(log, length)
     predictor = Predictor(plant, log, (), dict(values or {}))
-    space = Coordinates((), none.astype(bool), none, none, none)
     sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
     believed = first_states(predictor, none, cut)
-    shooting = Shooting(predictor, space, cut, believed, np.eye(log.outputs.shape[1]) / sigma)
+    shooting = Shooting(predictor, NOTHING, cut, believed, np.eye(log.outputs.shape[1]) / sigma)
     return shooting, np.zeros((len(cut.starts), 2 * plant.model.nv + plant.model.na))

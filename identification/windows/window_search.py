@@ -8,7 +8,6 @@ independent, and each has its own damping: where a joint sticks, the outputs har
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import islice
 
 import numpy as np
 
@@ -168,12 +167,24 @@ class EachWindow:
 
     def moved(self, step: np.ndarray, taken: np.ndarray) -> EachWindow:
         """The criteria after a step of those windows that accept it."""
-        d = np.where(taken[:, None], self.d + step, self.d)
-        return replace(self, d=d, tangent=tangent(self.shooting, np.zeros(0), d))
+        part, d = self.shooting.rows(taken), self.d[taken] + step[taken]
+        return self.with_rows(taken, EachWindow(part, d, tangent(part, np.zeros(0), d)))
+
+    def rows(self, keep: np.ndarray) -> EachWindow:
+        """Some of the windows, by mask or by index."""
+        return EachWindow(self.shooting.rows(keep), self.d[keep], self.tangent.rows(keep))
+
+    def with_rows(self, at: np.ndarray, other: EachWindow) -> EachWindow:
+        """The same with other states of the windows `at`, a mask or indices."""
+        d = np.array(self.d)
+        d[at] = other.d
+        return replace(self, d=d, tangent=self.tangent.with_rows(at, other.tangent))
 
 
 def search_states(shooting: Shooting, d: np.ndarray) -> EachWindow:
     """Fit the initial state of each window, beginning with the changes d (W, nx).
+
+    A window that is finished is no longer simulated.
 
     Returns:
         The windows at the fitted states, and their linearisation there.
@@ -182,10 +193,17 @@ def search_states(shooting: Shooting, d: np.ndarray) -> EachWindow:
         DivergenceError: the simulation of a window diverged.
     """
     at = EachWindow(shooting, d, tangent(shooting, np.zeros(0), d))
-    trials = levenberg_marquardt(at, EachWindow.moved, DAMPING_OF_STATES)
-    for trial in islice(trials, STEPS_OF_STATES):
-        at = trial.criterion
-        small = np.abs(trial.after - trial.before) <= ENDED_OF_STATES * trial.before.mean()
-        if np.all(small | (trial.next > MOST_DAMPING_OF_STATES)):
+    part, going, μ = at, np.arange(len(d)), None
+    enough = ENDED_OF_STATES * float(np.mean(at.cost))
+    for _ in range(STEPS_OF_STATES):
+        trial = next(levenberg_marquardt(part, EachWindow.moved, DAMPING_OF_STATES, μ))
+        part, μ = trial.criterion, trial.next
+        if trial.taken.any():
+            at = at.with_rows(going, part)
+        small = np.abs(trial.after - trial.before) <= enough
+        keep = ~(small | (μ > MOST_DAMPING_OF_STATES))
+        if not keep.any():
             break
+        if not keep.all():
+            part, going, μ = part.rows(keep), going[keep], μ[keep]
     return at

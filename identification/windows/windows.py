@@ -43,6 +43,10 @@ class Windows:
     outputs: np.ndarray
     starts: np.ndarray
 
+    def rows(self, keep: np.ndarray) -> Windows:
+        """Some of the windows, by mask or by index."""
+        return Windows(self.inputs[keep], self.outputs[keep], self.starts[keep])
+
 
 def windows(log: Log, length: float) -> Windows:
     """Split a log into windows of a length [s].
@@ -73,6 +77,11 @@ class FirstStates:
     states: State
     weight: np.ndarray
 
+    def rows(self, keep: np.ndarray) -> FirstStates:
+        """The prior of some of the windows, by mask or by index."""
+        s = self.states
+        return FirstStates(State(s.qpos[keep], s.qvel[keep], s.act[keep]), self.weight)
+
 
 def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> FirstStates:
     """States at the windows' starts: as measured, and from a free run where nothing is measured.
@@ -92,7 +101,7 @@ def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> Firs
     try:
         run = rollout(
             model, start, log.inputs, log.sampling_time, numbers=numbers, record=fields,
-            hold_kind=log.hold, before=predictor.inputs(values),
+            hold_kind=log.hold, before=predictor.inputs(values), time=log.begun,
         )  # fmt: skip
         rows = {f: np.array(run[f][0, cut.starts]) for f in fields}
         weight = 1 / _motion(model, State(*(run[f][0] for f in fields)))
@@ -125,9 +134,12 @@ def moved(model: mujoco.MjModel, states: State, step: np.ndarray) -> State:
     """States moved along their tangent (qpos, qvel, act), by one step for all or one for each."""
     W, nv = len(states.qpos), model.nv
     steps = np.broadcast_to(step, (W, 2 * nv + model.na))
-    qpos = np.array(states.qpos)
-    for row, d in zip(qpos, steps, strict=True):
-        mujoco.mj_integratePos(model, row, np.ascontiguousarray(d[:nv]), 1.0)
+    if model.nq == nv:  # no quaternion
+        qpos = states.qpos + steps[:, :nv]
+    else:
+        qpos = np.array(states.qpos)
+        for row, d in zip(qpos, steps, strict=True):
+            mujoco.mj_integratePos(model, row, np.ascontiguousarray(d[:nv]), 1.0)
     return State(qpos, states.qvel + steps[:, nv : 2 * nv], states.act + steps[:, 2 * nv :])
 
 

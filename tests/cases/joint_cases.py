@@ -93,7 +93,7 @@ def stopping_time(plant, joint):
 
 
 def forces(plant, joint, values):
-    """The force of a joint's effects in plain Python: (q, v, f_u, f_g, passive, M) -> f."""
+    """The force of a joint's effects in plain Python: (q, v, f_u, f_g, passive, M, time) -> f."""
     every, T = {**plant.parameters.values(), **values}, stopping_time(plant, joint)
     laws = {
         hook: [(e.hooks[hook].py_func, tuple(numbers_at(e, joint, every)), len(e.sizes))
@@ -104,8 +104,8 @@ def forces(plant, joint, values):
     def total(hook, s):
         return sum(law(s, p) for law, p, sizes in laws[hook] if any(p[:sizes]))
 
-    def force(q, v, f_u, f_g, passive, M):
-        s = Joint(time=0.0, q=q, v=v, f_u=f_u, f_g=f_g, sign=0.0)
+    def force(q, v, f_u, f_g, passive, M, time):
+        s = Joint(time=time, q=q, v=v, f_u=f_u, f_g=f_g, sign=0.0)
         f = total("force", s)
         r = M * v / T + f_u + f_g + passive + f
         b = max(0.0, total("friction", s._replace(sign=1.0 if r > 0 else -1.0)))

@@ -86,6 +86,39 @@ def test_delay(before):
     assert np.array_equal(out[:, -1], np.full(len(u), before * u[0, -1]))  # 10 s: nothing arrived
 
 
+SHIFTS = [0.0, 1e-7, -1e-7, 3.3e-4, -3.3e-4, 1e-3, -1e-3, 1.7e-3, -1.7e-3, 2.5e-2, -10.0, 1e6]
+
+
+@pytest.mark.parametrize("tau", SHIFTS)
+def test_a_time_shift_of_either_sign(tau):
+    u = currents()[:, :1]
+    out = filtered(ANY_ROBOT["time_shift"], u, {"time_shift.tau@u": tau}, ("u",))
+    fine = (np.arange(len(u) * FINE) + 0.5) * STEP / FINE
+    at = np.floor((fine - tau) / STEP + 1e-12).clip(0, len(u) - 1).astype(int)
+    expected = by_brute_force(u[at, 0].reshape(-1, FINE))
+    assert out[:, 0] == pytest.approx(expected, abs=3 / FINE)
+    if tau == 0.0:
+        np.testing.assert_array_equal(out, u)
+
+
+def test_a_time_shift_later_is_a_delay_of_what_was_there_before():
+    u = currents()[:, :1]
+    late = {"delay.tau@u": 4.2e-3, "delay.before": 1.0}
+    np.testing.assert_array_equal(
+        filtered(ANY_ROBOT["time_shift"], u, {"time_shift.tau@u": 4.2e-3}, ("u",)),
+        filtered(ANY_ROBOT["delay"], u, late, ("u",)),
+    )
+    assert ANY_ROBOT["time_shift"].own
+    assert not ANY_ROBOT["delay"].own
+
+
+def test_shifts_there_and_back_leave_the_middle_of_an_input():
+    u = currents()[:, :1]
+    there = filtered(ANY_ROBOT["time_shift"], u, {"time_shift.tau@u": 3e-3}, ("u",))
+    back = filtered(ANY_ROBOT["time_shift"], there, {"time_shift.tau@u": -3e-3}, ("u",))
+    np.testing.assert_array_equal(back[:-3], u[:-3])
+
+
 @pytest.mark.parametrize(("one", "other"), [("delay", "delay"), ("current_lag", "lag")])
 def test_lag_and_delay_are_those_of_any_robot(one, other):
     u = currents()[:, :1]

@@ -36,17 +36,18 @@ def by_hand(plant, u, step, values):
     """Positions of the slider by RK4 of m v̇ = 5 u - 3 v + f(x, v)."""
     force = forces(plant, "slide", values)
 
-    def rate(s, u):
+    def rate(s, u, t):
         passive = -3 * s[1]
-        return np.array([s[1], (5 * u + passive + force(s[0], s[1], 5 * u, 0, passive, 2)) / 2])
+        more = force(s[0], s[1], 5 * u, 0, passive, 2, t)
+        return np.array([s[1], (5 * u + passive + more) / 2])
 
-    s, out = np.zeros(2), []
+    s, t, out = np.zeros(2), 0.0, []
     for k in u:
-        a = rate(s, k)
-        b = rate(s + step / 2 * a, k)
-        c = rate(s + step / 2 * b, k)
-        d = rate(s + step * c, k)
-        s = s + step / 6 * (a + 2 * b + 2 * c + d)
+        a = rate(s, k, t)
+        b = rate(s + step / 2 * a, k, t + step / 2)
+        c = rate(s + step / 2 * b, k, t + step / 2)
+        d = rate(s + step * c, k, t + step)
+        s, t = s + step / 6 * (a + 2 * b + 2 * c + d), t + step
         out.append(s[0])
     return np.array(out)
 
@@ -101,6 +102,21 @@ LAWS = [
     ("offset", (1.0,), S, 1.0),
     ("stiffness", (4.0,), S, -1.2),
     ("hardening", (-5.0,), S, 5 * 0.3**3),
+    ("torque_saturation", (0.01,), S, 3.43),
+    ("two_load_friction", (0.2, 0.1), S, 1.7),
+    ("two_load_friction", (0.1, 0.3), S._replace(f_u=7.0), 0.2),
+    ("quadratic_load_friction", (0.1, 0.2, 0.25), S, 0.9 * np.exp(-2)),
+    ("quadratic_load_friction", (0.1, 0.2, 0.25), S._replace(f_g=8.0), 9.8 * np.exp(-2)),
+    ("quadratic_load_friction", (0.1, 0.2, 0.25), S._replace(f_u=7.0), 0.0),
+    ("friction_drift", (0.4,), S, 0.8),
+    ("friction_jump", (0.4, 1.9, 0.1), S, 0.4),
+    ("friction_jump", (0.4, 2.0, 0.1), S, 0.2),
+    ("friction_jump", (0.4, 2.1, 0.1), S, 0.0),
+    ("viscous_friction_drift", (0.4,), BACK, 0.4),
+    ("viscous_friction_jump", (0.4, 1.9, 0.1), S, -0.2),
+    ("push", (3.0, 1.0, 0.9, 0.1), S, 0.0),
+    ("push", (3.0, 1.0, 1.1, 0.1), S, 3.0),
+    ("push", (3.0, 2.1, 1.1, 0.1), S, 0.0),
 ]
 
 
@@ -118,7 +134,8 @@ def test_on_an_arm_the_forces_are_those_of_qfrc_applied():
     plant, u = arm(), steps(60, 2)
     values = {}
     for effect in (e for e in plant.effects if e.name in FORCES):
-        values |= some(effect, "all joints", 3.0) | some(effect, "joint elbow", 5.0)
+        for where, factor in (("all joints", 3.0), ("joint elbow", 5.0)):
+            values |= some(effect, where, factor) if where in effect.places else {}
     simulated = run(plant, arm_log(u), **values)
     by_joint = [forces(plant, joint, values) for joint in ("shoulder", "elbow")]
     model = mujoco.MjModel.from_xml_string(ARM)
@@ -154,7 +171,7 @@ def applied(model, by_joint, inputs):
         for j in range(2):
             data.qfrc_applied[j] = by_joint[j](
                 data.qpos[j], data.qvel[j], load[j], -still.qfrc_bias[j], data.qfrc_passive[j],
-                M[j, j],
+                M[j, j], data.time,
             )  # fmt: skip
         mujoco.mj_step(model, data)
         out.append(np.array(data.qpos))

@@ -19,7 +19,7 @@ LOAD = {"transmitted_load_friction.mu@hinge": 0.15}
 
 def fitted(logs, confirm):
     base = nominal_model()
-    return fit_nominal(base.plant, base.names, base.std, HORIZON, as_records(logs, confirm))
+    return fit_nominal(base, as_records(logs, confirm))
 
 
 @cache
@@ -87,7 +87,7 @@ def test_a_score_is_that_of_least_squares_with_columns_by_hand():
             columns.append(P @ (t.r[w] - r[w]) / probe)
             rests.append(P @ t.r[w])
             bases.append(P @ t.S[w])
-    below = np.diag(fit.problem.weight)
+    below = np.diag(fit.problem.prior.weight)
     F = np.vstack([*bases, below])
     S = np.concatenate([*columns, np.zeros(len(below))])
     e = np.concatenate([*rests, fit.problem.against(fit.q)])
@@ -129,7 +129,6 @@ def test_the_truth_predicts_unseen_records_down_to_the_noise():
 
 def test_a_parameter_without_effect_is_refused(refusal):
     base, logs = nominal_model(), records(2)
-    plant = base.plant
-    names, std = (*base.names, "cogging.n"), np.append(base.std, 1.0)
-    said = refusal(fit_nominal, plant, names, std, HORIZON, as_records(logs[:1], logs[1:]))
+    more = replace(base, names=(*base.names, "cogging.n"), std=np.append(base.std, 1.0))
+    said = refusal(fit_nominal, more, as_records(logs[:1], logs[1:]))
     assert "cogging.n has no effect" in said

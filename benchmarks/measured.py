@@ -1,0 +1,111 @@
+"""What is missing in robots that were measured: fit, discover, confirm; one JSON a robot, one page.
+
+    python benchmarks/measured.py [ROBOT…] [--data ../shared/data] [--page docs/measured.md]
+    python benchmarks/measured.py silverbox --split 2         does another split contradict the name?
+    python benchmarks/measured.py emps --null 20              how many nulls of the robot get a name?
+    python benchmarks/measured.py --write FOLDER              records as CSV, models and TOML
+    python benchmarks/measured.py --only-page                 the page anew, from the JSON records
+
+A robot whose data are absent is skipped, with a sentence. What the page tells is in the JSON records
+of `--records`, and nothing else is.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from robots import ROBOTS, reader
+from robots.measured_robot import MeasuredRobot
+from robots.page import page
+
+HERE = Path(__file__).parent
+DATA = HERE.parents[1] / "shared" / "data"
+RECORDS = HERE / "results" / "measured"
+PAGE = HERE.parent / "docs" / "measured.md"
+
+
+def main() -> int:
+    """Measure, write the records, write the page."""
+    given = parsed()
+    unknown = [name for name in given.robots if name not in ROBOTS]
+    if unknown:
+        print(f"unknown robot {unknown[0]!r}; known: {', '.join(ROBOTS)}", file=sys.stderr)
+        return 2
+    if not given.only_page:
+        for name in given.robots or ROBOTS:
+            try:
+                robot = reader(name)(given.data)
+            except FileNotFoundError as error:
+                print(f"{name} is skipped: {error}; benchmarks/robots/{name}.py says whose data"
+                      " these are", flush=True)  # fmt: skip
+                continue
+            work(robot, given)
+    if given.write is None:
+        given.page.write_text(page(given.records), encoding="utf-8")
+        print(f"{given.page} is written from {given.records}")
+    return 0
+
+
+def work(robot: MeasuredRobot, given: argparse.Namespace) -> None:
+    """What is asked of one robot."""
+    if given.write is not None:
+        from robots.written import command, write_files
+
+        path, paths = write_files(robot, given.write / robot.name)
+        print(command(path, paths))
+        return
+    split = robot.split(given.split)
+    ending = "" if given.split == 1 else f"_split_{given.split}"
+    if given.null:
+        from robots.nulls import null_study
+
+        keep(given, f"{robot.name}{ending}_null", lambda: null_study(split, given.null, say))
+        return
+    from robots.measurement import measure
+
+    keep(given, robot.name + ending, lambda: measure(split, say))
+    if given.split == 1:
+        for what, values in robot.starts.items():
+            slug = re.sub(r"\W+", "_", what)
+            again = split.started(values)
+            keep(given, f"{robot.name}_start_{slug}",
+                 lambda again=again, what=what: {**measure(again, say), "start": what})  # fmt: skip
+
+
+def keep(given: argparse.Namespace, name: str, make: Callable[[], dict[str, Any]]) -> None:
+    """Write a JSON record."""
+    print(f"{name} …", flush=True)
+    record = make()
+    given.records.mkdir(parents=True, exist_ok=True)
+    path = given.records / f"{name}.json"
+    path.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    print(f"{path} is written", flush=True)
+
+
+def say(line: str) -> None:
+    """Progress."""
+    print(line, file=sys.stderr, flush=True)
+
+
+def parsed() -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("robots", nargs="*", metavar="ROBOT", help=", ".join(ROBOTS))
+    parser.add_argument("--data", type=Path, default=DATA)
+    parser.add_argument("--records", type=Path, default=RECORDS)
+    parser.add_argument("--page", type=Path, default=PAGE)
+    parser.add_argument("--split", type=int, choices=(1, 2), default=1)
+    parser.add_argument("--null", type=int, default=0, metavar="N")
+    parser.add_argument("--write", type=Path, metavar="FOLDER")
+    parser.add_argument("--only-page", action="store_true")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,147 @@
+"""A robot that was measured: its model, what is free, its records, and what others published.
+
+A reader in this folder makes one from the raw files of its authors; nobody's data are part of this
+project. `robots.written` writes one as the files that `python -m identification` takes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from identification import Log
+
+MODELS = Path(__file__).parent / "models"
+PROJECT_MODELS = Path(__file__).parents[2] / "models"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Free:
+    """A free parameter: where it goes, where the search begins, and what is known of it.
+
+    Attributes:
+        name: of the parameter; an effect's size is called `effect.size@place`.
+        value: where the search begins, in its unit.
+        path: into the model; empty for the size of an effect.
+        known: std of the prior: relative where the value must be positive, else in its unit.
+        unit: of the value.
+        scale: a magnitude that matters, where the value may be zero.
+    """
+
+    name: str
+    value: float
+    path: str = ""
+    known: float = 0.5
+    unit: str = ""
+    scale: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class PublishedSize:
+    """A number that others found for this robot.
+
+    Attributes:
+        name: of the parameter or effect here.
+        value: in `unit`.
+        unit: of the value.
+        source: who published it, and where.
+    """
+
+    name: str
+    value: float
+    unit: str
+    source: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class PublishedModel:
+    """A model of others, made again from their equations and their numbers.
+
+    Attributes:
+        name: what they call it.
+        source: who published it, and where.
+        errors: y - ŷ over windows whose first states are the best ones, shape (W, L, ny), of a log
+            and a length [s]; the windows are those of `identification.windows.windows`.
+    """
+
+    name: str
+    source: str
+    errors: Callable[[Log, float], np.ndarray]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Apart:
+    """Records of the robot as it was changed; they are neither fitted nor do they confirm.
+
+    Attributes:
+        what: how the robot differs.
+        logs: the records.
+        model: MJCF of the changed robot, None where the model is to show that something changed.
+    """
+
+    what: str
+    logs: tuple[Log, ...]
+    model: Path | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeasuredRobot:
+    """A robot, its records, and what others published of it.
+
+    Attributes:
+        name: a word.
+        title: what it is, in a line.
+        source: who measured it, and where the data are.
+        model: path of its MJCF.
+        free: free parameters, each with its start and its prior.
+        horizon: over which predictions are judged [s].
+        fit: records to fit.
+        confirm: records that no fit may see.
+        second: another split of records, those to fit and those that confirm; None for the same
+            records with their roles exchanged.
+        fixed: values of effects' shapes that the model has.
+        expected: effects one of which should be named first; empty where nobody knows.
+        apart: records of the robot as it was changed.
+        starts: other values with which the whole work begins once more, by what they are.
+        published: numbers of others.
+        models: models of others.
+        evidence: what the records show without any fit of this project, as a JSON object, from the
+            fitted values; None where nothing is to be shown.
+    """
+
+    name: str
+    title: str
+    source: str
+    model: Path
+    free: tuple[Free, ...]
+    horizon: float
+    fit: tuple[Log, ...]
+    confirm: tuple[Log, ...]
+    second: tuple[tuple[Log, ...], tuple[Log, ...]] | None = None
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    expected: tuple[str, ...] = ()
+    apart: tuple[Apart, ...] = ()
+    starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    published: tuple[PublishedSize, ...] = ()
+    models: tuple[PublishedModel, ...] = ()
+    evidence: Callable[[Mapping[str, float]], dict[str, object]] | None = None
+
+    @property
+    def records(self) -> tuple[Log, ...]:
+        """All records but those of the changed robot."""
+        return (*self.fit, *self.confirm)
+
+    def split(self, number: int) -> MeasuredRobot:
+        """The robot with its first or its second split of records."""
+        if number == 1:
+            return self
+        fit, confirm = self.second or (self.confirm, self.fit)
+        return replace(self, fit=fit, confirm=confirm)
+
+    def started(self, values: Mapping[str, float]) -> MeasuredRobot:
+        """The robot with other values at which the search begins."""
+        free = (replace(p, value=values.get(p.name, p.value)) for p in self.free)
+        return replace(self, free=tuple(free))

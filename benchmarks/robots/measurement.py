@@ -1,0 +1,119 @@
+"""One measured robot: fit, discovery, confirmation, and the models of others, as a JSON object."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import time
+from collections.abc import Callable
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from identification import InputError, read_robot
+from identification.prediction.discovery import discover_records
+from identification.prediction.result import RecordsDiscovery
+from identification.report.records_json import records_to_json
+from identification.report.records_text import records_text
+from identification.robot.robot import Robot
+from robots.measured_robot import MeasuredRobot
+from robots.unseen import compare, errors_of
+from robots.written import write_model
+
+NOMINAL, FINAL, BEGUN = "nominal, fitted", "with what is named", "as begun"
+
+
+def discovered(
+    robot: MeasuredRobot, say: Callable[[str], None]
+) -> tuple[Robot, RecordsDiscovery, float]:
+    """The compiled robot, what a discovery on its records found, and the seconds it took.
+
+    Raises:
+        InputError: the files, the records or the values with which the fit begins are refused.
+        DivergenceError: the nominal model cannot be simulated.
+    """
+    begun = time.perf_counter()
+    with TemporaryDirectory() as folder:
+        path = write_model(robot, Path(folder))
+        compiled = read_robot(path, list(robot.fit), list(robot.confirm))
+        found = discover_records(
+            compiled.nominal_model, robot.fit, robot.confirm, compiled.candidates, say
+        )
+    return compiled, found, time.perf_counter() - begun
+
+
+def measure(robot: MeasuredRobot, say: Callable[[str], None]) -> dict[str, Any]:
+    """Everything that the page tells of a robot.
+
+    Raises:
+        DivergenceError: the nominal model cannot be simulated.
+    """
+    record: dict[str, Any] = {
+        "robot": robot.name, "title": robot.title, "source": robot.source, **_when(),
+        "horizon": robot.horizon, "fit": [log.name for log in robot.fit],
+        "confirm": [log.name for log in robot.confirm], "expected": list(robot.expected),
+        "unit": robot.fit[0].output_unit,
+    }  # fmt: skip
+    begun = time.perf_counter()
+    try:
+        compiled, found, seconds = discovered(robot, say)
+    except InputError as error:
+        return {**record, "refused": str(error), "seconds": time.perf_counter() - begun}
+    say(records_text(found))
+    known = {p.name: p.value for p in robot.published}
+    record |= {"discovery": records_to_json(found), "seconds": seconds, "published": [
+        vars(p) for p in robot.published
+    ]}  # fmt: skip
+    record["scores"] = [
+        {"name": s.candidate.effect.name, "where": s.candidate.where, "fall": s.fall}
+        for s in found.scores[:5]
+    ]
+    record["sizes"] = _sizes(found, known)
+    models = {
+        NOMINAL: errors_of(compiled.plant, found.nominal.values),
+        BEGUN: errors_of(compiled.plant, {}),
+    }
+    if found.named:
+        models[FINAL] = errors_of(compiled.plant, found.final.values)
+    models |= {m.name: m.errors for m in robot.models}
+    record["unseen"] = compare(models, robot.confirm, robot.horizon)
+    record["published_models"] = {m.name: m.source for m in robot.models}
+    if robot.evidence:
+        record["evidence"] = robot.evidence(found.final.values)
+    return plain(record)
+
+
+def _sizes(found: RecordsDiscovery, published: dict[str, float]) -> dict[str, Any]:
+    """Values of the nominal and of the final model by name, beside what others published."""
+    own = found.final.fit.problem.parts[0].predictor.plant.parameters
+    sizes = {}
+    for name in (*found.final.values, *(n for n in published if n in own)):
+        sizes[name] = {
+            "nominal": found.nominal.values.get(name),
+            "nominal_std": found.nominal.std.get(name), "final": found.final.values.get(name),
+            "final_std": found.final.std.get(name), "published": published.get(name),
+            "unit": own[name].unit if name in own else "",
+        }  # fmt: skip
+    return sizes
+
+
+def _when() -> dict[str, str]:
+    """Date and version of what was run."""
+    here = Path(__file__).parent
+    try:
+        said = subprocess.run(
+            ["git", "describe", "--always", "--dirty"], cwd=here, capture_output=True, text=True,
+            check=True,
+        ).stdout.strip()  # fmt: skip
+    except (OSError, subprocess.CalledProcessError):
+        said = ""
+    return {
+        "date": datetime.now(UTC).date().isoformat(), "version": version("inca-mj"), "commit": said
+    }  # fmt: skip
+
+
+def plain(record: Any) -> Any:
+    """The record as JSON has it, numbers that are not finite as null."""
+    return json.loads(json.dumps(record, default=float), parse_constant=lambda _: None)

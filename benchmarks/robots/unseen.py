@@ -1,0 +1,77 @@
+"""Errors of several models on the same windows of the same records, and the mean squares' change.
+
+    e_w = y_w - ŷ_w,   each model from the first state of each window that explains it best
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from identification import InputError, Log, Plant, window_error
+
+Errors = Callable[[Log, float], np.ndarray]
+
+
+def errors_of(plant: Plant, values: Mapping[str, float]) -> Errors:
+    """The window errors of a plant with some values."""
+    return lambda log, horizon: window_error(plant, log, horizon, values)
+
+
+def compare(models: Mapping[str, Errors], logs: Sequence[Log], horizon: float) -> dict[str, Any]:
+    """Rms errors of models by record and over all, as a JSON object.
+
+    Args:
+        models: window errors by name; the first is what the others are compared with.
+        logs: records that no fit has seen.
+        horizon: length of the windows [s].
+
+    Returns:
+        `rms`: by model, over all windows; `change`: relative change of the mean square, by model;
+        `better`: number of records on which each model is better than the first; `records`: rms by
+        record and model; `outputs`: rms by model, of each output.
+    """
+    squares = {name: [_square(errors, log, horizon) for log in logs]
+               for name, errors in models.items()}  # fmt: skip
+    first, *others = squares
+    by_record = {name: [float(np.mean(s)) for s in each] for name, each in squares.items()}
+    every = {name: np.concatenate([s.reshape(-1, s.shape[-1]) for s in each])
+             for name, each in squares.items()}  # fmt: skip
+    whole = {name: float(s.mean()) for name, s in every.items()}
+    return {
+        "horizon": horizon,
+        "windows": int(sum(len(s) for s in squares[first])),
+        "rms": {name: s**0.5 for name, s in whole.items()},
+        "outputs": {name: np.sqrt(s.mean(0)).tolist() for name, s in every.items()},
+        "change": {name: whole[name] / whole[first] - 1 for name in others},
+        "better": {
+            name: sum(b < a for a, b in zip(by_record[first], by_record[name], strict=True))
+            for name in others
+        },
+        "records": {
+            log.name: {name: by_record[name][k] ** 0.5 for name in squares}
+            for k, log in enumerate(logs)
+        },
+    }
+
+
+def free_run(errors: Errors, log: Log, skipped: int = 0) -> float:
+    """Rms error of a run over the whole record from its best first state, all outputs together.
+
+    Args:
+        errors: of the model.
+        log: the record.
+        skipped: samples at its beginning that are not counted.
+    """
+    error = errors(log, log.duration + log.sampling_time)
+    return float(np.sqrt(np.mean(error[0, skipped:] ** 2)))
+
+
+def _square(errors: Errors, log: Log, horizon: float) -> np.ndarray:
+    """Squared errors of a record, shape (W, L, ny)."""
+    found = errors(log, horizon)
+    if not np.all(np.isfinite(found)):
+        raise InputError(f"a model has no finite error on {log.name!r}")
+    return found**2

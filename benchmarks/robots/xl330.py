@@ -1,0 +1,74 @@
+"""A Dynamixel XL330 servo that swings 0.49 kg on an arm of 0.1 m.
+
+    (m l² + J_a) ẇ = g u - D w - friction + f_0 - m 9.81 l sin q       u = duty × supply [V]
+
+g = K_t/R, and D holds the back-EMF. Four trajectories, each under four gains: records of the gains
+100 and 400 are fitted, those of 200 and 800 confirm.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from identification import Log
+from robots import needed
+from robots.gridded import gridded
+from robots.measured_robot import PROJECT_MODELS, Free, MeasuredRobot, PublishedSize
+
+MODEL = PROJECT_MODELS / "xl330.xml"
+STEP, WIDEST = 0.01, 0.02  # of the grid, and a gap that is still bridged [s]
+FULL = 885  # a load of 100 %
+FITTED, HELD = (100, 400), (200, 800)  # gains
+SOURCE = "Duclusaud, Passault, Padois, Ly 2024, github.com/Rhoban/bam"
+FREE = (
+    Free(name="g", path="actuator/motor.gear[0]", value=0.1, known=0.3, unit="N m/V"),
+    Free(name="D", path="joint/hinge.damping", value=0.05, known=0.3, unit="N m s/rad"),
+    Free(name="J_a", path="joint/hinge.armature", value=0.005, known=0.3, unit="kg m^2"),
+    Free(name="coulomb_friction.f_c@hinge", value=0.05, unit="N m"),
+    Free(name="offset.f_0@hinge", value=0.0, known=0.02, unit="N m", scale=0.01),
+)
+
+
+def read_record(path: Path) -> Log:
+    """A record while its torque is on: when it is off, the bridge may be open."""
+    raw = json.loads(path.read_text(encoding="utf-8"))
+    on = [entry for entry in raw["entries"] if entry["torque_enable"]]
+    time, angle, load, volts = (
+        np.array([entry[key] for entry in on], float)
+        for key in ("timestamp", "position", "load", "input_volts")
+    )
+    duty = np.where(load > 2**15 - 1, load - 2**16, load) / FULL  # a 16-bit two's complement
+    return gridded(
+        time, {"motor": duty * volts}, {"angle": angle}, units={"motor": "V", "angle": "rad"},
+        name=f"{raw['trajectory']}, k_p {raw['kp']}", step=STEP, widest=WIDEST,
+    )  # fmt: skip
+
+
+def gain(log: Log) -> int:
+    """The gain k_p under which a record was made."""
+    return int(log.name.split()[-1])
+
+
+def read(data: Path) -> MeasuredRobot:
+    """The servo from the folder of all data."""
+    folder = needed(data / "xl330" / "raw")
+    logs = [read_record(path) for path in sorted(folder.glob("*.json"))]
+    published = json.loads((data / "xl330" / "published" / "m3.json").read_text())
+    sizes = {
+        "g": (published["kt"] / published["R"], "N m/V"),
+        "D": (published["kt"] ** 2 / published["R"] + published["friction_viscous"], "N m s/rad"),
+        "J_a": (published["armature"], "kg m^2"),
+        "coulomb_friction.f_c@hinge": (published["friction_base"], "N m"),
+        "transmitted_load_friction.mu@hinge": (published["load_friction_base"], ""),
+    }
+    return MeasuredRobot(
+        name="xl330", title="Dynamixel XL330 servo with a pendulum", source=SOURCE, model=MODEL,
+        free=FREE, horizon=0.2, fit=tuple(x for x in logs if gain(x) in FITTED),
+        confirm=tuple(x for x in logs if gain(x) in HELD),
+        expected=("transmitted_load_friction",),
+        published=tuple(PublishedSize(name=n, value=v, unit=u, source=f"M3 of {SOURCE}")
+                        for n, (v, u) in sizes.items()),
+    )  # fmt: skip
