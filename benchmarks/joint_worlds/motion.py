@@ -70,7 +70,9 @@ def advance(code, p, joints, state, u, k, push, h, m, room):  # type: ignore[no-
 
 
 @njit(error_model="numpy")
-def closed_loop(code, p, joints, p_hat, computed, w, aim, errors, step, push, h, m):  # type: ignore[no-untyped-def]
+def closed_loop(  # type: ignore[no-untyped-def]
+    code, p, joints, p_hat, computed, w, aim, errors, step, push, h, m
+):
     """Follow a reference under control, from rest at zero.
 
     Args:
@@ -112,23 +114,24 @@ def closed_loop(code, p, joints, p_hat, computed, w, aim, errors, step, push, h,
 
 
 @njit(error_model="numpy")
-def windows(code, p, joints, begins, starts, u, length, h, m):  # type: ignore[no-untyped-def]
+def windows(code, p, joints, begins, starts, u, push, length, h, m):  # type: ignore[no-untyped-def]
     """Positions in windows that begin at given samples and states, under logged inputs.
 
     Args:
         begins: samples, shape (W,).
         starts: states, shape (W, 4, n).
+        u: inputs, push: unlogged force, shape (N, n) each.
 
     Returns:
         Encoder positions after 1 to `length` samples, shape (W, length, n).
     """
     n = u.shape[1]
-    out, room, push = np.zeros((begins.size, length, n)), np.zeros((17 + n, n)), np.zeros(n)
+    out, room = np.zeros((begins.size, length, n)), np.zeros((17 + n, n))
     state = np.zeros((4, n))
     for j in range(begins.size):
         state[:] = starts[j]
         for k in range(length):
-            advance(code, p, joints, state, u, begins[j] + k, push, h, m, room)
+            advance(code, p, joints, state, u, begins[j] + k, push[begins[j] + k], h, m, room)
             for i in range(n):
                 out[j, k, i] = encoder(joints[i], state[0, i])
     return out

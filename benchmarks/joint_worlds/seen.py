@@ -6,8 +6,9 @@ the effect does. Starts of windows (X, block by block) and free parameters (Φ) 
 
     ratio = rms((I - P) e / σ),     P: projection onto the columns of X and Φ
 
-σ is the noise of each sensor. A ratio of 3 raises the nominal model's error over windows from σ to
-√10 σ, after every free parameter has been fitted.
+σ is what the true model would err by: the noise of each sensor, and what unlogged torque moves the
+joint within a window whose start is chosen. A ratio of 3 raises the nominal model's error over
+windows from σ to √10 σ, after every free parameter has been fitted.
 """
 
 from __future__ import annotations
@@ -73,7 +74,7 @@ def logged(robot: JointRobot, joints: np.ndarray, states: np.ndarray) -> np.ndar
 
 def ratio(
     robot: JointRobot, true: Numbers, without: Numbers, free: tuple[Free, ...],
-    states: np.ndarray, u: np.ndarray,
+    states: np.ndarray, u: np.ndarray, push: np.ndarray,
 ) -> float:  # fmt: skip
     """How much of an effect shows over windows, in units of the sensors' noise.
 
@@ -84,6 +85,7 @@ def ratio(
         free: parameters that a fit may choose.
         states: of a motion without noise, shape (N, 4, n).
         u: its inputs, shape (N, n).
+        push: unlogged torque as a log may have it, shape (N, n).
     """
     h, length = robot.sampling_time, round(robot.horizon / robot.sampling_time)
     count = COUNT.get(robot.name, USUAL)
@@ -93,28 +95,36 @@ def ratio(
     starts = states[begins].copy()
     starts[:, 0], starts[:, 1], starts[:, 3] = y[begins], rate, u[begins]
 
-    def run(numbers: Numbers, first: np.ndarray) -> np.ndarray:
-        out = windows(robot.code, numbers.p, numbers.joints, begins, first, u, length,
-                      h / robot.substeps, robot.substeps)  # fmt: skip
-        return np.asarray(out / robot.noise).reshape(count, -1)
+    def run(numbers: Numbers, first: np.ndarray, pushed: np.ndarray | None = None) -> np.ndarray:
+        out = windows(
+            robot.code, numbers.p, numbers.joints, begins, first, u,
+            np.zeros_like(push) if pushed is None else pushed, length, h / robot.substeps,
+            robot.substeps,
+        )  # fmt: skip
+        return np.asarray(out)
 
-    shown = np.stack([y[b + 1 : b + 1 + length] for b in begins]) / robot.noise
     base = run(without, starts)
-    e = shown.reshape(count, -1) - base
+    shown = np.stack([y[b + 1 : b + 1 + length] for b in begins]) - base
+    moved = run(without, starts, push) - base
     X = []
     for row in (0, 1):
         for i in range(robot.n):
-            moved, size = starts.copy(), START * robot.noise[i] / (robot.horizon if row else 1.0)
-            moved[:, row, i] += size
-            X.append(run(without, moved) - base)
-    Phi = [run(without.moved(f, 1 + STEP), starts) - base for f in free]
-    columns = np.array(Phi).reshape(len(Phi), count, -1)
-    for k in range(count):
-        Q = np.linalg.qr(np.array([x[k] for x in X]).T)[0]
-        e[k] -= Q @ (Q.T @ e[k])
-        columns[:, k] -= columns[:, k] @ Q @ Q.T
-    A = columns.reshape(len(Phi), -1).T
-    if A.shape[1]:
-        A = A / np.maximum(np.linalg.norm(A, axis=0), 1e-12)
-        e = e.ravel() - A @ np.linalg.lstsq(A, e.ravel(), rcond=1e-6)[0]
-    return float(np.sqrt(np.mean(np.square(e))))
+            other, size = starts.copy(), START * robot.noise[i] / (robot.horizon if row else 1.0)
+            other[:, row, i] += size
+            X.append((run(without, other) - base).reshape(count, -1) / size)
+    Phi = [(run(without.moved(f, 1 + STEP), starts) - base).reshape(count, -1) for f in free]
+    bases = [np.linalg.qr(np.array([x[k] for x in X]).T)[0] for k in range(count)]
+
+    def less_starts(columns: np.ndarray) -> np.ndarray:
+        rows = columns.reshape(count, -1)
+        return np.array([row - Q @ (Q.T @ row) for row, Q in zip(rows, bases, strict=True)])
+
+    left = less_starts(moved).reshape(moved.shape)
+    sigma = np.sqrt(robot.noise**2 + np.mean(left**2, axis=(0, 1)))
+    scale = np.broadcast_to(1 / sigma, moved.shape).ravel()
+    e = less_starts(shown).ravel() * scale
+    if Phi:
+        A = np.array([less_starts(column).ravel() * scale for column in Phi]).T
+        A /= np.maximum(np.linalg.norm(A, axis=0), 1e-12)
+        e -= A @ np.linalg.lstsq(A, e, rcond=1e-6)[0]
+    return float(np.sqrt(np.mean(e**2)))

@@ -21,6 +21,7 @@ NEAR = 0.15  # the ratio may miss the drawn one by so much
 TRIES = 4
 CONTROLLER = 0.2  # the controller's numbers are off by up to so much
 PUSH = (0.002, 0.01)  # unlogged torque, rms over the rms of the input
+OFTEN = 0.98  # share of the samples below the force that a limit is counted by
 COLOUR = (0.02, 0.1)  # its correlation time [s]
 
 
@@ -108,6 +109,11 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
         for kind in kinds
     ]  # fmt: skip
     still = _quiet(robot, base, control, aims[0])
+    share = float(rng.uniform(*PUSH))
+    pushes = [
+        share * still[1].std(axis=0) * _wander((count, robot.n), robot.sampling_time, rng)
+        for _ in aims
+    ]
     true, size, shape, shown, joint = base, 0.0, {}, 0.0, ""
     if hidden is not None:
         j = int(rng.choice(hidden.joints(robot)))
@@ -115,23 +121,24 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
         habits = Habits(
             float(np.abs(still[1][:, j]).max()), float(np.abs(still[0][:, 1, j]).max()),
             float(np.abs(still[0][:, 0, j]).max()), robot.coulomb[j], robot.damping[j],
+            float(np.quantile(np.abs(still[1][:, j]), OFTEN)),
         )  # fmt: skip
         shape, target = hidden.shape(habits, rng), float(np.exp(rng.uniform(*np.log(RATIOS))))
         most = hidden.largest(habits)
         size, tried = 0.2 * most, 0.0
         for _ in range(TRIES):
             true, tried = with_effect(robot, base, effect, j, size, shape), size
-            shown = ratio(robot, true, base, free, *_quiet(robot, true, control, aims[0]))
+            motion = _quiet(robot, true, control, aims[0])
+            shown = ratio(robot, true, base, free, *motion, pushes[0])
             if abs(shown / target - 1) < NEAR or (size == most and shown < target):
                 break
             size = min(most, size * float(np.clip(target / max(shown, 1e-9), 0.05, 20)))
         size = tried
         if shown < LEAST:
             raise UnseenError(f"{effect} of {robot.name} shows {shown:.2g} times the noise at most")
-    share = float(rng.uniform(*PUSH))
     records = [
-        _record(robot, true, control, aim, str(kind), share * still[1].std(axis=0), rng)
-        for kind, aim in zip(kinds, aims, strict=True)
+        _record(robot, true, control, aim, str(kind), push, rng)
+        for kind, aim, push in zip(kinds, aims, pushes, strict=True)
     ]
     return World(
         robot=robot, effect=effect, names=hidden.names(robot) if hidden else (NULL,), joint=joint,
@@ -179,20 +186,24 @@ def _quiet(
     return states, u
 
 
+def _wander(shape: tuple[int, int], h: float, rng: np.random.Generator) -> np.ndarray:
+    """Noise of std 1 with a correlation time, sampled every h seconds."""
+    keep = np.exp(-h / rng.uniform(*COLOUR))
+    x = rng.normal(size=shape)
+    for k in range(1, len(x)):
+        x[k] = keep * x[k - 1] + np.sqrt(1 - keep**2) * x[k]
+    return x
+
+
 def _record(
     robot: JointRobot, numbers: Numbers, control: _Control, aim: np.ndarray, kind: str,
     push: np.ndarray, rng: np.random.Generator,
 ) -> Record:  # fmt: skip
-    """A motion as it is logged; push: rms of the unlogged torque, shape (n,)."""
-    count, h = aim.shape[1], robot.sampling_time
-    errors = rng.normal(size=(count, robot.n)) * robot.white
-    keep = np.exp(-h / rng.uniform(*COLOUR))
-    wander = rng.normal(size=(count, robot.n))
-    for k in range(1, count):
-        wander[k] = keep * wander[k - 1] + np.sqrt(1 - keep**2) * wander[k]
+    """A motion as it is logged; push: unlogged torque, shape (N, n)."""
+    h, errors = robot.sampling_time, rng.normal(size=push.shape) * robot.white
     states, u, _ = closed_loop(
         robot.code, numbers.p, numbers.joints, control.p, control.computed, robot.bandwidth, aim,
-        errors, robot.steps, push * wander, h / robot.substeps, robot.substeps,
+        errors, robot.steps, push, h / robot.substeps, robot.substeps,
     )  # fmt: skip
     y = logged(robot, numbers.joints, states) + errors
     return Record(kind, u, robot.steps * np.round(y / robot.steps))
