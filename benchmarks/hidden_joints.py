@@ -70,7 +70,9 @@ def answer(toml: Path, a: Path, b: Path, way: str) -> dict[str, Any]:
     else:
         found = discover(robot)
     end = time.process_time()
-    after = found.final.values if isinstance(found, RecordsDiscovery) else collect_final_values(found)
+    after = (
+        found.final.values if isinstance(found, RecordsDiscovery) else collect_final_values(found)
+    )
     named = [n.effect if isinstance(found, RecordsDiscovery) else n for n in found.named]
     error = compare_values(robot, robot.records[0], fitted, after)
     written = compare_values(robot, robot.records[0], {}, {})

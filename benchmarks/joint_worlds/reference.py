@@ -30,7 +30,9 @@ def reference(
     return np.stack(each, axis=-1)
 
 
-def _sines(L: float, V: float, h: float, count: int, _: str, rng: np.random.Generator) -> np.ndarray:
+def _sines(
+    L: float, V: float, h: float, count: int, _: str, rng: np.random.Generator
+) -> np.ndarray:
     """Sines of random frequencies, faded in over two seconds."""
     t = h * np.arange(count)
     w = 2 * np.pi * np.exp(rng.uniform(np.log(SLOWEST), np.log(FASTEST), SINES))
