@@ -93,7 +93,7 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
     hidden = HIDDEN.get(effect)
     known = hidden.known if hidden else ()
     free = tuple(f for f in robot.all_free if f.kind not in known)
-    base = _base(robot)
+    base = held_base(robot)
     if "coulomb" in known:
         base.joints[:, at.COULOMB] = 0.0
     for f in free:
@@ -149,7 +149,7 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
     )  # fmt: skip
 
 
-def _base(robot: JointRobot) -> Numbers:
+def held_base(robot: JointRobot) -> Numbers:
     """The nominal robot, its contacts stiff against the sensors' noise and damped."""
     p, joints = robot.plain()
     M, c, g = np.zeros((robot.n, robot.n)), np.zeros(robot.n), np.zeros(robot.n)
