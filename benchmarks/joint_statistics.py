@@ -119,14 +119,12 @@ def section(rows: Sequence[Row]) -> str:
     lines = [
         "## Hidden effects of other robots",
         "",
-        "A pendulum, a cart on a rail, a two-link arm and an arm of six joints under control, in 20 s"
-        " at 100 or 200 Hz, each in a",
-        "simulator of its own (`benchmarks/joint_worlds`): parameters within 10 % of the nominal"
-        " model, controllers with a wrong model,",
-        "encoders that round, unlogged coloured torque of 0.2 to 1 % of the input. One effect is hidden,"
-        " 3 to 10 times what the true",
-        "model errs by over 0.2 s, counted by what no free parameter and no start of a window imitates."
-        " One record is fitted, another judges.",
+        "A pendulum, a cart on a rail, a two-link arm and an arm of six joints under control, 20 s at",
+        "100 or 200 Hz, in simulators of their own (`benchmarks/joint_worlds`): parameters within",
+        "10 % of the nominal model, controllers with a wrong model, encoders that round, unlogged",
+        "coloured torque of 0.2 to 1 % of the input. One effect is hidden, 3 to 10 times what the",
+        "true model errs by over 0.2 s, counted by what no free parameter and no start of a window",
+        "imitates. One record is fitted, another judges.",
         "",
         "    python benchmarks/hidden_joints.py",
         "",

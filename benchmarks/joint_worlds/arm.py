@@ -170,7 +170,8 @@ ARM = JointRobot(
     counts=(2**18,) * 6, white=(2e-5,) * 6,
     sampling_time=0.01, substeps=40, horizon=0.2,
     free=(
-        Free("body/upper.mass", "mass", number=LINK), Free("body/fore.mass", "mass", number=2 * LINK),
+        Free("body/upper.mass", "mass", number=LINK),
+        Free("body/fore.mass", "mass", number=2 * LINK),
         *(Free(f"joint/j{i + 1}.armature", "armature", number=i * LINK + 7) for i in range(6)),
     ),
     mjcf=mjcf,

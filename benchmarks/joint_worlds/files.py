@@ -40,7 +40,8 @@ def truth_of(world: World) -> dict[str, object]:
     return {
         "robot": world.robot.name, "effect": world.effect, "names": list(world.names),
         "joint": world.joint, "size": world.size, "shape": world.shape, "ratio": world.ratio,
-        "parameters": world.truth, "push": world.push, "references": [r.kind for r in world.records],
+        "parameters": world.truth, "push": world.push,
+        "references": [r.kind for r in world.records],
     }  # fmt: skip
 
 

@@ -76,9 +76,18 @@ def closed_loop(  # type: ignore[no-untyped-def]
     """Follow a reference under control, from rest at zero.
 
     Args:
+        code: of the robot.
+        p: numbers of its dynamics, shape (p,).
+        joints: numbers of its joints, shape (n, SLOTS).
+        p_hat: what the controller takes for them, shape (p,).
+        computed: whether it is computed torque, else PD.
+        w: the controller's bandwidth [rad/s].
         aim: reference positions, rates and accelerations, shape (3, N, n).
-        errors: white noise of the sensors, shape (N, n); step: what they round to, shape (n,).
+        errors: white noise of the sensors, shape (N, n).
+        step: what they round to, shape (n,).
         push: unlogged force, shape (N, n).
+        h: step of the integrator [s].
+        m: steps in a sample.
 
     Returns:
         States (N, 4, n), inputs (N, n), measured positions (N, n).
@@ -118,9 +127,16 @@ def windows(code, p, joints, begins, starts, u, push, length, h, m):  # type: ig
     """Positions in windows that begin at given samples and states, under logged inputs.
 
     Args:
+        code: of the robot.
+        p: numbers of its dynamics, shape (p,).
+        joints: numbers of its joints, shape (n, SLOTS).
         begins: samples, shape (W,).
         starts: states, shape (W, 4, n).
-        u: inputs, push: unlogged force, shape (N, n) each.
+        u: inputs, shape (N, n).
+        push: unlogged force, shape (N, n).
+        length: samples of a window.
+        h: step of the integrator [s].
+        m: steps in a sample.
 
     Returns:
         Encoder positions after 1 to `length` samples, shape (W, length, n).

@@ -71,8 +71,10 @@ TWO_LINK = JointRobot(
     counts=(2**15, 2**15), white=(1e-4, 1e-4),
     sampling_time=0.005, substeps=50, horizon=0.2,
     free=(
-        Free("body/upper.mass", "mass", number=M1), Free("body/upper.inertia[1]", "mass", number=I1),
-        Free("body/lower.mass", "mass", number=M2), Free("body/lower.inertia[1]", "mass", number=I2),
+        Free("body/upper.mass", "mass", number=M1),
+        Free("body/upper.inertia[1]", "mass", number=I1),
+        Free("body/lower.mass", "mass", number=M2),
+        Free("body/lower.inertia[1]", "mass", number=I2),
     ),
     mjcf=mjcf,
 )  # fmt: skip
