@@ -1,0 +1,192 @@
+"""How often a discovery names what a pendulum, a cart and two arms hide; rows, rates, a page.
+
+    python benchmarks/hidden_joints.py [--robot pendulum] [--effect delay] [--count 3] [--seed 1]
+    python benchmarks/hidden_joints.py --only-page            the page anew, from the rows
+    python benchmarks/hidden_joints.py --write FOLDER         worlds as files, without discovery
+
+Each world (`joint_worlds`) is fitted on one record and judged on another. A finished world is one
+line of RESULTS/ROBOT.jsonl and is not done again. For every effect of a robot there are as many
+worlds without any effect as `--nulls` says.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tempfile
+import time
+import traceback
+from pathlib import Path
+from typing import Any
+
+from joint_statistics import section, summary
+from joint_worlds.dynamics import ROBOTS
+from joint_worlds.files import truth_of, write_world
+from joint_worlds.hidden import NULL, effects_of
+from joint_worlds.world import UnseenError, make_world
+
+HERE = Path(__file__).parent
+RESULTS = HERE / "results" / "hidden_joints"
+PAGE = HERE.parent / "docs" / "benchmarks.md"
+BEGIN, END = "<!-- hidden joints: begin -->\n", "<!-- hidden joints: end -->\n"
+
+
+def study(robot: str, effect: str, seed: int, way: str, duration: float) -> dict[str, Any]:
+    """One world from its making to its answer; an error is a row too."""
+    key = {"key": f"{robot}/{effect}/{seed}/{way}"}
+    try:
+        world = make_world(robot, effect, seed, duration)
+    except UnseenError as error:
+        return {**key, "unseen": str(error)}
+    row = {**key, "truth": truth_of(world)}
+    begin, wall = time.process_time(), time.perf_counter()
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            row |= answer(*write_world(world, Path(folder)), way)
+    except Exception as error:
+        row |= {"error": f"{type(error).__name__}: {error}",
+                "trace": traceback.format_exc(limit=-4)}  # fmt: skip
+    return {**row, "processor_seconds": time.process_time() - begin,
+            "seconds": time.perf_counter() - wall}  # fmt: skip
+
+
+def answer(toml: Path, a: Path, b: Path, way: str) -> dict[str, Any]:
+    """What is named, and the errors on record b of what was fitted and of what was found."""
+    from identification import discover, fit, read_robot
+    from identification.discovery.final_values import collect_final_values
+    from identification.prediction.discovery import discover_records
+    from identification.prediction.result import RecordsDiscovery
+    from identification.robot.record_error import compare_values
+
+    robot = read_robot(toml, a, confirm=[b])
+    begin = time.process_time()
+    fitted = fit(robot).values
+    between = time.process_time()
+    if way == "records":
+        found: Any = discover_records(
+            robot.nominal_model, [robot.log], robot.records, robot.candidates
+        )
+    else:
+        found = discover(robot)
+    end = time.process_time()
+    after = (
+        found.final.values if isinstance(found, RecordsDiscovery) else collect_final_values(found)
+    )
+    named = [n.effect if isinstance(found, RecordsDiscovery) else n for n in found.named]
+    error = compare_values(robot, robot.records[0], fitted, after)
+    written = compare_values(robot, robot.records[0], {}, {})
+    return {
+        "verdict": found.verdict,
+        "named": [
+            {"name": n.candidate.effect.name, "where": n.candidate.where,
+             "confidence": n.confidence, "one_of": whole.one_of,
+             "rivals": [_name(r) for r in whole.rivals],
+             "sizes": {name: p[0] for name, p in n.parameters.items()}}
+            for n, whole in zip(named, found.named, strict=True)
+        ],
+        "scores": [[s.candidate.effect.name, s.candidate.where] for s in found.scores[:5]],
+        "errors": {"written": written.before, "fit": error.before, "discover": error.after},
+        "fitted": fitted, "fit_seconds": between - begin, "discover_seconds": end - between,
+    }  # fmt: skip
+
+
+def _name(rival: Any) -> str:
+    """The effect of a rival, of either kind of discovery."""
+    return str(getattr(rival, "candidate", rival).effect.name)
+
+
+def tasks(given: argparse.Namespace) -> list[tuple[str, str, int]]:
+    """Robots, effects and seeds that are asked for, every effect once before any twice."""
+    out = []
+    for k in range(max(given.count, given.nulls)):
+        for robot in given.robot or ROBOTS:
+            effects = given.effect or (NULL, *effects_of(ROBOTS[robot]))
+            out += [(robot, e, given.seed + k) for e in effects
+                    if k < (given.nulls if e == NULL else given.count)]  # fmt: skip
+    return out
+
+
+def rows_of(folder: Path) -> list[dict[str, Any]]:
+    """Rows of earlier runs, the last of each world."""
+    rows: dict[str, dict[str, Any]] = {}
+    for path in sorted(folder.glob("*.jsonl")):
+        for line in path.read_text().splitlines():
+            try:
+                row = json.loads(line)
+            except json.JSONDecodeError:  # an interrupted line
+                continue
+            rows[row["key"]] = row
+    return list(rows.values())
+
+
+def told(row: dict[str, Any]) -> str:
+    """A row in a line."""
+    if "verdict" not in row:
+        return f"{row['key']}: {row.get('unseen') or row['error']}"
+    named = " + ".join(f"{n['name']}, {n['where']}" for n in row["named"]) or row["verdict"]
+    errors = ", ".join(f"{word} {value:.3g}" for word, value in row["errors"].items())
+    where = row["truth"]["joint"]
+    return f"{row['key']} {where}: {named}; {errors}; {row['processor_seconds']:.0f} s"
+
+
+def main() -> int:
+    """Run what is not done, print the rates, write the page."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    add = parser.add_argument
+    add("--robot", nargs="+", choices=list(ROBOTS), default=[])
+    add("--effect", nargs="+", default=[], help="of the project's names, or 'nothing'")
+    add("--count", type=int, default=1, help="worlds for each effect")
+    add("--nulls", type=int, default=None, help="worlds without effect; as --count if not given")
+    add("--seed", type=int, default=1)
+    add("--duration", type=float, default=20.0, help="of a record [s]")
+    add("--way", choices=("records", "log"), default="records", help="of a discovery")
+    add("--out", type=Path, default=RESULTS)
+    add("--page", type=Path, default=PAGE)
+    add("--again", action="store_true", help="do worlds again that met an error")
+    add("--only-page", action="store_true")
+    add("--write", type=Path, help="a folder for the worlds; nothing is discovered")
+    given = parser.parse_args()
+    given.nulls = given.count if given.nulls is None else given.nulls
+    known = {NULL, *(e for r in ROBOTS.values() for e in effects_of(r))}
+    if unknown := set(given.effect) - known:
+        print(f"unknown effect {min(unknown)!r}; known: {', '.join(sorted(known))}",
+              file=sys.stderr)  # fmt: skip
+        return 2
+    given.out.mkdir(parents=True, exist_ok=True)
+    done = {r["key"] for r in rows_of(given.out) if not (given.again and "error" in r)}
+    for robot, effect, seed in [] if given.only_page else tasks(given):
+        if effect != NULL and effect not in effects_of(ROBOTS[robot]):
+            continue
+        if given.write is not None:
+            try:
+                folder = given.write / f"{robot}_{effect}_{seed}"
+                write_world(make_world(robot, effect, seed, given.duration), folder)
+                print(folder, flush=True)
+            except UnseenError as error:
+                print(f"{robot}/{effect}/{seed}: {error}", flush=True)
+        elif f"{robot}/{effect}/{seed}/{given.way}" not in done:
+            row = study(robot, effect, seed, given.way, given.duration)
+            with (given.out / f"{robot}.jsonl").open("a") as file:
+                file.write(json.dumps(row) + "\n")
+            print(told(row), file=sys.stderr, flush=True)
+    if given.write is None:
+        rows = [r for r in rows_of(given.out) if r["key"].endswith("/" + given.way)]
+        print(json.dumps(summary(rows)))
+        write_page(given.page, section(rows))
+    return 0
+
+
+def write_page(path: Path, text: str) -> None:
+    """Put the section into its page, in place of an earlier one or at the end."""
+    page = path.read_text(encoding="utf-8")
+    if BEGIN in page:
+        head, _, rest = page.partition(BEGIN)
+        page = head + BEGIN + text + END + rest.partition(END)[2]
+    else:
+        page = page.rstrip("\n") + "\n\n" + BEGIN + text + END
+    path.write_text(page, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

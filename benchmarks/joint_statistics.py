@@ -1,0 +1,152 @@
+"""What a study of hidden joints comes to: rates with Wilson's intervals, confusions, a section."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any
+
+from discovery_statistics import median, rate
+
+WORSE = 1.02  # of an error: two searches that end at the same minimum differ by less
+NULL = "nothing"
+Row = dict[str, Any]
+
+
+def first(row: Row) -> str:
+    """The first name, or the verdict."""
+    return str(row["named"][0]["name"] if row["named"] else row["verdict"])
+
+
+def is_right(row: Row) -> bool:
+    """The first name is one that is right."""
+    return bool(row["named"]) and first(row) in row["truth"]["names"]
+
+
+def is_right_or_alike(row: Row) -> bool:
+    """The first name is right, or the one that the records cannot tell from it."""
+    if not row["named"]:
+        return False
+    named = row["named"][0]
+    alike = named["rivals"][:1] if named["one_of"] else []
+    return bool({named["name"], *alike} & set(row["truth"]["names"]))
+
+
+def is_placed(row: Row) -> bool:
+    """The place is the joint on which the effect acts, or all of one."""
+    place, joint = row["named"][0]["where"], row["truth"]["joint"]
+    return joint in str(place)
+
+
+def is_worse(row: Row) -> bool:
+    """What was found predicts the other record worse than what `fit` fitted."""
+    errors = row["errors"]
+    return bool(errors["discover"] > WORSE * errors["fit"])
+
+
+def is_fit_worse(row: Row) -> bool:
+    """`fit` predicts the other record worse than the values with which it began."""
+    return bool(row["errors"]["fit"] > WORSE * row["errors"]["written"])
+
+
+def is_null(row: Row) -> bool:
+    return bool(row["truth"]["effect"] == NULL)
+
+
+def summary(rows: Sequence[Row]) -> dict[str, Any]:
+    """Rates over all robots, and of each."""
+    done = [r for r in rows if "verdict" in r]
+    robots = sorted({r["truth"]["robot"] for r in done})
+    return {
+        "worlds": len(done),
+        "failed": sum("error" in r for r in rows),
+        "unseen": sum("unseen" in r for r in rows),
+        "all": _rates(done),
+        **{name: _rates([r for r in done if r["truth"]["robot"] == name]) for name in robots},
+        "confusion": confusion(done),
+    }
+
+
+def _rates(rows: Sequence[Row]) -> dict[str, Any]:
+    hidden = [r for r in rows if not is_null(r)]
+    right = [r for r in hidden if is_right(r)]
+    return {
+        "right_first": rate(hidden, is_right),
+        "right_or_alike": rate(hidden, is_right_or_alike),
+        "wrong_first": rate(hidden, lambda r: bool(r["named"]) and not is_right(r)),
+        "further_names": rate(right, lambda r: len(r["named"]) > 1),
+        "place_right": rate([r for r in right if r["truth"]["effect"] != "payload"], is_placed),
+        "null_silent": rate([r for r in rows if is_null(r)], lambda r: not r["named"]),
+        "worse_than_fit": rate(rows, is_worse),
+        "fit_worse_than_written": rate(rows, is_fit_worse),
+        "processor_seconds": median([r["processor_seconds"] for r in rows]),
+        "longest": max((r["processor_seconds"] for r in rows), default=None),
+    }
+
+
+def confusion(rows: Sequence[Row]) -> dict[str, dict[str, int]]:
+    """First names and verdicts by what was hidden."""
+    counts: dict[str, Counter[str]] = {}
+    for row in rows:
+        counts.setdefault(row["truth"]["effect"], Counter())[first(row)] += 1
+    return {true: dict(counts[true].most_common()) for true in sorted(counts)}
+
+
+def _said(share: dict[str, Any]) -> str:
+    if not share["of"]:
+        return "-"
+    return (f"{share['hits']} of {share['of']}"
+            f" [{100 * share['low']:.0f}, {100 * share['high']:.0f} %]")  # fmt: skip
+
+
+ROWS = (
+    ("right_first", "the right name first, goal 85 %"),
+    ("right_or_alike", "or in a set of two"),
+    ("wrong_first", "a wrong name first"),
+    ("further_names", "further names beside a right one"),
+    ("place_right", "the right joint, when named right"),
+    ("null_silent", "no name where nothing is hidden, goal 95 %"),
+    ("worse_than_fit", "the other record predicted worse than by `fit`, goal none"),
+    ("fit_worse_than_written", "`fit` predicts it worse than the values it began with"),
+)
+
+
+def section(rows: Sequence[Row]) -> str:
+    """The section of the page, Markdown."""
+    said = summary(rows)
+    robots = [n for n in ("pendulum", "cart", "two_link", "arm") if n in said]
+    columns = [*robots, "all"]
+    lines = [
+        "## Hidden effects of other robots",
+        "",
+        "A pendulum, a cart on a rail, a two-link arm and an arm of six joints under control, 20 s at",
+        "100 or 200 Hz, in simulators of their own (`benchmarks/joint_worlds`): parameters within",
+        "10 % of the nominal model, controllers with a wrong model, encoders that round, unlogged",
+        "coloured torque of 0.2 to 1 % of the input. One effect is hidden, 3 to 10 times what the",
+        "true model errs by over 0.2 s, counted by what no free parameter and no start of a window",
+        "imitates. One record is fitted, another judges.",
+        "",
+        "    python benchmarks/hidden_joints.py",
+        "",
+        "| | " + " | ".join(c.replace("_", " ") for c in columns) + " |",
+        "|---" * (len(columns) + 1) + "|",
+    ]
+    for key, words in ROWS:
+        lines.append(f"| {words} | " + " | ".join(_said(said[c][key]) for c in columns) + " |")
+    times = " | ".join(
+        "-" if said[c]["longest"] is None
+        else f"{said[c]['processor_seconds']:.0f} s, {said[c]['longest']:.0f} s"
+        for c in columns
+    )  # fmt: skip
+    lines += [
+        f"| processor time of fit and discovery: median, longest | {times} |",
+        "",
+        f"{said['worlds']} worlds; {said['failed']} more met an error, {said['unseen']} could not be"
+        " made because no size shows enough.",
+        "",
+        "| hidden | first name or verdict |",
+        "|---|---|",
+    ]
+    for true, counts in said["confusion"].items():
+        lines.append(f"| {true} | " + ", ".join(f"{n} {k}" for k, n in counts.items()) + " |")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,73 @@
+"""The dynamics of the four robots behind one function, and accelerations: M q̈ = r - c - g."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from joint_worlds.arm import ARM, arm
+from joint_worlds.cart import CART, cart
+from joint_worlds.laws import force, held, largest, stretched
+from joint_worlds.pendulum import PENDULUM, pendulum
+from joint_worlds.robot import JointRobot
+from joint_worlds.two_link import TWO_LINK, two_link
+
+ROBOTS: dict[str, JointRobot] = {r.name: r for r in (PENDULUM, CART, TWO_LINK, ARM)}
+
+
+@njit(error_model="numpy")
+def terms(code, q, v, p, M, c, g):  # type: ignore[no-untyped-def]
+    """Mass matrix, velocity forces and gravity of a robot, into M, c and g."""
+    if code == 0:
+        pendulum(q, v, p, M, c, g)
+    elif code == 1:
+        cart(q, v, p, M, c, g)
+    elif code == 2:
+        two_link(q, v, p, M, c, g)
+    else:
+        arm(q, v, p, M, c, g)
+
+
+@njit(error_model="numpy")
+def solve(M, x):  # type: ignore[no-untyped-def]
+    """M^-1 x of a positive matrix, in place: M = L L^T (Cholesky)."""
+    n = x.size
+    for j in range(n):
+        for i in range(j, n):
+            s = M[i, j]
+            for k in range(j):
+                s -= M[i, k] * M[j, k]
+            M[i, j] = np.sqrt(s) if i == j else s / M[j, j]
+    for i in range(n):
+        for k in range(i):
+            x[i] -= M[i, k] * x[k]
+        x[i] /= M[i, i]
+    for i in range(n - 1, -1, -1):
+        for k in range(i + 1, n):
+            x[i] -= M[k, i] * x[k]
+        x[i] /= M[i, i]
+
+
+@njit(error_model="numpy")
+def accelerations(code, p, joints, q, v, q0, z, tau, M, c, g, a):  # type: ignore[no-untyped-def]
+    """q̈ into a: of drives' forces tau, in a step that began at q0 with contacts stretched by z."""
+    terms(code, q, v, p, M, c, g)
+    for i in range(q.size):
+        low = largest(joints[i], q[i], v[i], tau[i], g[i], -1.0)
+        high = largest(joints[i], q[i], v[i], tau[i], g[i], 1.0)
+        a[i] = tau[i] - c[i] - g[i] + force(joints[i], q[i], v[i])
+        if low > 0.0 or high > 0.0:
+            a[i] -= held(joints[i], z[i] + q[i] - q0[i], v[i], low, high)
+    solve(M, a)
+
+
+@njit(error_model="numpy")
+def slip(joints, q, v, q0, z, tau, g):  # type: ignore[no-untyped-def]
+    """Move the contacts, in place, at the end of a step."""
+    for i in range(q.size):
+        low = largest(joints[i], q[i], v[i], tau[i], g[i], -1.0)
+        high = largest(joints[i], q[i], v[i], tau[i], g[i], 1.0)
+        if low > 0.0 or high > 0.0:
+            z[i] = stretched(joints[i], z[i] + q[i] - q0[i], low, high)
+        else:
+            z[i] = 0.0

@@ -1,0 +1,29 @@
+"""The numbers of a joint: columns of an array of shape (n joints, SLOTS).
+
+Every number of an effect is zero where the effect is absent; a limit of the input is infinite.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+# friction that holds: stiffness and damping of the contact, then what the largest friction is of
+STIFF, DAMP = 0, 1
+COULOMB, UNEVEN, PEAK, PEAK_SPEED, PEAK_POWER, LOAD = 2, 3, 4, 5, 6, 7
+GRIP_COS, GRIP_SIN, GRIP_WAVES = 8, 9, 10
+# forces
+VISCOUS, UNEVEN_VISCOUS, SQUARE, ROOT, ROOT_POWER, CUBE, PUSH = 11, 12, 13, 14, 15, 16, 17
+COG_COS, COG_SIN, COG_WAVES = 18, 19, 20
+# the input on its way to the joint
+DELAY, LAG, LIMIT, SAG = 21, 22, 23, 24
+# the angle on its way into the log
+SHIFT, SCALE, OFF_COS, OFF_SIN = 25, 26, 27, 28
+SLOTS = 29
+
+
+def plain_joints(n: int) -> np.ndarray:
+    """Joints without any effect, shape (n, SLOTS)."""
+    joints = np.zeros((n, SLOTS))
+    joints[:, [PEAK_SPEED, PEAK_POWER, ROOT_POWER, GRIP_WAVES, COG_WAVES]] = 1.0
+    joints[:, LIMIT] = np.inf
+    return joints

@@ -1,0 +1,209 @@
+"""A world: a robot whose truth is drawn, one hidden effect or none, and two records of it."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+
+from joint_worlds import slots as at
+from joint_worlds.dynamics import ROBOTS, terms
+from joint_worlds.hidden import HIDDEN, NULL, Habits, Shape
+from joint_worlds.motion import closed_loop
+from joint_worlds.reference import KINDS, reference
+from joint_worlds.robot import PRESLIDING, SPREAD, Free, JointRobot
+from joint_worlds.seen import Numbers, logged, ratio
+
+RATIOS = (3.0, 10.0)  # of an effect over the sensors' noise
+LEAST = 1.5  # below which a world would not show its effect
+NEAR = 0.15  # the ratio may miss the drawn one by so much
+TRIES = 4
+CONTROLLER = 0.2  # the controller's numbers are off by up to so much
+PUSH = (0.002, 0.01)  # unlogged torque, rms over the rms of the input
+OFTEN = 0.98  # share of the samples below the force that a limit is counted by
+COLOUR = (0.02, 0.1)  # its correlation time [s]
+
+
+@dataclass(frozen=True)
+class Record:
+    """What was logged: inputs and outputs, shape (N, n) each, and the kind of reference."""
+
+    kind: str
+    inputs: np.ndarray
+    outputs: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class World:
+    """A robot, what is wrong with its nominal model, and its records.
+
+    Attributes:
+        robot: as the nominal model knows it.
+        effect: name of what is hidden, or "nothing".
+        names: names that are right.
+        joint: where it acts.
+        size: of the effect, in the unit of its law.
+        shape: what else was drawn of it.
+        ratio: how much of it shows, in units of the sensors' noise.
+        free: parameters that are not known exactly; `truth` has their true values by name.
+        coulomb: whether the nominal model has Coulomb friction.
+        push: unlogged torque over the input, rms.
+        records: the one to fit and the one that confirms.
+    """
+
+    robot: JointRobot
+    effect: str
+    names: tuple[str, ...]
+    joint: str
+    size: float
+    shape: Shape
+    ratio: float
+    free: tuple[Free, ...]
+    truth: dict[str, float]
+    coulomb: bool
+    push: float
+    records: tuple[Record, Record]
+
+
+class UnseenError(Exception):
+    """No size of the effect that is allowed shows in a log of this robot."""
+
+
+@dataclass(frozen=True)
+class _Control:
+    p: np.ndarray
+    computed: bool
+
+
+def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> World:
+    """Draw a world and simulate its records.
+
+    Args:
+        name: of the robot.
+        effect: a name of `HIDDEN`, or "nothing".
+        seed: of all that is drawn.
+        duration: of a record [s].
+
+    Raises:
+        UnseenError: the largest size of the effect shows less than `LEAST`.
+    """
+    robot = ROBOTS[name]
+    rng = np.random.default_rng([seed, robot.code, zlib.crc32(effect.encode())])
+    hidden = HIDDEN.get(effect)
+    known = hidden.known if hidden else ()
+    free = tuple(f for f in robot.all_free if f.kind not in known)
+    base = held_base(robot)
+    if "coulomb" in known:
+        base.joints[:, at.COULOMB] = 0.0
+    for f in free:
+        base = base.moved(f, rng.uniform(1 - SPREAD, 1 + SPREAD))
+    control = _Control(robot.plain()[0], bool(rng.integers(2)))
+    for f in robot.free:
+        control.p[f.number] *= rng.uniform(1 - CONTROLLER, 1 + CONTROLLER)
+    kinds = rng.choice(KINDS, 2, replace=False)
+    count = round(duration / robot.sampling_time)
+    aims = [
+        reference(str(kind), np.array(robot.travel), np.array(robot.speed), robot.sampling_time,
+                  count, rng)
+        for kind in kinds
+    ]  # fmt: skip
+    still = _quiet(robot, base, control, aims[0])
+    share = float(rng.uniform(*PUSH))
+    pushes = [
+        share * still[1].std(axis=0) * _wander((count, robot.n), robot.sampling_time, rng)
+        for _ in aims
+    ]
+    true, size, shape, shown, joint = base, 0.0, {}, 0.0, ""
+    if hidden is not None:
+        j = int(rng.choice(hidden.joints(robot)))
+        joint = robot.joints[j]
+        habits = Habits(
+            float(np.abs(still[1][:, j]).max()), float(np.abs(still[0][:, 1, j]).max()),
+            float(np.abs(still[0][:, 0, j]).max()), robot.coulomb[j], robot.damping[j],
+            float(np.quantile(np.abs(still[1][:, j]), OFTEN)),
+        )  # fmt: skip
+        shape, target = hidden.shape(habits, rng), float(np.exp(rng.uniform(*np.log(RATIOS))))
+        most = hidden.largest(habits)
+        size, tried = 0.2 * most, 0.0
+        for _ in range(TRIES):
+            true, tried = with_effect(robot, base, effect, j, size, shape), size
+            motion = _quiet(robot, true, control, aims[0])
+            shown = ratio(robot, true, base, free, *motion, pushes[0])
+            if abs(shown / target - 1) < NEAR or (size == most and shown < target):
+                break
+            size = min(most, size * float(np.clip(target / max(shown, 1e-9), 0.05, 20)))
+        size = tried
+        if shown < LEAST:
+            raise UnseenError(f"{effect} of {robot.name} shows {shown:.2g} times the noise at most")
+    records = [
+        _record(robot, true, control, aim, str(kind), push, rng)
+        for kind, aim, push in zip(kinds, aims, pushes, strict=True)
+    ]
+    return World(
+        robot=robot, effect=effect, names=hidden.names(robot) if hidden else (NULL,), joint=joint,
+        size=size, shape=shape, ratio=shown, free=free, coulomb="coulomb" not in known,
+        truth={f.name: float(base.p[f.number] if f.number is not None else base.joints[f.slot])
+               for f in free},
+        push=share, records=(records[0], records[1]),
+    )  # fmt: skip
+
+
+def held_base(robot: JointRobot) -> Numbers:
+    """The nominal robot, its contacts stiff against the sensors' noise and damped."""
+    p, joints = robot.plain()
+    M, c, g = np.zeros((robot.n, robot.n)), np.zeros(robot.n), np.zeros(robot.n)
+    terms(robot.code, np.zeros(robot.n), np.zeros(robot.n), p, M, c, g)
+    inertia = 1 / np.diag(np.linalg.inv(M))
+    joints[:, at.STIFF] = np.array(robot.coulomb) / (PRESLIDING * robot.noise)
+    joints[:, at.DAMP] = 1.4 * np.sqrt(joints[:, at.STIFF] * inertia)
+    return Numbers(p, joints)
+
+
+def with_effect(
+    robot: JointRobot, base: Numbers, effect: str, j: int, size: float, shape: Shape
+) -> Numbers:
+    """A robot's numbers with an effect on joint j; a body's mass where the effect is one."""
+    hidden, p, joints = HIDDEN[effect], base.p.copy(), base.joints.copy()
+    if hidden.body == "payload":
+        p[list(robot.payload)] = size * p[robot.link[0]]
+    elif hidden.body == "link":
+        p[list(robot.link)] *= 1 + size
+    else:
+        hidden.put(joints[j], size, shape)
+    return Numbers(p, joints)
+
+
+def _quiet(
+    robot: JointRobot, numbers: Numbers, control: _Control, aim: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """States and inputs of a motion without any noise."""
+    nothing = np.zeros(aim.shape[1:])
+    states, u, _ = closed_loop(
+        robot.code, numbers.p, numbers.joints, control.p, control.computed, robot.bandwidth, aim,
+        nothing, np.zeros(robot.n), nothing, robot.sampling_time / robot.substeps, robot.substeps,
+    )  # fmt: skip
+    return states, u
+
+
+def _wander(shape: tuple[int, int], h: float, rng: np.random.Generator) -> np.ndarray:
+    """Noise of std 1 with a correlation time, sampled every h seconds."""
+    keep = np.exp(-h / rng.uniform(*COLOUR))
+    x = rng.normal(size=shape)
+    for k in range(1, len(x)):
+        x[k] = keep * x[k - 1] + np.sqrt(1 - keep**2) * x[k]
+    return x
+
+
+def _record(
+    robot: JointRobot, numbers: Numbers, control: _Control, aim: np.ndarray, kind: str,
+    push: np.ndarray, rng: np.random.Generator,
+) -> Record:  # fmt: skip
+    """A motion as it is logged; push: unlogged torque, shape (N, n)."""
+    h, errors = robot.sampling_time, rng.normal(size=push.shape) * robot.white
+    states, u, _ = closed_loop(
+        robot.code, numbers.p, numbers.joints, control.p, control.computed, robot.bandwidth, aim,
+        errors, robot.steps, push, h / robot.substeps, robot.substeps,
+    )  # fmt: skip
+    y = logged(robot, numbers.joints, states) + errors
+    return Record(kind, u, robot.steps * np.round(y / robot.steps))
