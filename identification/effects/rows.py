@@ -16,6 +16,7 @@ import numpy as np
 
 from identification.effects.axes import Axis
 from identification.effects.joint_layout import JointLayout
+from identification.effects.moving_bodies import movable
 from identification.errors import InputError, unknown_name
 from identification.logs.names import quoted
 from identification.native.joint_callback import STEPS, STOP, TAG
@@ -66,4 +67,4 @@ def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis], layout: JointLayout) ->
         row[STOP], row[-2], row[-1] = STEPS * own.opt.timestep, layout.key, TAG
         joints[axis.joint].userdata = np.concatenate([given, row])
     spec.nuser_jnt = own.nuser_jnt + layout.entries
-    return spec.compile()
+    return movable(spec) if layout.has_bodies else spec.compile()
