@@ -1,4 +1,4 @@
-"""All candidate effects of a robot: of its joints, its bodies, and its inputs."""
+"""All candidate effects of a robot: of its joints, its bodies, its inputs and its sensors."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from identification.effects.body_catalogue import body_effects
 from identification.effects.effect import Effect
 from identification.effects.input_effects import drives, input_effects
 from identification.effects.joint_catalogue import TURNS, joint_effects
+from identification.effects.sensor_catalogue import sensor_effects
 from identification.logs.log import Log
 
 
@@ -22,10 +23,15 @@ def all_effects(
     Args:
         spec: of the robot, which is not changed.
         axes: its joints whose effects are sought.
-        log: its inputs say what is plausible of them.
+        log: names its sensors, and its inputs say what is plausible of them.
         turns: see `joint_effects`.
 
     Raises:
         InputError: no input moves.
     """
-    return (*joint_effects(axes, turns), *body_effects(spec), *input_effects(drives(log)))
+    return (
+        *joint_effects(axes, turns),
+        *body_effects(spec),
+        *input_effects(drives(log)),
+        *sensor_effects(spec.copy().compile(), log.output_names, axes),
+    )

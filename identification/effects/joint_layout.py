@@ -1,7 +1,8 @@
 """Where the parameters of a set of effects live in the model of a robot with joints.
 
 Those of joints in the joints' user data, a row each (see `identification.native.joint_callback`);
-those of inputs nowhere: they act before the model. Those of bodies change the bodies' own numbers.
+those of inputs and sensors nowhere: they act before the model and behind it. Those of bodies change
+the bodies' own numbers.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from identification.native.hook_checks import refuse_unfit_functions
 from identification.native.input_filter import INPUT
 from identification.native.installer import Law, install
 from identification.native.joint_callback import FIELDS, JOINT, callbacks, width
+from identification.native.reading import SENSOR
 
 
 @dataclass(frozen=True)
@@ -27,14 +29,14 @@ class JointLayout:
         effects: the set, in order.
 
     Raises:
-        InputError: two effects have one name, or one has a hook that is none of a joint, an input
-            or a body.
+        InputError: two effects have one name, or one has a hook that is none of a joint, an input,
+            a body or a sensor.
     """
 
     effects: tuple[Effect, ...]
 
     def __post_init__(self) -> None:
-        refuse_misplaced(self.effects, (JOINT, INPUT, BODY))
+        refuse_misplaced(self.effects, (JOINT, INPUT, BODY, SENSOR))
 
     @cached_property
     def on_joints(self) -> tuple[Term, ...]:

@@ -1,6 +1,6 @@
-"""Any MJCF as a plant with candidate effects on its joints, bodies and inputs.
+"""Any MJCF as a plant with candidate effects on its joints, bodies, inputs and sensors.
 
-joint j gets    size(all joints) + size@j          input i likewise; body b gets size@b
+joint j gets    size(all joints) + size@j          inputs and sensors likewise; body b gets size@b
 
 Its own parameters are paths into the model (see `ModelPlant`). An effect's are called
 `effect.size` + suffix and are zero; one that is already known, such as a Coulomb level, may be
@@ -150,6 +150,13 @@ class JointPlant:
             self.effects, actuators, every, held, timestep, len(values)
         )
 
+    def outputs(
+        self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str], readings: np.ndarray
+    ) -> np.ndarray:
+        """What the sensors say after the effects that act on them; see `Plant`."""
+        every = effect_values.merged(self.parameters.values(), names, values)
+        return effect_values.changed_outputs(self.effects, sensors, every, readings, len(values))
+
 
 def joint_plant(
     source: str | Path,
@@ -174,7 +181,7 @@ def joint_plant(
 
     Raises:
         InputError: the model or a path is unusable, a joint does not move in the log, or an effect
-            has a hook that is none of a joint, an input or a body.
+            has a hook that is none of a joint, an input, a body or a sensor.
     """
     spec = read_model(source)
     known = tuple(joints) if joints is not None else axes(spec.copy().compile(), log)

@@ -95,6 +95,12 @@ class ModelPlant:
         """The logged inputs, as they are; see `Plant`."""
         return held
 
+    def outputs(
+        self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str], readings: np.ndarray
+    ) -> np.ndarray:
+        """What perfect sensors say; see `Plant`."""
+        return np.asarray(readings[0])
+
 
 def own_start(model: mujoco.MjModel) -> State:
     """The state in which a model is reset: qpos0, at rest."""

@@ -59,6 +59,23 @@ class Plant(Protocol):
             Shape (steps, nu) for all, or (n, steps, nu).
         """
 
+    def outputs(
+        self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str],
+        readings: np.ndarray,
+    ) -> np.ndarray:  # fmt: skip
+        """What the sensors say, computed from what perfect ones would say.
+
+        Args:
+            names: as above.
+            values: as above.
+            sensors: names of the ny sensors.
+            readings: what a perfect sensor would say, and position and rate of its joint, shape
+                (3, m, samples, ny); each value set has m/n neighbouring rows.
+
+        Returns:
+            Shape (m, samples, ny).
+        """
+
 
 @dataclass(frozen=True)
 class Predictor:
@@ -108,19 +125,38 @@ class Predictor:
         """
         log = self.log
         start, numbers = self.settings(values)
-        columns = output_columns(self.plant.model, log.output_names)
         states = rollout(
             self.plant.model,
             start,
             log.inputs[:samples],
             log.sampling_time,
             numbers=numbers,
-            record=sorted({field for field, _ in columns}),
+            record=("qpos", "qvel"),
             hold_kind=log.hold,
             before=self.inputs(values),
             time=log.begun,
         )
-        return np.stack([states[field][:, :, i] for field, i in columns], axis=-1)
+        return self.outputs(values, states)
+
+    def outputs(self, values: np.ndarray, states: Mapping[str, np.ndarray]) -> np.ndarray:
+        """What the sensors say of simulated states, for n value sets (n, p).
+
+        Args:
+            values: shape (n, p), in the parameters' units.
+            states: qpos and qvel of m simulations, shape (m, samples, size); each value set has
+                m/n neighbouring ones.
+
+        Returns:
+            Shape (m, samples, ny).
+        """
+        model, sensors = self.plant.model, self.log.output_names
+        columns = output_columns(model, sensors)
+        joints = [int(model.sensor(name).objid[0]) for name in sensors]
+        y = [states[field][:, :, i] for field, i in columns]
+        q = [states["qpos"][:, :, int(model.jnt_qposadr[j])] for j in joints]
+        v = [states["qvel"][:, :, int(model.jnt_dofadr[j])] for j in joints]
+        readings = np.stack([np.stack(part, axis=-1) for part in (y, q, v)])
+        return self.plant.outputs(*self._every(values), sensors, readings)
 
 
 def output_columns(model: mujoco.MjModel, names: Sequence[str]) -> list[tuple[str, int]]:

@@ -127,6 +127,12 @@ class Twin:
         """
         return effect_inputs(self.effects, names, self.parameters.values(), values, held, timestep)
 
+    def outputs(
+        self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str], readings: np.ndarray
+    ) -> np.ndarray:
+        """What the encoders say, which are perfect; see `Plant`."""
+        return np.asarray(readings[0])
+
     def save(self, path: str | Path) -> Path:
         """Write the model as MJCF, exact to the last bit; returns the path."""
         spec = build(self.parameters, self.geometry, self.layout)

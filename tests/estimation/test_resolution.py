@@ -175,6 +175,9 @@ class Curved:
     def inputs(self, names, values, held, timestep):
         return held
 
+    def outputs(self, names, values, sensors, readings):
+        return readings[0]
+
 
 def test_a_trade_off_that_is_no_product_of_small_powers_is_not_called_one():
     records = tuple(positive(n, v, "", "start") for n, v in (("a", 20.0), ("b", 1.0)))
