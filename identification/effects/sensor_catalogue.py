@@ -7,6 +7,7 @@ by a tenth of the travel, a disc off its centre by a hundredth of its radius or 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import mujoco
 
@@ -46,7 +47,9 @@ def sensor_effects(
     for kind in kinds:
         own = {n: a for n, a in positions.items() if a.kind == kind}
         if own:
-            out += _of_positions(own, kind, "slide_" if both and kind == "slide" else "")
+            prefix = "slide_" if both and kind == "slide" else ""
+            out += _of_positions(own, kind, prefix)
+            out += [_lag(prefix, own)] if len(outputs) > 1 else []
     return tuple(e for e in out if e.places)
 
 
@@ -65,8 +68,6 @@ def _of_positions(own: dict[str, Axis], kind: Kind, prefix: str) -> list[Effect]
     out = [
         _effect(prefix, laws.encoder_offset, "y + c", (_size("c", x, far, "of its zero"),), names,
                 "sensor: zero is displaced"),
-        _effect(prefix, laws.encoder_lag, "y - τ v", (_size("tau", "s", LAG, "lag", 1),), names,
-                "sensor: lags"),
     ]  # fmt: skip
     if kind == "hinge":
         waves = (_size("a", x, ECCENTRICITY, "of the cosine"),
@@ -76,8 +77,14 @@ def _of_positions(own: dict[str, Axis], kind: Kind, prefix: str) -> list[Effect]
     return out
 
 
-def _size(name: str, unit: str, largest: float, about: str, sign: int = 0) -> Size:
-    return Size(name, unit, largest, PROBE * largest, 1 if sign else 0, about)
+def _lag(prefix: str, own: dict[str, Axis]) -> Effect:
+    sizes = (_size("tau", "s", LAG, "lag behind the other sensors"),)
+    made = _effect(prefix, laws.encoder_lag, "y - τ v", sizes, (*own,), "sensor: lags")
+    return replace(made, places={where: at for where, at in made.places.items() if at})
+
+
+def _size(name: str, unit: str, largest: float, about: str) -> Size:
+    return Size(name, unit, largest, PROBE * largest, 0, about)
 
 
 def _effect(

@@ -50,7 +50,7 @@ def test_the_readings_of_an_arm_are_those_by_hand():
 
 def test_a_lag_is_the_reading_a_little_earlier():
     log = arm_log(steps(100, 2))
-    late = run(arm(), log, **{"encoder_lag.tau": 1e-3})
+    late = run(arm(), log, **{"encoder_lag.tau@a": 1e-3, "encoder_lag.tau@b": 1e-3})
     q = run(arm(), log)
     t = np.arange(100) * 0.01
     for k in range(2):
@@ -106,6 +106,14 @@ def test_slides_and_hinges_have_names_of_their_own():
                             "slide_encoder_lag"}  # fmt: skip
     assert known["slide_encoder_offset"].sizes[0].unit == "m"
     assert known["encoder_eccentricity"].places == {"sensor a": "@a"}
+
+
+def test_a_lag_is_sought_of_one_sensor_among_several():
+    """All sensors late together are all inputs late: that is a delay."""
+    (lag,) = (e for e in arm().effects if e.name == "encoder_lag")
+    assert lag.places == {"sensor a": "@a", "sensor b": "@b"}
+    plant = joint_plant(SLIDER, (MASS, DAMPING), slider_log(steps(100)))
+    assert not any(e.name == "encoder_lag" for e in plant.effects)
 
 
 def test_sizes_of_zero_leave_readings_as_they_are():
