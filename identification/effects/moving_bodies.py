@@ -22,7 +22,8 @@ class MovingBody:
         index: in the model.
         mass: [kg].
         point: where a payload would sit, in its frame: its farthest site, else the centre of its
-            farthest geom, else its centre of mass, shape (3,) [m].
+            farthest geom, else twice as far as its centre of mass, where a uniform link ends,
+            shape (3,) [m].
         reach: distance of the farthest of these from its frame [m].
         is_last: whether it carries no other moving body.
     """
@@ -62,9 +63,9 @@ def moving_bodies(model: mujoco.MjModel) -> tuple[MovingBody, ...]:
     for b in moving:
         if not (label := _label(model, b)):
             continue
-        points = _points(model, b)
+        points = _points(model, b) or [2 * model.body_ipos[b]]
         reach = max(float(np.linalg.norm(p)) for p in (*points, model.body_ipos[b]))
-        far = max(points, key=lambda p: float(np.linalg.norm(p)), default=model.body_ipos[b])
+        far = max(points, key=lambda p: float(np.linalg.norm(p)))
         out.append(
             MovingBody(
                 label=label, index=b, mass=float(model.body_mass[b]), reach=reach,

@@ -11,6 +11,7 @@ from identification.effects.body_catalogue import body_effects
 from identification.effects.body_laws import displaced
 from identification.effects.effect import Effect, Size
 from identification.effects.joint_plant import joint_plant
+from identification.effects.moving_bodies import moving_bodies
 from identification.model.plant import ModelPlant
 
 LOWER = '<inertial pos="0 0 -0.1" mass="0.5" diaginertia="0.01 0.01 0.005"/>'
@@ -53,6 +54,15 @@ def test_a_payload_is_a_small_heavy_body_at_the_farthest_site():
     found = run(plant, LOG, **{"payload.M@lower": 0.4})
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-7)
     assert np.abs(expected - said(ARM)).max() > 0.01
+
+
+def test_without_sites_and_geoms_a_payload_hangs_where_a_uniform_link_ends():
+    known = {b.label: b for b in moving_bodies(arm().model)}
+    assert known["lower"].point == pytest.approx((0, 0, -0.2))
+    geom = LOWER + '<geom size="0.01" pos="0 0.1 0" mass="0"/>'
+    model = mujoco.MjModel.from_xml_string(ARM.replace(LOWER, geom))
+    (lower,) = (b for b in moving_bodies(model) if b.is_last)
+    assert lower.point == pytest.approx((0, 0.1, 0))
 
 
 def test_an_inertia_in_axes_of_its_own_is_kept():
