@@ -140,14 +140,15 @@ class JointPlant:
         ]  # fmt: skip
 
     def inputs(
-        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
-    ) -> np.ndarray:
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
+        begun: float = 0.0,
+    ) -> np.ndarray:  # fmt: skip
         """The inputs after the effects that act on them; see `Plant`."""
         every = effect_values.merged(self.parameters.values(), names, values)
         model = self.bare.model
         actuators = [model.actuator(i).name for i in range(model.nu)]
         return effect_values.changed_inputs(
-            self.effects, actuators, every, held, timestep, len(values)
+            self.effects, actuators, every, held, timestep, len(values), begun
         )
 
     def outputs(

@@ -75,7 +75,7 @@ def changed_columns(
 
 def changed_inputs(
     effects: Sequence[Effect], things: Sequence[str], values: Values, held: np.ndarray,
-    timestep: float, n: int,
+    timestep: float, n: int, begun: float = 0.0,
 ) -> np.ndarray:  # fmt: skip
     """What the effects of inputs make of them, for n value sets.
 
@@ -86,6 +86,7 @@ def changed_inputs(
         held: inputs at the steps of the simulation, shape (steps, nu).
         timestep: of the simulation [s].
         n: how many value sets.
+        begun: time of the first step in the record [s].
 
     Returns:
         `held` itself where no such effect is there, else shape (n, steps, nu).
@@ -105,7 +106,7 @@ def changed_inputs(
         rows = table_at(acting, thing, values, n)
         for k, row in enumerate(rows):
             signals[0] = held[:, i]
-            run(signals.ctypes.data, len(held), timestep, row.ctypes.data)
+            run(signals.ctypes.data, len(held), timestep, begun, row.ctypes.data)
             out[k, :, i] = signals[-1]
     return out
 

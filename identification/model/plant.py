@@ -90,8 +90,9 @@ class ModelPlant:
         return State(**rows), numbers
 
     def inputs(
-        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
-    ) -> np.ndarray:
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
+        begun: float = 0.0,
+    ) -> np.ndarray:  # fmt: skip
         """The logged inputs, as they are; see `Plant`."""
         return held
 

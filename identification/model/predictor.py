@@ -45,8 +45,9 @@ class Plant(Protocol):
         """
 
     def inputs(
-        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
-    ) -> np.ndarray:
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
+        begun: float = 0.0,
+    ) -> np.ndarray:  # fmt: skip
         """The inputs that reach the model, step by step, computed from the logged inputs.
 
         Args:
@@ -54,6 +55,7 @@ class Plant(Protocol):
             values: as above.
             held: logged inputs at the steps of the simulation, shape (steps, nu).
             timestep: of the simulation [s].
+            begun: time of the first step in the record [s].
 
         Returns:
             Shape (steps, nu) for all, or (n, steps, nu).
@@ -108,7 +110,7 @@ class Predictor:
         """The function from held inputs (steps, nu) to those that reach the model, for (n, p)."""
         names, every = self._every(values)
         timestep = self.plant.model.opt.timestep
-        return lambda held: self.plant.inputs(names, every, held, timestep)
+        return lambda held: self.plant.inputs(names, every, held, timestep, self.log.begun)
 
     def predict(self, values: np.ndarray, samples: int | None = None) -> np.ndarray:
         """Outputs of n value sets over the first samples of the log.

@@ -172,7 +172,7 @@ class Curved:
         )
         return self.plant.settings(("stiffness",), (a * b**1.37)[:, None])
 
-    def inputs(self, names, values, held, timestep):
+    def inputs(self, names, values, held, timestep, begun=0.0):
         return held
 
     def outputs(self, names, values, sensors, readings):
