@@ -49,6 +49,7 @@ class Axis:
         plain: whether its drives' force is gain·u + bias: their load is then known.
         heavy: whether gravity acts on it anywhere.
         duration: of the record [s]; 0 where it is not known.
+        middle: of the way that it moves [rad or m].
 
     Raises:
         InputError: a magnitude is not positive.
@@ -62,6 +63,7 @@ class Axis:
     plain: bool = True
     heavy: bool = False
     duration: float = 0.0
+    middle: float = 0.0
 
     def __post_init__(self) -> None:
         for word in MAGNITUDES:
@@ -101,7 +103,7 @@ def axes(model: mujoco.MjModel, log: Log, trust: Sequence[str] = ()) -> tuple[Ax
 
 
 def reach(each: Sequence[Sequence[Axis]]) -> tuple[Axis, ...]:
-    """The joints of several logs, each with the largest force, speed and travel of all.
+    """The joints of several logs, each with the largest force and speed and all the way of all.
 
     Args:
         each: the joints that each log shows.
@@ -109,9 +111,13 @@ def reach(each: Sequence[Sequence[Axis]]) -> tuple[Axis, ...]:
     found: dict[str, Axis] = {}
     for axis in (axis for known in each for axis in known):
         old = found.get(axis.joint, axis)
-        words = (*MAGNITUDES, "duration")
+        words = ("force", "speed", "duration")
         most = {word: max(getattr(old, word), getattr(axis, word)) for word in words}
-        found[axis.joint] = replace(axis, **most)
+        low = min(a.middle - a.travel / 2 for a in (old, axis))
+        high = max(a.middle + a.travel / 2 for a in (old, axis))
+        found[axis.joint] = replace(
+            axis, **most, travel=high - low, middle=(low + high) / 2
+        )  # fmt: skip
     return tuple(found.values())
 
 
@@ -146,7 +152,7 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
     name = model.joint(j).name
     return Axis(name, _KINDS[int(model.jnt_type[j])], force, speed, travel,
                 all(_plain(model, i) for i in drives), _heavy(model, j),
-                log.begun + log.duration)  # fmt: skip
+                log.begun + log.duration, float(way.min() + way.max()) / 2)  # fmt: skip
 
 
 def _heavy(model: mujoco.MjModel, j: int) -> bool:

@@ -11,9 +11,9 @@ import numpy as np
 
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.axes import axes, reach
+from identification.effects.catalogue import all_effects
 from identification.effects.effect import Effect
-from identification.effects.input_effects import drives, input_effects
-from identification.effects.joint_catalogue import TURNS, joint_effects
+from identification.effects.joint_catalogue import TURNS
 from identification.effects.joint_plant import JointPlant, candidates, joint_plant
 from identification.effects.named import means_effect, unknown_number
 from identification.errors import InputError, unknown_name
@@ -144,7 +144,7 @@ def robot_of(
         if joint not in {a.joint for a in known}:
             raise unknown_name("measured joint", joint, (a.joint for a in known))
     known = tuple(a for a in known if not file.joints or a.joint in file.joints)
-    effects = (*joint_effects(known, file.turns or TURNS), *input_effects(drives(log)))
+    effects = all_effects(spec, known, log, file.turns or TURNS)
     for name in file.only:
         if name not in {e.name for e in effects}:
             raise unknown_name("effect", name, (e.name for e in effects))

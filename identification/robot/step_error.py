@@ -115,7 +115,7 @@ def _cure(robot: Robot) -> str:
 
 def _stepped(robot: Robot, factor: float, integrator: int | None = None) -> Robot:
     """The same robot with another timestep and, if given, another integrator."""
-    model = copy.copy(robot.plant.model)
+    model = copy.copy(robot.plant.bare.model)
     model.opt.timestep *= factor
     if integrator is not None:
         model.opt.integrator = integrator
