@@ -1,6 +1,7 @@
 """The bench of measured robots: its records, its files, its nulls and its page."""
 
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,7 +9,8 @@ import pytest
 from measured_cases import DATA, oscillator, oscillator_log, with_data
 from robots import ROBOTS, reader
 from robots.gridded import gridded
-from robots.measured_robot import PROJECT_MODELS
+from robots.measured_robot import PROJECT_MODELS, Apart
+from robots.measurement import measure_again
 from robots.nulls import best_model, null_log, null_of
 from robots.page import page
 from robots.unseen import MOST, compare, errors_of, spread
@@ -155,6 +157,23 @@ def test_the_best_model_has_what_was_named_and_its_nulls_are_read(plant, tmp_pat
     assert read.plant.parameters.values()["hardening.k_3@slide"] == 2.0
     assert "hardening.k_3@slide" in read.nominal_model.names
     assert not np.array_equal(null.fit[0].outputs, null_of(best, own, values, 3).fit[0].outputs)
+
+
+def test_what_needs_no_discovery_is_measured_again_from_the_kept_values(plant):
+    robot, own = plant
+    nominal = {n: {"value": v} for n, v in TRUE.items()}
+    final = {**nominal, "hardening.k_3@slide": {"value": 2.0}}
+    kept = {"discovery": {"effects": [{}], "nominal": nominal, "final": final}, "seconds": 1.0}
+    more = Apart(what="the same once more", logs=robot.confirm, refit=("m",))
+    record = measure_again(replace(robot, apart=(more,)), kept)
+    assert record["seconds"] == 1.0
+    assert set(record["unseen"]["rms"]) == {"nominal, fitted", "as begun", "with what is named"}
+    assert record["unseen"]["change"]["with what is named"] < -0.5  # half of a spring of 4
+    assert record["apart"][0]["unseen"]["rms"]["nominal, fitted"] == pytest.approx(
+        record["unseen"]["rms"]["nominal, fitted"]
+    )
+    (found,) = record["apart"][0]["refitted"].values()
+    assert found["values"]["m"]["before"] == TRUE["m"]
 
 
 def test_a_true_model_predicts_better_than_one_with_a_wrong_mass(plant):
