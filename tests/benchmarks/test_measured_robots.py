@@ -1,6 +1,7 @@
 """The bench of measured robots: its records, its files and its page."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -120,7 +121,12 @@ def test_the_second_split_exchanges_records_and_another_start_changes_nothing_el
 
 
 def test_a_long_record_is_predicted_in_parts_that_do_not_overlap():
-    log = oscillator_log(0, 6000)
+    short = oscillator_log(0, 60)
+    many = np.ones((100, 1))
+    log = replace(
+        short, time=short.sampling_time * np.arange(6000), inputs=np.kron(many, short.inputs),
+        outputs=np.kron(many, short.outputs),
+    )  # fmt: skip
     parts = spread(log, 60 * log.sampling_time)
     assert sum(len(p) // 60 for p in parts) == MOST
     ends = [p.time[-1] for p in parts]
