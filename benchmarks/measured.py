@@ -4,6 +4,7 @@
     python benchmarks/measured.py silverbox --split 2     does another split contradict the name?
     python benchmarks/measured.py emps --null 20          how many nulls of the robot get a name?
     python benchmarks/measured.py --write FOLDER          records as CSV, models and TOML
+    python benchmarks/measured.py --again                 all but fits and discoveries anew
     python benchmarks/measured.py --only-page             the page anew, from the JSON records
 
 A robot whose data are absent is skipped, with a sentence. What the page tells is in the JSON
@@ -68,8 +69,13 @@ def work(robot: MeasuredRobot, given: argparse.Namespace) -> None:
 
         keep(given, f"{robot.name}{ending}_null", lambda: null_study(split, given.null, say))
         return
-    from robots.measurement import measure
+    from robots.measurement import measure, measure_again
 
+    if given.again:
+        for path in sorted(given.records.glob(f"{robot.name}.json")):
+            kept = json.loads(path.read_text(encoding="utf-8"))
+            keep(given, path.stem, partial(measure_again, robot, kept))
+        return
     keep(given, robot.name + ending, lambda: measure(split, say))
     if given.split == 1:
         for what, values in robot.starts.items():
@@ -105,6 +111,7 @@ def parsed() -> argparse.Namespace:
     parser.add_argument("--split", type=int, choices=(1, 2), default=1)
     parser.add_argument("--null", type=int, default=0, metavar="N")
     parser.add_argument("--write", type=Path, metavar="FOLDER")
+    parser.add_argument("--again", action="store_true")
     parser.add_argument("--only-page", action="store_true")
     return parser.parse_args()
 

@@ -14,16 +14,19 @@ Actuators", arXiv 2410.08650; parameters by their names in the JSON files of git
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from identification import Log
-from identification.windows.windows import windows
+from identification.windows.windows import Windows, windows
 from robots.window_starts import best_errors
 
 MASS, ARM, G = 0.49, 0.1, 9.80665  # [kg], [m], [m/s^2]
 STEPS = 4  # of the simulator in a sample
+DUTY = 4096 / (2 * np.pi) / (256 * 885)  # of a full bridge, for a gain of one and an error [1/rad]
+
+Volts = Callable[[float, np.ndarray], np.ndarray]
 
 
 def friction(
@@ -60,40 +63,92 @@ def friction(
 
 
 def simulate(
-    p: Mapping[str, float], volts: np.ndarray, first: np.ndarray, step: float
+    p: Mapping[str, float], volts: Volts, first: np.ndarray, samples: int, step: float
 ) -> np.ndarray:
     """Angles at the samples of windows, shape (W, L) [rad].
 
     Args:
         p: parameters by the authors' names.
-        volts: at the samples, straight lines between them, shape (W, L) [V].
+        volts: of the motor, shape (W,) [V], at a time in samples and an angle (W,) [rad].
         first: angle [rad] and speed [rad/s] of each window, shape (W, 2).
+        samples: L.
         step: between two samples [s].
     """
     q, w = first.T.copy()
     h, inertia = step / STEPS, MASS * ARM**2 + p["armature"]
     angles = [q]
-    for k in range(volts.shape[1] - 1):
-        for n in range(STEPS):
-            share = (n + 0.5) / STEPS
-            v = (1 - share) * volts[:, k] + share * volts[:, k + 1]
-            motor = p["kt"] * (v - p["kt"] * w) / p["R"]
-            external = -MASS * G * ARM * np.sin(q + p["q_offset"])
-            stop = inertia / h * w + motor + external
-            most = friction(p, motor, external, w)
-            a = (motor + external - np.sign(stop) * np.minimum(np.abs(stop), most)) / inertia
-            w = w + h * a
-            q = q + h * w
-        angles.append(q)
+    for k in range(STEPS * (samples - 1)):
+        v = volts((k + 0.5) / STEPS, q)
+        motor = p["kt"] * (v - p["kt"] * w) / p["R"]
+        external = -MASS * G * ARM * np.sin(q + p["q_offset"])
+        stop = inertia / h * w + motor + external
+        most = friction(p, motor, external, w)
+        a = (motor + external - np.sign(stop) * np.minimum(np.abs(stop), most)) / inertia
+        w = w + h * a
+        q = q + h * w
+        if (k + 1) % STEPS == 0:
+            angles.append(q)
     return np.stack(angles, axis=1)
 
 
-def errors(p: Mapping[str, float], log: Log, horizon: float) -> np.ndarray:
-    """Window errors of a model on a record, each window from its best first state, (W, L, 1)."""
-    cut = windows(log, horizon)
+def measured_volts(volts: np.ndarray) -> Volts:
+    """Straight lines between the samples of windows, shape (W, L) [V]."""
+    return lambda at, _: _between(volts, at)
+
+
+def servo_volts(goals: np.ndarray, supply: np.ndarray, gain: float) -> Volts:
+    """What the servo's own controller gives for an angle: duty, clipped, times supply.
+
+    Args:
+        goals: of the angle, shape (W, L) [rad].
+        supply: shape (W, L) [V].
+        gain: k_p of its registers.
+    """
+
+    def volts(at: float, q: np.ndarray) -> np.ndarray:
+        duty = gain * DUTY * (_between(goals, at) - q)
+        clipped: np.ndarray = np.clip(duty, -1, 1) * _between(supply, at)
+        return clipped
+
+    return volts
+
+
+def _between(x: np.ndarray, at: float) -> np.ndarray:
+    k = int(at)
+    between: np.ndarray = (1 - at + k) * x[:, k] + (at - k) * x[:, k + 1]
+    return between
+
+
+def _first(log: Log, cut: Windows) -> np.ndarray:
+    """Measured angles and rates at the beginning of windows, shape (W, 2)."""
     rate = np.gradient(log.outputs[:, 0], log.sampling_time)[cut.starts]
-    first = np.column_stack([cut.outputs[:, 0, 0], rate])
+    return np.column_stack([cut.outputs[:, 0, 0], rate])
+
+
+def errors(p: Mapping[str, float], log: Log, horizon: float) -> np.ndarray:
+    """Window errors of a model under measured volts, from the best first states, (W, L, 1)."""
+    cut = windows(log, horizon)
+    volts, samples = measured_volts(cut.inputs[:, :, 0]), cut.inputs.shape[1]
     return best_errors(
-        lambda x: simulate(p, cut.inputs[:, :, 0], x, log.sampling_time)[:, :, None],
-        cut.outputs, first, np.array([0.1, 1.0]),
+        lambda x: simulate(p, volts, x, samples, log.sampling_time)[:, :, None],
+        cut.outputs, _first(log, cut), np.array([0.1, 1.0]),
     )  # fmt: skip
+
+
+def servo_errors(p: Mapping[str, float], log: Log, gain: float) -> np.ndarray:
+    """Errors of a whole record as the authors judge it: the servo's controller in the loop.
+
+    Args:
+        p: parameters by the authors' names.
+        log: its inputs are the goal [rad] and the supply [V].
+        gain: k_p of its registers.
+
+    Returns:
+        Shape (L,) [rad], begun at the first sample at its measured rate.
+    """
+    cut = Windows(log.inputs[None], log.outputs[None], np.zeros(1, int))
+    goals, supply = cut.inputs[:, :, 0], cut.inputs[:, :, 1]
+    volts = servo_volts(goals, supply, gain)
+    angles = simulate(p, volts, _first(log, cut), len(log), log.sampling_time)
+    left: np.ndarray = log.outputs[:, 0] - angles[0]
+    return left

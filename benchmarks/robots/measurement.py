@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from identification import InputError, read_robot
+from identification import InputError, JointPlant, read_robot
 from identification.prediction.discovery import discover_records
 from identification.prediction.result import RecordsDiscovery
 from identification.report.records_json import records_to_json
@@ -72,24 +72,49 @@ def measure(robot: MeasuredRobot, say: Callable[[str], None]) -> dict[str, Any]:
         for s in found.scores[:5]
     ]
     record["sizes"] = _sizes(compiled, found, known)
-    models = {
-        NOMINAL: errors_of(compiled.plant, found.nominal.values),
-        BEGUN: errors_of(compiled.plant, {}),
-    }
-    if found.named:
-        models[FINAL] = errors_of(compiled.plant, found.final.values)
-    models |= {m.name: m.errors for m in robot.models}
-    record["unseen"] = compare(models, robot.confirm, robot.horizon)
-    record["published_models"] = {m.name: m.source for m in robot.models}
     fitted = {NOMINAL: found.nominal.values}
     fitted |= {FINAL: found.final.values} if found.named else {}
-    record["apart"] = [on_changed(robot, each, compiled.plant, fitted) for each in robot.apart]
+    return plain({**record, **_beside(robot, compiled.plant, fitted)})
+
+
+def measure_again(robot: MeasuredRobot, record: dict[str, Any]) -> dict[str, Any]:
+    """A record with all that needs no discovery made anew: errors, models of others, evidence.
+
+    Raises:
+        InputError: the files are refused.
+        DivergenceError: a model cannot be simulated.
+    """
+    if "refused" in record:
+        return record
+    with TemporaryDirectory() as folder:
+        path = write_model(robot, Path(folder))
+        compiled = read_robot(path, list(robot.fit), list(robot.confirm))
+    kept = record["discovery"]
+    fitted = {NOMINAL: {n: v["value"] for n, v in kept["nominal"].items()}}
+    if kept["effects"]:
+        fitted[FINAL] = {n: v["value"] for n, v in kept["final"].items()}
+    published = [vars(p) for p in robot.published]
+    return plain({**record, "published": published, **_beside(robot, compiled.plant, fitted)})
+
+
+def _beside(
+    robot: MeasuredRobot, plant: JointPlant, fitted: dict[str, dict[str, float]]
+) -> dict[str, Any]:
+    """Errors of the fitted models and of those of others on unseen records; other evidence."""
+    models = {name: errors_of(plant, values) for name, values in fitted.items()}
+    last = [*models.values()][-1]
+    every = {NOMINAL: models[NOMINAL], BEGUN: errors_of(plant, {}), **models,
+             **{m.name: m.errors for m in robot.models}}  # fmt: skip
+    found: dict[str, Any] = {
+        "unseen": compare(every, robot.confirm, robot.horizon),
+        "published_models": {m.name: m.source for m in robot.models},
+        "apart": [on_changed(robot, each, plant, fitted) for each in robot.apart],
+    }
     if robot.evidence:
-        record["evidence"] = robot.evidence(
-            Outcome(values=found.final.values, nominal=models[NOMINAL],
-                    final=models.get(FINAL, models[NOMINAL]))
-        )  # fmt: skip
-    return plain(record)
+        values = [*fitted.values()][-1]
+        outcome = Outcome(values=values, nominal=models[NOMINAL], final=last)
+        found["evidence"] = robot.evidence(outcome)
+    return found
 
 
 def _sizes(compiled: Robot, found: RecordsDiscovery, published: dict[str, float]) -> dict[str, Any]:

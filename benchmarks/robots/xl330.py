@@ -9,8 +9,10 @@ g = K_t/R, and D holds the back-EMF. Four trajectories, each under four gains: r
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -33,19 +35,54 @@ FREE = (
 )
 
 
-def read_record(path: Path) -> Log:
-    """A record while its torque is on: when it is off, the bridge may be open."""
+def read_columns(path: Path) -> tuple[str, dict[str, np.ndarray]]:
+    """Its name, and the columns of a record while its torque is on, each (n,): time [s], angle and
+    goal [rad], volts [V], duty."""
     raw = json.loads(path.read_text(encoding="utf-8"))
     on = [entry for entry in raw["entries"] if entry["torque_enable"]]
-    time, angle, load, volts = (
-        np.array([entry[key] for entry in on], float)
-        for key in ("timestamp", "position", "load", "input_volts")
-    )
-    duty = np.where(load > 2**15 - 1, load - 2**16, load) / FULL  # a 16-bit two's complement
+    keys = {"time": "timestamp", "angle": "position", "goal": "goal_position",
+            "supply": "input_volts", "load": "load"}  # fmt: skip
+    column = {name: np.array([entry[key] for entry in on], float) for name, key in keys.items()}
+    load = column.pop("load")
+    column["duty"] = np.where(load > 2**15 - 1, load - 2**16, load) / FULL  # two's complement
+    return f"{raw['trajectory']}, k_p {raw['kp']}", column
+
+
+def read_record(path: Path) -> Log:
+    """A record while its torque is on: when it is off, the bridge may be open."""
+    name, column = read_columns(path)
     return gridded(
-        time, {"motor": duty * volts}, {"angle": angle}, units={"motor": "V", "angle": "rad"},
-        name=f"{raw['trajectory']}, k_p {raw['kp']}", step=STEP, widest=WIDEST,
+        column["time"], {"motor": column["duty"] * column["supply"]}, {"angle": column["angle"]},
+        units={"motor": "V", "angle": "rad"}, name=name, step=STEP, widest=WIDEST,
     )  # fmt: skip
+
+
+def read_asked(path: Path) -> Log:
+    """The same record with what the servo was asked for: goal [rad] and supply [V] as inputs."""
+    name, column = read_columns(path)
+    inputs = {n: column[n] for n in ("goal", "supply")}
+    return gridded(
+        column["time"], inputs, {"angle": column["angle"]}, units={"goal": "rad", "angle": "rad"},
+        name=name, step=STEP, widest=WIDEST,
+    )  # fmt: skip
+
+
+def in_closed_loop(models: Mapping[str, Mapping[str, float]], folder: Path) -> dict[str, Any]:
+    """Mean absolute errors of whole records [mrad], the servo's controller in the loop."""
+    logs = [read_asked(path) for path in sorted(folder.glob("*.json"))]
+    held = [log for log in logs if gain(log) in HELD]
+    found = {
+        name.upper(): {log.name: np.abs(bam.servo_errors(p, log, gain(log))).mean() for log in held}
+        for name, p in models.items()
+    }
+    return {"mean_absolute_mrad": {
+        name: {log: 1e3 * float(v) for log, v in each.items()} for name, each in found.items()
+    }}  # fmt: skip
+
+
+def gain(log: Log) -> int:
+    """The gain k_p under which a record was made."""
+    return int(log.name.split()[-1])
 
 
 def read_model(data: Path, name: str) -> dict[str, float]:
@@ -53,11 +90,6 @@ def read_model(data: Path, name: str) -> dict[str, float]:
     path = needed(data / "xl330" / "published" / f"{name}.json")
     said = json.loads(path.read_text(encoding="utf-8"))
     return {key: value for key, value in said.items() if not isinstance(value, str)}
-
-
-def gain(log: Log) -> int:
-    """The gain k_p under which a record was made."""
-    return int(log.name.split()[-1])
 
 
 def read(data: Path) -> MeasuredRobot:
@@ -82,6 +114,7 @@ def read(data: Path) -> MeasuredRobot:
             PublishedModel(name=name.upper(), source=SOURCE, errors=partial(bam.errors, p))
             for name, p in models.items()
         ),
+        evidence=lambda _: in_closed_loop(models, folder),
         published=tuple(PublishedSize(name=n, value=v, unit=u, source=f"M3 of {SOURCE}")
                         for n, (v, u) in sizes.items()),
     )  # fmt: skip

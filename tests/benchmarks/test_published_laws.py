@@ -48,22 +48,33 @@ SERVO = {"kt": 0.38, "R": 4.0, "armature": 0.002, "q_offset": 0.0}
 
 
 def test_a_servo_whose_torque_is_below_its_friction_stays_where_it_is():
-    volts = np.full((1, 50), 0.3)  # 0.0285 N m
-    angles = bam.simulate({**SERVO, **M1, "friction_base": 0.03}, volts, np.zeros((1, 2)), 0.01)
+    volts = bam.measured_volts(np.full((1, 50), 0.3))  # 0.0285 N m
+    still = np.zeros((1, 2))
+    angles = bam.simulate({**SERVO, **M1, "friction_base": 0.03}, volts, still, 50, 0.01)
     assert np.all(angles == 0)
-    angles = bam.simulate({**SERVO, **M1, "friction_base": 0.02}, volts, np.zeros((1, 2)), 0.01)
+    angles = bam.simulate({**SERVO, **M1, "friction_base": 0.02}, volts, still, 50, 0.01)
     assert angles[0, -1] > 0.001
 
 
 def test_without_motor_and_friction_the_arm_swings_with_the_period_of_a_pendulum():
     p = {**SERVO, "kt": 0.0}
     step, first = 0.001, np.array([[0.01, 0.0]])
-    a = bam.simulate(p, np.zeros((1, 3000)), first, step)[0]
+    a = bam.simulate(p, bam.measured_volts(np.zeros((1, 3000))), first, 3000, step)[0]
     k = np.flatnonzero(a[1:] * a[:-1] < 0)
     crossings = (k + a[k] / (a[k] - a[k + 1])) * step
     inertia = bam.MASS * bam.ARM**2 + p["armature"]
     period = 2 * np.pi * np.sqrt(inertia / (bam.MASS * bam.G * bam.ARM))
     assert 2 * np.mean(np.diff(crossings)) == pytest.approx(period, rel=1e-4)
+
+
+def test_the_servos_controller_brings_the_arm_to_its_goal_but_for_what_friction_holds():
+    goals, supply = np.full((1, 300), 0.2), np.full((1, 300), 7.4)
+    volts = bam.servo_volts(goals, supply, 400)
+    end = bam.simulate({**SERVO, **M1}, volts, np.zeros((1, 2)), 300, 0.01)[0, -1]
+    torque = SERVO["kt"] / SERVO["R"] * 7.4 * 400 * bam.DUTY  # for an error of one [N m/rad]
+    held = bam.MASS * bam.G * bam.ARM * np.sin(end) - torque * (0.2 - end)
+    assert abs(held) <= M1["friction_base"] + 1e-9
+    assert volts(0.0, np.array([-10.0])) == pytest.approx(7.4)  # the bridge gives no more
 
 
 def test_first_states_are_found_and_leave_the_noise_that_no_state_explains():

@@ -1,0 +1,79 @@
+"""The bench of measured robots: nulls, comparisons of models, and what is measured again."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from measured_cases import oscillator, oscillator_log
+from robots.measured_robot import Apart
+from robots.measurement import measure_again
+from robots.nulls import best_model, null_log, null_of
+from robots.unseen import compare, errors_of
+from robots.written import write_files, write_model
+
+from identification import read_robot, window_error
+
+
+@pytest.fixture(scope="module")
+def plant(tmp_path_factory):
+    robot = oscillator((oscillator_log(0), oscillator_log(1)))
+    path, paths = write_files(robot, tmp_path_factory.mktemp("robot"))
+    return robot, read_robot(path, paths["fit"], paths["confirm"]).plant
+
+
+TRUE = {"m": 5.4e-6, "d": 2.3e-4, "g": 1.0, "offset.f_0@slide": 0.0}
+
+
+def test_a_null_of_an_exact_model_is_the_log_and_else_its_errors_are_only_mixed(plant):
+    robot, own = plant
+    linear = oscillator_log(3, k_3=0.0, noise=1e-4)
+    null = null_log(own, linear, robot.horizon, TRUE, seed=1)
+    mixed = null.outputs - linear.outputs[: len(null)]
+    assert np.std(mixed) < 0.005 * np.std(linear.outputs)  # noise, and the model's coarser steps
+    cubic = robot.fit[0]
+    errors = window_error(own, cubic, 2 * robot.horizon, TRUE)
+    null = null_log(own, cubic, robot.horizon, TRUE, seed=1)
+    added = null.outputs - (cubic.outputs[: len(null)] - errors.reshape(-1, 1))
+    added = added.reshape(errors.shape)
+    assert all(np.any(np.all(np.isclose(errors, e, atol=1e-12), axis=(1, 2))) for e in added)
+
+
+def test_the_best_model_has_what_was_named_and_its_nulls_are_read(plant, tmp_path):
+    robot, own = plant
+    values = {**TRUE, "hardening.k_3@slide": 2.0}
+    found = SimpleNamespace(final=SimpleNamespace(values=values))
+    best = best_model(robot, own, found)
+    null = null_of(best, own, values, 2)
+    read = read_robot(write_model(null, tmp_path), list(null.fit), list(null.confirm))
+    assert read.plant.parameters.values()["hardening.k_3@slide"] == 2.0
+    assert "hardening.k_3@slide" in read.nominal_model.names
+    assert not np.array_equal(null.fit[0].outputs, null_of(best, own, values, 3).fit[0].outputs)
+
+
+def test_what_needs_no_discovery_is_measured_again_from_the_kept_values(plant):
+    robot, _ = plant
+    nominal = {n: {"value": v} for n, v in TRUE.items()}
+    final = {**nominal, "hardening.k_3@slide": {"value": 2.0}}
+    kept = {"discovery": {"effects": [{}], "nominal": nominal, "final": final}, "seconds": 1.0}
+    more = Apart(what="the same once more", logs=robot.confirm, refit=("m",))
+    record = measure_again(replace(robot, apart=(more,)), kept)
+    assert record["seconds"] == 1.0
+    assert set(record["unseen"]["rms"]) == {"nominal, fitted", "as begun", "with what is named"}
+    assert record["unseen"]["change"]["with what is named"] < -0.5  # half of a spring of 4
+    assert record["apart"][0]["unseen"]["rms"]["nominal, fitted"] == pytest.approx(
+        record["unseen"]["rms"]["nominal, fitted"]
+    )
+    (found,) = record["apart"][0]["refitted"].values()
+    assert found["values"]["m"]["before"] == TRUE["m"]
+
+
+def test_a_true_model_predicts_better_than_one_with_a_wrong_mass(plant):
+    robot, own = plant
+    models = {"wrong": errors_of(own, {**TRUE, "m": 8e-6}), "right": errors_of(own, TRUE)}
+    seen = compare(models, robot.confirm, robot.horizon)
+    assert seen["better"] == {"right": 1}
+    assert seen["change"]["right"] < -0.5
+    assert seen["rms"]["right"] == pytest.approx(
+        np.sqrt(np.mean(models["right"](robot.confirm[0], robot.horizon) ** 2))
+    )
