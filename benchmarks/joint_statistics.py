@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from discovery_statistics import median, rate
 
 WORSE = 1.02  # of an error: two searches that end at the same minimum differ by less
 NULL = "nothing"
-Row = dict[str, Any]
+Row = Mapping[str, Any]
 
 
 def first(row: Row) -> str:
@@ -119,8 +119,8 @@ def section(rows: Sequence[Row]) -> str:
     lines = [
         "## Hidden effects of other robots",
         "",
-        "A pendulum, a cart on a rail, a two-link arm and an arm of six joints under control, 20 s at",
-        "100 or 200 Hz, in simulators of their own (`benchmarks/joint_worlds`): parameters within",
+        "A pendulum, a cart on a rail, a two-link arm and an arm of six joints under control, 20 s",
+        "at 100 or 200 Hz, in simulators of their own (`benchmarks/joint_worlds`): parameters within",
         "10 % of the nominal model, controllers with a wrong model, encoders that round, unlogged",
         "coloured torque of 0.2 to 1 % of the input. One effect is hidden, 3 to 10 times what the",
         "true model errs by over 0.2 s, counted by what no free parameter and no start of a window",
@@ -141,8 +141,8 @@ def section(rows: Sequence[Row]) -> str:
     lines += [
         f"| processor time of fit and discovery: median, longest | {times} |",
         "",
-        f"{said['worlds']} worlds; {said['failed']} more met an error, {said['unseen']} could not be"
-        " made because no size shows enough.",
+        f"{said['worlds']} worlds; {said['failed']} more met an error, and {said['unseen']} could not"
+        " be made because no size shows enough.",
         "",
         "| hidden | first name or verdict |",
         "|---|---|",
