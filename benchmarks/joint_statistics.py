@@ -120,8 +120,8 @@ def section(rows: Sequence[Row]) -> str:
         "## Hidden effects of other robots",
         "",
         "A pendulum, a cart on a rail, a two-link arm and an arm of six joints under control, 20 s",
-        "at 100 or 200 Hz, in simulators of their own (`benchmarks/joint_worlds`): parameters within",
-        "10 % of the nominal model, controllers with a wrong model, encoders that round, unlogged",
+        "at 100 or 200 Hz, in simulators of their own (`benchmarks/joint_worlds`): parameters",
+        "within 10 % of the nominal model, controllers with a wrong model, encoders that round, unlogged",
         "coloured torque of 0.2 to 1 % of the input. One effect is hidden, 3 to 10 times what the",
         "true model errs by over 0.2 s, counted by what no free parameter and no start of a window",
         "imitates. One record is fitted, another judges.",
@@ -141,8 +141,8 @@ def section(rows: Sequence[Row]) -> str:
     lines += [
         f"| processor time of fit and discovery: median, longest | {times} |",
         "",
-        f"{said['worlds']} worlds; {said['failed']} more met an error, and {said['unseen']} could not"
-        " be made because no size shows enough.",
+        f"{said['worlds']} worlds; {said['failed']} more met an error, and {said['unseen']} could"
+        " not be made because no size shows enough.",
         "",
         "| hidden | first name or verdict |",
         "|---|---|",
