@@ -1,13 +1,13 @@
 """What is missing in robots that were measured: fit, discover, confirm; one JSON a robot, one page.
 
     python benchmarks/measured.py [ROBOT…] [--data ../shared/data] [--page docs/measured.md]
-    python benchmarks/measured.py silverbox --split 2         does another split contradict the name?
-    python benchmarks/measured.py emps --null 20              how many nulls of the robot get a name?
-    python benchmarks/measured.py --write FOLDER              records as CSV, models and TOML
-    python benchmarks/measured.py --only-page                 the page anew, from the JSON records
+    python benchmarks/measured.py silverbox --split 2     does another split contradict the name?
+    python benchmarks/measured.py emps --null 20          how many nulls of the robot get a name?
+    python benchmarks/measured.py --write FOLDER          records as CSV, models and TOML
+    python benchmarks/measured.py --only-page             the page anew, from the JSON records
 
-A robot whose data are absent is skipped, with a sentence. What the page tells is in the JSON records
-of `--records`, and nothing else is.
+A robot whose data are absent is skipped, with a sentence. What the page tells is in the JSON
+records of `--records`, and nothing else is.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import json
 import re
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -73,15 +74,16 @@ def work(robot: MeasuredRobot, given: argparse.Namespace) -> None:
     if given.split == 1:
         for what, values in robot.starts.items():
             slug = re.sub(r"\W+", "_", what)
-            again = split.started(values)
-            keep(given, f"{robot.name}_start_{slug}",
-                 lambda again=again, what=what: {**measure(again, say), "start": what})  # fmt: skip
+            again = partial(measure, split.started(values), say)
+            keep(given, f"{robot.name}_start_{slug}", again, start=what)
 
 
-def keep(given: argparse.Namespace, name: str, make: Callable[[], dict[str, Any]]) -> None:
+def keep(
+    given: argparse.Namespace, name: str, make: Callable[[], dict[str, Any]], **more: str
+) -> None:
     """Write a JSON record."""
     print(f"{name} …", flush=True)
-    record = make()
+    record = {**make(), **more}
     given.records.mkdir(parents=True, exist_ok=True)
     path = given.records / f"{name}.json"
     path.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
+_LONGEST = 60  # of an argument in a message
+
 
 class InputError(ValueError):
     """Bad input: the message names the bad thing, lists the good ones, says the next step."""
@@ -21,6 +23,24 @@ class GraphicsError(InputError):
 def repeated(names: Sequence[str]) -> list[str]:
     """The names that occur more than once, in alphabetical order."""
     return sorted({name for name in names if names.count(name) > 1})
+
+
+def refuse_kind(value: object, kinds: type | tuple[type, ...], what: str) -> None:
+    """Refuse an argument of another type than a function takes.
+
+    Args:
+        value: the argument.
+        kinds: its types.
+        what: what is taken, and how it is had, such as "discover takes a Log (read_log)".
+
+    Raises:
+        InputError: it is of another type.
+    """
+    if not isinstance(value, kinds):
+        shown = repr(value)
+        shown = shown if len(shown) <= _LONGEST else f"{shown[: _LONGEST - 3]}..."
+        line = " ".join(shown.split())
+        raise InputError(f"{what}, not {line} of type {type(value).__name__}")
 
 
 def unknown_name(what: str, name: str, known: Iterable[str]) -> InputError:

@@ -9,15 +9,19 @@ identified from these records and more, is what predictions are compared with.
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
+import mujoco
 import numpy as np
 
-from identification import Log
+from identification import Log, Parameter, axes, joint_plant, window_error
+from identification.model.paths import resolve, write
 from robots import needed
 from robots.gridded import gridded
-from robots.measured_robot import MODELS, Free, MeasuredRobot, PublishedSize
+from robots.measured_robot import MODELS, Free, MeasuredRobot, PublishedModel, PublishedSize
 
+MODEL = MODELS / "double_pendulum.xml"
 STEP, WIDEST = 0.01, 0.02  # of the grid, and a gap that is still bridged [s]
 FIT = ("00", "01", "04")
 CONFIRM = ("02", "03", "05", "11")
@@ -55,6 +59,47 @@ def sizes_of(model: dict[str, float]) -> dict[str, float]:
     }  # fmt: skip
 
 
+def places_of(model: dict[str, float]) -> dict[str, float]:
+    """The numbers of a model of the authors by their paths into the MJCF, friction aside."""
+    found = {"joint/shoulder.armature": model["gr"] ** 2 * model["Ir"],
+             "tendon/rotor_2.armature": model["Ir"]}  # fmt: skip
+    for k in (1, 2):
+        m, r, inertia = (model[f"{what}{k}"] for what in "mrI")
+        found |= {f"body/link_{k}.mass": m, f"body/link_{k}.ipos[2]": -r}
+        found |= {f"body/link_{k}.inertia[{axis}]": inertia - m * r**2 for axis in (0, 1)}
+    return found
+
+
+def changed(model: dict[str, float]) -> mujoco.MjModel:
+    """The MJCF with the numbers of a model of the authors, friction aside."""
+    here = mujoco.MjModel.from_xml_path(str(MODEL))
+    for path, value in places_of(model).items():
+        write(here, resolve(here, path), value)
+    return here
+
+
+def published_errors(model: dict[str, float], log: Log, horizon: float) -> np.ndarray:
+    """Window errors of a model of the authors, each window from its best first state, (W, L, 2)."""
+    paths = places_of(model) | {"joint/shoulder.damping": model["b1"],
+                                "joint/elbow.damping": model["b2"]}  # fmt: skip
+    records = [Parameter(name=path, value=v, unit="", where=path) for path, v in paths.items()]
+    for k, joint in ((1, "shoulder"), (2, "elbow")):
+        dry = model[f"cf{k}"] * np.pi / 2  # c_f atan(100 v) of a speed
+        records.append(
+            Parameter(name=f"coulomb_friction.f_c@{joint}", value=dry, unit="N m", where="effect")
+        )
+    plant = joint_plant(MODEL, records, log, joints=axes(changed(model), log))
+    return window_error(plant, log, horizon)
+
+
+def read_table(path: Path) -> dict[str, np.ndarray]:
+    """The columns of a record by the authors' names, each (n,)."""
+    with needed(path).open(encoding="utf-8") as file:
+        names = file.readline().strip().split(",")
+        table = np.loadtxt(file, delimiter=",")
+    return dict(zip(names, table.T, strict=True))
+
+
 def read_record(path: Path, torque: str = "tau_meas", step: float = STEP) -> Log:
     """A record on an even grid, torques as means over its steps.
 
@@ -63,10 +108,7 @@ def read_record(path: Path, torque: str = "tau_meas", step: float = STEP) -> Log
         torque: "tau_meas" or "tau_con", what was measured or what was commanded.
         step: of the grid [s].
     """
-    with needed(path).open(encoding="utf-8") as file:
-        names = file.readline().strip().split(",")
-        table = np.loadtxt(file, delimiter=",")
-    column = dict(zip(names, table.T, strict=True))
+    column = read_table(path)
     inputs = {f"tau{k}": column[f"{torque}{k}"] for k in (1, 2)}
     outputs = {f"q{k}": column[f"pos_meas{k}"] for k in (1, 2)}
     units = {**dict.fromkeys(inputs, "N m"), **dict.fromkeys(outputs, "rad")}
@@ -76,19 +118,30 @@ def read_record(path: Path, torque: str = "tau_meas", step: float = STEP) -> Log
     )  # fmt: skip
 
 
+def evidence_of(data: Path) -> dict[str, object]:
+    """What `robots.double_pendulum_evidence` measures."""
+    from robots.double_pendulum_evidence import evidence
+
+    return evidence(data)
+
+
 def read(data: Path) -> MeasuredRobot:
     """The double pendulum from the folder of all data."""
     folder = needed(data / "double_pendulum")
     fit, confirm = (
         tuple(read_record(folder / f"sys_id_{k}.csv") for k in names) for names in (FIT, CONFIRM)
     )
-    published = sizes_of(published_model(data, "2.0"))
+    identified = published_model(data, "2.0")
+    published = sizes_of(identified)
     return MeasuredRobot(
         name="double_pendulum", title="Double pendulum, two quasi-direct drives", source=SOURCE,
-        model=MODELS / "double_pendulum.xml", free=FREE, horizon=0.2, fit=fit, confirm=confirm,
+        model=MODEL, free=FREE, horizon=0.2, fit=fit, confirm=confirm,
         published=tuple(
             PublishedSize(name=p.name, value=published[p.name], unit=p.unit,
                           source=f"model 2.0, {SOURCE}")
             for p in FREE if p.name in published
         ),
+        models=(PublishedModel(name="model 2.0", source=SOURCE,
+                               errors=partial(published_errors, identified)),),
+        evidence=lambda _: evidence_of(data),
     )  # fmt: skip

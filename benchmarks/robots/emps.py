@@ -16,6 +16,7 @@ from scipy.io import loadmat
 
 from identification import Log, decimate
 from robots import needed
+from robots.emps_evidence import protocol
 from robots.measured_robot import MODELS, Free, MeasuredRobot, PublishedSize
 
 MODEL = MODELS / "emps.xml"
@@ -41,7 +42,7 @@ def read_record(path: Path, every: int = EVERY) -> Log:
     """A record with every n-th sample; the voltage between them as straight lines."""
     data = loadmat(needed(path))
     log = Log(
-        time=np.arange(len(data["qm"])) * 1e-3, inputs=data["vir"], outputs=data["qm"],
+        time=np.arange(len(data["qm"]), dtype=float) * 1e-3, inputs=data["vir"], outputs=data["qm"],
         input_names=("drive",), output_names=("position",),
         units={"drive": "V", "position": "m"}, name=path.stem,
     )  # fmt: skip
@@ -57,6 +58,7 @@ def read(data: Path) -> MeasuredRobot:
         free=FREE, horizon=0.2, fit=(first,), confirm=(second, pulses),
         second=((second,), (first, pulses)),
         expected=("asymmetric_viscous_friction",), published=PUBLISHED,
+        evidence=lambda outcome: protocol(MODEL, log, pulses, outcome),
     )  # fmt: skip
 
 

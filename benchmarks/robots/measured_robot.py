@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,10 @@ from identification import Log
 
 MODELS = Path(__file__).parent / "models"
 PROJECT_MODELS = Path(__file__).parents[2] / "models"
+
+# y - ŷ over windows of a log of a length [s], each from its best first state, shape (W, L, ny); the
+# windows are those of `identification.windows.windows`.
+Errors = Callable[[Log, float], np.ndarray]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +34,7 @@ class Free:
         known: std of the prior: relative where the value must be positive, else in its unit.
         unit: of the value.
         scale: a magnitude that matters, where the value may be zero.
+        bounds: smallest and largest value; those of the effect or of the model when None.
     """
 
     name: str
@@ -37,6 +43,7 @@ class Free:
     known: float = 0.5
     unit: str = ""
     scale: float | None = None
+    bounds: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,13 +70,27 @@ class PublishedModel:
     Attributes:
         name: what they call it.
         source: who published it, and where.
-        errors: y - ŷ over windows whose first states are the best ones, shape (W, L, ny), of a log
-            and a length [s]; the windows are those of `identification.windows.windows`.
+        errors: of its predictions.
     """
 
     name: str
     source: str
-    errors: Callable[[Log, float], np.ndarray]
+    errors: Errors
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """What a discovery left: values and window errors, for the evidence of a robot.
+
+    Attributes:
+        values: of the final model, by name.
+        nominal: window errors of the fitted nominal model.
+        final: window errors of the model with what is named.
+    """
+
+    values: Mapping[str, float]
+    nominal: Errors
+    final: Errors
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,11 +101,13 @@ class Apart:
         what: how the robot differs.
         logs: the records.
         model: MJCF of the changed robot, None where the model is to show that something changed.
+        refit: parameters that the change should move.
     """
 
     what: str
     logs: tuple[Log, ...]
     model: Path | None = None
+    refit: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,8 +131,7 @@ class MeasuredRobot:
         starts: other values with which the whole work begins once more, by what they are.
         published: numbers of others.
         models: models of others.
-        evidence: what the records show without any fit of this project, as a JSON object, from the
-            fitted values; None where nothing is to be shown.
+        evidence: what else the records show, as a JSON object; None where nothing is to be shown.
     """
 
     name: str
@@ -127,7 +149,7 @@ class MeasuredRobot:
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     published: tuple[PublishedSize, ...] = ()
     models: tuple[PublishedModel, ...] = ()
-    evidence: Callable[[Mapping[str, float]], dict[str, object]] | None = None
+    evidence: Callable[[Outcome], dict[str, Any]] | None = None
 
     @property
     def records(self) -> tuple[Log, ...]:

@@ -18,7 +18,8 @@ from identification.prediction.result import RecordsDiscovery
 from identification.report.records_json import records_to_json
 from identification.report.records_text import records_text
 from identification.robot.robot import Robot
-from robots.measured_robot import MeasuredRobot
+from robots.changed import on_changed
+from robots.measured_robot import MeasuredRobot, Outcome
 from robots.unseen import compare, errors_of
 from robots.written import write_model
 
@@ -70,7 +71,7 @@ def measure(robot: MeasuredRobot, say: Callable[[str], None]) -> dict[str, Any]:
         {"name": s.candidate.effect.name, "where": s.candidate.where, "fall": s.fall}
         for s in found.scores[:5]
     ]
-    record["sizes"] = _sizes(found, known)
+    record["sizes"] = _sizes(compiled, found, known)
     models = {
         NOMINAL: errors_of(compiled.plant, found.nominal.values),
         BEGUN: errors_of(compiled.plant, {}),
@@ -80,21 +81,28 @@ def measure(robot: MeasuredRobot, say: Callable[[str], None]) -> dict[str, Any]:
     models |= {m.name: m.errors for m in robot.models}
     record["unseen"] = compare(models, robot.confirm, robot.horizon)
     record["published_models"] = {m.name: m.source for m in robot.models}
+    fitted = {NOMINAL: found.nominal.values}
+    fitted |= {FINAL: found.final.values} if found.named else {}
+    record["apart"] = [on_changed(robot, each, compiled.plant, fitted) for each in robot.apart]
     if robot.evidence:
-        record["evidence"] = robot.evidence(found.final.values)
+        record["evidence"] = robot.evidence(
+            Outcome(values=found.final.values, nominal=models[NOMINAL],
+                    final=models.get(FINAL, models[NOMINAL]))
+        )  # fmt: skip
     return plain(record)
 
 
-def _sizes(found: RecordsDiscovery, published: dict[str, float]) -> dict[str, Any]:
+def _sizes(compiled: Robot, found: RecordsDiscovery, published: dict[str, float]) -> dict[str, Any]:
     """Values of the nominal and of the final model by name, beside what others published."""
-    own = found.final.fit.problem.parts[0].predictor.plant.parameters
-    sizes = {}
-    for name in (*found.final.values, *(n for n in published if n in own)):
+    own = compiled.plant.parameters
+    sizes, every = {}, own.values()
+    shared = [n for n in published if n in every and n not in found.final.values]
+    for name in (*found.final.values, *shared):
         sizes[name] = {
             "nominal": found.nominal.values.get(name),
             "nominal_std": found.nominal.std.get(name), "final": found.final.values.get(name),
             "final_std": found.final.std.get(name), "published": published.get(name),
-            "unit": own[name].unit if name in own else "",
+            "unit": own[name].unit if name in every else "",
         }  # fmt: skip
     return sizes
 

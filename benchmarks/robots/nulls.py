@@ -2,8 +2,8 @@
 
     y* = ŷ_w + e_v,    w each window of a record, v drawn with replacement from its windows
 
-The windows have twice the horizon, the longest over which a discovery judges, and each begins at the
-state that explains it best; so all windows of a discovery lie within one. The errors keep their
+The windows have twice the horizon, the longest over which a discovery judges, and each begins at
+the state that explains it best; so all windows of a discovery lie within one. The errors keep their
 colour and their size, and lose what ties them to the motion.
 """
 
@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from identification import Log, Plant, window_error
+from identification import JointPlant, Log, Parameter, Plant, window_error
 from identification.prediction.result import RecordsDiscovery
 from identification.windows.windows import windows
 from robots.measured_robot import Free, MeasuredRobot
@@ -25,9 +25,7 @@ LENGTH = 2.0  # of the windows, in units of the horizon
 SEEDS = 1000  # of a null: one for each record
 
 
-def null_log(
-    plant: Plant, log: Log, horizon: float, values: Mapping[str, float], seed: int
-) -> Log:
+def null_log(plant: Plant, log: Log, horizon: float, values: Mapping[str, float], seed: int) -> Log:
     """A log that the model with these values explains but for errors as large as its own.
 
     Args:
@@ -45,20 +43,26 @@ def null_log(
     return replace(log, time=log.time[rows], inputs=log.inputs[rows], outputs=outputs, splits={})
 
 
-def best_model(robot: MeasuredRobot, found: RecordsDiscovery) -> MeasuredRobot:
+def best_model(robot: MeasuredRobot, own: JointPlant, found: RecordsDiscovery) -> MeasuredRobot:
     """The robot whose model has the named effects: their sizes are free, their shapes fixed."""
     values = found.final.values
-    own = found.final.fit.problem.parts[0].predictor.plant
     shapes = {f"{e.name}.{s.name}" for e in own.effects for s in e.shapes}
     more = [n for n in values if n not in {p.name for p in robot.free}]
-    sizes = [Free(name=n, value=values[n], known=0.5 if own.parameters[n].lower >= 0 < values[n]
-                  else abs(values[n]) or 1.0) for n in more if n not in shapes]  # fmt: skip
+    sizes = [_free(own.parameters[n], values[n]) for n in more if n not in shapes]
     fixed = {**robot.fixed, **{n: values[n] for n in more if n in shapes}}
     begun = robot.started(values)
     return replace(begun, free=(*begun.free, *sizes), fixed=fixed)
 
 
-def null_of(robot: MeasuredRobot, plant: Plant, values: Mapping[str, float], k: int) -> MeasuredRobot:
+def _free(p: Parameter, value: float) -> Free:
+    """The size of a named effect, within the bounds that it had: those of a null may be others."""
+    known = 0.5 if p.lower >= 0 < value else abs(value) or 1.0
+    return Free(name=p.name, value=value, known=known, bounds=(p.lower, p.upper))
+
+
+def null_of(
+    robot: MeasuredRobot, plant: Plant, values: Mapping[str, float], k: int
+) -> MeasuredRobot:
     """The k-th null of a robot, whose records a model with these values made."""
     seed = iter(range(SEEDS * k, SEEDS * (k + 1)))
     fit, confirm = (
@@ -81,7 +85,7 @@ def null_study(robot: MeasuredRobot, count: int, say: Callable[[str], None]) -> 
         DivergenceError: the nominal model cannot be simulated.
     """
     compiled, found, _ = discovered(robot, say)
-    best, rows = best_model(robot, found), []
+    best, rows = best_model(robot, compiled.plant, found), []
     for k in range(count):
         null = null_of(best, compiled.plant, found.final.values, k)
         _, answer, seconds = discovered(null, say)

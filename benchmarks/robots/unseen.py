@@ -1,18 +1,22 @@
 """Errors of several models on the same windows of the same records, and the mean squares' change.
 
-    e_w = y_w - ŷ_w,   each model from the first state of each window that explains it best
+e_w = y_w - ŷ_w,   each model from the first state of each window that explains it best
+
+Of a long record only parts are predicted, spread over it and the same for every model.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from identification import InputError, Log, Plant, window_error
+from robots.measured_robot import Errors
 
-Errors = Callable[[Log, float], np.ndarray]
+MOST = 60  # windows of a record that are predicted: an arm of six joints takes a second for each
+PARTS = 6  # of a record that has more
 
 
 def errors_of(plant: Plant, values: Mapping[str, float]) -> Errors:
@@ -29,9 +33,9 @@ def compare(models: Mapping[str, Errors], logs: Sequence[Log], horizon: float) -
         horizon: length of the windows [s].
 
     Returns:
-        `rms`: by model, over all windows; `change`: relative change of the mean square, by model;
-        `better`: number of records on which each model is better than the first; `records`: rms by
-        record and model; `outputs`: rms by model, of each output.
+        `windows`: their number; `rms`: by model, over all windows; `change`: relative change of the
+        mean square, by model; `better`: number of records on which each model is better than the
+        first; `records`: rms by record and model; `outputs`: rms by model, of each output.
     """
     squares = {name: [_square(errors, log, horizon) for log in logs]
                for name, errors in models.items()}  # fmt: skip
@@ -71,7 +75,20 @@ def free_run(errors: Errors, log: Log, skipped: int = 0) -> float:
 
 def _square(errors: Errors, log: Log, horizon: float) -> np.ndarray:
     """Squared errors of a record, shape (W, L, ny)."""
-    found = errors(log, horizon)
+    found = np.concatenate([errors(part, horizon) for part in spread(log, horizon)])
     if not np.all(np.isfinite(found)):
         raise InputError(f"a model has no finite error on {log.name!r}")
     return found**2
+
+
+def spread(log: Log, horizon: float) -> list[Log]:
+    """The record, or parts of it with `MOST` windows together, spread evenly over it."""
+    samples = round(horizon / log.sampling_time)
+    count, each = len(log) // samples, MOST // PARTS
+    if count <= MOST:
+        return [log]
+    half = 0.5 * log.sampling_time
+    return [
+        log.between(log.time[k * samples] - half, log.time[(k + each) * samples] - half)
+        for k in np.linspace(0, count - each - 1, PARTS).astype(int)
+    ]

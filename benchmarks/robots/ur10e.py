@@ -10,22 +10,24 @@ the files `ur10e.xml` and `full1.toml` beside the records.
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import mujoco
 import numpy as np
 
-from identification import Log
+from identification import Log, Parameter, axes, joint_plant, window_error
 from robots import needed
 from robots.gridded import gridded
-from robots.measured_robot import Free, MeasuredRobot, PublishedSize
+from robots.measured_robot import Free, MeasuredRobot, PublishedModel, PublishedSize
 
 STEP, WIDEST = 0.02, 0.05  # of the grid, and a gap that is still bridged [s]
 FIT = ("ur-20_02_10-30sec_12harm", "ur-20_02_10-20sec_7harm")
 CONFIRM = ("ur-20_02_06-20sec_10harm", "ur-20_01_17-ptp_10_points")
 JOINTS = ("shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3")
 SOURCE = "Mamedov, Mikhel 2020, Frontiers in Robotics and AI 571574, github.com/shamilmamedov"
-ARMATURE = 0.5  # where the search begins [kg m^2]
 # Their estimates (UR10E_parameters.txt of github.com/shamilmamedov/dynamic_calibration): viscous,
 # Coulomb and constant friction of each joint, and the rotors' inertia at the joints.
 FRICTION = (
@@ -33,6 +35,22 @@ FRICTION = (
     (3.5751, 1.9979, 0.0548), (2.4909, 2.6905, -0.0096), (3.0256, 2.2979, 0.0425),
 )  # fmt: skip
 ROTORS = (0.0, 3.7434, 0.0, 0.0708, 0.2342, 0.4365)
+# Their rigid bodies, link by link: I_xx, I_xy, I_xz, I_yy, I_yz, I_zz about the origin of the
+# link's frame [kg m^2]; first moments h_x, h_y, h_z [kg m], mass [kg].
+LINKS = (
+    (16.0177, 0.0, 0.0, 16.0177, 0.0, 9.43727e-07,
+     0.0, 0.0, 0.0, 4.82736),
+    (3.93252, 0.852873, 0.151907, 3.72056, -0.594538, 1.90316,
+     0.0499515, -0.275934, 3.26327, 7.92589),
+    (2.22453, -0.536564, -0.176607, 1.38899, -0.216689, 1.38868,
+     0.0239479, 0.242903, 0.893879, 2.48086),
+    (1.02974, 0.23281, -0.0122593, 0.0751258, 0.074354, 1.06527,
+     -0.000582815, -0.253394, 0.191763, 2.156),
+    (0.0286149, -0.0338327, -0.0256613, 0.108051, -0.0138456, 0.111089,
+     0.00787524, 0.0934251, 0.114659, 2.15599),
+    (0.0283844, -0.00207559, -0.0139815, 0.0353598, -0.00400838, 0.00814486,
+     0.00266612, -0.00108021, -0.0158006, 0.22217),
+)  # fmt: skip
 
 
 def read_columns(path: Path) -> np.ndarray:
@@ -52,6 +70,33 @@ def read_record(path: Path, step: float = STEP) -> Log:
     )  # fmt: skip
 
 
+def evidence_of(folder: Path, values: Mapping[str, float]) -> dict[str, object]:
+    """What `robots.ur10e_evidence` measures."""
+    from robots.ur10e_evidence import evidence
+
+    return evidence(folder, values)
+
+
+def published_errors(path: Path, log: Log, horizon: float) -> np.ndarray:
+    """Window errors of the authors' parameters, from the best first states, shape (W, L, 6)."""
+    from robots.ur10e_evidence import published
+
+    spec = published(path)
+    records = []
+    for joint, (viscous, coulomb, constant) in zip(JOINTS, FRICTION, strict=True):
+        path_of = f"joint/{joint}.damping"
+        records.append(Parameter(name=path_of, value=viscous, unit="N m s/rad", where=path_of))
+        for name, value in (("coulomb_friction.f_c", coulomb), ("offset.f_0", -constant)):
+            records.append(
+                Parameter(name=f"{name}@{joint}", value=value, unit="N m", where="effect")
+            )
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / path.name
+        file.write_text(spec.to_xml(), encoding="utf-8")
+        plant = joint_plant(file, records, log, joints=axes(spec.compile(), log))
+    return window_error(plant, log, horizon)
+
+
 def read(data: Path) -> MeasuredRobot:
     """The arm from the folder of all data."""
     folder = needed(data / "ur10e")
@@ -64,6 +109,9 @@ def read(data: Path) -> MeasuredRobot:
         free=_free(folder / "full1.toml", mujoco.MjModel.from_xml_path(str(model))),
         horizon=0.2, fit=fit, confirm=confirm, expected=("load_dependent_friction",
         "transmitted_load_friction", "gravity_load_friction"), published=_published(),
+        evidence=lambda outcome: evidence_of(folder, outcome.values),
+        models=(PublishedModel(name="their parameters", source=SOURCE,
+                               errors=partial(published_errors, model)),),
     )  # fmt: skip
 
 

@@ -1,6 +1,6 @@
 """The first state of each window from which a simulator of others explains the window best.
 
-    min_x0 ‖y_w - ŷ_w(x0)‖²                 Levenberg and Marquardt, each window with its own damping
+    min_x0 ‖y_w - ŷ_w(x0)‖²             Levenberg and Marquardt, each window with its own damping
 
 So their models are compared with ours on the same windows, and none is blamed for a wrong start.
 """
@@ -44,9 +44,11 @@ def best_errors(
         H = np.einsum("wki,wkj->wij", S, S)
         g = np.einsum("wki,wk->wi", S, error)
         D = np.einsum("wii->wi", H)
-        H = H + np.eye(n) * (damping[:, None] * D + 1e-12 * D.max(1, keepdims=True) + 1e-300)[
-            :, :, None
-        ]
+        H = (
+            H
+            + np.eye(n)
+            * (damping[:, None] * D + 1e-12 * D.max(1, keepdims=True) + 1e-300)[:, :, None]
+        )
         tried = x - scale * np.linalg.solve(H, g[:, :, None])[:, :, 0]
         found = (outputs - simulate(tried)).reshape(W, -1)
         new = np.sum(found**2, axis=1)

@@ -11,6 +11,7 @@ import json
 import re
 import shutil
 from collections.abc import Mapping
+from math import isfinite
 from pathlib import Path
 
 from identification import Log, write_log
@@ -66,6 +67,11 @@ def robot_toml(robot: MeasuredRobot) -> str:
         lines += [f"value = {float(p.value)!r}", f"known = {p.known!r}"]
         lines += [f"unit = {json.dumps(p.unit, ensure_ascii=False)}"] if p.unit else []
         lines += [f"scale = {p.scale!r}"] if p.scale else []
+        lines += [
+            f"{end} = {value!r}"
+            for end, value in zip(("lower", "upper"), p.bounds or (), strict=False)
+            if isfinite(value)
+        ]
     return "\n".join(lines) + "\n"
 
 

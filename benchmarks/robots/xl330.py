@@ -9,14 +9,15 @@ g = K_t/R, and D holds the back-EMF. Four trajectories, each under four gains: r
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from identification import Log
-from robots import needed
+from robots import bam, needed
 from robots.gridded import gridded
-from robots.measured_robot import PROJECT_MODELS, Free, MeasuredRobot, PublishedSize
+from robots.measured_robot import PROJECT_MODELS, Free, MeasuredRobot, PublishedModel, PublishedSize
 
 MODEL = PROJECT_MODELS / "xl330.xml"
 STEP, WIDEST = 0.01, 0.02  # of the grid, and a gap that is still bridged [s]
@@ -47,6 +48,13 @@ def read_record(path: Path) -> Log:
     )  # fmt: skip
 
 
+def read_model(data: Path, name: str) -> dict[str, float]:
+    """The numbers of a friction model of the authors, "m1" to "m6", by their names."""
+    path = needed(data / "xl330" / "published" / f"{name}.json")
+    said = json.loads(path.read_text(encoding="utf-8"))
+    return {key: value for key, value in said.items() if not isinstance(value, str)}
+
+
 def gain(log: Log) -> int:
     """The gain k_p under which a record was made."""
     return int(log.name.split()[-1])
@@ -56,7 +64,8 @@ def read(data: Path) -> MeasuredRobot:
     """The servo from the folder of all data."""
     folder = needed(data / "xl330" / "raw")
     logs = [read_record(path) for path in sorted(folder.glob("*.json"))]
-    published = json.loads((data / "xl330" / "published" / "m3.json").read_text())
+    models = {name: read_model(data, name) for name in ("m1", "m3", "m6")}
+    published = models["m3"]
     sizes = {
         "g": (published["kt"] / published["R"], "N m/V"),
         "D": (published["kt"] ** 2 / published["R"] + published["friction_viscous"], "N m s/rad"),
@@ -69,6 +78,10 @@ def read(data: Path) -> MeasuredRobot:
         free=FREE, horizon=0.2, fit=tuple(x for x in logs if gain(x) in FITTED),
         confirm=tuple(x for x in logs if gain(x) in HELD),
         expected=("transmitted_load_friction",),
+        models=tuple(
+            PublishedModel(name=name.upper(), source=SOURCE, errors=partial(bam.errors, p))
+            for name, p in models.items()
+        ),
         published=tuple(PublishedSize(name=n, value=v, unit=u, source=f"M3 of {SOURCE}")
                         for n, (v, u) in sizes.items()),
     )  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,7 @@ from identification.commands.robots import OnRobot
 
 if TYPE_CHECKING:
     from identification.prediction.result import RecordsDiscovery
+    from identification.robot.repetition import Repetition
     from identification.robot.robot import Robot
 
 
@@ -38,6 +40,7 @@ class Discover(OnRobot):
         from identification.report.discovery_text import discovery_text
         from identification.robot.confirmation import confirm
         from identification.robot.discovery import discover
+        from identification.robot.repetition import find_repetitions
         from identification.robot.write import write_robot
 
         refuse_folder(self.output.out)
@@ -47,15 +50,16 @@ class Discover(OnRobot):
         if isinstance(found, RecordsDiscovery):
             return self._keep_records(robot, found)
         pairs = confirm(robot, found)
-        record: dict[str, Any] = discovery_to_json(found)
-        record = {**record, "confirm": [vars(c) for c in pairs]}
+        repeated = find_repetitions(robot)
+        record: dict[str, Any] = _with_repetitions(discovery_to_json(found), repeated)
+        record = {**record, "confirm": [vars(c) for c in pairs], "remarks": list(robot.remarks)}
         if self.output.json:
             say_json(record)
         else:
-            say("\n".join([discovery_text(found), *map(str, pairs)]))
+            say("\n".join([discovery_text(found), *map(str, (*pairs, *repeated))]))
         if self.output.out is not None:
             with whole_folder(self.output.out) as out:
-                write_discovery_report(found, out, sentences=[str(c) for c in pairs])
+                write_discovery_report(found, out, sentences=[*map(str, (*pairs, *repeated))])
                 has = {
                     n
                     for named in found.named
@@ -76,16 +80,28 @@ class Discover(OnRobot):
         from identification.report.records_json import records_to_json
         from identification.report.records_report import write_records_report
         from identification.report.records_text import records_text
+        from identification.robot.repetition import find_repetitions
         from identification.robot.write import write_robot
 
-        record = records_to_json(found)
+        repeated = find_repetitions(robot)
+        record = _with_repetitions(records_to_json(found), repeated)
+        record["remarks"] = list(robot.remarks)
         if self.output.json:
             say_json(record)
         else:
-            say(records_text(found))
+            say("\n".join([records_text(found), *map(str, repeated)]))
         if self.output.out is not None:
             with whole_folder(self.output.out) as out:
                 write_records_report(found, out)
                 write_robot(robot, found.final.values, out / "robot.toml", self.output.out)
                 write_result(out / "result.json", self, record)
         return 0
+
+
+def _with_repetitions(record: dict[str, Any], repeated: Sequence[Repetition]) -> dict[str, Any]:
+    """A record of a discovery that also says what only repeats the fitted data."""
+    return {
+        **record,
+        "located": [*record.get("located", []), *map(str, repeated)],
+        "findings": [*record.get("findings", []), *(r.finding for r in repeated)],
+    }

@@ -11,6 +11,8 @@ from typing import Any
 
 import tyro
 
+from identification.commands.repeated import gathered
+
 
 def run_program(
     commands: Any, name: str, description: str, arguments: Sequence[str] | None = None
@@ -28,7 +30,7 @@ def run_program(
             commands,
             prog=name,
             description=description,
-            args=arguments,
+            args=gathered(commands, sys.argv[1:] if arguments is None else arguments),
             config=(tyro.conf.AvoidSubcommands,),
         )
         return int(command.run())

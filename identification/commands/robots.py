@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, output_field
+from identification.commands.common import Output, note, output_field
 
 if TYPE_CHECKING:
     from identification.robot.robot import Robot
@@ -26,6 +26,10 @@ class OnRobot:
         tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")
     ] = ()
     """Records to which nothing is fitted."""
+    trust: Annotated[
+        tuple[tuple[str, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="WORD")
+    ] = ()
+    """What you know better than a check: sensors, start, steps, time, units, wiring."""
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
     def read(self) -> Robot:
@@ -39,4 +43,12 @@ class OnRobot:
 
         if not self.logs:
             raise InputError("no log is given; write LOG behind the robot's file")
-        return read_robot(self.robot, self.logs, [path for group in self.confirm for path in group])
+        robot = read_robot(
+            self.robot,
+            self.logs,
+            [path for group in self.confirm for path in group],
+            [word for group in self.trust for word in group],
+        )
+        for remark in robot.remarks:
+            note(remark)
+        return robot

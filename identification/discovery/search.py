@@ -31,8 +31,9 @@ def discover(
         nominal_model: the model with every candidate effect compiled in, its free parameters and
             what is known of them.
         log: its part `estimation` (or first half) is fitted; the rest is unseen and confirms.
-        effects: the candidates. Those whose size is each record's own are left out: one record
-            cannot tell them from what is the same in all.
+        effects: the candidates. Two kinds are left out: those whose size is each record's own,
+            which one record cannot tell from what is the same in all, and curves drawn from the
+            data, which need several records as proof (see `discover_records`).
         progress: is told a line per step.
         options: what is believed; the defaults of `DiscoveryOptions` when None.
 
@@ -42,7 +43,7 @@ def discover(
     """
     options, say = options or DiscoveryOptions(), progress or _say_nothing
     refuse_unfit(log, options)
-    shared = tuple(effect for effect in effects if not effect.own)
+    shared = tuple(effect for effect in effects if not (effect.own or effect.is_curve))
     state = first_state(DiscoveryTask(nominal_model, log, shared, options), say)
     while not state.is_finished:
         state = next_state(state, say)

@@ -25,6 +25,7 @@ from identification.model.predictor import output_columns
 
 Kind = Literal["hinge", "slide"]
 HUGE = 1e50  # of any unit
+OVERRULE = ', or write trust = ["sensors"] into the robot\'s file'
 MAGNITUDES = ("force", "speed", "travel")
 POSES = 5  # random ones, to see on which joints gravity acts
 NOISE, SHARE = 5.0, 0.1  # a difference of noise, in its std, may be so much of the largest
@@ -48,6 +49,7 @@ class Axis:
         plain: whether its drives' force is gain·u + bias: their load is then known.
         heavy: whether gravity acts on it anywhere.
         duration: of the record [s]; 0 where it is not known.
+        middle: of the way that it moves [rad or m].
 
     Raises:
         InputError: a magnitude is not positive.
@@ -61,6 +63,7 @@ class Axis:
     plain: bool = True
     heavy: bool = False
     duration: float = 0.0
+    middle: float = 0.0
 
     def __post_init__(self) -> None:
         for word in MAGNITUDES:
@@ -71,12 +74,13 @@ class Axis:
                 )
 
 
-def axes(model: mujoco.MjModel, log: Log) -> tuple[Axis, ...]:
+def axes(model: mujoco.MjModel, log: Log, trust: Sequence[str] = ()) -> tuple[Axis, ...]:
     """The joints whose motion a log shows, in the model's order.
 
     Args:
         model: with the log's sensors.
         log: its inputs are those of the model's actuators.
+        trust: with "sensors" in it, an output that repeats one value is not frozen.
 
     Raises:
         InputError: an output is no sensor of a joint, never changes, freezes, or is huge.
@@ -90,7 +94,8 @@ def axes(model: mujoco.MjModel, log: Log) -> tuple[Axis, ...]:
         inputs = [_control(model, i) for i in drives_of(model, j)] or [*range(model.nu)]
         for k in own.values():
             others = [i for i in own.values() if i != k]
-            refuse_frozen(log, k, log.inputs[:, inputs], log.outputs[:, others])
+            if "sensors" not in trust:
+                refuse_frozen(log, k, log.inputs[:, inputs], log.outputs[:, others], OVERRULE)
     return tuple(
         _axis(model, log, j, {field: log.outputs[:, k] for field, k in seen[j].items()})
         for j in sorted(seen)
@@ -98,7 +103,7 @@ def axes(model: mujoco.MjModel, log: Log) -> tuple[Axis, ...]:
 
 
 def reach(each: Sequence[Sequence[Axis]]) -> tuple[Axis, ...]:
-    """The joints of several logs, each with the largest force, speed and travel of all.
+    """The joints of several logs, each with the largest force and speed and all the way of all.
 
     Args:
         each: the joints that each log shows.
@@ -106,9 +111,13 @@ def reach(each: Sequence[Sequence[Axis]]) -> tuple[Axis, ...]:
     found: dict[str, Axis] = {}
     for axis in (axis for known in each for axis in known):
         old = found.get(axis.joint, axis)
-        words = (*MAGNITUDES, "duration")
+        words = ("force", "speed", "duration")
         most = {word: max(getattr(old, word), getattr(axis, word)) for word in words}
-        found[axis.joint] = replace(axis, **most)
+        low = min(a.middle - a.travel / 2 for a in (old, axis))
+        high = max(a.middle + a.travel / 2 for a in (old, axis))
+        found[axis.joint] = replace(
+            axis, **most, travel=high - low, middle=(low + high) / 2
+        )  # fmt: skip
     return tuple(found.values())
 
 
@@ -143,7 +152,7 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
     name = model.joint(j).name
     return Axis(name, _KINDS[int(model.jnt_type[j])], force, speed, travel,
                 all(_plain(model, i) for i in drives), _heavy(model, j),
-                log.begun + log.duration)  # fmt: skip
+                log.begun + log.duration, float(way.min() + way.max()) / 2)  # fmt: skip
 
 
 def _heavy(model: mujoco.MjModel, j: int) -> bool:

@@ -20,6 +20,7 @@ from identification.errors import InputError
 
 Sign = Literal[-1, 0, 1]
 FARTHEST = 5.0  # of the largest plausible size
+CURVE = "curve"  # names of effects that begin so are curves drawn from the data
 
 
 @dataclass(frozen=True)
@@ -127,6 +128,11 @@ class Effect:
     def __post_init__(self) -> None:
         for hook, function in self.hooks.items():
             _refuse_unfit(self.name, hook, function)
+
+    @property
+    def is_curve(self) -> bool:
+        """Whether it is no law but a curve drawn from the data."""
+        return self.name.startswith(CURVE)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -9,6 +9,8 @@ from identification.effects.waves import wave_sizes, waves
 
 SPEEDS = (0.03, 0.06, 0.12, 0.25, 0.5)  # Stribeck velocities to try, of the top speed
 FEW_SPEEDS = (0.06, 0.25)  # where two sizes are tried with each
+RATIO = Shape("rho", "", (0.25, 0.5, 2.0, 4.0), 0.02, 50.0, usual=0.5,
+              about="share of gravity's force over that of the drive's")  # fmt: skip
 LOAD = "Duclusaud, Passault, Padois, Ly 2024"
 
 
@@ -51,11 +53,10 @@ def _under_load(g: Group, v_s: Shape) -> list[Effect]:
         g.friction(laws.gravity_load_friction, "at most μ |f_g| more, f_g gravity's force",
                    (g.size("mu", 0.2, "", "share of gravity's force", 1),),
                    "friction: grows with gravity's load", LOAD, where=g.heavy),
-        g.friction(laws.two_load_friction, "at most |μ_m f_u - μ_e f_g| more",
-                   (g.size("mu_m", 0.2, "", "share of the drive's force", 1),
-                    g.size("mu_e", 0.2, "", "share of gravity's force", 1)),
+        g.friction(laws.two_load_friction, "at most μ |f_u - ρ f_g| more",
+                   (g.size("mu", 0.2, "", "share of the drive's force", 1),),
                    "friction: grows with the drive's force and gravity's, each by its share", LOAD,
-                   where=g.loaded),
+                   (RATIO,), g.loaded),
         g.friction(laws.quadratic_load_friction,
                    "at most q_e f_g² more where the drive lifts, q_m f_u² where it lowers,"
                    " times exp(-|v/v_s|)",

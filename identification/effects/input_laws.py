@@ -6,7 +6,7 @@
     lag          τ ẋ = u - x                  c = x - u, s = τ/h, k = e^(-1/s)
                    m = u + c s (1 - k),  D = c s (s - (s + 1) k - ½ (1 - k)),  x(t + h) = u + c k
     saturation   u + c (clip(u, ±u_max) - u)  c = 1 where there is a limit
-    gain drift   (1 - α t) u                  t in the middle of the step
+    gain drift   (1 - α t) u                  t: of the record, in the middle of the step
 
 Before the first sample p u(0) comes: nothing (p = 0), or what had been there (p = 1). Mean m and
 moment D of a step (see `identification.native.input_filter`) are exact for delay, shift and lag,
@@ -76,7 +76,7 @@ def clipped(s, p):  # type: ignore[no-untyped-def]
 @njit
 def drifting(s, p):  # type: ignore[no-untyped-def]
     """The input of a drive whose gain falls with time."""
-    return (1 - p[0] * s.step * (s.k + 0.5)) * s.u, 0.0
+    return (1 - p[0] * s.time) * s.u, 0.0
 
 
 DELAY = {"input": delayed}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from identification.effects.axes import Axis, Kind
+from identification.effects.curve_catalogue import curve_effects
 from identification.effects.effect import Effect
 from identification.effects.force_catalogue import force_effects
 from identification.effects.friction_catalogue import friction_effects
@@ -19,7 +20,7 @@ def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple
 
     Hinges and slides have units of their own; where a robot has both, the names of the slides'
     effects begin with `slide_`. Friction under load needs drives whose force is gain·u + bias;
-    what changes with time needs the duration of the records.
+    what changes with time needs the duration of the records. Names of curves begin with `curve`.
 
     Args:
         axes: the joints.
@@ -41,4 +42,4 @@ def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple
 
 
 def _listed(g: Group) -> list[Effect]:
-    return [*friction_effects(g), *force_effects(g), *time_effects(g)]
+    return [*friction_effects(g), *force_effects(g), *time_effects(g), *curve_effects(g)]

@@ -9,7 +9,7 @@ Friction resists the motion ahead, whose sign is s, with at most
         + μ |f_u - f_g|                         ... with the load that the gears transmit
         + μ |f_g|                               ... with gravity's force f_g alone
         + μ_s |f_u - f_g| exp(-|v/v_s|)         ... a Stribeck peak that grows with that load
-        + |μ_m f_u - μ_e f_g|                   ... with drive's force and gravity's, by shares
+        + μ |f_u - ρ f_g|                       ... with drive's force and gravity's, by shares
         + exp(-|v/v_s|) (q_e f_g² or q_m f_u²)  ... with the square of the smaller, if they oppose
         + f_q q                                 Coulomb friction that changes along the way
         + a cos n q + b sin n q                 friction that repeats along the way
@@ -85,9 +85,9 @@ def load_stribeck_friction(s, p):  # type: ignore[no-untyped-def]
 
 @njit
 def two_load_friction(s, p):  # type: ignore[no-untyped-def]
-    """|μ_m f_u - μ_e f_g|."""
-    mu_m, mu_e = p
-    return abs(mu_m * s.f_u - mu_e * s.f_g)
+    """μ |f_u - ρ f_g|: what Duclusaud et al. write |K_m f_u - K_e f_g|, ρ = K_e/K_m."""
+    mu, rho = p
+    return mu * abs(s.f_u - rho * s.f_g)
 
 
 @njit

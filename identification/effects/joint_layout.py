@@ -1,7 +1,8 @@
 """Where the parameters of a set of effects live in the model of a robot with joints.
 
 Those of joints in the joints' user data, a row each (see `identification.native.joint_callback`);
-those of inputs nowhere: they act before the model.
+those of inputs and sensors nowhere: they act before the model and behind it. Those of bodies change
+the bodies' own numbers.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, cached_property
 
+from identification.effects.body import BODY
 from identification.effects.effect import Effect
 from identification.effects.layout import key_of, refuse_misplaced, terms_of
 from identification.native.element import Term
@@ -16,6 +18,7 @@ from identification.native.hook_checks import refuse_unfit_functions
 from identification.native.input_filter import INPUT
 from identification.native.installer import Law, install
 from identification.native.joint_callback import FIELDS, JOINT, callbacks, width
+from identification.native.reading import SENSOR
 
 
 @dataclass(frozen=True)
@@ -26,14 +29,14 @@ class JointLayout:
         effects: the set, in order.
 
     Raises:
-        InputError: two effects have one name, or one has a hook that is neither a joint's nor an
-            input's.
+        InputError: two effects have one name, or one has a hook that is none of a joint, an input,
+            a body or a sensor.
     """
 
     effects: tuple[Effect, ...]
 
     def __post_init__(self) -> None:
-        refuse_misplaced(self.effects, (JOINT, INPUT))
+        refuse_misplaced(self.effects, (JOINT, INPUT, BODY, SENSOR))
 
     @cached_property
     def on_joints(self) -> tuple[Term, ...]:
@@ -50,6 +53,12 @@ class JointLayout:
     def entries(self) -> int:
         """Entries of a joint's row."""
         return width(self.on_joints)
+
+    @property
+    def has_bodies(self) -> bool:
+        """Whether an effect acts on bodies."""
+        hooks = {hook.name for hook in BODY.hooks}
+        return any(hooks & effect.hooks.keys() for effect in self.effects)
 
     def install(self) -> None:
         """Install the law in this process; does nothing when it is installed already.

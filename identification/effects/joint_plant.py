@@ -1,6 +1,6 @@
-"""Any MJCF as a plant with candidate effects on its joints and inputs.
+"""Any MJCF as a plant with candidate effects on its joints, bodies, inputs and sensors.
 
-joint j gets    size(all joints) + size@j          input i likewise
+joint j gets    size(all joints) + size@j          inputs and sensors likewise; body b gets size@b
 
 Its own parameters are paths into the model (see `ModelPlant`). An effect's are called
 `effect.size` + suffix and are zero; one that is already known, such as a Coulomb level, may be
@@ -9,6 +9,7 @@ given among the own ones by that name, with its value, and is then no candidate 
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -19,15 +20,17 @@ import numpy as np
 
 from identification.effects import values as effect_values
 from identification.effects.axes import Axis, axes
+from identification.effects.body_numbers import body_numbers
+from identification.effects.catalogue import all_effects
 from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
-from identification.effects.input_effects import drives, input_effects
-from identification.effects.joint_catalogue import joint_effects
 from identification.effects.joint_layout import JointLayout
+from identification.effects.moving_bodies import MovingBody, moving_bodies
+from identification.effects.own_effects import refuse_unfit_own
 from identification.effects.rows import read_model, with_rows
 from identification.logs.log import Log
 from identification.model.parameter import Parameter, ParameterSet
-from identification.model.paths import Slot
+from identification.model.paths import Slot, write
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
@@ -68,10 +71,22 @@ class JointPlant:
         """Where the parameters of its effects are in the model."""
         return JointLayout(self.effects)
 
-    @property
+    @cached_property
+    def bodies(self) -> tuple[MovingBody, ...]:
+        """The bodies that may have effects."""
+        return moving_bodies(self.bare.model)
+
+    @cached_property
     def model(self) -> mujoco.MjModel:
         """The compiled model at its nominal values."""
-        return self.bare.model
+        numbers = self._bodies((), np.empty((1, 0)), [])
+        if not numbers:
+            return self.bare.model
+        model = copy.copy(self.bare.model)
+        for slot, values in numbers:
+            write(model, slot, float(values[0]))
+        mujoco.mj_setConst(model, mujoco.MjData(model))
+        return model
 
     def with_values(self, values: Mapping[str, float]) -> JointPlant:
         """The same plant with other nominal values.
@@ -98,14 +113,26 @@ class JointPlant:
         own = [k for k, name in enumerate(names) if name in known]
         start, numbers = self.bare.settings([names[k] for k in own], values[:, own])
         others = [k for k, name in enumerate(names) if name not in known]
-        return start, [*numbers, *self._rows([names[k] for k in others], values[:, others])]
+        bodies = self._bodies(names, values, numbers)
+        rows = self._rows([names[k] for k in others], values[:, others])
+        return start, [*numbers, *bodies, *rows]
+
+    def _bodies(self, names: Sequence[str], values: np.ndarray, own: Numbers) -> Numbers:
+        """Entries of the bodies that effects change."""
+        if not self.layout.has_bodies:
+            return []
+        every = effect_values.merged(self.parameters.values(), names, values)
+        return body_numbers(
+            self.bare.model, self.effects, self.bodies, names, every, own, len(values)
+        )
 
     def _rows(self, names: Sequence[str], values: np.ndarray) -> Numbers:
         """Entries of the joints' rows that some parameters of effects change."""
         every = effect_values.merged(self.parameters.values(), names, values)
-        first = int(self.model.nuser_jnt) - self.layout.entries + FIRST
+        model = self.bare.model
+        first = int(model.nuser_jnt) - self.layout.entries + FIRST
         return [
-            (Slot("jnt_user", (int(self.model.joint(joint).id),), first + column),
+            (Slot("jnt_user", (int(model.joint(joint).id),), first + column),
              np.broadcast_to(numbers, len(values)))
             for joint in self.joints
             for column, numbers in effect_values.changed_columns(
@@ -114,18 +141,27 @@ class JointPlant:
         ]  # fmt: skip
 
     def inputs(
-        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
-    ) -> np.ndarray:
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
+        begun: float = 0.0,
+    ) -> np.ndarray:  # fmt: skip
         """The inputs after the effects that act on them; see `Plant`."""
         every = effect_values.merged(self.parameters.values(), names, values)
-        actuators = [self.model.actuator(i).name for i in range(self.model.nu)]
+        model = self.bare.model
+        actuators = [model.actuator(i).name for i in range(model.nu)]
         return effect_values.changed_inputs(
-            self.effects, actuators, every, held, timestep, len(values)
+            self.effects, actuators, every, held, timestep, len(values), begun
         )
+
+    def outputs(
+        self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str], readings: np.ndarray
+    ) -> np.ndarray:
+        """What the sensors say after the effects that act on them; see `Plant`."""
+        every = effect_values.merged(self.parameters.values(), names, values)
+        return effect_values.changed_outputs(self.effects, sensors, every, readings, len(values))
 
 
 def joint_plant(
-    source: str | Path,
+    source: str | Path | mujoco.MjSpec,
     parameters: Iterable[Parameter],
     log: Log,
     *,
@@ -137,7 +173,7 @@ def joint_plant(
     """Compile an MJCF whose joints and inputs may have effects.
 
     Args:
-        source: path of an MJCF file, or its text.
+        source: path of an MJCF file, or its text, or the result of `read_model`.
         parameters: its own, with paths; those called as an effect's are that effect's.
         log: shows how far joints and inputs move, which says what sizes are plausible.
         joints: the joints that may have effects; those that the log measures when None.
@@ -147,18 +183,23 @@ def joint_plant(
 
     Raises:
         InputError: the model or a path is unusable, a joint does not move in the log, or an effect
-            has a hook that is neither a joint's nor an input's.
+            has a hook that is none of a joint, an input, a body or a sensor; or an own effect has a
+            place that is not there, or a function that fails when it is tried.
     """
     spec = read_model(source)
     known = tuple(joints) if joints is not None else axes(spec.copy().compile(), log)
     if effects is None:
-        effects = (*joint_effects(known), *input_effects(drives(log)))
+        effects = all_effects(spec, known, log)
     effects = (*effects, *own_effects)
     records = {p.name: p for e in effects for p in effect_parameters(e)}
     given = {p.name: p for p in parameters}
     paths = ParameterSet("own", tuple(p for p in given.values() if p.name not in records))
     every = (*paths, *(given.get(name, record) for name, record in records.items()))
-    bare = ModelPlant(with_rows(spec, known, JointLayout(effects)), paths, start)
+    layout = JointLayout(effects)
+    if own_effects:
+        inputs = [actuator.name for actuator in spec.actuators]
+        refuse_unfit_own(own_effects, [a.joint for a in known], inputs)
+    bare = ModelPlant(with_rows(spec, known, layout), paths, start)
     name = spec.modelname or "robot"
     return JointPlant(bare, ParameterSet(name, every), effects, tuple(a.joint for a in known))
 

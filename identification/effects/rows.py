@@ -1,6 +1,6 @@
 """An MJCF model whose joints carry the numbers of their effects as user data.
 
-    user data of a joint = (what the file gave it, T, parameters of the effects, key, TAG)
+    user data of a joint = (what the file gave it, T, what it reaches, parameters, key, TAG)
 
 The row stands at the end, so that a model's own user data stay where they were; its layout is that
 of `identification.native.joint_callback`.
@@ -16,23 +16,27 @@ import numpy as np
 
 from identification.effects.axes import Axis
 from identification.effects.joint_layout import JointLayout
+from identification.effects.moving_bodies import movable
 from identification.errors import InputError, unknown_name
 from identification.logs.names import quoted
-from identification.native.joint_callback import STEPS, STOP, TAG
+from identification.native.joint_callback import FIRST, REACH, STEPS, STOP, TAG
 
 _LONGEST = 200  # of MuJoCo's words in a message
 _HELD = {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}
 
 
-def read_model(source: str | Path) -> mujoco.MjSpec:
+def read_model(source: str | Path | mujoco.MjSpec) -> mujoco.MjSpec:
     """An MJCF as MuJoCo edits it.
 
     Args:
-        source: path of the file, or its text, which begins with "<".
+        source: path of the file, or its text, which begins with "<"; or a model that is read
+            already, which is copied.
 
     Raises:
         InputError: it cannot be read or compiled.
     """
+    if isinstance(source, mujoco.MjSpec):
+        return source.copy()
     text = str(source)
     given = text.lstrip().startswith("<")
     try:
@@ -64,6 +68,12 @@ def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis], layout: JointLayout) ->
         given = own.jnt_user[own.joint(axis.joint).id]
         row = np.zeros(layout.entries)
         row[STOP], row[-2], row[-1] = STEPS * own.opt.timestep, layout.key, TAG
+        row[REACH:FIRST] = reached(axis)
         joints[axis.joint].userdata = np.concatenate([given, row])
     spec.nuser_jnt = own.nuser_jnt + layout.entries
-    return spec.compile()
+    return movable(spec) if layout.has_bodies else spec.compile()
+
+
+def reached(axis: Axis) -> tuple[float, float, float, float, float]:
+    """What the records of a joint reach, as the fields of `Joint` behind its state."""
+    return axis.middle, axis.travel / 2, axis.speed, axis.force, axis.duration or 1.0

@@ -13,6 +13,7 @@ from identification.effects.effect import Effect
 from identification.effects.layout import terms_of
 from identification.native.element import Term
 from identification.native.input_filter import INPUT, input_filter
+from identification.native.reading import SENSOR, sensor_filter
 
 Values = Mapping[str, float | np.ndarray]  # by name of the parameter, one or n of each
 
@@ -74,7 +75,7 @@ def changed_columns(
 
 def changed_inputs(
     effects: Sequence[Effect], things: Sequence[str], values: Values, held: np.ndarray,
-    timestep: float, n: int,
+    timestep: float, n: int, begun: float = 0.0,
 ) -> np.ndarray:  # fmt: skip
     """What the effects of inputs make of them, for n value sets.
 
@@ -85,6 +86,7 @@ def changed_inputs(
         held: inputs at the steps of the simulation, shape (steps, nu).
         timestep: of the simulation [s].
         n: how many value sets.
+        begun: time of the first step in the record [s].
 
     Returns:
         `held` itself where no such effect is there, else shape (n, steps, nu).
@@ -104,6 +106,42 @@ def changed_inputs(
         rows = table_at(acting, thing, values, n)
         for k, row in enumerate(rows):
             signals[0] = held[:, i]
-            run(signals.ctypes.data, len(held), timestep, row.ctypes.data)
+            run(signals.ctypes.data, len(held), timestep, begun, row.ctypes.data)
             out[k, :, i] = signals[-1]
     return out
+
+
+def changed_outputs(
+    effects: Sequence[Effect], things: Sequence[str], values: Values, readings: np.ndarray, n: int
+) -> np.ndarray:
+    """What the effects of sensors make of their readings, for n value sets.
+
+    Args:
+        effects: a set; those that act on other things are passed over.
+        things: names of the ny sensors.
+        values: of all parameters, one or n of each.
+        readings: y, q and v of each sensor, shape (3, m, samples, ny); each value set has m/n
+            neighbouring rows.
+        n: how many value sets.
+
+    Returns:
+        y itself where no such effect is there, else shape (m, samples, ny).
+
+    Raises:
+        InputError: a function of an effect cannot be compiled.
+    """
+    y = np.asarray(readings[0])
+    acting = [e for e in effects if "reading" in e.hooks]
+    if not any(is_present(e, things, values) for e in acting):
+        return y
+    run, y = sensor_filter(terms_of(acting, SENSOR)), y.copy()
+    signals = np.empty((4, len(y) // n, y.shape[1]))
+    for i, thing in enumerate(things):
+        if not any(is_present(e, [thing], values) for e in acting):
+            continue
+        for k, row in enumerate(table_at(acting, thing, values, n)):
+            own = slice(k * signals.shape[1], (k + 1) * signals.shape[1])
+            signals[:3] = readings[:, own, :, i]
+            run(signals.ctypes.data, signals[0].size, row.ctypes.data)
+            y[own, :, i] = signals[3]
+    return y

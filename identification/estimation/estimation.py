@@ -25,6 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from identification.errors import InputError, refuse_kind
 from identification.estimation.options import HORIZONS as HORIZONS
 from identification.estimation.options import Options as Options
 from identification.estimation.options import Progress as Progress
@@ -106,6 +107,12 @@ def estimate(
         InputError: a name is unknown or has no effect on the outputs, or a start is out of bounds.
         DivergenceError: the start itself cannot be simulated.
     """
+    refuse_kind(log, Log, "estimate takes a Log (read_log)")
+    if isinstance(names, str) or not hasattr(plant, "parameters"):
+        raise InputError(
+            "estimate takes a plant (joint_plant, ModelPlant), a Log and a list of names of its"
+            " parameters, in this order"
+        )
     began = time.perf_counter()
     options = options or Options()
     for name in (*names, *(start or {}), *options.priors):

@@ -17,7 +17,9 @@ AS_BEFORE = 0.5  # of the std before; a signal that still varies by as much coun
 STEPS = 3  # that the encoder crosses in the `FEWEST` samples before it freezes
 
 
-def refuse_frozen(log: Log, output: int, inputs: np.ndarray, others: np.ndarray) -> None:
+def refuse_frozen(
+    log: Log, output: int, inputs: np.ndarray, others: np.ndarray, overrule: str = ""
+) -> None:
     """Refuse an output that froze.
 
     Args:
@@ -27,6 +29,7 @@ def refuse_frozen(log: Log, output: int, inputs: np.ndarray, others: np.ndarray)
             of these vary as before.
         others: other outputs of its joint, shape (n, m); the joint counts as moving where one of
             these varies as before.
+        overrule: how a user may overrule this, for the message.
 
     Raises:
         InputError: the output froze.
@@ -43,7 +46,7 @@ def refuse_frozen(log: Log, output: int, inputs: np.ndarray, others: np.ndarray)
         raise InputError(
             f"{log.output_names[output]} of log {log.name!r} repeats {y[first]:g} from"
             f" {log.time[first]:.6g} s to the end while its joint is driven on: a frozen sensor;"
-            " delete the log's rows from there on, or record again"
+            f" delete the log's rows from there on, or record again{overrule}"
         )
 
 

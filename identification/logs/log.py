@@ -39,6 +39,7 @@ class Log:
         name: what to call the log in a report.
         notes: remarks of its author.
         hold: the input between samples: "zoh" keeps the last value, "foh" draws a straight line.
+        remarks: what was changed when it was read from a file, a sentence each.
         splits: named parts [start, end) [s], such as estimation and validation.
         begun: time between the first sample of the whole record and the first one of this part of
             it [s]; what changes with time in a robot goes on from part to part.
@@ -60,6 +61,7 @@ class Log:
     hold: str = "zoh"
     splits: Splits = field(default_factory=dict)
     begun: float = 0.0
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         def put(attribute: str, value: object) -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible
 from identification.logs.read_csv import parse_csv
 from identification.logs.read_mat import parse_mat
+from identification.logs.resampling import even_out
 from identification.logs.sampling import FloatArray, check_time, grid
 from identification.logs.sidecar import Sidecar, read_sidecar
 from identification.logs.table import Table, check_columns, check_finite, renamed
@@ -32,6 +34,8 @@ def read_log(
     limits: Mapping[str, float] | None = None,
     rates: Mapping[str, float] | None = None,
     named_in: Path | None = None,
+    lenient: bool = False,
+    said: Mapping[str, Any] | None = None,
 ) -> Log:
     """Read a log; columns may stand in any order, and a file that cannot be right is refused.
 
@@ -48,6 +52,10 @@ def read_log(
         limits: largest plausible size [SI].
         rates: largest plausible speed of change [SI/s]; this finds degrees taken for radians.
         named_in: the file that names `inputs` and `outputs`, for messages; the sidecar when None.
+        lenient: columns that are not asked for are left out, and uneven time stamps and missing
+            cells are put on an even grid (`identification.logs.resampling`), which the log's
+            remarks say.
+        said: keys of the sidecar that hold where it does not say otherwise.
 
     Returns:
         The log in SI units, named after the file.
@@ -64,8 +72,9 @@ def read_log(
     for unit in units.values():
         check_si(unit)
 
-    table = _read_table(path, inputs, outputs, optional)
-    sidecar = read_sidecar(path.with_suffix(".toml"))
+    raw = read_bytes(path)
+    sidecar = read_sidecar(path.with_suffix(".toml"), said, named_in)
+    table = _read_table(raw, path, inputs, outputs, optional, sidecar, lenient)
     check_keys(f"column under 'units' in {sidecar.path}:", sidecar.units, ("time", *columns))
     table = renamed(table, sidecar)
     if "time" not in table.names and sidecar.sampling_time:
@@ -75,6 +84,10 @@ def read_log(
     si, factors = _conversions(table, sidecar, {**units, "time": "s"})
     with np.errstate(over="ignore"):  # a number that overflows is refused later
         table = replace(table, data=table.data * [factors[name] for name in table.names])
+    remarks: tuple[str, ...] = ()
+    if lenient and not _is_even(table, sidecar):
+        table, remark = _evened(table, inputs, sidecar)
+        remarks = (remark,)
     check_finite(table)
     time = table["time"]
     check_time(time, table.place, sidecar.sampling_time)
@@ -93,15 +106,48 @@ def read_log(
         notes=sidecar.notes,
         hold=sidecar.hold,
         splits=sidecar.splits,
+        remarks=remarks,
     )
 
 
+def _is_even(table: Table, sidecar: Sidecar) -> bool:
+    try:
+        check_finite(table)
+        check_time(table["time"], table.place, sidecar.sampling_time)
+    except InputError:
+        return False
+    return True
+
+
+def _evened(table: Table, inputs: Sequence[str], sidecar: Sidecar) -> tuple[Table, str]:
+    """A table on an even grid, and what was done to it."""
+    names = [n for n in table.names if n != "time"]
+    even = even_out(
+        table.path.stem, table["time"], {n: table[n] for n in names}, inputs, sidecar.hold,
+        sidecar.sampling_time,
+    )  # fmt: skip
+    data = np.column_stack([even.time, *(even.channels[n] for n in names)])
+    return Table(table.path, ("time", *names), data, _grid_place(table.path)), even.sentence
+
+
+def _grid_place(path: Path) -> Callable[[int], str]:
+    return lambda row: f"sample {row + 1} of the grid of {path}"
+
+
 def _read_table(
-    path: Path, inputs: Sequence[str], outputs: Sequence[str], optional: Sequence[str]
+    raw: bytes,
+    path: Path,
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    optional: Sequence[str],
+    sidecar: Sidecar,
+    lenient: bool,
 ) -> Table:
-    raw = read_bytes(path)
     if path.suffix.lower() == ".csv":
-        return parse_csv(raw, path)
+        columns = {"time", *inputs, *outputs, *optional}
+        renaming = {old for old, new in sidecar.columns.items() if new in columns}
+        wanted = columns - {*sidecar.columns} | renaming
+        return parse_csv(raw, path, sidecar.header, wanted if lenient else None)
     if path.suffix.lower() == ".mat":
         return parse_mat(raw, path, inputs, outputs, optional)
     raise InputError(f"{path} is neither .csv nor .mat; export the log as one of these")

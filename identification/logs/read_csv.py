@@ -6,6 +6,7 @@ cell by cell, to say which line is wrong.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -18,10 +19,23 @@ from identification.logs.table import Table
 _WRONG_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
 
 
-def parse_csv(raw: bytes, path: Path) -> Table:
+SKIP = "skip"  # name of a column without a header that nobody needs
+
+
+def parse_csv(
+    raw: bytes, path: Path, header: Sequence[str] = (), wanted: Collection[str] | None = None
+) -> Table:
     """The table in a CSV file.
 
     Comment lines above the header, a byte order mark, CRLF and blank lines are accepted.
+
+    Args:
+        raw: the bytes of the file.
+        path: where it is, for messages.
+        header: names of the columns of a file that has none, in their order; where it has one,
+            they replace it.
+        wanted: columns to read; their empty cells are NaN, and the others are left out. All
+            columns, and no empty cells, when None.
 
     Raises:
         InputError: it is empty, not text, not separated by commas, has rows of different lengths,
@@ -33,16 +47,35 @@ def parse_csv(raw: bytes, path: Path) -> Table:
     start = next((i for i, k in enumerate(filled) if not lines[k].startswith("#")), None)
     if start is None:
         raise InputError(f"{path} is empty; it needs a header row and one row for each sample")
-    names = _header(lines[filled[start]], filled[start] + 1, path)
-    rows = filled[start + 1 :]
+    first = lines[filled[start]]
+    numbers = all(_is_number(cell) for cell in first.split(","))
+    names = _given(header, first, path) if header else _header(first, filled[start] + 1, path)
+    rows = filled[start + (0 if header and numbers else 1) :]
+    keep = [k for k, n in enumerate(names) if n != SKIP and (wanted is None or n in wanted)]
+    if wanted is None and not header:
+        keep = [*range(len(names))]
+    twice = repeated([names[k] for k in keep])
+    if twice:
+        raise InputError(f"{path} has {listed(twice)} more than once; keep one column of each name")
     if not rows:
         raise InputError(
             f"{path} has a header and no rows under it; record the log again, or export its samples"
         )
-    body = [lines[k] for k in rows]
-    return Table(
-        path, names, _numbers(body, rows, names, path), lambda row: _place(rows[row], path)
-    )
+    data = _numbers([lines[k] for k in rows], rows, names, path, keep, wanted is not None)
+    left = tuple(n for k, n in enumerate(names) if k not in keep)
+    kept = tuple(names[k] for k in keep)
+    return Table(path, kept, data, lambda row: _place(rows[row], path), left)
+
+
+def _given(header: Sequence[str], first: str, path: Path) -> tuple[str, ...]:
+    """The names that a TOML gives, if the file has as many columns."""
+    columns = first.count(",") + 1
+    if columns != len(header):
+        raise InputError(
+            f"{path} has {columns} columns, and {len(header)} are named for it under 'columns';"
+            f' name each, and those that are not needed "{SKIP}"'
+        )
+    return tuple(header)
 
 
 def _place(line: int, path: Path) -> str:
@@ -75,41 +108,47 @@ def _header(line: str, number: int, path: Path) -> tuple[str, ...]:
     if all(_is_number(name) for name in names):
         raise InputError(
             f"line {number} of {path} holds numbers and not names; put a header row, such as "
-            "time,input,output and without #, above them"
+            "time,input,output and without #, above them, or list their names in order as columns"
+            f" in {path.with_suffix('.toml')}"
         )
-    twice = repeated(names)
-    if twice:
-        raise InputError(f"{path} has {listed(twice)} more than once; keep one column of each name")
     return names
 
 
-def _numbers(body: list[str], rows: list[int], names: tuple[str, ...], path: Path) -> FloatArray:
+def _numbers(
+    body: list[str],
+    rows: list[int],
+    names: tuple[str, ...],
+    path: Path,
+    keep: list[int],
+    gaps: bool,
+) -> FloatArray:
     try:
         data = np.loadtxt(body, delimiter=",", comments=None, ndmin=2)
     except ValueError:
         data = None
     if data is not None and data.shape == (len(body), len(names)):
-        return data
-    return np.array(
-        [_row(line, k, names, path) for line, k in zip(body, rows, strict=True)], dtype=np.float64
-    )
+        return np.asarray(data[:, keep])
+    each = zip(body, rows, strict=True)
+    return np.array([_row(line, k, names, path, keep, gaps) for line, k in each], dtype=np.float64)
 
 
-def _row(line: str, k: int, names: tuple[str, ...], path: Path) -> list[float]:
+def _row(
+    line: str, k: int, names: tuple[str, ...], path: Path, keep: list[int], gaps: bool
+) -> list[float]:
     cells = line.split(",")
     if len(cells) != len(names):
         raise InputError(
             f"{_place(k, path)} has {len(cells)} cells and the header has {len(names)}; "
             "complete that row, or cut the log there"
         )
-    for name, cell in zip(names, cells, strict=True):
-        if not _is_number(cell):
+    for name, cell in ((names[i], cells[i]) for i in keep):
+        if not (_is_number(cell) or (gaps and not cell.strip())):
             what = f"{quoted(cell)} is not a number" if cell.strip() else "the cell is empty"
             raise InputError(
                 f"{_place(k, path)}, column {quoted(name)}: {what}; write a number there, or "
                 "cut the log"
             )
-    return [float(cell) for cell in cells]
+    return [float(cells[i]) if cells[i].strip() else float("nan") for i in keep]
 
 
 def _is_number(cell: str) -> bool:

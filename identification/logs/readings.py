@@ -4,8 +4,9 @@
 
 A model whose parameters are yet to be found may be far off, so a log is refused only where the
 model would explain it as another one, and far better: in other units, against a sign, with two
-columns exchanged. What only a better model explains is left to the search. Where the model's ŷ
-begins, and over which time, is the caller's: he gives ε as a function of a log.
+columns exchanged. What only a better model explains is left to the search: `misread` asks its
+caller. Where the model's ŷ begins, and over which time, is the caller's: he gives ε as a function
+of a log.
 """
 
 from __future__ import annotations
@@ -36,18 +37,24 @@ class Reading:
         columns: outputs that change, with it or with what an input does to them.
         said: what it would be, in words.
         cure: what to do, were it so.
+        kind: "units" or "wiring", which a user may trust.
     """
 
     log: Log
     columns: Sequence[int]
     said: str
     cure: str
+    kind: str = "wiring"
 
 
 def misread(
-    log: Log, own: np.ndarray, readings: Iterable[Reading], unexplained: Unexplained
-) -> str | None:
-    """The reading that explains a log far better than it is read, in words.
+    log: Log,
+    own: np.ndarray,
+    readings: Iterable[Reading],
+    unexplained: Unexplained,
+    believed: Callable[[Reading, np.ndarray], bool] = lambda reading, left: True,
+) -> tuple[Reading, str] | None:
+    """The reading that explains a log far better than it is read, and that in words.
 
     Far better: every column that it changes. Of several, the one that leaves least in all.
 
@@ -56,23 +63,24 @@ def misread(
         own: its ε, shape (ny,), without unit.
         readings: other ones.
         unexplained: ε of a log.
+        believed: whether a reading with its ε is what no better model could be.
 
     Returns:
-        How much is explained of which outputs, how much would be, and the cure; None where no
-        reading is far better.
+        The reading, and how much is explained of which outputs, how much would be, and the cure;
+        None where no reading is far better.
     """
     best, least = None, np.inf
     for reading in readings:
         left, k = unexplained(reading.log), list(reading.columns)
         if left is None or not (left[k] < np.minimum(EXPLAINED, NEARER * own[k])).all():
             continue
-        if left.sum() < least:
+        if left.sum() < least and believed(reading, left):
             best, least = (reading, left), float(left.sum())
     if best is None:
         return None
     reading, left = best
     before, after = (100 * max(0.0, 1 - float(e[list(reading.columns)].max())) for e in (own, left))
-    return (
+    return reading, (
         f"explains {before:.0f} % of {listed(log.output_names[k] for k in reading.columns)}, and"
         f" {after:.0f} % {reading.said}; {reading.cure}"
     )
@@ -94,7 +102,7 @@ def unit_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Itera
             told = ", ".join(f'{out[k]} = "{words[k]}"' for k in changed)
             said = f"were it in {' and '.join(dict.fromkeys(words[k] for k in changed))}"
             yield Reading(replace(log, outputs=log.outputs * scale), changed, said,
-                          f"write {told} under [units] of the log's TOML")  # fmt: skip
+                          f"write {told} under [units] of the log's TOML", "units")  # fmt: skip
 
 
 def output_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:

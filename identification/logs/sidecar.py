@@ -7,7 +7,7 @@ ignore = ["temperature"]            # columns of the file to leave out
 [units]                             # by column or by group; SI where not given
 current = "mA"
 [columns]                           # column of the file = name it should have
-q1 = "angle_1"
+q1 = "angle_1"                      # or, of a file without a header, columns = ["time", "skip", …]
 [splits]                            # [start, end) [s]
 estimation = [0, 10]
 validation = [10, 20]
@@ -39,35 +39,61 @@ class Sidecar:
     hold: str = "zoh"
     notes: str = ""
     ignore: tuple[str, ...] = ()
+    header: tuple[str, ...] = ()
     units: Mapping[str, str] = field(default_factory=dict)
     columns: Mapping[str, str] = field(default_factory=dict)
     splits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
-def read_sidecar(path: Path) -> Sidecar:
+def read_sidecar(
+    path: Path, given: Mapping[str, Any] | None = None, given_in: Path | None = None
+) -> Sidecar:
     """Read the TOML beside a log; the defaults when there is none.
+
+    A table [log] in it says the same as the keys themselves.
+
+    Args:
+        path: of the TOML.
+        given: keys that hold where the file does not say otherwise.
+        given_in: the file that gives them, for messages.
 
     Raises:
         InputError: it is not TOML, a key is unknown, or a value is of the wrong kind.
     """
-    if not path.exists():
-        return Sidecar(path=path)
+    values = _values(given or {}, given_in or path)
+    if path.exists():
+        content = _content(path)
+        inner = content.pop("log", {})
+        if not isinstance(inner, dict):
+            raise InputError(f"log in {path} must be a table; correct it there")
+        values |= _values({**inner, **content}, path)
+    return Sidecar(path=path, **values)
+
+
+def _content(path: Path) -> dict[str, Any]:
     raw = read_bytes(path, _LARGEST)
     try:
-        content = tomllib.loads(raw.decode("utf-8-sig"))
+        return tomllib.loads(raw.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
         reason = quoted(str(error), 120) if str(error) else "nested too deeply"
         raise InputError(f"{path} is not TOML ({reason}); correct it there") from error
+
+
+def _values(content: Mapping[str, Any], path: Path) -> dict[str, Any]:
+    """The values of the keys of a file, checked; a list of columns is a header."""
     values = {}
     for key, value in content.items():
         if key not in _KEYS:
             raise unknown_name(f"key in {path}:", key, _KEYS)
         kind, convert = _KEYS[key]
         try:
-            values[key] = convert(value)
+            if key == "columns" and isinstance(value, list):
+                values["header"] = _names(value)
+            else:
+                values[key] = convert(value)
         except (TypeError, OverflowError) as error:
             raise InputError(f"{key} in {path} must be {kind}; correct it there") from error
-    return Sidecar(path=path, **values)
+    return values
 
 
 def _text(value: object) -> str:
@@ -124,6 +150,6 @@ _KEYS: dict[str, tuple[str, Callable[[object], Any]]] = {
     "notes": ("text in quotes", _text),
     "ignore": ('a list of columns, such as ["temperature"]', _names),
     "units": ('a table of units, such as current = "mA"', _texts),
-    "columns": ('a table of names, such as q1 = "angle_1"', _texts),
+    "columns": ('a table of names, such as q1 = "angle_1", or a list of them', _texts),
     "splits": ("a table of parts in seconds, such as estimation = [0, 10]", _splits),
 }

@@ -17,12 +17,21 @@ from identification.logs.sidecar import Sidecar
 
 @dataclass(frozen=True)
 class Table:
-    """Columns (n, c) of a file, their names (c), and a function that says where a row stands."""
+    """Columns (n, c) of a file, their names (c), and a function that says where a row stands.
+
+    `left` are the names of columns that nobody asked for; they are not read.
+    """
 
     path: Path
     names: tuple[str, ...]
     data: FloatArray
     place: Callable[[int], str]
+    left: tuple[str, ...] = ()
+
+    @property
+    def all_names(self) -> tuple[str, ...]:
+        """Names of the columns of the file."""
+        return (*self.names, *self.left)
 
     def __getitem__(self, name: str) -> FloatArray:
         return self.data[:, self.names.index(name)]
@@ -36,9 +45,11 @@ def renamed(table: Table, sidecar: Sidecar) -> Table:
     """
     for what, wanted in (("columns", tuple(sidecar.columns)), ("ignore", sidecar.ignore)):
         for name in wanted:
-            if name not in table.names:
+            if name not in table.all_names:
                 raise unknown_name(
-                    f"column under {what!r} in {sidecar.path}:", name, map(quoted, table.names)
+                    f"column under {what!r} in {sidecar.path}:",
+                    name,
+                    map(quoted, table.all_names),
                 )
     keep = [k for k, name in enumerate(table.names) if name not in sidecar.ignore]
     names = tuple(sidecar.columns.get(table.names[k], table.names[k]) for k in keep)
@@ -73,13 +84,13 @@ def check_columns(
     unknown = [n for n in table.names if n not in good]
     missing = [n for n in needed if n not in table.names]
     if missing:
-        close = get_close_matches(missing[0], unknown, n=1)
+        close = get_close_matches(missing[0], (*unknown, *table.left), n=1)
         slip = f" (is {missing[0]} its column {quoted(close[0])}?)" if close else ""
         time = ", or give sampling_time" if "time" in missing else ""
         where = sidecar.path if time or named_in is None else named_in
         raise InputError(
-            f"{table.path} lacks {_columns(missing)}{slip}; it has {listed(table.names)}; correct "
-            f"its names or map them under [columns]{time} in {where}"
+            f"{table.path} lacks {_columns(missing)}{slip}; it has {listed(table.all_names)};"
+            f" correct its names or map them under [columns]{time} in {where}"
         )
     if unknown:
         close = get_close_matches(unknown[0], good, n=1)

@@ -90,10 +90,17 @@ class ModelPlant:
         return State(**rows), numbers
 
     def inputs(
-        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
-    ) -> np.ndarray:
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
+        begun: float = 0.0,
+    ) -> np.ndarray:  # fmt: skip
         """The logged inputs, as they are; see `Plant`."""
         return held
+
+    def outputs(
+        self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str], readings: np.ndarray
+    ) -> np.ndarray:
+        """What perfect sensors say; see `Plant`."""
+        return np.asarray(readings[0])
 
 
 def own_start(model: mujoco.MjModel) -> State:

@@ -45,8 +45,9 @@ class Plant(Protocol):
         """
 
     def inputs(
-        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
-    ) -> np.ndarray:
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
+        begun: float = 0.0,
+    ) -> np.ndarray:  # fmt: skip
         """The inputs that reach the model, step by step, computed from the logged inputs.
 
         Args:
@@ -54,9 +55,27 @@ class Plant(Protocol):
             values: as above.
             held: logged inputs at the steps of the simulation, shape (steps, nu).
             timestep: of the simulation [s].
+            begun: time of the first step in the record [s].
 
         Returns:
             Shape (steps, nu) for all, or (n, steps, nu).
+        """
+
+    def outputs(
+        self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str],
+        readings: np.ndarray,
+    ) -> np.ndarray:  # fmt: skip
+        """What the sensors say, computed from what perfect ones would say.
+
+        Args:
+            names: as above.
+            values: as above.
+            sensors: names of the ny sensors.
+            readings: what a perfect sensor would say, and position and rate of its joint, shape
+                (3, m, samples, ny); each value set has m/n neighbouring rows.
+
+        Returns:
+            Shape (m, samples, ny).
         """
 
 
@@ -91,7 +110,7 @@ class Predictor:
         """The function from held inputs (steps, nu) to those that reach the model, for (n, p)."""
         names, every = self._every(values)
         timestep = self.plant.model.opt.timestep
-        return lambda held: self.plant.inputs(names, every, held, timestep)
+        return lambda held: self.plant.inputs(names, every, held, timestep, self.log.begun)
 
     def predict(self, values: np.ndarray, samples: int | None = None) -> np.ndarray:
         """Outputs of n value sets over the first samples of the log.
@@ -108,19 +127,38 @@ class Predictor:
         """
         log = self.log
         start, numbers = self.settings(values)
-        columns = output_columns(self.plant.model, log.output_names)
         states = rollout(
             self.plant.model,
             start,
             log.inputs[:samples],
             log.sampling_time,
             numbers=numbers,
-            record=sorted({field for field, _ in columns}),
+            record=("qpos", "qvel"),
             hold_kind=log.hold,
             before=self.inputs(values),
             time=log.begun,
         )
-        return np.stack([states[field][:, :, i] for field, i in columns], axis=-1)
+        return self.outputs(values, states)
+
+    def outputs(self, values: np.ndarray, states: Mapping[str, np.ndarray]) -> np.ndarray:
+        """What the sensors say of simulated states, for n value sets (n, p).
+
+        Args:
+            values: shape (n, p), in the parameters' units.
+            states: qpos and qvel of m simulations, shape (m, samples, size); each value set has
+                m/n neighbouring ones.
+
+        Returns:
+            Shape (m, samples, ny).
+        """
+        model, sensors = self.plant.model, self.log.output_names
+        columns = output_columns(model, sensors)
+        joints = [int(model.sensor(name).objid[0]) for name in sensors]
+        y = [states[field][:, :, i] for field, i in columns]
+        q = [states["qpos"][:, :, int(model.jnt_qposadr[j])] for j in joints]
+        v = [states["qvel"][:, :, int(model.jnt_dofadr[j])] for j in joints]
+        readings = np.stack([np.stack(part, axis=-1) for part in (y, q, v)])
+        return self.plant.outputs(*self._every(values), sensors, readings)
 
 
 def output_columns(model: mujoco.MjModel, names: Sequence[str]) -> list[tuple[str, int]]:

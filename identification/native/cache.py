@@ -3,7 +3,8 @@
 The law with all effects takes numba 20 s; its machine code has 75 kB and loads in less than 0.1 s.
 The first process that needs a callback compiles it and keeps it under its key (`cache_key`); later
 ones load it. An entry that cannot be used, for whatever reason, is compiled anew and replaced; a
-folder that cannot be used means compiling in memory. `INCA_MJ_CACHE=off` switches the cache off.
+folder that cannot be used means compiling in memory. `INCA_MJ_CACHE=off` (or no, 0, false) switches
+the cache off.
 
 An entry is a header of five lines and the object file; nothing in it is unpickled:
 
@@ -28,6 +29,7 @@ from identification.native.cache_key import UnknownDependency, key_of
 from identification.native.machine_code import MachineCode, compile_callback, load_callback
 
 VARIABLE = "INCA_MJ_CACHE"
+OFF = ("off", "no", "0", "false")
 _FORMAT = b"inca_mj machine code 1"
 
 
@@ -60,7 +62,7 @@ def compile_once(function: Callable[..., Any], signature: Any) -> Any:
 
 def enabled() -> bool:
     """Whether the cache is on: the environment says nothing else, and files have owners here."""
-    return os.environ.get(VARIABLE, "").lower() not in ("off", "0") and hasattr(os, "getuid")
+    return os.environ.get(VARIABLE, "").strip().lower() not in OFF and hasattr(os, "getuid")
 
 
 def encode(key: str, code: MachineCode) -> bytes:

@@ -39,6 +39,8 @@ def _refuse_unfit(element: Element, hook: Hook, term: Term, function: Function) 
         returned = _returned(element, term, function)
     except Exception as error:  # numba passes on whatever a function's own names raise
         raise InputError(f"{where} cannot be compiled ({_reason(error)}); {takes}") from None
+    if isinstance(returned, types.Optional):
+        raise InputError(f"{where} returns nothing in some branch; {takes}")
     if not cpu_target.typing_context.can_convert(returned, hook.type):
         raise InputError(f"{where} returns {_said(returned)}; {takes}")
 

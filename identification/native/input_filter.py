@@ -27,9 +27,10 @@ from identification.native.memory import load_double, store_double
 from identification.native.tuples import loader
 
 # What an effect sees of an input at step k.
-#   k; step h [s]; u: the input, held over the step; x: the effect's own state
+#   k; time of the record in the middle of the step [s]; step h [s]
+#   u: the input, held over the step; x: the effect's own state
 #   signal: address of the input of all steps, which `past` and `shifted` read; steps: their number
-Input: Any = namedtuple("Input", "k step u x signal steps")
+Input: Any = namedtuple("Input", "k time step u x signal steps")
 
 INPUT = Element(
     "input",
@@ -42,7 +43,7 @@ INPUT = Element(
     integers=("k", "signal", "steps"),
 )
 
-_SIGNATURE = types.void(types.int64, types.int64, types.float64, types.int64)
+_SIGNATURE = types.void(types.int64, types.int64, types.float64, types.float64, types.int64)
 
 
 @internal
@@ -73,8 +74,8 @@ def _link(rest: Function, term: Term, place: int) -> Function:
     load, at, sizes = loader(len(term.names)), 8 * term.column, term.sizes
 
     @internal
-    def changed(signals, steps, step, row):  # type: ignore[no-untyped-def]
-        rest(signals, steps, step, row)
+    def changed(signals, steps, step, begun, row):  # type: ignore[no-untyped-def]
+        rest(signals, steps, step, begun, row)
         signal = signals + 8 * steps * place
         out, p = signal + 8 * steps, load(row + at)
         if is_absent(p, sizes):
@@ -82,11 +83,14 @@ def _link(rest: Function, term: Term, place: int) -> Function:
                 store_double(out + 8 * k, load_double(signal + 8 * k))
             return
         u = load_double(signal)
-        x = float(start(Input(k=0, step=step, u=u, x=0.0, signal=signal, steps=steps), p))
+        x = float(
+            start(Input(k=0, time=begun, step=step, u=u, x=0.0, signal=signal, steps=steps), p)
+        )
         last = 0.0
         for k in range(steps):
             u = load_double(signal + 8 * k)
-            s = Input(k=k, step=step, u=u, x=x, signal=signal, steps=steps)
+            t = begun + step * (k + 0.5)
+            s = Input(k=k, time=t, step=step, u=u, x=x, signal=signal, steps=steps)
             mean, moment = change(s, p)
             store_double(out + 8 * k, mean - moment + last)
             x, last = float(after(s, p)), float(moment)
@@ -102,25 +106,26 @@ def input_filter(terms: Sequence[Term]) -> Any:
         terms: the effects, in the order in which the input passes them.
 
     Returns:
-        (signals, steps, step, row): a ctypes function. `signals` is the address of an array of
-        shape (effects + 1, steps), the first row being the input; what each effect makes of the
+        (signals, steps, step, begun, row): a ctypes function. `signals` is the address of an array
+        of shape (effects + 1, steps), the first row being the input; what each effect makes of the
         row above it is written to the next, so that the last row is what the model is given.
-        `step` is their length [s], `row` the address of the effects' parameters.
+        `step` is their length [s], `begun` the time of the first of them in the
+        record [s], `row` the address of the effects' parameters.
 
     Raises:
         InputError: a function of an effect cannot be compiled.
     """
 
     @internal
-    def nothing(signals, steps, step, row):  # type: ignore[no-untyped-def]
+    def nothing(signals, steps, step, begun, row):  # type: ignore[no-untyped-def]
         return None
 
     chain: Function = nothing
     for place, term in enumerate(terms):
         chain = _link(chain, term, place)
 
-    def inputs(signals, steps, step, row):  # type: ignore[no-untyped-def]
-        chain(signals, steps, step, row)
+    def inputs(signals, steps, step, begun, row):  # type: ignore[no-untyped-def]
+        chain(signals, steps, step, begun, row)
 
     try:
         return compile_once(inputs, _SIGNATURE)

@@ -9,7 +9,7 @@ Friction holds a joint that less than b drives, without creeping, and brakes wit
 stop within T = 3 steps (Coulomb's law as Duclusaud et al. 2024 integrate it: BAM, equation 3).
 The numbers stand at the end of a joint's user data, in a row
 
-    (T, parameters of the effects, key of the set of effects, TAG)
+    (T, what the records reach, parameters of the effects, key of the set of effects, TAG)
 
 Every joint without such a row and every other model passes through untouched. Sizes of zero add
 nothing, so that the bare model's trajectory is kept to the bit. A compiled callback must not
@@ -21,7 +21,6 @@ from __future__ import annotations
 
 from collections import namedtuple
 from collections.abc import Sequence
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -33,9 +32,11 @@ from identification.native.decorators import inlined
 from identification.native.element import Element, Function, Hook, Term
 from identification.native.memory import load_byte, load_constant, load_double, store_double
 from identification.native.table import is_compiled
+from identification.native.tuples import replacer
 
 TAG = 7351.0609  # last entry of a row of ours
-STOP, FIRST, LAST = 0, 1, 2  # columns of T and of the first parameter; entries behind the last
+STOP, REACH, FIRST, LAST = 0, 1, 6, 2  # columns of T, of what is reached, of the first parameter;
+# entries behind the last
 STEPS = 3.0  # T over the step: where joints are coupled, the inertia of one is less than M
 
 # What an effect sees of a hinge or slide joint.
@@ -43,7 +44,12 @@ STEPS = 3.0  # T over the step: where joints are coupled, the inertia of one is 
 #   f_u [N m or N]: force of the joint's own drives; NaN where it is not gain·u + bias
 #   f_g [N m or N]: force of gravity on the joint, of all that hangs on it
 #   sign: direction of the motion that friction resists, 1 or -1; 0 for a force
-Joint: Any = namedtuple("Joint", "time q v f_u f_g sign")
+#   what the records reach: q_mid, q_far: middle and half of the travel [rad or m]; v_top: top speed
+#   [rad/s or m/s]; f_top: largest force of its drives [N m or N]; t_end: duration [s]
+Joint = namedtuple(
+    "Joint", "time q v f_u f_g sign q_mid q_far v_top f_top t_end",
+    defaults=(0.0, 1.0, 1.0, 1.0, 1.0),
+)  # fmt: skip
 
 JOINT = Element(
     "joint",
@@ -146,13 +152,16 @@ def inertia(m, d, dof):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def joint(m, d, j):  # type: ignore[no-untyped-def]
-    """The state of joint j, as a force sees it."""
+def joint(m, d, j, row):  # type: ignore[no-untyped-def]
+    """The state of joint j, as a force sees it; `row` is the address of its row."""
     q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
     v = double(d, D.qvel, integer(m, M.jnt_dofadr, j))
     return Joint(
         time=load_constant(d + 8 * D.time), q=q, v=v, f_u=drive_force(m, d, j, q, v),
         f_g=gravity_force(m, d, j), sign=0.0,
+        q_mid=load_constant(row + 8 * REACH), q_far=load_constant(row + 8 * (REACH + 1)),
+        v_top=load_constant(row + 8 * (REACH + 2)), f_top=load_constant(row + 8 * (REACH + 3)),
+        t_end=load_constant(row + 8 * (REACH + 4)),
     )  # fmt: skip
 
 
@@ -164,7 +173,7 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
         key: of the set.
     """
     force, friction = total(JOINT, terms, "force"), total(JOINT, terms, "friction")
-    entries = width(terms)
+    entries, with_sign = width(terms), replacer(Joint, "sign")
 
     def passive(m, d):  # type: ignore[no-untyped-def]
         columns = word(m, M.nuser_jnt)
@@ -181,14 +190,14 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
                     store_double(at, np.nan)
                 continue
             row, dof = end - 8 * entries, integer(m, M.jnt_dofadr, j)
-            s = joint(m, d, j)
+            s = joint(m, d, j, row)
             f = force(s, row + 8 * FIRST, 0)
             driven = f + s.f_g + load_double(at)
             if s.f_u == s.f_u:  # where it is known
                 driven += s.f_u
             r = driven + inertia(m, d, dof) * s.v / load_constant(row + 8 * STOP)
             ahead = 1.0 if r > 0.0 else -1.0
-            there = Joint(time=s.time, q=s.q, v=s.v, f_u=s.f_u, f_g=s.f_g, sign=ahead)
+            there = with_sign(s, (ahead,))
             b = max(0.0, friction(there, row + 8 * FIRST, 0))
             f -= max(-b, min(b, r))
             if f != 0.0:

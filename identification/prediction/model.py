@@ -38,6 +38,8 @@ FEWEST = 4  # samples of the shortest windows
 SAME = 0.05  # relative change of the errors' scale below which it is settled
 MOST_SCALES = 6  # fits at most until it is
 SHARES = (1.0, 0.5, 0.2, 0.05, 0.01)  # of the size that a score gives, to begin with
+FINE = 1e-3  # relative fall of the criterion at which the refit of an effect ends
+MOST_REFIT = 12  # its linearisations; an effect that takes more is not what is missing
 SHAPE_STD = 1.0  # prior of a shape's coordinate about the value that scored best
 SMALL = 1e-3  # of a probe: where the search for a size begins that must not be zero
 
@@ -160,7 +162,7 @@ def with_effect(
     if not begun:
         raise InputError(f"{c.effect.name}, {c.where} cannot be simulated at any size")
     _, q = min(begun, key=lambda b: b[0])
-    found = solve(task, q, fit.moves)
+    found = solve(task, q, fit.moves, tolerance=FINE, most=MOST_REFIT)
     if found.cost >= fit.cost:
         return None
     values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}

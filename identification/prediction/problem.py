@@ -21,7 +21,12 @@ from identification.prediction.records import Record
 from identification.prediction.unknowns import Prior, Unknowns
 from identification.windows.shooting import Shooting, Tangent, tangent
 from identification.windows.window_search import search_states
-from identification.windows.windows import first_states, windows
+from identification.windows.windows import first_states, spread, windows
+
+# Steps of a simulation of all windows. More windows only make estimates finer than what is missing
+# from the model makes them wrong, and each of some hundred simulations takes as much longer.
+MOST_STEPS = 24_000
+FEWEST_WINDOWS = 10  # of a record, so that blocks of them can be compared
 
 
 @dataclass(frozen=True)
@@ -124,13 +129,20 @@ def problem(
     parts = []
     space = shared.plus(own).space
     begun = {**plant.parameters.values(), **values}
+    most = most_windows(plant, records, length)
     for record in records:
         fixed = {n: v for n, v in {**values, **record.values}.items() if n not in space.names}
         predictor = Predictor(plant, record.log, space.names, fixed)
-        cut = windows(record.log, length)
+        cut = spread(windows(record.log, length), most)
         first = first_states(predictor, np.array([begun[n] for n in space.names]), cut)
         parts.append(Shooting(predictor, space, cut, first, np.diag(1 / scale)))
     return Problem(tuple(parts), Unknowns(shared, own, tuple(r.log.name for r in records)))
+
+
+def most_windows(plant: Plant, records: Sequence[Record], length: float) -> int:
+    """How many windows of each record are simulated at most: a share of `MOST_STEPS`."""
+    each = max(length / plant.model.opt.timestep, 1.0)
+    return max(FEWEST_WINDOWS, int(MOST_STEPS / (each * max(1, len(records)))))
 
 
 def no_moves(problem_: Problem) -> tuple[np.ndarray, ...]:

@@ -22,16 +22,15 @@ from identification.logs.noise import noise_floor
 from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
 from identification.prediction.fit import ROUGH, solve
-from identification.prediction.problem import no_moves, problem
+from identification.prediction.problem import most_windows, no_moves, problem
 from identification.prediction.records import Record
 from identification.prediction.unknowns import Prior
 from identification.windows.shooting import Shooting
 from identification.windows.window_search import search_states
-from identification.windows.windows import Windows, first_states, windows
+from identification.windows.windows import Windows, first_states, spread, windows
 
 LENGTHS = (0.5, 1.0, 2.0)  # of the horizon
 PER_RECORD = 10  # blocks of a record at most
-MOST_WINDOWS = 120  # of a record at each length, spread over it: more cost time and tell little
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +43,8 @@ class Unseen:
         moves: where each window begins, shape (W, nx), by length and record.
         floor: mean square of the sensors' noise in units of s².
         fit_percent: over windows of the horizon, of each output, shape (ny,) [%].
-        own: values of the parameters that each record has for itself, one mapping a record.
+        own: by record, the parameters that it has for itself: value and std of each, from the
+            values of its two halves.
     """
 
     lengths: tuple[float, ...]
@@ -52,7 +52,7 @@ class Unseen:
     moves: tuple[tuple[np.ndarray, ...], ...]
     floor: float
     fit_percent: np.ndarray
-    own: tuple[Mapping[str, float], ...] = ()
+    own: Mapping[str, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
 
     @property
     def at_horizon(self) -> tuple[np.ndarray, ...]:
@@ -131,7 +131,9 @@ def predict(
     halves = [_own_values(plant, r, horizon, scale, values, own or Own()) for r in records]
     for factor in LENGTHS:
         try:
-            cuts = [_spread(windows(r.log, factor * horizon)) for r in records]
+            length = factor * horizon
+            most = most_windows(plant, records, length)
+            cuts = [spread(windows(r.log, length), most) for r in records]
         except InputError:
             if factor == 1.0:
                 raise
@@ -153,7 +155,7 @@ def predict(
     return Unseen(
         lengths=tuple(lengths), squares=tuple(squares), moves=tuple(moves),
         floor=float(np.mean(noise)), fit_percent=percent,
-        own=tuple({n: float(np.mean([v[n] for v in h])) for n in h[0]} for h in halves),
+        own={r.log.name: _of_both(*h) for r, h in zip(records, halves, strict=True)},
     )  # fmt: skip
 
 
@@ -176,15 +178,6 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
         t=t, chance=chance, gains=tuple(float(np.concatenate(g).mean()) for g in gains),
         falls=tuple(falls), records=tuple(float(g.mean()) for g in here), blocks=blocks,
     )  # fmt: skip
-
-
-def _spread(cut: Windows) -> Windows:
-    """At most `MOST_WINDOWS` of some windows, in pairs of neighbours spread over the record."""
-    n = len(cut.starts)
-    if n <= MOST_WINDOWS:
-        return cut
-    keep = np.linspace(0, n - 1, MOST_WINDOWS).astype(int)
-    return cut.rows(keep)
 
 
 def _errors(
@@ -231,3 +224,7 @@ def _own_values(
         found = solve(mine, own.start, no_moves(mine), tolerance=ROUGH)
         out.append(found.of_record(0))
     return out[0], out[1]
+
+
+def _of_both(a: Mapping[str, float], b: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+    return {n: ((a[n] + b[n]) / 2, abs(a[n] - b[n]) / 2) for n in a}

@@ -124,14 +124,21 @@ def compute_confidence(contenders: Sequence[Contender]) -> np.ndarray:
 def _refitted(model: WindowModel, contender: Contender, confidence: float) -> RefittedEffect:
     """An effect at the values of a model that has it."""
     c = contender.candidate
-    plant = model.fit.problem.parts[0].predictor.plant
-    values, std = model.values, model.std
+    plant, unknowns = model.plant, model.fit.problem.unknowns
+    values, std = {**model.values, **model.fit.values}, model.std
     parameters = {}
     for name in (*c.sizes, *c.fixed):
         record = plant.parameters[name]
-        parameters[record.symbol or record.name] = (
-            float(values[name]), float(std.get(name, 0.0)), record.unit,
-        )  # fmt: skip
+        said = record.symbol or record.name
+        if name in unknowns.own.names:
+            each = {f"{said} [{r}]": f"{name} [{r}]" for r in unknowns.records}
+        else:
+            each = {said: name}
+        for word, full in each.items():
+            parameters[word] = (float(values[full]), float(std.get(full, 0.0)), record.unit)
+        if name in unknowns.own.names:
+            for r, own in model.unseen.own.items():
+                parameters[f"{said} [{r}]"] = (*own[name], record.unit)
     shape = {s.name: values[c.effect.parameter(s.name, c.where)] for s in c.effect.shapes}
     return RefittedEffect(
         candidate=replace(c, shape=shape), parameters=parameters,

@@ -5,18 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import mujoco
-import numpy as np
 
 from identification.errors import InputError
 from identification.logs.log import Log
-from identification.logs.noise import noise_floor
 from identification.logs.sampling import MIN_ROWS, rows_between
-from identification.model.plant import start_place
-from identification.model.predictor import output_columns
-from identification.quantities import alike
 from identification.robot.file import RobotFile
 
-CLEAR, NEAR = 5.0, 0.01  # of noise and of travel: a larger distance is another start
 MOST_STEPS = 100.0  # of the model in a sample; with more, time is most often in ms
 
 
@@ -59,11 +53,12 @@ def refuse_milliseconds(model: mujoco.MjModel, file: RobotFile, log: Log, path: 
         InputError: a sample lasts more than `MOST_STEPS` steps.
     """
     h, step = log.sampling_time, float(model.opt.timestep)
-    if h > MOST_STEPS * step:
+    if h > MOST_STEPS * step and "time" not in file.trust:
         raise InputError(
             f"{path} is sampled every {h:g} s, {h / step:.0f} steps of {file.model}; is its time in"
             f' ms? then write time = "ms" under [units] in {path.with_suffix(".toml")}, else give'
-            f" the model a timestep of {h / MOST_STEPS:g} s or more"
+            f" the model a timestep of {h / MOST_STEPS:g} s or more, or write trust = ["
+            f'"time"] into {file.path}'
         )
 
 
@@ -95,26 +90,6 @@ def _left(log: Log, every: int) -> bool:
         return False
     rows = (rows_between(time, *split) for split in log.splits.values())
     return all(last - first >= MIN_ROWS for first, last in rows)
-
-
-def refuse_start(file: RobotFile, model: mujoco.MjModel, log: Log) -> None:
-    """Refuse a free run that would begin in another state than the log.
-
-    Raises:
-        InputError: the first measured position of a joint is not the model's, and is not free.
-    """
-    free = (file.records.get(name, {}).get("path", name) for name in file.free)
-    own = {start_place(str(path), model) for path in free}
-    noise, travel = noise_floor(log.outputs), np.ptp(log.outputs, axis=0)
-    for k, (field, i) in enumerate(output_columns(model, log.output_names)):
-        off = abs(log.outputs[0, k] - model.qpos0[i]) if field == "qpos" else 0.0
-        if (field, i) not in own and off > max(CLEAR * noise[k], NEAR * travel[k]):
-            name, unit = log.output_names[k], log.units.get(log.output_names[k], "")
-            there, here = alike([float(log.outputs[0, k]), float(model.qpos0[i])], unit)
-            raise InputError(
-                f"log {log.name!r} begins at {name} = {there} and {file.model} at {here}; write"
-                f' "qpos[{i}]" under free in {file.path}: it then begins where it was measured'
-            )
 
 
 def refuse_horizon(file: RobotFile, log: Log) -> None:

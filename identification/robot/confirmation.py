@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from identification.discovery.final_values import collect_final_values
 from identification.discovery.result import Discovery
+from identification.errors import refuse_kind
 from identification.robot.fitting import RobotFit
 from identification.robot.record_error import Confirmation, compare_values
 from identification.robot.robot import Robot
@@ -29,6 +30,8 @@ def confirm(robot: Robot, found: RobotFit | Discovery) -> tuple[Confirmation, ..
         InputError: windows of the robot's horizon do not fit a record.
         DivergenceError: one of the models cannot be simulated.
     """
+    refuse_kind(robot, Robot, "confirm takes a robot (read_robot)")
+    refuse_kind(found, (RobotFit, Discovery), "confirm takes what fit or discover found")
     if isinstance(found, RobotFit):
         return tuple(compare_values(robot, log, {}, found.values) for log in robot.records)
     after = collect_final_values(found)

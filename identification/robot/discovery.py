@@ -11,11 +11,11 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
 from identification.effects.effect import Effect
-from identification.errors import InputError
+from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.prediction.discovery import discover_records
 from identification.prediction.result import RecordsDiscovery
-from identification.robot.checks import refuse_search_horizon, refuse_start
+from identification.robot.checks import refuse_search_horizon
 from identification.robot.robot import Robot
 
 
@@ -57,20 +57,24 @@ def discover(
 
     Raises:
         InputError: log and effects are given with a robot, or are missing with a nominal model;
-            the log is too short, the horizon does not fit into the unseen part, a free run would
-            begin in another state than the log, or a free parameter has no effect.
+            the log is too short, the horizon does not fit into the unseen part, or a free
+            parameter has no effect.
         DivergenceError: the nominal model cannot be simulated.
     """
+    if not isinstance(model, Robot):
+        refuse_kind(model, NominalModel, "discover takes a robot (read_robot) or a NominalModel")
     if isinstance(model, Robot):
         if log is not None or effects is not None:
             raise InputError("a robot has its own log and candidates; leave log and effects out")
         if model.others:
             return _discover_records(model, progress, options)
         refuse_search_horizon(model.file, model.log)
-        refuse_start(model.file, model.plant.model, model.log)
         return search.discover(model.nominal_model, model.log, model.candidates, progress, options)
     if log is None or effects is None:
         raise InputError("discover needs a log and candidate effects beside a nominal model")
+    refuse_kind(log, Log, "discover takes a Log (read_log) beside a nominal model")
+    for effect in effects:
+        refuse_kind(effect, Effect, "discover takes effects (candidates(plant, free), or your own)")
     return search.discover(model, log, effects, progress, options)
 
 

@@ -5,8 +5,13 @@ outputs = ["position"]               # sensors that the log has; all joint posit
 free = ["M", "joint/slide.damping", "coulomb_friction.f_c@slide"]
 horizon = 0.2                        # [s] to judge predictions over; a free run if not given
 every = 10                           # keep every n-th sample
+trust = ["wiring"]                   # judgements that are not to refuse a log: see TRUST below
 [fixed]                              # values of effects' parameters that are not free
 "stribeck_friction.v_s" = 0.05
+[start]                              # entries of the initial state; else the log's, or the model's
+"qvel[0]" = 0.0
+[log]                                # what the TOML beside a log says, for every log
+columns = ["time", "vir", "skip"]    # of files without a header, in their order
 [columns]                            # actuator or sensor = column of the log, where they differ
 drive = "vir"
 [parameters.M]                       # of a free parameter; every key may be left out
@@ -28,7 +33,7 @@ A free name is a key under `parameters`, a path into the model or its start, or 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf, isfinite
 from pathlib import Path
@@ -39,12 +44,23 @@ from identification.files import read_bytes
 from identification.logs.names import quoted
 
 _LARGEST = 2**20  # [bytes]; it is written by hand
+TRUST = {  # what a user may know better than a check
+    "sensors": "a sensor that repeats one value is not frozen",
+    "start": "simulations begin where the model does, also where the log begins elsewhere",
+    "steps": "the model's steps are fine enough",
+    "time": "the log's time is in seconds",
+    "units": "the outputs are in the units that the log says",
+    "wiring": "the signs and the order of the columns are right",
+}
 _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
     "model": (str, "a path in quotes"),
     "outputs": (list, "a list of sensors"),
     "free": (list, "a list of parameters"),
     "horizon": ((int, float), "a number of seconds"),
     "every": (int, "a whole number of samples"),
+    "trust": (list, "a list of words in quotes"),
+    "start": (dict, "a table of numbers"),
+    "log": (dict, "a table"),
     "columns": (dict, "a table"),
     "fixed": (dict, "a table of numbers"),
     "parameters": (dict, "a table of tables"),
@@ -72,6 +88,9 @@ class RobotFile:
         outputs: sensors; empty for all joint positions.
         horizon: length of the windows over which predictions are judged [s]; None for a free run.
         every: n, where every n-th sample is kept.
+        trust: words of `TRUST`: judgements that do not refuse a log.
+        start: entries of the initial state by path.
+        log: what the TOML beside a log says, for all logs that do not say it themselves.
         columns: column of the log by actuator or sensor.
         fixed: values of effects' parameters that are not free.
         records: what is known of free parameters, by name.
@@ -86,6 +105,9 @@ class RobotFile:
     outputs: tuple[str, ...] = ()
     horizon: float | None = None
     every: int = 1
+    trust: tuple[str, ...] = ()
+    start: Mapping[str, float] = field(default_factory=dict)
+    log: Mapping[str, Any] = field(default_factory=dict)
     columns: Mapping[str, str] = field(default_factory=dict)
     fixed: Mapping[str, float] = field(default_factory=dict)
     records: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
@@ -119,7 +141,12 @@ def read_robot_file(path: str | Path) -> RobotFile:
         if name not in content["free"]:
             raise InputError(f"{path} tells of parameter {name!r}, which is not among its `free`")
     columns, fixed = content.get("columns", {}), content.get("fixed", {})
-    _check(fixed, dict.fromkeys(fixed, ((int, float), "a number")), f"fixed in {path}")
+    start = content.get("start", {})
+    for key, table in (("fixed", fixed), ("start", start)):
+        _check(table, dict.fromkeys(table, ((int, float), "a number")), f"{key} in {path}")
+    twice = [name for name in start if name in content["free"]]
+    if twice:
+        raise InputError(f"{path} gives {twice[0]} under [start] and frees it; keep one of both")
     effects = content.get("effects", {})
     _check(effects, _EFFECTS, f"effects in {path}")
     model = path.parent / content["model"]
@@ -132,6 +159,9 @@ def read_robot_file(path: str | Path) -> RobotFile:
         outputs=_texts(content.get("outputs", []), "outputs", path),
         horizon=content.get("horizon"),
         every=content.get("every", 1),
+        trust=trusted(content.get("trust", []), str(path)),
+        start={name: float(value) for name, value in start.items()},
+        log=content.get("log", {}),
         columns=dict(zip(columns, _texts([*columns.values()], "columns", path), strict=True)),
         fixed={name: float(value) for name, value in fixed.items()},
         records=records,
@@ -139,6 +169,22 @@ def read_robot_file(path: str | Path) -> RobotFile:
         only=_texts(effects.get("only", []), "effects.only", path),
         turns=_numbers(effects.get("turns", []), "effects.turns", path),
     )
+
+
+def trusted(words: Sequence[Any], where: str) -> tuple[str, ...]:
+    """The judgements that a user overrules.
+
+    Args:
+        words: of `TRUST`.
+        where: who gave them, for messages.
+
+    Raises:
+        InputError: a word is unknown.
+    """
+    for word in words:
+        if word not in TRUST:
+            raise unknown_name(f"word under trust in {where}:", str(word), TRUST)
+    return tuple(words)
 
 
 def _check(

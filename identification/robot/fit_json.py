@@ -14,6 +14,7 @@ from identification.report.fit_json import fit_to_json
 from identification.report.fit_verdict import window_sentences
 from identification.robot.fitting import RobotFit
 from identification.robot.record_error import Confirmation
+from identification.robot.repetition import find_repetitions
 from identification.windows.window_estimate import WindowEstimate
 
 FARTHEST = 100.0  # a value that changes by this factor is not believed
@@ -31,8 +32,14 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
         record = {**fit_to_json(found), "horizon": None}
     else:
         record = _windows(result, found)
-    verdict = [*_far(record["parameters"]), *record["verdict"], *map(str, confirmed)]
-    return {**record, "confirm": [vars(c) for c in confirmed], "verdict": verdict}
+    repeated = find_repetitions(result.robot)
+    said = (*confirmed, *repeated)
+    verdict = [*_far(record["parameters"]), *record["verdict"], *map(str, said)]
+    return {
+        **record, "confirm": [vars(c) for c in confirmed], "verdict": verdict,
+        "findings": [r.finding for r in repeated],
+        "remarks": list(result.robot.remarks),
+    }  # fmt: skip
 
 
 def _windows(result: RobotFit, found: WindowEstimate) -> dict[str, Any]:

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from identification.errors import InputError
+from identification.errors import InputError, refuse_kind
 from identification.estimation.estimation import estimate
 from identification.estimation.fit import Fit, assess
-from identification.robot.checks import refuse_horizon, refuse_start
+from identification.robot.checks import refuse_horizon
 from identification.robot.record_error import Confirmation, compare_unseen
 from identification.robot.robot import Robot
 from identification.windows.window_estimate import WindowEstimate, estimate_windows
@@ -54,10 +54,11 @@ def fit(robot: Robot, progress: Callable[[str], None] | None = None) -> RobotFit
         progress: is told one line per accepted step.
 
     Raises:
-        InputError: the log is too short, the horizon does not fit into it, a free run would begin
-            in another state than the log, or a free parameter has no effect.
+        InputError: the log is too short, the horizon does not fit into it, or a free parameter has
+            no effect.
         DivergenceError: the model cannot be simulated with the values at which the fit begins.
     """
+    refuse_kind(robot, Robot, "fit takes a robot (read_robot)")
     file, log = robot.file, robot.log
     if robot.others:
         raise InputError(
@@ -71,7 +72,6 @@ def fit(robot: Robot, progress: Callable[[str], None] | None = None) -> RobotFit
         )
     refuse_horizon(file, log)
     if file.horizon is None:
-        refuse_start(file, robot.plant.model, log)
         estimated = estimate(robot.plant, part, file.free, progress=progress)
         return RobotFit(robot, assess(estimated, log))
     names = tuple(n for n in file.free if n not in robot.starts)

@@ -24,6 +24,7 @@ from identification.model.paths import read, resolve
 from identification.model.plant import own_start, start_place
 from identification.model.predictor import output_columns
 from identification.robot.file import RobotFile
+from identification.robot.start import CLEAR, measured_begin
 
 KNOWN = 0.3  # std of the prior unless given: relative if positive, else of the plausible size
 SURE = 0.01  # of a joint's motion in the log: std of the prior of a start that was measured
@@ -72,10 +73,16 @@ def free_parameter(
 
 
 def measured_start(model: mujoco.MjModel, path: str, log: Log, own: float) -> float:
-    """The first measured sample of an entry of the start; `own` where it is not measured."""
+    """The first measured sample of an entry of the start; `own` where it is not measured.
+
+    A rate that is not measured itself is that of the measured position, where it is beyond noise.
+    """
     place = start_place(path, model)
     columns = output_columns(model, log.output_names)
-    return float(log.outputs[0, columns.index(place)]) if place in columns else own
+    if place in columns:
+        return float(log.outputs[0, columns.index(place)])
+    begin = None if place is None else measured_begin(model, log).get(place)
+    return own if begin is None or abs(begin.value) <= CLEAR * begin.std else begin.value
 
 
 def _in_model(

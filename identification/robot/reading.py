@@ -7,9 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from identification.effects.axes import axes
+from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
-from identification.robot.file import RobotFile, read_robot_file
+from identification.robot.file import RobotFile, read_robot_file, trusted
 from identification.robot.robot import Robot, read_robot_log, robot_of
+from identification.robot.start import start_sentence
 from identification.robot.step_error import refuse_coarse_steps
 from identification.robot.wiring import refuse_miswired
 
@@ -18,6 +20,7 @@ def read_robot(
     path: str | Path,
     log: str | Path | Log | Sequence[str | Path | Log],
     confirm: Sequence[str | Path | Log] = (),
+    trust: Sequence[str] = (),
 ) -> Robot:
     """Read a robot and the logs that it is to explain; refuse files that do not belong together.
 
@@ -27,6 +30,8 @@ def read_robot(
             `Log` whose columns bear the names of the model's actuators and sensors. Several of
             them are fitted together.
         confirm: records of the same robot to which nothing will be fitted.
+        trust: judgements that are not to refuse a log, beside those of the file's key `trust`:
+            words of `identification.robot.file.TRUST`.
 
     Raises:
         InputError: a file cannot be what it should be, a name is unknown, a sensor froze, the
@@ -34,18 +39,45 @@ def read_robot(
             log's columns would explain it far better.
         DivergenceError: the model cannot be simulated.
     """
+    refuse_kind(path, (str, Path), "read_robot takes the path of a robot's TOML")
+    for records, of in ((log, "log"), (confirm, "confirm")):
+        _refuse_records(records, of)
     file = read_robot_file(path)
+    file = replace(file, trust=(*file.trust, *trusted(trust, "what was called")))
     records = tuple(_log(file, record) for record in confirm)
     first, *others = (
         _log(file, each) for each in ([log] if isinstance(log, str | Path | Log) else log)
     )
-    robot = replace(robot_of(file, first, others), records=records)
+    robot = robot_of(file, first, others, records)
     refuse_coarse_steps(robot)
     for record in records:
-        axes(robot.plant.model, record)  # a sensor that froze is refused
-    for measured in (robot.log, *robot.others, *records):
+        axes(robot.plant.model, record, file.trust)  # a sensor that froze is refused
+    every = (robot.log, *robot.others, *records)
+    for measured in every:
         refuse_miswired(robot, measured)
-    return robot
+    return replace(robot, remarks=_remarks(robot, every))
+
+
+def _refuse_records(records: object, of: str) -> None:
+    """Refuse what is neither a path nor a log, nor several of them."""
+    what = f"{of} of read_robot takes paths of files or Logs (read_log)"
+    one = isinstance(records, (str, Path, Log))
+    if of == "confirm" and one:
+        raise InputError(f"{what} in a list; write confirm=[...] around it")
+    if of == "log" and isinstance(records, Sequence) and not len(records):
+        raise InputError(f"{what}, and none is given; give at least one")
+    refuse_kind(records, (str, Path, Log, Sequence), what)
+    for each in [] if one else records:  # type: ignore[attr-defined]
+        refuse_kind(each, (str, Path, Log), what)
+
+
+def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
+    """What was taken for granted, a sentence each."""
+    file, own = robot.file, robot.plant.model
+    # Over a horizon each window begins where it was measured.
+    begun = (start_sentence(file, own, log) for log in logs if file.horizon is None)
+    resampled = (remark for log in logs for remark in log.remarks)
+    return (*robot.remarks, *resampled, *(sentence for sentence in begun if sentence))
 
 
 def _log(file: RobotFile, log: str | Path | Log) -> Log:

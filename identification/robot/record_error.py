@@ -90,10 +90,10 @@ def _rms(robot: Robot, log: Log, values: Mapping[str, float]) -> float:
     if horizon is None:
         error = _free_run(robot, log, here)
     else:
-        error = window_error(robot.plant, log, horizon, here)
+        error = window_error(robot.plant_of(log), log, horizon, here)
     return float(np.sqrt(np.mean(error**2)))
 
 
 def _free_run(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
-    predictor = Predictor(robot.plant, log, (), dict(values))
+    predictor = Predictor(robot.plant_of(log), log, (), dict(values))
     return np.asarray(log.outputs - predictor.predict(np.empty((1, 0)))[0])

@@ -11,12 +11,11 @@ import numpy as np
 
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.axes import axes, reach
+from identification.effects.catalogue import all_effects
 from identification.effects.effect import Effect
-from identification.effects.input_effects import drives, input_effects
-from identification.effects.joint_catalogue import TURNS, joint_effects
+from identification.effects.joint_catalogue import TURNS
 from identification.effects.joint_plant import JointPlant, candidates, joint_plant
 from identification.effects.named import means_effect, unknown_number
-from identification.effects.rows import read_model
 from identification.errors import InputError, unknown_name
 from identification.logs.decimation import decimate
 from identification.logs.log import Log
@@ -30,7 +29,9 @@ from identification.robot.checks import (
     refuse_unnamed,
 )
 from identification.robot.file import RobotFile
+from identification.robot.model_file import robot_spec, with_step
 from identification.robot.parameters import free_parameter, measured_start, unit_of
+from identification.robot.start import start_of
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,7 @@ class Robot:
             be positive, else in its unit.
         records: logs to which nothing is fitted; models are confirmed on them.
         others: further logs that are fitted together with `log`.
+        remarks: what was taken for granted when its files were read, a sentence each.
     """
 
     file: RobotFile
@@ -53,6 +55,7 @@ class Robot:
     std: np.ndarray
     records: tuple[Log, ...] = ()
     others: tuple[Log, ...] = ()
+    remarks: tuple[str, ...] = ()
 
     @property
     def nominal_model(self) -> NominalModel:
@@ -79,6 +82,11 @@ class Robot:
             n: measured_start(self.plant.model, at[n].where, log, at[n].value) for n in self.starts
         }
 
+    def plant_of(self, log: Log) -> JointPlant:
+        """The plant as it begins in a log."""
+        start = start_of(self.file, self.plant.model, log)
+        return replace(self.plant, bare=replace(self.plant.bare, start=start))
+
 
 def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     """Read a log with the columns of a robot.
@@ -88,7 +96,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
             sensor, the log has too few samples for the file, or its time cannot be in seconds.
     """
     refuse_same_stem(file, Path(path))
-    model = read_model(file.model).compile()
+    model = robot_spec(file)[0].compile()
     refuse_unnamed(model, file)
     inputs = tuple(model.actuator(i).name for i in range(model.nu))
     sensors = {model.sensor(i).name: int(model.sensor_type[i]) for i in range(model.nsensor)}
@@ -111,6 +119,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     log = read_log(
         path, [own[n] for n in inputs], [own[n] for n in outputs],
         units={own[n]: u for n, u in units.items()}, named_in=file.path,
+        lenient=True, said=file.log,
     )  # fmt: skip
     refuse_milliseconds(model, file, log, Path(path))
     refuse_every(file, log)
@@ -119,25 +128,31 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     return decimate(log, file.every) if file.every > 1 else log
 
 
-def robot_of(file: RobotFile, log: Log, others: Sequence[Log] = ()) -> Robot:
-    """Compile a robot for a log, and for others that are to be fitted together with it.
+def robot_of(
+    file: RobotFile, log: Log, others: Sequence[Log] = (), records: Sequence[Log] = ()
+) -> Robot:
+    """Compile a robot for a log, for others that are fitted together with it, and for records.
 
     Raises:
         InputError: a name, a path, a joint or an effect is unknown, or a value is missing.
     """
-    spec = read_model(file.model)
+    spec, said = robot_spec(file)
+    said += with_step(spec, [log, *others, *records])
     model = spec.copy().compile()
-    known = reach([axes(model, each) for each in (log, *others)])
+    known = reach([axes(model, each, file.trust) for each in (log, *others)])
     for joint in file.joints:
         if joint not in {a.joint for a in known}:
             raise unknown_name("measured joint", joint, (a.joint for a in known))
     known = tuple(a for a in known if not file.joints or a.joint in file.joints)
-    effects = (*joint_effects(known, file.turns or TURNS), *input_effects(drives(log)))
+    effects = all_effects(spec, known, log, file.turns or TURNS)
     for name in file.only:
         if name not in {e.name for e in effects}:
             raise unknown_name("effect", name, (e.name for e in effects))
-    records = [free_parameter(file, name, model, effects, log) for name in file.free]
-    plant = joint_plant(file.model, [r for r, _ in records], log, joints=known, effects=effects)
+    priors = [free_parameter(file, name, model, effects, log) for name in file.free]
+    plant = joint_plant(
+        spec, [r for r, _ in priors], log, joints=known, effects=effects,
+        start=start_of(file, model, log),
+    )  # fmt: skip
     for name in file.fixed:
         if name not in plant.parameters.values():
             if means_effect(name, effects):
@@ -146,5 +161,7 @@ def robot_of(file: RobotFile, log: Log, others: Sequence[Log] = ()) -> Robot:
                 f"{name!r} under fixed in {file.path} is no number of an effect; write its value"
                 f" into {file.model}, or name it under free"
             )
-    std = np.array([std for _, std in records])
-    return Robot(file, log, plant.with_values(file.fixed), std, others=tuple(others))
+    std = np.array([std for _, std in priors])
+    return Robot(
+        file, log, plant.with_values(file.fixed), std, tuple(records), tuple(others), said
+    )  # fmt: skip

@@ -48,6 +48,8 @@ def refuse_coarse_steps(robot: Robot) -> None:
     Raises:
         InputError: the error is larger than the noise.
     """
+    if "steps" in robot.file.trust:
+        return
     try:
         worst = step_error(robot)
     except DivergenceError:  # the search will say why
@@ -60,7 +62,7 @@ def refuse_coarse_steps(robot: Robot) -> None:
         + f" in {worst.output} with integrator {INTEGRATORS[int(option.integrator)]} and timestep"
         f" {option.timestep:g} s, more than the noise of log {robot.log.name!r},"
         f" {worst.noise:.2g} {unit}".rstrip()
-        + f"; {_cure(robot)}"
+        + f'; {_cure(robot)}, or trust = ["steps"] into {robot.file.path}'
     )
 
 
@@ -113,7 +115,7 @@ def _cure(robot: Robot) -> str:
 
 def _stepped(robot: Robot, factor: float, integrator: int | None = None) -> Robot:
     """The same robot with another timestep and, if given, another integrator."""
-    model = copy.copy(robot.plant.model)
+    model = copy.copy(robot.plant.bare.model)
     model.opt.timestep *= factor
     if integrator is not None:
         model.opt.integrator = integrator

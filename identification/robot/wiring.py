@@ -1,20 +1,30 @@
-"""Is a log wired as its robot's model is? The windows in which that is judged.
+"""Is a log wired as its robot's model is? What is judged, and what is never held against a log.
 
-ε of `identification.logs.readings`, summed over windows that each begin in the state that the log
-measured first.
+ε of `identification.logs.readings` is summed over windows that each begin in the state that the log
+measured first. A model that lacks a payload, has gravity where there is none, or a friction three
+times too small, explains a right log badly too, and may explain a wrong reading better by chance:
+one that makes the motion larger makes every error of the model smaller beside it. So a log is
+refused only where the balance of forces says the same (`identification.robot.balance`): no payload,
+gravity, friction or mass lets the log be explained as it is read nearly as well as otherwise. Where
+that balance cannot be had, the other reading must explain nearly all.
 """
 
 from __future__ import annotations
 
-from functools import partial
+from dataclasses import dataclass
+from functools import cached_property, partial
 from itertools import chain
 
+import mujoco
 import numpy as np
 
+from identification.effects.joint_plant import JointPlant
 from identification.errors import DivergenceError, InputError
 from identification.logs.log import Log
 from identification.logs.readings import (
+    NEARER,
     UNEXPLAINED,
+    Reading,
     input_readings,
     misread,
     output_readings,
@@ -22,11 +32,12 @@ from identification.logs.readings import (
     unit_readings,
 )
 from identification.logs.sampling import MIN_ROWS
+from identification.robot.balance import unbalanced_share
 from identification.robot.robot import Robot
 from identification.windows.window_error import first_error
 from identification.windows.windows import windows
 
-READINGS = (unit_readings, output_readings, input_readings)
+READINGS = {"units": (unit_readings,), "wiring": (output_readings, input_readings)}
 LENGTHS = (0.1, 1.0)  # of windows, shares of a log, where the robot has no horizon of its own
 
 
@@ -34,35 +45,60 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
     """Refuse a log that other units, signs or places of its columns would explain far better.
 
     Args:
-        robot: with the values that its file gives.
+        robot: with the values that its file gives, and what it trusts.
         log: of the robot.
 
     Raises:
         InputError: there is such a reading.
     """
-    file = robot.file
+    file, plant = robot.file, robot.plant_of(log)
+    read = [r for word, kind in READINGS.items() if word not in file.trust for r in kind]
     column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
     lengths = [s * log.duration for s in LENGTHS] if file.horizon is None else [file.horizon]
+    balance = _Balance(plant.model, log)
     for length in lengths:
-        own = _unexplained(robot, length, log)
+        own = _unexplained(plant, length, log)
         if own is None or not (own > UNEXPLAINED).any():
             continue
         bad = own > UNEXPLAINED
-        readings = chain(*(r(log, bad, column) for r in READINGS))
-        said = misread(log, own, readings, partial(_unexplained, robot, length))
-        if said is not None:
+        readings = chain(*(r(log, bad, column) for r in read))
+        found = misread(log, own, readings, partial(_unexplained, plant, length), balance.confirms)
+        if found is not None:
+            reading, said = found
             raise InputError(
                 f"log {log.name!r}: the model of {file.model} {said}, or give values nearer to the"
-                f" robot's in {file.path}"
+                f' robot\'s, or write trust = ["{reading.kind}"] into {file.path}'
             )
 
 
-def _unexplained(robot: Robot, length: float, log: Log) -> np.ndarray | None:
+@dataclass(frozen=True)
+class _Balance:
+    """The balance of forces of a log as it is read, which other readings are compared with."""
+
+    model: mujoco.MjModel
+    log: Log
+
+    @cached_property
+    def own(self) -> np.ndarray | None:
+        """η of each output, shape (ny,)."""
+        return unbalanced_share(self.model, self.log)
+
+    def confirms(self, reading: Reading, left: np.ndarray) -> bool:
+        """Whether forces speak for a reading that leaves ε (ny,)."""
+        k = list(reading.columns)
+        if self.own is None:
+            return bool((left[k] < UNEXPLAINED).all())
+        other = unbalanced_share(self.model, reading.log)
+        # Together, because a joint without a drive looks the same from both sides.
+        return other is not None and bool(other[k].sum() < NEARER * self.own[k].sum())
+
+
+def _unexplained(plant: JointPlant, length: float, log: Log) -> np.ndarray | None:
     """ε of each output, shape (ny,); None where nothing can be simulated so."""
     if not MIN_ROWS * log.sampling_time <= length <= log.duration:
         return None  # too short to tell, and whoever fits it will say so
     try:
-        error = first_error(robot.plant, log, length)
+        error = first_error(plant, log, length)
     except DivergenceError:
         return None
     return unexplained_share(windows(log, length).outputs, error)

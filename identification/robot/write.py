@@ -31,7 +31,11 @@ def write_robot(robot: Robot, values: Mapping[str, float], path: Path, place: Pa
     ]
     lines += [] if file.horizon is None else [f"horizon = {file.horizon!r}"]
     lines += [f"every = {file.every}"] if file.every > 1 else []
-    tables: dict[str, dict[str, object]] = {"columns": dict(file.columns), "fixed": dict(fixed)}
+    lines += [f"trust = {_list(file.trust)}"] if file.trust else []
+    tables: dict[str, dict[str, object]] = {
+        "start": dict(file.start), "log": dict(file.log), "columns": dict(file.columns),
+        "fixed": dict(fixed),
+    }  # fmt: skip
     for name in names:
         said = {**file.records.get(name, {}), "unit": at[name].unit}
         tables[f"parameters.{_text(name)}"] = {
@@ -60,4 +64,6 @@ def _list(names: tuple[str, ...] | list[str]) -> str:
 def _value(value: object) -> str:
     if isinstance(value, list):
         return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{_text(k)} = {_value(v)}' for k, v in value.items())}}}"
     return _text(value) if isinstance(value, str) else repr(value)

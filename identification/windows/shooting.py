@@ -18,7 +18,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from identification.model.coordinates import Coordinates
-from identification.model.predictor import Predictor, output_columns
+from identification.model.predictor import Predictor
 from identification.model.rollout import State, hold, rollout, substeps
 from identification.model.sensitivity import FORWARD_STEP
 from identification.windows.windows import FirstStates, Windows, moved
@@ -91,8 +91,7 @@ class Shooting:
             record=("qpos", "qvel"), hold_kind=hold_kind, time=np.tile(self.times, len(q)),
         )  # fmt: skip
         run = {field: states[:, ::every] for field, states in run.items()}
-        columns = output_columns(model, predictor.log.output_names)
-        y = np.stack([run[field][:, :, i] for field, i in columns], axis=-1)
+        y = predictor.outputs(self.space.decode(q), run)
         return y.reshape(len(q), W, *y.shape[1:])
 
     def _inputs(self, values: np.ndarray) -> tuple[np.ndarray, int, str]:

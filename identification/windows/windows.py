@@ -65,6 +65,12 @@ def windows(log: Log, length: float) -> Windows:
     return Windows(log.inputs[rows], log.outputs[rows], starts)
 
 
+def spread(cut: Windows, most: int) -> Windows:
+    """At most so many of some windows, evenly spread over the record."""
+    n = len(cut.starts)
+    return cut if n <= most else cut.rows(np.linspace(0, n - 1, most).astype(int))
+
+
 @dataclass(frozen=True)
 class FirstStates:
     """The prior of the windows' initial states.

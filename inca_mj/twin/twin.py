@@ -115,8 +115,9 @@ class Twin:
         return State(*rows), numbers
 
     def inputs(
-        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
-    ) -> np.ndarray:
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
+        begun: float = 0.0,
+    ) -> np.ndarray:  # fmt: skip
         """The currents that reach the motors, after effects that act on them; see `Plant`.
 
         Args:
@@ -124,8 +125,15 @@ class Twin:
             values: their values, shape (n, p).
             held: logged currents at the steps of the simulation, shape (steps, 8) [A].
             timestep: of the simulation [s].
+            begun: time of the first step in the record, of which no input effect asks here [s].
         """
         return effect_inputs(self.effects, names, self.parameters.values(), values, held, timestep)
+
+    def outputs(
+        self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str], readings: np.ndarray
+    ) -> np.ndarray:
+        """What the encoders say, which are perfect; see `Plant`."""
+        return np.asarray(readings[0])
 
     def save(self, path: str | Path) -> Path:
         """Write the model as MJCF, exact to the last bit; returns the path."""

@@ -70,9 +70,9 @@ def refuse_miswired(log: Log, plant: Twin) -> None:
     column = {n: n for n in (*log.output_names, *log.input_names)}
     every = np.ones(y.shape[1], bool)
     readings = chain(output_readings(part, every, column), _several(part, y, predicted))
-    said = misread(part, unexplained(part), readings, unexplained)
-    if said is not None:
-        raise InputError(f"log {log.name!r}: the twin {said}{ADVICE}")
+    other = misread(part, unexplained(part), readings, unexplained)
+    if other is not None:
+        raise InputError(f"log {log.name!r}: the twin {other[1]}{ADVICE}")
     scale = float(np.exp(np.mean(np.log(np.abs((y * predicted).sum(0) / (predicted**2).sum(0))))))
     if not UNIT[0] < scale < UNIT[1]:
         raise InputError(

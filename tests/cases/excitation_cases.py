@@ -44,9 +44,15 @@ class Slider:
         return State(np.zeros((n, 1)), np.zeros((n, 1)), np.zeros((n, 0))), numbers
 
     def inputs(
-        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float
-    ) -> np.ndarray:
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
+        begun: float = 0.0,
+    ) -> np.ndarray:  # fmt: skip
         return held
+
+    def outputs(
+        self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str], readings: np.ndarray
+    ) -> np.ndarray:
+        return readings[0]
 
 
 def slider() -> Slider:

@@ -88,13 +88,21 @@ def run(plant, log, **values):
 def stopping_time(plant, joint):
     """T of a joint: its row is the one before the user data end with key and tag [s]."""
     on_joints = [e for e in plant.effects if {"force", "friction"} & {*e.hooks}]
-    width = 3 + sum(len(e.names) for e in on_joints)
+    width = 8 + sum(len(e.names) for e in on_joints)
     return float(plant.model.jnt_user[plant.model.joint(joint).id, -width])
+
+
+def reached(plant, joint):
+    """What the records of a joint reach, which stands behind T: the last fields of its state."""
+    on_joints = [e for e in plant.effects if {"force", "friction"} & {*e.hooks}]
+    width = 7 + sum(len(e.names) for e in on_joints)
+    return plant.model.jnt_user[plant.model.joint(joint).id, -width:][:5].tolist()
 
 
 def forces(plant, joint, values):
     """The force of a joint's effects in plain Python: (q, v, f_u, f_g, passive, M, time) -> f."""
     every, T = {**plant.parameters.values(), **values}, stopping_time(plant, joint)
+    far = reached(plant, joint)
     laws = {
         hook: [(e.hooks[hook].py_func, tuple(numbers_at(e, joint, every)), len(e.sizes))
                for e in plant.effects if hook in e.hooks]
@@ -105,7 +113,7 @@ def forces(plant, joint, values):
         return sum(law(s, p) for law, p, sizes in laws[hook] if any(p[:sizes]))
 
     def force(q, v, f_u, f_g, passive, M, time):
-        s = Joint(time=time, q=q, v=v, f_u=f_u, f_g=f_g, sign=0.0)
+        s = Joint(time, q, v, f_u, f_g, 0.0, *far)
         f = total("force", s)
         r = M * v / T + f_u + f_g + passive + f
         b = max(0.0, total("friction", s._replace(sign=1.0 if r > 0 else -1.0)))

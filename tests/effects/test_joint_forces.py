@@ -79,6 +79,7 @@ def test_each_force_is_that_of_a_slow_integration(effect):
 
 S = Joint(time=2.0, q=0.3, v=0.5, f_u=-7.0, f_g=3.0, sign=1.0)
 BACK = S._replace(v=-0.5, sign=-1.0)
+CURVE = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0)
 LAWS = [
     ("coulomb_friction", (2.0,), S, 2.0),
     ("coulomb_friction", (2.0,), BACK, 2.0),
@@ -103,8 +104,8 @@ LAWS = [
     ("stiffness", (4.0,), S, -1.2),
     ("hardening", (-5.0,), S, 5 * 0.3**3),
     ("torque_saturation", (0.01,), S, 3.43),
-    ("two_load_friction", (0.2, 0.1), S, 1.7),
-    ("two_load_friction", (0.1, 0.3), S._replace(f_u=7.0), 0.2),
+    ("two_load_friction", (0.2, 0.5), S, 1.7),
+    ("two_load_friction", (0.1, 3.0), S._replace(f_u=7.0), 0.2),
     ("quadratic_load_friction", (0.1, 0.2, 0.25), S, 0.9 * np.exp(-2)),
     ("quadratic_load_friction", (0.1, 0.2, 0.25), S._replace(f_g=8.0), 9.8 * np.exp(-2)),
     ("quadratic_load_friction", (0.1, 0.2, 0.25), S._replace(f_u=7.0), 0.0),
@@ -114,6 +115,18 @@ LAWS = [
     ("friction_jump", (0.4, 2.1, 0.1), S, 0.0),
     ("viscous_friction_drift", (0.4,), BACK, 0.4),
     ("viscous_friction_jump", (0.4, 1.9, 0.1), S, -0.2),
+    ("curve_speed", CURVE, S._replace(v_top=2.0), 6.0),
+    ("curve_speed", CURVE, BACK._replace(v_top=2.0), 2.0),
+    ("curve_speed", CURVE, S._replace(v=2.0 * 0.375**2, v_top=2.0), 5.5),
+    ("curve_speed", CURVE, S._replace(v=0.0), 0.0),
+    ("curve_speed", CURVE, S._replace(v=9.0), 8.0),
+    ("curve_load", CURVE, S._replace(f_top=56.0), 0.5),
+    ("curve_load", CURVE, S._replace(f_u=7.0, f_top=8.0), 7.5),
+    ("curve_position", CURVE, S._replace(q_mid=0.3, q_far=2.0), 4.5),
+    ("curve_position", CURVE, S._replace(q_mid=9.3, q_far=2.0), 1.0),
+    ("curve_position", CURVE, S._replace(q_mid=-0.7, q_far=1.0), 8.0),
+    ("curve_time", CURVE, S._replace(t_end=2.0), 8.0),
+    ("curve_time", CURVE, S._replace(time=1.0, t_end=2.0), 4.5),
     ("push", (3.0, 1.0, 0.9, 0.1), S, 0.0),
     ("push", (3.0, 1.0, 1.1, 0.1), S, 3.0),
     ("push", (3.0, 2.1, 1.1, 0.1), S, 0.0),

@@ -172,8 +172,11 @@ class Curved:
         )
         return self.plant.settings(("stiffness",), (a * b**1.37)[:, None])
 
-    def inputs(self, names, values, held, timestep):
+    def inputs(self, names, values, held, timestep, begun=0.0):
         return held
+
+    def outputs(self, names, values, sensors, readings):
+        return readings[0]
 
 
 def test_a_trade_off_that_is_no_product_of_small_powers_is_not_called_one():

@@ -37,6 +37,9 @@ from identification.robot.robot import read_robot_log
         ),
         (("[columns]", "[effects]\njoints = ['arm']\n[columns]"), "known: slide"),
         (("= [", "= {"), "is not TOML"),
+        (("free", "trust = ['wirring']\nfree"), "did you mean 'wiring'? known: sensors, start"),
+        (("[columns]", "[start]\n'qpos[0]' = 0.1\n[columns]"), "under [start] and frees it"),
+        (("[columns]", "[start]\n'qpos[7]' = 0.1\n[columns]"), "qpos has 1 entries"),
         (
             ("joint/slide.damping", "coulomb_friction.f_c@slid"),
             "'slid'; did you mean 'slide'? known: slide",
@@ -68,15 +71,6 @@ def test_a_thing_without_a_name_is_told(folder, capsys, change, thing, outputs):
     path.write_text(outputs + TOML.replace("slider.xml", "unnamed.xml"))
     said = refused(capsys, "fit", path, folder / "plain.csv")
     assert f"{thing} 0 of {folder / 'unnamed.xml'}, counted from 0, has no name; give it" in said
-
-
-@pytest.mark.parametrize("command", ["fit", "discover"])
-def test_a_start_that_is_not_the_models_must_be_free(folder, capsys, command):
-    path = folder / "held.toml"
-    path.write_text(TOML.replace('"qpos[0]", ', ""))
-    said = refused(capsys, command, path, folder / "other.csv")
-    assert "begins at position = 0.2" in said
-    assert 'write "qpos[0]" under free' in said
 
 
 def test_an_effect_of_the_other_kind_of_joint_is_suggested():

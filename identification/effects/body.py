@@ -1,0 +1,104 @@
+"""What effects may change of a body: the ten numbers of its inertia, and back to MuJoCo's.
+
+    (m, h, I_O):    h = m c,    I_O = I_c + m (|c|² 1 - c cᵀ)
+
+m: mass [kg]; c: centre of mass in the body's frame [m]; I_c, I_O: inertia about the centre of mass
+and about the frame's origin, in the frame's axes [kg m²]. All ten add up over the parts of a body,
+so that effects add up too. An effect's function is called before the simulation, as plain Python.
+"""
+
+from __future__ import annotations
+
+from collections import namedtuple
+from collections.abc import Sequence
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError
+from identification.native.element import Element, Hook
+
+# What an effect sees of a body, in the axes of the body's frame.
+#   m [kg], cx, cy, cz [m]; Ixx .. Iyz: I_c [kg m²]; px, py, pz: where a payload would sit [m]
+Body: Any = namedtuple("Body", "m cx cy cz Ixx Iyy Izz Ixy Ixz Iyz px py pz")
+
+BODY = Element(
+    "body",
+    Body,
+    (
+        Hook(
+            "inertia",
+            (
+                "mass [kg]", "h_x [kg m]", "h_y [kg m]", "h_z [kg m]", "I_O,xx [kg m²]",
+                "I_O,yy [kg m²]", "I_O,zz [kg m²]", "I_O,xy [kg m²]", "I_O,xz [kg m²]",
+                "I_O,yz [kg m²]",
+            ),
+        ),
+    ),
+)  # fmt: skip
+
+ROUNDING = 1e-9  # of the trace of an inertia
+
+
+def frame_inertia(inertia: np.ndarray, quat: np.ndarray) -> np.ndarray:
+    """I_c in the body's axes, shape (3, 3), of principal moments (3,) and their axes (4,)."""
+    flat = np.empty(9)
+    mujoco.mju_quat2Mat(flat, quat)
+    R = flat.reshape(3, 3)
+    return np.asarray(R @ np.diag(inertia) @ R.T)
+
+
+def principal(I_c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Principal moments (3,) and the quaternion of their axes (4,) of an inertia (3, 3)."""
+    moments, R = np.linalg.eigh(I_c)
+    if np.linalg.det(R) < 0:
+        R[:, 0] *= -1
+    quat = np.empty(4)
+    mujoco.mju_mat2Quat(quat, np.ascontiguousarray(R).ravel())
+    return moments, quat
+
+
+def about(m: float, c: np.ndarray) -> np.ndarray:
+    """m (|c|² 1 - c cᵀ): inertia of a point mass about the origin, shape (3, 3)."""
+    return np.asarray(m * (c @ c * np.eye(3) - np.outer(c, c)))
+
+
+def seen(m: float, c: np.ndarray, I_c: np.ndarray, point: Sequence[float]) -> Any:
+    """The body as an effect sees it."""
+    upper = I_c[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    return Body(*map(float, (m, *c, *upper, *point)))
+
+
+def changed(
+    label: str, m: float, c: np.ndarray, I_c: np.ndarray, added: np.ndarray
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """Mass, centre of mass (3,) and I_c (3, 3) after effects have added their ten numbers.
+
+    Args:
+        label: of the body, for an error.
+        m: mass before [kg].
+        c: centre of mass before [m].
+        I_c: inertia before [kg m²].
+        added: by effects, shape (10,).
+
+    Raises:
+        InputError: no such body is possible: its mass or a moment of inertia would not be
+            positive, or one moment would exceed the sum of the others.
+    """
+    xx, yy, zz, xy, xz, yz = added[4:]
+    more = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    mass = m + added[0]
+    if not mass > 0:
+        raise InputError(f"body {label!r} would have a mass of {mass:.3g} kg; take other sizes")
+    centre = (m * c + added[1:4]) / mass
+    inertia = I_c + about(m, c) + more - about(mass, centre)
+    if not _excess(inertia) <= max(_excess(I_c), 0.0) + ROUNDING * np.trace(I_c):
+        raise InputError(f"body {label!r} would have an inertia that no body has; take other sizes")
+    return float(mass), centre, inertia
+
+
+def _excess(I_c: np.ndarray) -> float:
+    """By how much the largest moment exceeds the sum of the others; more than 0 if impossible."""
+    low, middle, high = np.linalg.eigvalsh(I_c)
+    return float(max(high - middle - low, -low))

@@ -1,0 +1,39 @@
+"""Curves drawn from the data, which explain what no listed law does; see `curve_laws`.
+
+A curve has eight sizes, so that a law that explains as much with fewer wins by its criterion. It
+acts on one joint, because each joint has a range of its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from identification.effects import curve_laws as laws
+from identification.effects.effect import CURVE, Effect, Size
+from identification.effects.joint_group import Group
+from identification.native.element import Function
+
+
+def curve_effects(g: Group) -> list[Effect]:
+    """Curves of some joints; those without a place are left out by the caller."""
+    single = {where: suffix for where, suffix in g.plain.items() if suffix}
+    out = [
+        _curve(g, laws.curve_speed, "f(v), none at rest", "force: some curve of speed"),
+        replace(_curve(g, laws.curve_load, "f(f_u), f_u the drive's force",
+                       "force: some curve of the drive's force"), places=single),
+        _curve(g, laws.curve_position, "f(q)", "force: some curve of position"),
+    ]  # fmt: skip
+    if g.T > 0:
+        out.append(_curve(g, laws.curve_time, "f(t)", "force: some curve of time"))
+    return out
+
+
+def _curve(g: Group, law: Function, said: str, phrase: str) -> Effect:
+    sizes = tuple(_size(g, k) for k in range(1, laws.NODES + 1))
+    made = g.force(law, said, sizes, phrase, where=g.each)
+    what = law.__name__.removeprefix(CURVE)  # the word stands first, so that it is seen to be one
+    return replace(made, name=f"{CURVE}_{g.prefix}".rstrip("_") + what)
+
+
+def _size(g: Group, k: int) -> Size:
+    return g.size(f"c_{k}", 0.3 * g.F, g.f, f"force at node {k}")

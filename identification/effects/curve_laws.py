@@ -1,0 +1,65 @@
+"""The laws of curves: forces on a joint that are drawn from the data, where no listed law fits.
+
+    f(x) = Σ_k c_k Λ_k(x)             Λ_k: 1 at the node x_k, 0 at all others, straight between
+
+    of speed        x = sgn(v) √(|v|/v_top),  nodes at ±¼, ±½, ±¾, ±1, and f(0) = 0
+    of the load     x = f_u/f_top,            the same nodes, and f(0) = 0
+    of position     x = (q - q_mid)/q_far,    nodes evenly from -1 to 1
+    of time         x = 2 t/t_end - 1,        the same nodes
+
+A force that depends on speed or on the drive alone is none at rest or without the drive: what would
+be left is a constant force, which is an effect by itself. Nodes of speed are dense where frictions
+bend. Beyond the last node a curve keeps its value. Each c_k is the force at its node.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from numba import njit
+
+NODES = 8
+
+
+@njit
+def through_zero(x, c):  # type: ignore[no-untyped-def]
+    """The curve with nodes at -¼, -½, -¾, -1, ¼, ½, ¾, 1, which is zero at zero."""
+    z, side = 4.0 * abs(x), 4 if x > 0.0 else 0
+    if z >= 4.0:
+        return c[side + 3]
+    k = int(z)
+    before = 0.0 if k == 0 else c[side + k - 1]
+    return before + (z - k) * (c[side + k] - before)
+
+
+@njit
+def straight(x, c):  # type: ignore[no-untyped-def]
+    """The curve with eight nodes evenly from -1 to 1."""
+    z = min(7.0, max(0.0, 3.5 * (x + 1.0)))
+    k = min(6, int(z))
+    return c[k] + (z - k) * (c[k + 1] - c[k])
+
+
+@njit
+def curve_speed(s, p):  # type: ignore[no-untyped-def]
+    """f(sgn(v) √(|v|/v_top))."""
+    x = sqrt(abs(s.v) / s.v_top)
+    return through_zero(x if s.v > 0.0 else -x, p)
+
+
+@njit
+def curve_load(s, p):  # type: ignore[no-untyped-def]
+    """f(f_u/f_top)."""
+    return through_zero(s.f_u / s.f_top, p)
+
+
+@njit
+def curve_position(s, p):  # type: ignore[no-untyped-def]
+    """f((q - q_mid)/q_far)."""
+    return straight((s.q - s.q_mid) / s.q_far, p)
+
+
+@njit
+def curve_time(s, p):  # type: ignore[no-untyped-def]
+    """f(2 t/t_end - 1)."""
+    return straight(2.0 * s.time / s.t_end - 1.0, p)

@@ -1,0 +1,147 @@
+"""The bodies of a model that move and have a mass, and what of their inertia is felt."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+POSES = 4  # random states in which forces are compared
+FELT = 1e-9  # of the largest force: a smaller change of it is round-off
+STEP = 0.1  # of a number of a body, relative to its size
+
+
+@dataclass(frozen=True, kw_only=True)
+class MovingBody:
+    """A body that joints move.
+
+    Attributes:
+        label: its name, or that of its first joint where it has none.
+        index: in the model.
+        mass: [kg].
+        point: where a payload would sit, in its frame: its farthest site, else the centre of its
+            farthest geom, else twice as far as its centre of mass, where a uniform link ends,
+            shape (3,) [m].
+        reach: distance of the farthest of these from its frame [m].
+        is_last: whether it carries no other moving body.
+    """
+
+    label: str
+    index: int
+    mass: float
+    point: tuple[float, float, float]
+    reach: float
+    is_last: bool
+
+
+def movable(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """The compiled model whose bodies may be given another centre of mass and other axes.
+
+    MuJoCo simplifies a body whose inertial frame is its own frame; here it may not, and computes
+    the same numbers the longer way.
+
+    Args:
+        spec: the model, which is not changed.
+    """
+    spec = spec.copy()
+    for body in spec.bodies:
+        if body.name != "world" and hasattr(body, "simple"):  # MuJoCo 3.17 has it
+            body.simple = False
+    model = spec.compile()
+    model.body_sameframe[:] = 0
+    return model
+
+
+def moving_bodies(model: mujoco.MjModel) -> tuple[MovingBody, ...]:
+    """The bodies that move and have mass, in the model's order, but for those without a name."""
+    moving = [b for b in range(model.nbody) if model.body_weldid[b] and model.body_mass[b] > 0]
+    carrying = {int(model.body_weldid[model.body_parentid[int(model.body_weldid[b])]])
+                for b in moving}  # fmt: skip
+    out = []
+    for b in moving:
+        if not (label := _label(model, b)):
+            continue
+        points = _points(model, b) or [2 * model.body_ipos[b]]
+        reach = max(float(np.linalg.norm(p)) for p in (*points, model.body_ipos[b]))
+        far = max(points, key=lambda p: float(np.linalg.norm(p)))
+        out.append(
+            MovingBody(
+                label=label, index=b, mass=float(model.body_mass[b]), reach=reach,
+                point=(float(far[0]), float(far[1]), float(far[2])),
+                is_last=int(model.body_weldid[b]) not in carrying,
+            )
+        )  # fmt: skip
+    return tuple(out)
+
+
+class Felt:
+    """What of the bodies' inertia the forces of inverse dynamics feel, in random states.
+
+    Args:
+        model: of `movable`.
+    """
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        self.model, self.states = model, _states(model)
+        self.nominal = _forces(model, self.states)
+
+    def axes(self, body: MovingBody) -> str:
+        """The axes of its frame along which a displaced centre of mass is felt, of "xyz"."""
+        far = STEP * (body.reach or 1.0)
+        return "".join(a for k, a in enumerate("xyz") if self._is("body_ipos", body, k, far))
+
+    def is_turning(self, body: MovingBody) -> bool:
+        """Whether its inertia is felt."""
+        more = STEP * (float(self.model.body_inertia[body.index].max()) or 1.0)
+        return any(self._is("body_inertia", body, k, more) for k in range(3))
+
+    def _is(self, field: str, body: MovingBody, k: int, more: float) -> bool:
+        other = copy.copy(self.model)
+        getattr(other, field)[body.index, k] += more
+        mujoco.mj_setConst(other, mujoco.MjData(other))
+        change = np.abs(_forces(other, self.states) - self.nominal).max()
+        return bool(change > FELT * max(float(np.abs(self.nominal).max()), 1e-300))
+
+
+def _label(model: mujoco.MjModel, b: int) -> str:
+    """Name of a body, or that of its first joint."""
+    own = model.body(b).name
+    return own or (model.joint(model.body_jntadr[b]).name if model.body_jntnum[b] else "")
+
+
+def _points(model: mujoco.MjModel, b: int) -> list[np.ndarray]:
+    """Sites of a body, or else the centres of its geoms."""
+    for n, of, pos in (
+        (model.nsite, model.site_bodyid, model.site_pos),
+        (model.ngeom, model.geom_bodyid, model.geom_pos),
+    ):
+        own = [np.array(pos[i]) for i in range(n) if of[i] == b]
+        if any(np.linalg.norm(p) > 0 for p in own):
+            return own
+    return []
+
+
+def _states(model: mujoco.MjModel) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Random positions, velocities and accelerations."""
+    rng, out = np.random.default_rng(0), []
+    for _ in range(POSES):
+        qpos = np.array(model.qpos0)
+        mujoco.mj_integratePos(model, qpos, rng.normal(0, 1, model.nv), 1.0)
+        out.append((qpos, rng.normal(0, 1, model.nv), rng.normal(0, 1, model.nv)))
+    return out
+
+
+def _forces(
+    model: mujoco.MjModel, states: list[tuple[np.ndarray, np.ndarray, np.ndarray]]
+) -> np.ndarray:
+    """Forces M v̇ + c of inverse dynamics, shape (states, nv)."""
+    data, out = mujoco.MjData(model), []
+    for qpos, qvel, qacc in states:
+        data.qpos, data.qvel = qpos, qvel
+        mujoco.mj_forward(model, data)
+        moved = np.zeros(model.nv)
+        mujoco.mj_mulM(model, data, moved, qacc)
+        out.append(moved + data.qfrc_bias)
+    return np.array(out)

@@ -1,0 +1,40 @@
+"""What an encoder may add to its reading y of a joint at position q with rate v.
+
+    scale           s y                     its counts are not what they are taken for
+    offset          c                       its zero is not the joint's
+    eccentricity    a cos q + b sin q       its disc turns about another centre
+    lag             -τ v                    it is read or sent too late: y(t - τ) ≈ y - τ v
+
+Each function takes the state of a sensor (see `identification.native.reading.Reading`) and the
+effect's parameters, sizes first.
+"""
+
+from __future__ import annotations
+
+from math import cos, sin
+
+from numba import njit
+
+
+@njit
+def encoder_scale(s, p):  # type: ignore[no-untyped-def]
+    """s y."""
+    return p[0] * s.y
+
+
+@njit
+def encoder_offset(s, p):  # type: ignore[no-untyped-def]
+    """c."""
+    return p[0]
+
+
+@njit
+def encoder_eccentricity(s, p):  # type: ignore[no-untyped-def]
+    """a cos q + b sin q."""
+    return p[0] * cos(s.q) + p[1] * sin(s.q)
+
+
+@njit
+def encoder_lag(s, p):  # type: ignore[no-untyped-def]
+    """-τ v."""
+    return -p[0] * s.v

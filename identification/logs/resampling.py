@@ -1,0 +1,164 @@
+"""A log with uneven time stamps or missing cells, put on an even grid.
+
+    h     the median interval of an output's own samples, the largest of all outputs
+    y_k   the monotone cubic (Fritsch, Carlson 1980) through the samples of y, at t_k = t_0 + k h
+    u_k   hold "zoh": mean of the held input over [t_k, t_k + h), so that it does the same work
+          hold "foh": the straight line between the nearest samples, at t_k
+
+Each channel has the rows in which it is finite; of equal stamps the last row counts. A gap of n
+intervals is bridged if the log itself says that this is harmless: where the samples are there, the
+middle of n intervals is compared with the straight line across them. An error below the noise, or
+below a hundredth of the motion, changes no fit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from identification.errors import InputError
+from identification.logs.names import quoted
+from identification.logs.noise import noise_floor
+from identification.logs.sampling import MIN_ROWS, FloatArray, grid
+
+ALLOWED = 0.01  # of a channel's motion, that the bridge of a gap may err by
+CLEAR = 2.0  # std of its noise, that it may err by
+MOST = 0.05  # of the log, that one gap may be: beyond it the rest of the log is no witness
+ROUND = 0.02  # of the rate, by which it may be rounded: any rate near the samples' own would do
+
+
+@dataclass(frozen=True)
+class Even:
+    """Channels on an even grid.
+
+    Attributes:
+        time: stamps of the grid, shape (n,) [s].
+        channels: by name, shape (n,), each in a unit of its own.
+        sentence: what was done.
+    """
+
+    time: FloatArray
+    channels: Mapping[str, FloatArray]
+    sentence: str
+
+
+@dataclass(frozen=True)
+class _Channel:
+    """The samples of one channel, stamps (m,) [s] increasing."""
+
+    name: str
+    time: FloatArray
+    values: FloatArray
+
+
+def even_out(
+    name: str,
+    time: FloatArray,
+    channels: Mapping[str, FloatArray],
+    inputs: Sequence[str],
+    hold: str,
+    step: float | None = None,
+) -> Even:
+    """Put channels on an even grid.
+
+    Args:
+        name: of the log.
+        time: stamps of the rows, shape (n,) [s], none smaller than the one before.
+        channels: by name, shape (n,); NaN where nothing arrived.
+        inputs: which of them are inputs.
+        hold: of the inputs, "zoh" or "foh".
+        step: of the grid [s]; the median interval when None.
+
+    Raises:
+        InputError: stamps go back, a channel has too few samples, or a gap is too long.
+    """
+    back = np.flatnonzero(np.diff(time[np.isfinite(time)]) < 0)
+    if back.size:
+        at = time[np.isfinite(time)][back[0]]
+        raise InputError(
+            f"time of log {name!r} goes back after {at:.9g} s; sort its rows, or cut the log there"
+        )
+    own = [_samples(name, key, time, values) for key, values in channels.items()]
+    # An input that is held may come as seldom as it changes.
+    timed = [c for c in own if c.name not in inputs or hold == "foh"] or own
+    h = step or _round(max(float(np.median(np.diff(c.time))) for c in timed))
+    begin, end = max(c.time[0] for c in own), min(c.time[-1] for c in timed)
+    n = int((end - begin) / h + 1e-6) + 1
+    if n < MIN_ROWS:
+        raise InputError(
+            f"the channels of log {name!r} overlap for {max(0.0, end - begin):.3g} s only, fewer"
+            f" than {MIN_ROWS} samples; leave out the one that begins late or ends early"
+        )
+    t = grid(begin, h, n)
+    out = {c.name: _held(c, t, h) if c.name in inputs and hold == "zoh" else
+           np.interp(t, c.time, c.values) if c.name in inputs else
+           PchipInterpolator(c.time, c.values)(t) for c in own}  # fmt: skip
+    for c in timed:
+        _refuse_gap(name, c, out[c.name], h)
+    return Even(t, out, _sentence(name, timed, t, h))
+
+
+def _samples(log: str, name: str, time: FloatArray, values: FloatArray) -> _Channel:
+    """The rows of a channel in which it is finite, the last of equal stamps."""
+    rows = np.flatnonzero(np.isfinite(time) & np.isfinite(values))
+    rows = rows[np.append(np.diff(time[rows]) > 0, True)] if rows.size else rows
+    if rows.size < MIN_ROWS:
+        raise InputError(
+            f"column {quoted(name)} of log {log!r} has {rows.size} samples and needs {MIN_ROWS};"
+            " leave it out, or record again"
+        )
+    return _Channel(name, time[rows], values[rows])
+
+
+def _round(interval: float) -> float:
+    """An interval whose rate [Hz] has the fewest digits."""
+    rate = 1 / interval
+    rounded = (float(f"{rate:.{digits}g}") for digits in range(1, 17))
+    return 1 / next((r for r in rounded if abs(r - rate) <= ROUND * rate), rate)
+
+
+def _held(c: _Channel, t: FloatArray, h: float) -> FloatArray:
+    """Means of a held input over the intervals of a grid."""
+    stamps = np.append(c.time, max(t[-1] + h, c.time[-1]) + h)
+    work = np.concatenate([[0.0], np.cumsum(c.values * np.diff(stamps))])
+    return np.asarray((np.interp(t + h, stamps, work) - np.interp(t, stamps, work)) / h)
+
+
+def _refuse_gap(log: str, c: _Channel, y: FloatArray, h: float) -> None:
+    """Refuse a gap that a line would bridge badly, by what it does elsewhere in the log."""
+    gaps = np.diff(c.time)
+    k = int(np.argmax(gaps))
+    n = round(float(gaps[k]) / h)
+    if n <= 1:
+        return
+    noise = float(noise_floor(y[:, None])[0])
+    error, allowed = np.inf, max(ALLOWED * float(np.ptp(y)), CLEAR * noise)
+    if n <= max(2, MOST * len(y)):
+        m = n // 2
+        line = y[:-n] + m / n * (y[n:] - y[:-n])
+        error = float(np.sqrt(np.mean((y[m : len(y) - n + m] - line) ** 2)))
+    if error > allowed:
+        errs = f"errs by {error:.2g} elsewhere" if np.isfinite(error) else "says nothing"
+        raise InputError(
+            f"log {log!r} has no {c.name} for {gaps[k]:.3g} s from {c.time[k]:.6g} s, and a line"
+            f" across so much {errs} (allowed: {allowed:.2g}); cut the log there"
+        )
+
+
+def _sentence(log: str, timed: Sequence[_Channel], t: FloatArray, h: float) -> str:
+    made, widest, at = 0, 0.0, 0.0
+    for c in timed:
+        near = np.clip(np.searchsorted(c.time, t), 1, len(c.time) - 1)
+        apart = np.minimum(np.abs(t - c.time[near - 1]), np.abs(t - c.time[near]))
+        made = max(made, int(np.sum(apart > 0.5 * h * (1 + 1e-6))))
+        k = int(np.argmax(np.diff(c.time)))
+        if c.time[k + 1] - c.time[k] > widest:
+            widest, at = float(c.time[k + 1] - c.time[k]), float(c.time[k])
+    return (
+        f"Log {log!r} is uneven in time and was put on a grid of {h:.6g} s ({1 / h:.4g} Hz); its"
+        f" largest gap is {widest:.3g} s, from {at:.6g} s, and {made} of {len(t)} samples, farther"
+        " than half a step from any that was measured, were made up."
+    )

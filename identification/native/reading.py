@@ -1,0 +1,63 @@
+"""The effects of sensors: what a reading differs by from what a perfect sensor would say.
+
+    y' = y + Σ_e reading_e(s, p_e)                        s: the `Reading` state of a sensor
+
+They act on the predicted outputs, after the simulation: the robot moves as if they were not there.
+"""
+
+from __future__ import annotations
+
+from collections import namedtuple
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+from numba import types
+
+from identification.native.cache import compile_once
+from identification.native.compose import total
+from identification.native.element import Element, Hook, Term
+from identification.native.hook_checks import refuse_unfit_functions
+from identification.native.memory import load_double, store_double
+
+# What an effect sees of a sensor at a sample.
+#   y: what a perfect sensor would say [rad, m, rad/s or m/s]
+#   q, v: position [rad or m] and rate [rad/s or m/s] of the joint that it measures
+Reading: Any = namedtuple("Reading", "y q v")
+
+SENSOR = Element(
+    "sensor", Reading, (Hook("reading", ("what is added to the reading, in its unit",)),)
+)
+
+_SIGNATURE = types.void(types.int64, types.int64, types.int64)
+
+
+@cache
+def sensor_filter(terms: Sequence[Term]) -> Any:
+    """The compiled effects of a sensor.
+
+    Args:
+        terms: the effects.
+
+    Returns:
+        (signals, samples, row): a ctypes function. `signals` is the address of an array of shape
+        (4, samples): y, q, v, and y', which is written. `row` is the address of the effects'
+        parameters.
+
+    Raises:
+        InputError: a function of an effect cannot be compiled.
+    """
+    reading = total(SENSOR, terms, "reading")
+
+    def sensor(signals, samples, row):  # type: ignore[no-untyped-def]
+        q, v, out = signals + 8 * samples, signals + 16 * samples, signals + 24 * samples
+        for k in range(samples):
+            y = load_double(signals + 8 * k)
+            s = Reading(y=y, q=load_double(q + 8 * k), v=load_double(v + 8 * k))
+            store_double(out + 8 * k, y + reading(s, row, 0))
+
+    try:
+        return compile_once(sensor, _SIGNATURE)
+    except Exception:
+        refuse_unfit_functions(SENSOR, terms)
+        raise

@@ -1,0 +1,195 @@
+"""What of the drives' forces a log cannot explain, whatever may be wrong with the model's numbers.
+
+    τ = Σ_b s_b (M_b(q) q̈ + c_b(q, q̇)) + Σ_p m_p (M_p(q) q̈ + c_p) + Σ_g γ_g g_g(q) + …
+        … + d q̇ + f_c sign q̇ + f_0 + κ k (q - q_0)          s, κ in [1/4, 4], m_p, d, f_c ≥ 0
+    η_j = Σ (τ_j - right side)² / Σ (τ_j - mean τ_j)²      least over s, m, γ, d, f_c, f_0, κ
+
+b are the model's bodies and rotors, p points of the outermost bodies that may carry a payload. Each
+γ is the weight of a body along an axis, or of what it carries: gravity may be missing, turned or
+too much. So η is what no payload, gravity, friction or mass explains; only a wrong unit, sign or
+order of columns does. Accelerations come from the weak form, as in Brunot, Janot, Young, Carrillo
+(2018): every signal is smoothed by ψ, and q̈ by its second difference, so that noise stays small.
+"""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from identification.logs.log import Log
+from identification.logs.noise import noise_floor
+from identification.model.predictor import output_columns
+
+FACTOR = 4.0  # that a mass, an inertia or a stiffness may be off; more is a matter of units
+PAYLOAD = 1.0  # largest, of the mass of all that moves
+NOISE = 0.1  # of an acceleration that its noise may be
+WIDTHS = (2, 4, 8, 16, 32, 64)  # half the length of ψ that are tried, in samples
+ROWS = 300  # samples that are used; neighbours say the same, because ψ overlaps
+FAR = (1.0, 1 / 3)  # of the robot's size, that a payload's points are away from its body
+SCALAR = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
+
+
+@dataclass(frozen=True)
+class Smooth:
+    """Smoothed motion and inputs of the chosen samples, shapes (n, nv) and (n, nu)."""
+
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    u: np.ndarray
+
+
+def unbalanced_share(model: mujoco.MjModel, log: Log) -> np.ndarray | None:
+    """η of the joint of each output, shape (ny,), without unit.
+
+    Args:
+        model: with the log's actuators and sensors.
+        log: as it is read.
+
+    Returns:
+        None where it cannot be had: a joint is not measured, is neither hinge nor slide, drives
+        have states, bodies are tied to each other, or noise hides all accelerations.
+    """
+    columns = output_columns(model, log.output_names)
+    at = {i: k for k, (field, i) in enumerate(columns) if field == "qpos"}
+    plain = np.isin(model.jnt_type, SCALAR).all() and not (model.neq or model.na or model.ntendon)
+    if not plain or sorted(at) != [*range(model.nq)]:
+        return None
+    motion = _smooth(log.outputs[:, [at[i] for i in range(model.nq)]], log)
+    if motion is None:
+        return None
+    force = _drive_forces(model, motion)
+    A, low, high = _columns(model, motion)
+    size = force.std(axis=0)
+    own = A[:, :, : int(np.sum(low > 0))].sum(axis=2)  # of the model's own masses
+    size = np.where(size > 0, size, np.sqrt(np.mean(own**2, axis=0)))  # joints without a drive
+    size = np.where(size > 0, size, 1.0)
+    flat = (A / size[None, :, None]).reshape(-1, A.shape[2])
+    norm = np.linalg.norm(flat, axis=0)
+    used = norm > 1e-9 * norm.max()
+    b = (force / size).ravel()
+    x = lsq_linear(
+        flat[:, used] / norm[used], b, (low[used] * norm[used], high[used] * norm[used])
+    ).x
+    left = (b - flat[:, used] / norm[used] @ x).reshape(force.shape)
+    eta = np.mean(left**2, axis=0)
+    joint = [i if field == "qvel" else int(model.jnt_dofadr[model.jnt_qposadr == i][0])
+             for field, i in columns]  # fmt: skip
+    return np.asarray(eta[joint])
+
+
+def _smooth(q: np.ndarray, log: Log) -> Smooth | None:
+    """The motion through the shortest ψ whose acceleration is not that of noise."""
+    h, noise = log.sampling_time, noise_floor(q)
+    u = log.inputs
+    held = (np.vstack([u[:1], u[:-1]]) + u) / 2 if log.hold == "zoh" else u
+    for w in WIDTHS:
+        if 8 * w > len(q):
+            return None
+        x = np.arange(-w + 1, w) / w
+        psi = np.pad((1 - x**2) ** 3, 2)
+        psi /= psi.sum()
+        bend = np.diff(psi, 2) / h**2
+        slope = (psi[:-2] - psi[2:]) / (2 * h)
+        a = _filtered(q, bend)
+        if (noise * np.linalg.norm(bend) <= NOISE * a.std(axis=0)).all():
+            every = max(1, len(a) // ROWS)
+            parts = (_filtered(q, psi[1:-1]), _filtered(q, slope), a, _filtered(held, psi[1:-1]))
+            return Smooth(*(part[::every] for part in parts))
+    return None
+
+
+def _filtered(signals: np.ndarray, kernel: np.ndarray) -> np.ndarray:
+    """Σ_i kernel_i y_{k+i} of columns (n, m), where the kernel fits."""
+    return np.stack([np.correlate(y, kernel, "valid") for y in signals.T], axis=1)
+
+
+def _drive_forces(model: mujoco.MjModel, motion: Smooth) -> np.ndarray:
+    """Forces of the drives on the joints (n, nv)."""
+    data, force = mujoco.MjData(model), np.empty(motion.v.shape)
+    for k in range(len(force)):
+        data.qpos, data.qvel, data.ctrl = motion.q[k], motion.v[k], motion.u[k]
+        mujoco.mj_forward(model, data)
+        force[k] = data.qfrc_actuator
+    return force
+
+
+def _columns(model: mujoco.MjModel, motion: Smooth) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What may explain the forces, shape (n, nv, columns), and the bounds of the sizes."""
+    moving = [b for b in range(1, model.nbody) if model.body_weldid[b] and model.body_mass[b] > 0]
+    outer = [b for b in moving if not any(model.body_parentid[c] == b for c in moving)]
+    reach = _size(model, moving)
+    nv, n, least = model.nv, len(motion.v), np.finfo(float).tiny
+    own = [_inertial(model, motion, b, None) for b in moving]
+    rotors = [motion.a * (model.dof_armature * (np.arange(nv) == j))
+              for j in range(nv) if model.dof_armature[j]]  # fmt: skip
+    stiff = [(motion.q - model.qpos_spring) * (model.jnt_stiffness * (np.arange(nv) == j))
+             for j in range(nv) if model.jnt_stiffness[j]]  # fmt: skip
+    points = [np.zeros(3)]
+    points += [s * far * reach * e for far in FAR for s in (-1, 1) for e in np.eye(3)]
+    payload = [_inertial(model, motion, b, model.body_ipos[b] + p) for b in outer for p in points]
+    near = [np.zeros(3), *(reach * np.eye(3))]
+    weight = [w for b in moving for p in near for w in _weights(model, motion, b, p)]
+    each = [np.where(np.arange(nv) == j, x, 0.0)
+            for j in range(nv) for x in (motion.v, np.sign(motion.v))]  # fmt: skip
+    level = [np.broadcast_to(np.arange(nv) == j, (n, nv)).astype(float) for j in range(nv)]
+    most = PAYLOAD * float(model.body_mass[moving].sum())
+    low, high = [], []
+    for found, (a, b) in (
+        (own + rotors + stiff, (1 / FACTOR, FACTOR)), (payload, (0.0, max(most, least))),
+        (each, (0.0, np.inf)), (weight + level, (-np.inf, np.inf)),
+    ):  # fmt: skip
+        low += [a] * len(found)
+        high += [b] * len(found)
+    every = [*own, *rotors, *stiff, *payload, *each, *weight, *level]
+    return np.stack(every, axis=2), np.array(low), np.array(high)
+
+
+def _size(model: mujoco.MjModel, moving: list[int]) -> float:
+    """How far the centres of mass are apart, or from the base [m]."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    centres = data.xipos[moving]
+    from_axes = np.linalg.norm(centres - data.xpos[moving], axis=1).max(initial=0.0)
+    return float(max(np.ptp(centres, axis=0).max(initial=0.0), from_axes)) or 0.1
+
+
+def _inertial(
+    model: mujoco.MjModel, motion: Smooth, body: int, point: np.ndarray | None
+) -> np.ndarray:
+    """Inertial forces of one body alone, or of 1 kg at a point of it, shape (n, nv)."""
+    alone = copy.copy(model)
+    mass, inertia = model.body_mass[body], model.body_inertia[body].copy()
+    alone.body_mass[:], alone.body_inertia[:], alone.opt.gravity[:] = 0.0, 0.0, 0.0
+    if point is None:
+        alone.body_mass[body], alone.body_inertia[body] = mass, inertia
+    else:
+        alone.body_mass[body], alone.body_ipos[body] = 1.0, point
+    data, force = mujoco.MjData(alone), np.empty(motion.v.shape)
+    for k in range(len(force)):
+        data.qpos, data.qvel, data.qacc = motion.q[k], motion.v[k], motion.a[k]
+        mujoco.mj_kinematics(alone, data)
+        mujoco.mj_comPos(alone, data)
+        mujoco.mj_comVel(alone, data)
+        mujoco.mj_rne(alone, data, 1, force[k])
+    return force
+
+
+def _weights(
+    model: mujoco.MjModel, motion: Smooth, body: int, point: np.ndarray
+) -> list[np.ndarray]:
+    """Forces of 1 N along each axis of the world at a point of a body, three of shape (n, nv)."""
+    data, J = mujoco.MjData(model), np.zeros((3, model.nv))
+    force = np.empty((3, *motion.v.shape))
+    for k in range(len(motion.q)):
+        data.qpos = motion.q[k]
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        at = data.xipos[body] + data.ximat[body].reshape(3, 3) @ point
+        mujoco.mj_jac(model, data, J, None, at, body)
+        force[:, k] = J
+    return [*force]

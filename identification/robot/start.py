@@ -1,0 +1,148 @@
+"""Where a simulation of a log begins: its measured joints where and as fast as the log does.
+
+    y(t) = c_0 + c_1 t + c_2 t²    on the first m samples;  position c_0, rate c_1
+
+The motion is no parabola for long. So m is the largest number of samples whose c_0 and c_1 agree
+with those of all fewer ones within their noise (Lepski 1991), and the std is that of the next
+fewer, because m samples may err by as much as that hides. A start that differs from the model's by
+no more than this is no reason to doubt the model's, which is kept. States that no output measures
+begin as the model does.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from identification.logs.log import Log
+from identification.logs.noise import noise_floor
+from identification.model.plant import own_start, start_place
+from identification.model.predictor import output_columns
+from identification.model.rollout import State
+from identification.quantities import alike
+from identification.robot.file import RobotFile
+
+CLEAR = 3.0  # std that a start must differ by; of white noise alone these are 8 std
+AGREE = 2.0  # std within which two spans agree
+SPANS = (3, 5, 9, 17, 33)  # m that are tried
+LISTED = 3  # joints that a sentence lists
+
+Place = tuple[str, int]
+
+
+@dataclass(frozen=True)
+class Begin:
+    """An entry of the initial state as the log shows it.
+
+    Attributes:
+        output: name of the output that shows it.
+        value: in the unit of the state.
+        std: of the value, from the noise of the output.
+    """
+
+    output: str
+    value: float
+    std: float
+
+
+def measured_begin(model: mujoco.MjModel, log: Log) -> dict[Place, Begin]:
+    """The measured entries of the initial state, by field and index: positions and rates.
+
+    Args:
+        model: with the log's sensors.
+        log: at least 3 samples.
+    """
+    noise, found = noise_floor(log.outputs), {}
+    places = enumerate(output_columns(model, log.output_names))
+    for k, (field, i) in sorted(places, key=lambda item: item[1][0]):  # positions, then rates
+        name, h = log.output_names[k], log.sampling_time
+        (value, rate), std = _first(log.outputs[:, k], h, float(noise[k]))
+        found[field, i] = Begin(name, value, std[0])
+        if field == "qpos":
+            joint = int(np.flatnonzero(model.jnt_qposadr == i)[0])
+            found["qvel", int(model.jnt_dofadr[joint])] = Begin(name, rate, std[1])
+    return found
+
+
+def start_of(file: RobotFile, model: mujoco.MjModel, log: Log) -> State:
+    """The initial state of a simulation of a log.
+
+    Args:
+        file: the robot's; what it gives under [start] stands, and with trust in the start all of
+            the model's own stands.
+        model: with the log's sensors.
+        log: what was measured.
+
+    Raises:
+        InputError: a path under [start] names nothing in the state.
+    """
+    own = own_start(model)
+    start = {f: np.array(getattr(own, f)) for f in ("qpos", "qvel", "act")}
+    for (field, i), begin in _moved(file, model, log).items():
+        start[field][i] = begin.value
+    for path, value in file.start.items():
+        place = start_place(path, model)
+        if place is not None:
+            start[place[0]][place[1]] = value
+    return State(**start)
+
+
+def start_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
+    """One sentence that says where a log begins elsewhere than the model; None where it does not.
+
+    Args:
+        file: the robot's.
+        model: with the log's sensors.
+        log: what was measured.
+    """
+    free = {start_place(str(file.records.get(n, {}).get("path", n)), model) for n in file.free}
+    moved = [(p, b) for p, b in _moved(file, model, log).items() if p not in free]
+    if not moved:
+        return None
+    own, said = own_start(model), []
+    for (field, i), begin in moved[:LISTED]:
+        unit = log.units.get(begin.output, "")
+        rate = field == "qvel" and not unit.endswith("/s")
+        here = float(getattr(own, field)[i])
+        pair = alike([begin.value, here], f"{unit}/s" if rate and unit else unit)
+        of = f"the rate of {begin.output}" if rate else begin.output
+        said.append(f"{of} at {pair[0]} instead of {pair[1]}")
+    more = f" and {len(moved) - LISTED} more" if len(moved) > LISTED else ""
+    return (
+        f"Simulations of log {log.name!r} begin where it does, {', '.join(said)}{more}; write"
+        f' trust = ["start"] into {file.path} to begin where {file.model.name} does.'
+    )
+
+
+def _moved(file: RobotFile, model: mujoco.MjModel, log: Log) -> dict[Place, Begin]:
+    """What the log shows to begin elsewhere than the model, and the file does not give."""
+    if "start" in file.trust:
+        return {}
+    own = own_start(model)
+    given = {start_place(path, model) for path in file.start}
+    return {
+        place: begin
+        for place, begin in measured_begin(model, log).items()
+        if place not in given
+        and abs(begin.value - float(getattr(own, place[0])[place[1]])) > CLEAR * begin.std
+    }
+
+
+def _first(y: np.ndarray, h: float, noise: float) -> tuple[tuple[float, float], np.ndarray]:
+    """Value and rate of a signal at its first sample, and the std of both."""
+    # A sample is rounded where it is stored, and a value of that size is no start.
+    least = max(noise, 64 * np.finfo(float).eps * float(np.abs(y[: SPANS[0]]).max()))
+    found: list[tuple[np.ndarray, np.ndarray]] = []
+    for m in SPANS:
+        t = h * np.arange(m)
+        A = np.stack([np.ones(m), t, t**2], axis=1)
+        if m > len(y):
+            break
+        c = np.linalg.lstsq(A, y[:m], rcond=None)[0][:2]
+        if any((np.abs(c - other) > AGREE * std).any() for other, std in found):
+            break
+        found.append((c, least * np.sqrt(np.diag(np.linalg.pinv(A.T @ A)))[:2]))
+    (value, rate), std = found[-1][0], found[max(0, len(found) - 2)][1]
+    return (float(value), float(rate)), std

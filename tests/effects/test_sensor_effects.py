@@ -1,0 +1,125 @@
+"""Effects of sensors: readings by hand, in runs and in windows."""
+
+import numpy as np
+import pytest
+from joint_cases import ARM, DAMPING, MASS, SLIDER, arm, arm_log, run, slider_log, steps
+from scipy.interpolate import CubicSpline
+
+from identification import InputError, Log
+from identification.effects.axes import Axis
+from identification.effects.joint_plant import joint_plant
+from identification.effects.sensor_catalogue import sensor_effects
+from identification.model.predictor import Predictor
+from identification.native.reading import Reading
+from identification.windows.window_error import window_error
+from identification.windows.window_estimate import estimate_windows
+
+BOTH = SLIDER.replace("</sensor>", '<jointvel name="rate" joint="slide"/></sensor>')
+S = Reading(y=2.0, q=0.7, v=-3.0)
+LAWS = [
+    ("encoder_scale", (0.1,), 0.2),
+    ("encoder_offset", (0.1,), 0.1),
+    ("encoder_eccentricity", (0.2, 0.3), 0.2 * np.cos(0.7) + 0.3 * np.sin(0.7)),
+    ("encoder_lag", (0.1,), 0.3),
+]
+
+
+def effects():
+    return {e.name: e for e in arm().effects if "reading" in e.hooks}
+
+
+@pytest.mark.parametrize(("name", "p", "expected"), LAWS)
+def test_a_reading_is_what_the_equation_says(name, p, expected):
+    law = effects()[name].hooks["reading"]
+    assert law.py_func(S, p) == pytest.approx(expected, rel=1e-14)
+
+
+def test_every_effect_of_a_sensor_is_held_against_its_equation():
+    assert {name for name, *_ in LAWS} == effects().keys()
+
+
+def test_the_readings_of_an_arm_are_those_by_hand():
+    log = arm_log(steps(100, 2))
+    q = run(arm(), log)
+    both = {"encoder_scale.s": 0.02, "encoder_scale.s@a": 0.01, "encoder_offset.c@b": 0.3,
+            "encoder_eccentricity.a": 0.01, "encoder_eccentricity.b@b": 0.02}  # fmt: skip
+    a = 1.03 * q[:, 0] + 0.01 * np.cos(q[:, 0])
+    b = 1.02 * q[:, 1] + 0.3 + 0.01 * np.cos(q[:, 1]) + 0.02 * np.sin(q[:, 1])
+    np.testing.assert_allclose(run(arm(), log, **both), np.stack([a, b], axis=1), rtol=1e-14)
+
+
+def test_a_lag_is_the_reading_a_little_earlier():
+    log = arm_log(steps(100, 2))
+    late = run(arm(), log, **{"encoder_lag.tau@a": 1e-3, "encoder_lag.tau@b": 1e-3})
+    q = run(arm(), log)
+    t = np.arange(100) * 0.01
+    for k in range(2):
+        earlier = CubicSpline(t, q[:, k])(t - 1e-3)
+        error, moved = np.abs(late[5:, k] - earlier[5:]), np.abs(q[5:, k] - earlier[5:])
+        assert error.max() < 0.05 * moved.max()  # of second order: τ a/(2 v) of the way
+
+
+def test_each_value_set_of_a_batch_has_its_readings_and_a_rate_is_scaled_only():
+    u = steps(100)
+    log = Log(
+        time=0.01 * np.arange(100), inputs=u, outputs=np.stack([np.sin(u[:, 0]), u[:, 0]], axis=1),
+        input_names=("force",), output_names=("position", "rate"),
+    )  # fmt: skip
+    axis = Axis("slide", "slide", force=5.0, speed=1.0, travel=1.0)
+    plant = joint_plant(BOTH, (MASS, DAMPING), log, joints=(axis,))
+    known = {e.name: set(e.places.values()) for e in plant.effects if "reading" in e.hooks}
+    assert known == {"encoder_scale": {"", "@position", "@rate"}, "encoder_offset": {"@position"},
+                     "encoder_lag": {"@position"}}  # fmt: skip
+    names = ("encoder_scale.s@rate", "encoder_offset.c@position")
+    many = Predictor(plant, log, names).predict(np.array([[0.0, 0.0], [0.1, 0.0], [0.1, -2.0]]))
+    np.testing.assert_allclose(many[1], many[0] * [1.0, 1.1], rtol=1e-14)
+    np.testing.assert_allclose(many[2], many[1] - [2.0, 0.0], rtol=1e-14)
+
+
+def test_windows_begin_at_the_true_state_and_not_at_the_measured_one():
+    log = arm_log(steps(200, 2))
+    plant = arm()
+    wrong = {"encoder_offset.c@a": 0.2, "encoder_scale.s@b": 0.03}
+    measured = arm_log(steps(200, 2))
+    measured = Log(
+        time=log.time, inputs=log.inputs, outputs=run(plant, log, **wrong),
+        input_names=log.input_names, output_names=log.output_names,
+    )  # fmt: skip
+    error = window_error(plant, measured, 0.25, wrong)
+    assert np.sqrt(np.mean(error**2)) < 1e-6
+    # an arm under gravity feels a wrong zero: no start of the windows makes up for it
+    assert np.sqrt(np.mean(window_error(plant, measured, 0.25) ** 2)) > 1e-4
+    fit = estimate_windows(plant, measured, tuple(wrong), 0.25, {n: 0.01 for n in wrong})
+    for name, value in wrong.items():
+        assert fit.values[name] == pytest.approx(value, rel=0.02)
+
+
+def test_slides_and_hinges_have_names_of_their_own():
+    text = ARM.replace('<joint name="elbow" axis="0 1 0" damping="0.1"/>',
+                       '<joint name="elbow" type="slide" axis="1 0 0"/>')  # fmt: skip
+    log = arm_log(steps(50, 2))
+    axes = (Axis("shoulder", "hinge", 1, 1, 1), Axis("elbow", "slide", 1, 1, 1))
+    plant = joint_plant(text, (), log, joints=axes)
+    known = {e.name: e for e in sensor_effects(plant.model, log.output_names, axes)}
+    assert known.keys() == {"encoder_scale", "encoder_offset", "encoder_lag",
+                            "encoder_eccentricity", "slide_encoder_offset",
+                            "slide_encoder_lag"}  # fmt: skip
+    assert known["slide_encoder_offset"].sizes[0].unit == "m"
+    assert known["encoder_eccentricity"].places == {"sensor a": "@a"}
+
+
+def test_a_lag_is_sought_of_one_sensor_among_several():
+    """All sensors late together are all inputs late: that is a delay."""
+    (lag,) = (e for e in arm().effects if e.name == "encoder_lag")
+    assert lag.places == {"sensor a": "@a", "sensor b": "@b"}
+    plant = joint_plant(SLIDER, (MASS, DAMPING), slider_log(steps(100)))
+    assert not any(e.name == "encoder_lag" for e in plant.effects)
+
+
+def test_sizes_of_zero_leave_readings_as_they_are():
+    log = slider_log(steps(100))
+    plant = joint_plant(SLIDER, (MASS, DAMPING), log)
+    np.testing.assert_array_equal(run(plant, log, **{"encoder_scale.s@position": 0.0}),
+                                  run(plant, log))  # fmt: skip
+    with pytest.raises(InputError, match="unknown parameter"):
+        run(plant, log, **{"encoder_scale.s@nowhere": 0.0})

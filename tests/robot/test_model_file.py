@@ -1,0 +1,129 @@
+"""A URDF is completed for a log, and a step that divides no sampling time is chosen."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+from joint_cases import SLIDER, run, slider, slider_log, steps
+from robot_cases import TOML
+
+from identification import Log, fit, read_robot, write_log
+from identification.robot.file import read_robot_file
+from identification.robot.robot import read_robot_log
+
+SHARED = Path(__file__).parents[3] / "shared" / "data" / "ur10e"
+MESH = '<{0}><geometry><mesh filename="package://none/{1}.stl"/></geometry></{0}>'
+URDF = f"""<?xml version="1.0"?><robot name="two">
+<link name="base">{MESH.format("visual", "base")}</link>
+<link name="upper"><inertial><origin xyz="0 0 -0.2"/><mass value="1"/>
+<inertia ixx="0.02" iyy="0.02" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>
+{MESH.format("visual", "upper")}{MESH.format("collision", "upper")}</link>
+<link name="lower"><inertial><origin xyz="0 0 -0.1"/><mass value="0.5"/>
+<inertia ixx="0.01" iyy="0.01" izz="0.005" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="tool"/>
+<joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/>
+<axis xyz="0 1 0"/><dynamics damping="0.2"/></joint>
+<joint name="elbow" type="continuous"><parent link="upper"/><child link="lower"/>
+<origin xyz="0 0 -0.4"/><axis xyz="0 1 0"/><dynamics damping="0.1"/></joint>
+<joint name="flange" type="fixed"><parent link="lower"/><child link="tool"/></joint></robot>"""
+SAME = """<mujoco><option timestep="0.002" integrator="RK4"/><worldbody>
+<body><joint name="shoulder" axis="0 1 0" damping="{0}"/>
+<inertial pos="0 0 -0.2" mass="1" diaginertia="0.02 0.02 0.01"/>
+<body pos="0 0 -0.4"><joint name="elbow" axis="0 1 0" damping="0.1"/>
+<inertial pos="0 0 -0.1" mass="0.5" diaginertia="0.01 0.01 0.005"/></body></body></worldbody>
+<actuator><motor name="shoulder" joint="shoulder"/><motor name="elbow" joint="elbow"/></actuator>
+</mujoco>"""
+
+
+@pytest.fixture
+def arm(tmp_path):
+    """The folder of a URDF and of a log of the same arm with more damping."""
+    model = mujoco.MjModel.from_xml_string(SAME.format(0.3))
+    data, u = mujoco.MjData(model), 0.5 * steps(600, 2, hold=30)
+    y = np.zeros((600, 2))
+    for k in range(600):
+        y[k], data.ctrl[:] = data.qpos, u[k]
+        mujoco.mj_step(model, data, 5)
+    y += 2e-4 * np.random.default_rng(0).standard_normal(y.shape)
+    t = 0.01 * np.arange(600)
+    log = Log(
+        time=t,
+        inputs=u,
+        outputs=y,
+        input_names=("shoulder_torque", "elbow_torque"),
+        output_names=("shoulder", "elbow"),
+    )
+    write_log(log, tmp_path / "log.csv")
+    (tmp_path / "two.urdf").write_text(URDF)
+    (tmp_path / "robot.toml").write_text(
+        'model = "two.urdf"\nfree = ["joint/shoulder.damping"]\nhorizon = 0.3\n'
+    )
+    return tmp_path
+
+
+def test_a_urdf_without_its_meshes_is_fitted_like_any_model(arm):
+    robot = read_robot(arm / "robot.toml", arm / "log.csv")
+    (said,) = robot.remarks
+    assert said.startswith("two.urdf is a URDF: 3 visual and collision shapes were left out")
+    assert "shoulder_torque, elbow_torque; the integrator is RK4." in said
+    found = fit(robot)
+    assert found.values["joint/shoulder.damping"] == pytest.approx(0.3, rel=0.02)
+
+
+def test_links_that_move_without_a_mass_are_named(arm, refusal):
+    lower = URDF[URDF.index('<inertial><origin xyz="0 0 -0.1"') : URDF.index('<link name="tool"')]
+    text = URDF.replace(lower, "</link>\n")
+    (arm / "two.urdf").write_text(text)
+    said = refusal(read_robot, arm / "robot.toml", arm / "log.csv")
+    assert "lower moves and has no <inertial> with a mass" in said
+    (arm / "two.urdf").write_text(text.replace('<link name="tool"/>', '<link name="tool"><inertial>'
+        '<mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+        "</link>"))  # fmt: skip
+    assert read_robot(arm / "robot.toml", arm / "log.csv", trust=["wiring", "units"])
+    (arm / "two.urdf").write_text(URDF[:-3])
+    assert "is no XML" in refusal(read_robot, arm / "robot.toml", arm / "log.csv")
+
+
+def test_a_step_that_does_not_divide_the_sampling_time_is_replaced(tmp_path):
+    (tmp_path / "slider.xml").write_text(SLIDER)
+    (tmp_path / "robot.toml").write_text(TOML)
+    u = steps(600)
+    log = slider_log(u, run(slider(), slider_log(u)))
+    log = replace(log, time=log.time * 0.0107 / 0.01, output_names=("x",), units={})
+    write_log(log, tmp_path / "log.csv")
+    robot = read_robot(tmp_path / "robot.toml", tmp_path / "log.csv")
+    (said,) = robot.remarks
+    assert "step of 0.002 s does not divide the sampling time of 0.0107 s" in said
+    assert robot.plant.model.opt.timestep == pytest.approx(0.0107 / 6)
+
+
+def test_an_uneven_log_is_remarked_by_the_robot(tmp_path):
+    (tmp_path / "slider.xml").write_text(SLIDER)
+    (tmp_path / "robot.toml").write_text(TOML)
+    u = steps(900)
+    log = slider_log(u, run(slider(), slider_log(u)))
+    lines = ["time,spare,force,x"]
+    keep = np.delete(np.arange(900), [100, 101, 500])
+    lines += [f"{log.time[k]:.3f},cold,{u[k, 0]},{log.outputs[k, 0]!r}" for k in keep.tolist()]
+    (tmp_path / "log.csv").write_text("\n".join(lines).replace("np.float64(", "").replace(")", ""))
+    robot = read_robot(tmp_path / "robot.toml", tmp_path / "log.csv")
+    (said,) = robot.remarks
+    assert "largest gap is 0.03 s, from 0.99 s, and 3 of 900 samples" in said
+    assert fit(robot).values["mass"] == pytest.approx(2.0, rel=0.02)
+
+
+@pytest.mark.skipif(not SHARED.exists(), reason="no records of the UR10e in ../shared/data")
+def test_a_measured_file_without_a_header_is_read_as_it_is(tmp_path):
+    names = [f"{x}{j}" for x in ("q", "v", "i", "w", "d") for j in range(1, 7)]
+    names = ["time", *("skip" if n[0] in "vwd" else n for n in names)]
+    (tmp_path / "ur10e.toml").write_text(
+        f'model = "{SHARED / "ur10e.xml"}"\nfree = ["joint/elbow.damping"]\n[log]\nhold = "foh"\n'
+        f"columns = {names}\n".replace("'", '"')
+    )
+    file = read_robot_file(tmp_path / "ur10e.toml")
+    log = read_robot_log(file, SHARED / "ur-20_02_10-20sec_7harm.csv")
+    assert log.sampling_time == pytest.approx(0.01, rel=0.02)
+    assert log.input_names == ("i1", "i2", "i3", "i4", "i5", "i6")
+    assert "is uneven in time" in log.remarks[0]
