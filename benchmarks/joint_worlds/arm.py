@@ -141,12 +141,14 @@ def mjcf(p: np.ndarray, damping: np.ndarray) -> str:
 <joint name="j{i + 1}" type="hinge" axis="{axis}" damping="{damping[i]:.17g}" armature="{link[7]}"/>
 """
         end += "</body>\n"
+    tip = " ".join(f"{x:.17g}" for x in p[TIP : TIP + 3])
     motors = "".join(f'<motor name="u{i}" joint="j{i}"/>\n' for i in range(1, N + 1))
     sensors = "".join(f'<jointpos name="q{i}" joint="j{i}"/>\n' for i in range(1, N + 1))
     return f"""<mujoco model="arm">
 <option timestep="0.005" gravity="0 0 -{p[GRAVITY]:.17g}" integrator="RK4"/>
 <worldbody>
-{body}{end}</worldbody>
+{body}<site name="tip" pos="{tip}"/>
+{end}</worldbody>
 <actuator>
 {motors}</actuator>
 <sensor>

@@ -55,6 +55,8 @@ class Hidden:
         known: kinds of parameters that are known exactly in its worlds, because they would pass
             for it.
         body: "payload" or "link" where it changes a mass and not a joint.
+        everywhere: whether it acts on all joints alike.
+        coupled: whether it needs a robot of several joints.
         also: names that mean the same on a robot of one joint.
     """
 
@@ -66,15 +68,23 @@ class Hidden:
     heavy: bool | None = None
     known: tuple[str, ...] = ()
     body: str = ""
+    everywhere: bool = False
+    coupled: bool = False
     also: tuple[str, ...] = ()
 
     def joints(self, robot: JointRobot) -> list[int]:
         """Where it may act."""
-        if robot.kind not in self.kinds:
+        if robot.kind not in self.kinds or (self.coupled and robot.n == 1):
             return []
         if self.body:
             return [robot.n - 1]
         return [j for j in range(robot.n) if self.heavy is None or robot.heavy[j] == self.heavy]
+
+    def places(self, robot: JointRobot, j: int) -> tuple[str, ...]:
+        """Words for where it acts: joint, input and output; a body; nothing where it is clear."""
+        if self.everywhere or self.body == "payload":
+            return ()
+        return (robot.end,) if self.body else (robot.joints[j], robot.inputs[j], robot.outputs[j])
 
     def names(self, robot: JointRobot) -> tuple[str, ...]:
         """Names that are right."""
@@ -171,7 +181,12 @@ HIDDEN: dict[str, Hidden] = {h.name: h for h in (
     Hidden(name="payload", largest=lambda h: 0.5, body="payload", known=("mass",)),
     Hidden(name="mass_mismatch", largest=lambda h: 0.5, body="link", known=("mass",),
            kinds=("hinge",)),
-    Hidden(name="time_shift", largest=lambda h: 0.02, put=_set(at.SHIFT), also=("delay",)),
+    Hidden(name="time_shift", largest=lambda h: 0.02, put=_set(at.SHIFT), everywhere=True,
+           also=("delay",)),
+    Hidden(name="encoder_lag", largest=lambda h: 0.02, put=_set(at.SHIFT), coupled=True),
+    Hidden(name="encoder_offset", largest=lambda h: 0.1, put=_signed(_set(at.ZERO)), shape=_sign,
+           heavy=True),
+    Hidden(name="torque_saturation", largest=lambda h: 0.3 / h.force**2, put=_set(at.WEAK)),
     Hidden(name="encoder_scale", largest=lambda h: 0.05, put=_signed(_set(at.SCALE)), shape=_sign),
     Hidden(name="encoder_eccentricity", largest=lambda h: 0.03, put=OFF, shape=_wave_of,
            kinds=("hinge",)),

@@ -1,9 +1,9 @@
 """A robot in motion: Runge and Kutta's fourth-order steps, a controller, and windows.
 
 An input is held for a sample. On its way to the joint it is clipped, comes late, lags (exactly:
-x(t + h) = u + (x - u) exp(-h/τ)), and loses α t of its gain. Unlogged torque is held for a sample
-too. The controller sees what the encoder says, e(q) = (1 + s) q + a cos q + b sin q, rounded and
-noisy, and its derivative through a first-order filter:
+x(t + h) = u + (x - u) exp(-h/τ)), loses α t of its gain, and weakens by c x³. Unlogged torque
+is held for a sample too. The controller sees what the encoder says, rounded and noisy,
+e(q) = (1 + s) q + a cos q + b sin q + e_0, and its derivative through a first-order filter:
 
     computed torque   u = M̂(y) (a_d + k_d (v_d - v̂) + k_p (q_d - y)) + ĉ(y, v̂) + ĝ(y)
     PD                u = diag M̂(y) (k_d (v_d - v̂) + k_p (q_d - y)) + ĝ(q_d)
@@ -20,13 +20,14 @@ from joint_worlds import slots as at
 from joint_worlds.dynamics import accelerations, slip, terms
 
 DELAY, LAG, LIMIT, SAG = at.DELAY, at.LAG, at.LIMIT, at.SAG
-SCALE, OFF_COS, OFF_SIN = at.SCALE, at.OFF_COS, at.OFF_SIN
+SCALE, OFF_COS, OFF_SIN, WEAK, ZERO = at.SCALE, at.OFF_COS, at.OFF_SIN, at.WEAK, at.ZERO
 
 
 @njit(error_model="numpy")
 def encoder(joint, q):  # type: ignore[no-untyped-def]
     """What an encoder without noise shows."""
-    return (1 + joint[SCALE]) * q + joint[OFF_COS] * np.cos(q) + joint[OFF_SIN] * np.sin(q)
+    turning = joint[OFF_COS] * np.cos(q) + joint[OFF_SIN] * np.sin(q)
+    return (1 + joint[SCALE]) * q + turning + joint[ZERO]
 
 
 @njit(error_model="numpy")
@@ -51,9 +52,10 @@ def advance(code, p, joints, state, u, k, push, h, m, room):  # type: ignore[no-
             x2 = come + (x1 - come) * half
             x0 = x[i] if joints[i, LAG] > 0.0 else come
             t = k * m * h + s * h
-            tau[0, i] = (1 - joints[i, SAG] * t) * x0 + push[i]
-            tau[1, i] = (1 - joints[i, SAG] * (t + 0.5 * h)) * x1 + push[i]
-            tau[2, i] = (1 - joints[i, SAG] * (t + h)) * x2 + push[i]
+            weak = joints[i, WEAK]
+            tau[0, i] = (1 - joints[i, SAG] * t) * x0 - weak * x0**3 + push[i]
+            tau[1, i] = (1 - joints[i, SAG] * (t + 0.5 * h)) * x1 - weak * x1**3 + push[i]
+            tau[2, i] = (1 - joints[i, SAG] * (t + h)) * x2 - weak * x2**3 + push[i]
             x[i] = x2
             Q[0, i], V[0, i] = q[i], v[i]
         accelerations(code, p, joints, Q[0], V[0], Q[0], z, tau[0], M, c, g, A[0])

@@ -29,6 +29,7 @@ def mjcf(p: np.ndarray, damping: np.ndarray) -> str:
   <worldbody>
     <body name="arm" pos="0 0 1">
       <inertial pos="0 0 -{p[CENTRE]:.17g}" mass="{p[MASS]:.17g}" diaginertia="{i} {i} {i}"/>
+      <site name="tip" pos="0 0 -{p[LENGTH]:.17g}"/>
       <joint name="hinge" type="hinge" axis="0 1 0" damping="{damping[0]:.17g}"/>
     </body>
   </worldbody>

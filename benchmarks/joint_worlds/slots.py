@@ -18,7 +18,8 @@ COG_COS, COG_SIN, COG_WAVES = 18, 19, 20
 DELAY, LAG, LIMIT, SAG = 21, 22, 23, 24
 # the angle on its way into the log
 SHIFT, SCALE, OFF_COS, OFF_SIN = 25, 26, 27, 28
-SLOTS = 29
+WEAK, ZERO = 29, 30  # a drive that weakens with its force; an offset of the angle
+SLOTS = 31
 
 
 def plain_joints(n: int) -> np.ndarray:

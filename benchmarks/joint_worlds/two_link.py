@@ -45,6 +45,7 @@ def mjcf(p: np.ndarray, damping: np.ndarray) -> str:
       <joint name="shoulder" type="hinge" axis="0 1 0" damping="{damping[0]:.17g}"/>
       <body name="lower" pos="0 0 -{p[L1]:.17g}">
         <inertial pos="0 0 -{p[C2]:.17g}" mass="{p[M2]:.17g}" diaginertia="{p[I2]:.17g} {p[I2]:.17g} {p[I2]:.17g}"/>
+        <site name="tip" pos="0 0 -{p[L2]:.17g}"/>
         <joint name="elbow" type="hinge" axis="0 1 0" damping="{damping[1]:.17g}"/>
       </body>
     </body>

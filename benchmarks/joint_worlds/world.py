@@ -43,6 +43,7 @@ class World:
         effect: name of what is hidden, or "nothing".
         names: names that are right.
         joint: where it acts.
+        places: words of which an answer names one if its place is right; none where it is clear.
         size: of the effect, in the unit of its law.
         shape: what else was drawn of it.
         ratio: how much of it shows, in units of the sensors' noise.
@@ -56,6 +57,7 @@ class World:
     effect: str
     names: tuple[str, ...]
     joint: str
+    places: tuple[str, ...]
     size: float
     shape: Shape
     ratio: float
@@ -114,10 +116,11 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
         share * still[1].std(axis=0) * _wander((count, robot.n), robot.sampling_time, rng)
         for _ in aims
     ]
+    places: tuple[str, ...] = ()
     true, size, shape, shown, joint = base, 0.0, {}, 0.0, ""
     if hidden is not None:
         j = int(rng.choice(hidden.joints(robot)))
-        joint = robot.joints[j]
+        joint, places = robot.joints[j], hidden.places(robot, j)
         habits = Habits(
             float(np.abs(still[1][:, j]).max()), float(np.abs(still[0][:, 1, j]).max()),
             float(np.abs(still[0][:, 0, j]).max()), robot.coulomb[j], robot.damping[j],
@@ -142,6 +145,7 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
     ]
     return World(
         robot=robot, effect=effect, names=hidden.names(robot) if hidden else (NULL,), joint=joint,
+        places=places,
         size=size, shape=shape, ratio=shown, free=free, coulomb="coulomb" not in known,
         truth={f.name: float(base.p[f.number] if f.number is not None else base.joints[f.slot])
                for f in free},
@@ -170,7 +174,8 @@ def with_effect(
     elif hidden.body == "link":
         p[list(robot.link)] *= 1 + size
     else:
-        hidden.put(joints[j], size, shape)
+        for k in range(robot.n) if hidden.everywhere else [j]:
+            hidden.put(joints[k], size, shape)
     return Numbers(p, joints)
 
 

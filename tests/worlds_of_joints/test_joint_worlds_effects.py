@@ -41,7 +41,7 @@ def test_size_zero_is_no_effect_and_more_size_is_more(name):
     many = [with_effect(ROBOT, base, name, joint, size, shape) for size in sizes]
     plain, none, some, more = (shown(ROBOT, numbers) for numbers in (base, *many))
     np.testing.assert_array_equal(none, plain)
-    if name == "time_shift":  # the motion stays, the log is late
+    if name in ("time_shift", "encoder_lag"):  # the motion stays, the log is late
         states = np.zeros((80, 4, 2))
         states[:, 0] = plain
         states[:, 1] = np.gradient(plain, ROBOT.sampling_time, axis=0)
@@ -55,7 +55,7 @@ def test_encoders_that_are_late_show_earlier_positions():
     t = ROBOT.sampling_time * np.arange(200)
     states = np.zeros((200, 4, 2))
     states[:, 0], states[:, 1] = np.sin(3 * t)[:, None], 3 * np.cos(3 * t)[:, None]
-    late = with_effect(ROBOT, base, "time_shift", 1, 0.0123, {})
+    late = with_effect(ROBOT, base, "encoder_lag", 1, 0.0123, {})
     y = logged(ROBOT, late.joints, states)
     np.testing.assert_array_equal(y[:, 0], states[:, 0, 0])
     np.testing.assert_allclose(y[5:, 1], np.sin(3 * (t[5:] - 0.0123)), atol=1e-8)  # Hermite's
@@ -83,5 +83,6 @@ def test_what_parameters_imitate_is_no_world():
 def test_every_robot_hides_what_acts_on_its_joints(robot):
     hidden = effects_of(robot)
     assert ("load_dependent_friction" in hidden) == (not all(robot.heavy))
+    assert ("encoder_lag" in hidden) == (robot.n > 1)
     assert ("encoder_eccentricity" in hidden) == (robot.kind == "hinge")
     assert robot.plain()[1][:, at.LIMIT].min() == np.inf
