@@ -89,7 +89,7 @@ def fit_model(
     nearby = None if near is None else near.refit
     part = log.part("estimation")
     fit = fit_with_effects(model, part, candidates, start, options, near=nearby)
-    return FittedModel(candidates, fit, validate(fit, log, model.horizon))
+    return FittedModel(candidates, fit, validate(fit, log))
 
 
 def try_fit(

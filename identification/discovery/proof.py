@@ -7,8 +7,7 @@
 
 Both residuals pass the filter of the model without the effect, so that neither predictor follows
 the data more closely than the other. rms is that of the free run, and d is what input errors do to
-it. Where the nominal model has a horizon, rms and d are those of windows of that length (see
-`identification.windows.window_error`).
+it. (A robot that is judged over a horizon has a proof of its own: `identification.prediction`.)
 """
 
 from __future__ import annotations
@@ -18,17 +17,14 @@ from dataclasses import dataclass
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.disturbance import propagate_input_error, propagate_over_windows
+from identification.discovery.disturbance import propagate_input_error
 from identification.discovery.effect_results import Gap, Proof
 from identification.discovery.options import DiscoveryOptions
-from identification.errors import InputError
 from identification.estimation.metrics import fit_percent
 from identification.kalman.noise_model import Whitener, build_whitener
 from identification.kalman.point import extend_point
 from identification.kalman.refit import Refit
 from identification.logs.log import Log
-from identification.windows.window_error import window_error
-from identification.windows.windows import windows
 
 SHORTEST = 5  # samples of a block at least
 
@@ -70,16 +66,14 @@ class Validation:
         return Gap(self.rms, fit_percent(self.measured, self.measured - self.judged))
 
 
-def validate(fit: Refit, log: Log, horizon: float | None = None) -> Validation:
+def validate(fit: Refit, log: Log) -> Validation:
     """Predict a whole log with a fit.
 
     Args:
         fit: of the beginning of the log.
         log: the whole log.
-        horizon: length of the windows whose errors are judged [s]; None for the free run.
 
     Raises:
-        InputError: no window begins in the unseen samples.
         DivergenceError: the model cannot be simulated over the whole log.
     """
     point = extend_point(fit.point, log)
@@ -89,20 +83,7 @@ def validate(fit: Refit, log: Log, horizon: float | None = None) -> Validation:
         E = filter_(point.e) / fit.level.sigma
         nu, ratio = point.linear.B.shape[2], fit.level.noise.ratio
         measured, judged = log.outputs[first:], point.e[first:]
-        if horizon is None:
-            moved = propagate_input_error(filter_.A, filter_.C, ratio, nu)[first:]
-        else:
-            errors = window_error(point.predictor.plant, log, horizon, point.values)
-            starts = windows(log, horizon).starts
-            late, L = starts >= first, errors.shape[1]
-            if not late.any():
-                raise InputError(
-                    f"no window of {horizon:g} s begins in the unseen samples; give a shorter"
-                    " horizon or a longer log"
-                )
-            judged = errors[late].reshape(-1, errors.shape[2])
-            measured = windows(log, horizon).outputs[late].reshape(judged.shape)
-            moved = propagate_over_windows(filter_, ratio, nu, starts[late], L)
+        moved = propagate_input_error(filter_.A, filter_.C, ratio, nu)[first:]
     disturbance = fit.level.sigma * np.sqrt(moved.mean()) if moved.size else 0.0
     return Validation(
         refit=fit, log=log, e=point.e, innovations=E, filter=filter_, first=first,

@@ -47,8 +47,6 @@ class Discovery:
         findings: what the final model leaves unexplained; empty when it explains all.
         missing_forces: the forces that the nominal model lacks, by where they act.
         seconds: wall time by stage [s].
-        horizon: length of the windows over which gaps and proofs are judged [s]; None for a free
-            run.
     """
 
     log: Log
@@ -72,4 +70,3 @@ class Discovery:
     findings: tuple[Finding, ...]
     missing_forces: tuple[MissingForce, ...]
     seconds: Mapping[str, float]
-    horizon: float | None = None

@@ -134,7 +134,6 @@ def conclude(state: SearchState) -> Discovery:
         findings=findings,
         missing_forces=forces,
         seconds=state.seconds,
-        horizon=task.nominal_model.horizon,
     )
 
 

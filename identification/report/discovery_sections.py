@@ -50,7 +50,7 @@ def gap_section(found: Discovery) -> Section:
         "The gap on unseen data",
         "Measured minus simulated, from the inputs alone, over samples that no fit has seen. The"
         " grey band is what the sensors, and disturbances that were not logged, do to a model that"
-        " lacks nothing." + _judged(found),
+        " lacks nothing.",
         figures=(("Error on unseen data, before and after", figure),),
         table=Table(
             ("model", f"rms [{unit}]" if unit else "rms", "times the noise", "mean fit [%]"),
@@ -134,17 +134,6 @@ def label(score: Score) -> str:
     where = "" if c.where.startswith("all ") or c.where == "platform" else f" ({c.where})"
     shape = ", ".join(f"{n} = {v:.3g}" for n, v in c.shape.items())
     return c.effect.name.replace("_", " ") + where + (f", {shape}" if shape else "")
-
-
-def _judged(found: Discovery) -> str:
-    """A paragraph where the table is of windows and the figure of a free run."""
-    if found.horizon is None:
-        return ""
-    return (
-        f"\n\nThe table, and the grey band, are of windows of {found.horizon:g} s, each from its"
-        " own best state. The curves are a free run: an axis that integrates what disturbs it"
-        " drifts far beyond them, whatever its model."
-    )
 
 
 def _errors(found: Discovery) -> tuple[np.ndarray, np.ndarray | None]:

@@ -102,17 +102,6 @@ def refuse_horizon(file: RobotFile, log: Log) -> None:
     _refuse(file, log, most, _samples(file, log) <= most)
 
 
-def refuse_search_horizon(file: RobotFile, log: Log) -> None:
-    """Refuse a horizon if no window of the divided log begins in its unseen part.
-
-    Raises:
-        InputError: there is no such window.
-    """
-    first, n = len(log.part("estimation")), _samples(file, log)
-    last = n and len(log) // n * n - n  # first sample of the last window
-    _refuse(file, log, (len(log) - first) // 2, last >= first)
-
-
 def _samples(file: RobotFile, log: Log) -> int:
     return round((file.horizon or 0.0) / log.sampling_time)
 

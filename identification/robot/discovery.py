@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import overload
 
 from identification.discovery import search
@@ -15,7 +14,6 @@ from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.prediction.discovery import discover_records
 from identification.prediction.result import RecordsDiscovery
-from identification.robot.checks import refuse_search_horizon
 from identification.robot.robot import Robot
 
 
@@ -33,7 +31,7 @@ def discover(
     effects: Sequence[Effect],
     progress: Callable[[str], None] | None = None,
     options: DiscoveryOptions | None = None,
-) -> Discovery: ...
+) -> Discovery | RecordsDiscovery: ...
 def discover(
     model: Robot | NominalModel,
     log: Log | None = None,
@@ -43,8 +41,9 @@ def discover(
 ) -> Discovery | RecordsDiscovery:
     """Name what a model lacks to explain a log, and prove it on the part that was not fitted.
 
-    A robot with several logs is judged by predictions over its horizon, on its records that confirm
-    or on the second half of each log (`identification.prediction`).
+    A model with a horizon is judged by predictions over it, on the records that confirm or on the
+    second half of each log (`identification.prediction`); one without by the innovations of a
+    Kalman filter along its free run (`identification.discovery`).
 
     Args:
         model: a robot of `read_robot`, which has its log and its candidates; or a nominal model
@@ -66,31 +65,19 @@ def discover(
     if isinstance(model, Robot):
         if log is not None or effects is not None:
             raise InputError("a robot has its own log and candidates; leave log and effects out")
-        if model.others:
-            return _discover_records(model, progress, options)
-        refuse_search_horizon(model.file, model.log)
-        return search.discover(model.nominal_model, model.log, model.candidates, progress, options)
+        if model.file.horizon is None and not model.others:
+            return search.discover(
+                model.nominal_model, model.log, model.candidates, progress, options
+            )
+        fitted = (model.log, *model.others)
+        return discover_records(
+            model.nominal_model, fitted, model.records, model.candidates, progress, options
+        )
     if log is None or effects is None:
         raise InputError("discover needs a log and candidate effects beside a nominal model")
     refuse_kind(log, Log, "discover takes a Log (read_log) beside a nominal model")
     for effect in effects:
         refuse_kind(effect, Effect, "discover takes effects (candidates(plant, free), or your own)")
-    return search.discover(model, log, effects, progress, options)
-
-
-def _discover_records(
-    robot: Robot, progress: Callable[[str], None] | None, options: DiscoveryOptions | None
-) -> RecordsDiscovery:
-    """Discovery on several logs; where a window begins is no parameter but found for each."""
-    whole = robot.nominal_model
-    keep = [k for k, name in enumerate(whole.names) if name not in robot.starts]
-    names = tuple(whole.names[k] for k in keep)
-    nominal_model = replace(whole, names=names, std=whole.std[keep])
-    return discover_records(
-        nominal_model,
-        (robot.log, *robot.others),
-        robot.records,
-        robot.candidates,
-        progress,
-        options,
-    )
+    if model.horizon is None:
+        return search.discover(model, log, effects, progress, options)
+    return discover_records(model, [log], [], effects, progress, options)
