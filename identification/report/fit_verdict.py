@@ -104,14 +104,12 @@ def _weak(found: WindowEstimate) -> list[str]:
         return []
     felt = found.found.directions[: found.found.rank]
     at = [names.index(n) for n in weak]
-    along = felt[
-        np.argmin(found.found.strengths[: len(felt)] / np.linalg.norm(felt[:, at], axis=1))
-    ]
-    return [
-        f"Too weakly for this noise: {', '.join(weak)}, their std exceeds half the value. They"
-        f" trade off along ({in_words(along, names)}): what does not change along it is known; fix"
-        " one of them, or record a motion that tells them apart."
-    ]
+    share = np.linalg.norm(felt[:, at], axis=1)  # of each direction that lies in the weak ones
+    words = in_words(felt[np.argmax(share / found.found.strengths[: len(felt)])], names)
+    said = f"Too weakly for this noise: {', '.join(weak)}, their std exceeds half the value."
+    if "," in words:
+        said += f" They trade off along ({words}): what does not change along it is known."
+    return [said + " Fix one of them, or record a motion that tells more of them."]
 
 
 def _percent(share: float) -> str:
