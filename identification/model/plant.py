@@ -1,6 +1,7 @@
 """Any MuJoCo model as a plant: every parameter is a path into the model or into its start.
 
     θ_j -> mjModel entry              where = "joint/slide.damping", "body/cart.mass", …
+    θ_j -> spread of a body's mass     where = "body/link.spread[0]" (identification.model.spread)
     θ_j -> entry of x₀                where = "qpos[0]", "qvel[3]", "act[1]"
     c θ_j -> any of these             ties = (("joint/other.damping", c), …)
 
@@ -20,9 +21,10 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.model.parameter import ParameterSet
-from identification.model.paths import resolve, write
+from identification.model.paths import Slot, resolve, write
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
+from identification.model.spread import refuse_both, spread_place, with_spreads
 
 _START = re.compile(r"(?P<field>qpos|qvel|act)\[(?P<index>\d+)\]")
 
@@ -56,13 +58,19 @@ class ModelPlant:
             raise InputError(
                 f"{' and '.join(names)} all go to {twice!r}; give each parameter a place of its own"
             )
+        refuse_both(paths, model)
+        spread: dict[tuple[int, int], np.ndarray] = {}
         for parameter in self.parameters:
             for path, factor in parameter.places:
-                place = start_place(path, model)
-                if place is None:
+                place, of_body = start_place(path, model), spread_place(path, model)
+                if of_body is not None:
+                    spread[of_body] = np.array([factor * parameter.value])
+                elif place is None:
                     write(model, resolve(model, path), factor * parameter.value)
                 else:
                     start[place[0]][place[1]] = factor * parameter.value
+        for slot, inertia in with_spreads(model, spread, 1):
+            write(model, slot, float(inertia[0]))
         mujoco.mj_setConst(model, mujoco.MjData(model))
         object.__setattr__(self, "model", model)
         object.__setattr__(self, "start", State(**start))
@@ -79,15 +87,18 @@ class ModelPlant:
         """
         start = self.start or own_start(self.model)
         rows = {f: np.tile(getattr(start, f), (len(values), 1)) for f in ("qpos", "qvel", "act")}
-        numbers = []
+        numbers: list[tuple[Slot, np.ndarray]] = []
+        spread: dict[tuple[int, int], np.ndarray] = {}
         for name, column in zip(names, values.T, strict=True):
             for path, factor in self.parameters[name].places:
-                place = start_place(path, self.model)
-                if place is None:
+                place, of_body = start_place(path, self.model), spread_place(path, self.model)
+                if of_body is not None:
+                    spread[of_body] = factor * column
+                elif place is None:
                     numbers.append((resolve(self.model, path), factor * column))
                 else:
                     rows[place[0]][:, place[1]] = factor * column
-        return State(**rows), numbers
+        return State(**rows), [*numbers, *with_spreads(self.model, spread, len(values))]
 
     def inputs(
         self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,

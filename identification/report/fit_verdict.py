@@ -19,6 +19,7 @@ ABOVE = 1.2
 HOLDS = 1.2  # a fit holds on unseen data up to this multiple of the residual that is expected there
 GROWN = 10.0  # a free run that errs by more than this multiple of the fitted residual has diverged
 LEVEL = 0.01  # significance of the tests of the residual: one false alarm in a hundred
+WEAK = 0.5  # of its value: the std of a value that is not worth its digits
 ROUGH = 1e-4  # relative error of a sensitivity, which a smooth simulation stays far below
 
 
@@ -93,6 +94,24 @@ def unresolved_words(found: Identifiability) -> str:
     return said
 
 
+def _weak(found: WindowEstimate) -> list[str]:
+    """Parameters of which the noise leaves too little, and what they trade off along."""
+    names, values = found.found.names, np.array(list(found.values.values()))
+    known = ~found.found.undetermined & np.isfinite(found.std)
+    weak = [n for n, v, s, k in zip(names, values, found.std, known, strict=True)
+            if k and s > WEAK * abs(v) and v > 0]  # fmt: skip
+    if not weak:
+        return []
+    felt = found.found.directions[: found.found.rank]
+    at = [names.index(n) for n in weak]
+    share = np.linalg.norm(felt[:, at], axis=1)  # of each direction that lies in the weak ones
+    words = in_words(felt[np.argmax(share / found.found.strengths[: len(felt)])], names)
+    said = f"Too weakly for this noise: {', '.join(weak)}, their std exceeds half the value."
+    if "," in words:
+        said += f" They trade off along ({words}): what does not change along it is known."
+    return [said + " Fix one of them, or record a motion that tells more of them."]
+
+
 def _percent(share: float) -> str:
     return f"{100 * share:.0f} %" if share > 0.1 else f"{100 * share:.2g} %"
 
@@ -104,6 +123,7 @@ def window_sentences(found: WindowEstimate, floor: float) -> list[str]:
         said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
     if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
         said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
+    said += _weak(found)
     ratio = f", {found.rms / floor:.2f} of the noise floor {floor:.3g}" if floor > 0 else ""
     said.append(
         f"{len(found.residual)} windows of {found.length:g} s leave {found.rms:.3g} rms{ratio}."

@@ -20,15 +20,16 @@ from identification.effects.named import means_effect, unknown_number
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.model.parameter import Parameter
-from identification.model.paths import read, resolve
+from identification.model.paths import Slot, read, resolve
 from identification.model.plant import own_start, start_place
 from identification.model.predictor import output_columns
+from identification.model.spread import spread_place, spreads
 from identification.robot.file import RobotFile
 from identification.robot.start import CLEAR, measured_begin
 
 KNOWN = 0.3  # std of the prior unless given: relative if positive, else of the plausible size
 SURE = 0.01  # of a joint's motion in the log: std of the prior of a start that was measured
-POSITIVE = ("mass", "inertia", "damping", "armature", "stiffness", "frictionloss")
+POSITIVE = ("mass", "inertia", "spread", "damping", "armature", "stiffness", "frictionloss")
 UNITS = {  # unit for a slide, unit for a hinge
     "damping": ("N s/m", "N m s/rad"), "armature": ("kg", "kg m^2"),
     "stiffness": ("N/m", "N m/rad"), "frictionloss": ("N", "N m"),
@@ -66,7 +67,10 @@ def free_parameter(
             )
         if means_effect(path, effects):
             raise unknown_number(path, effects)
-        record, guess = _in_model(path, name, model, log, given)
+        body = path.partition(".inertia")[0]
+        every = (str(file.records.get(n, {}).get("path", n)) for n in file.free)
+        alone = sum(p.startswith(f"{body}.inertia") for p in every) == 1
+        record, guess = _in_model(path, name, model, log, given, alone)
     if record.lower >= 0 and record.value > 0:
         return record, float(said.get("known", KNOWN))
     return record, float(said.get("known", guess)) / record.scale
@@ -86,7 +90,7 @@ def measured_start(model: mujoco.MjModel, path: str, log: Log, own: float) -> fl
 
 
 def _in_model(
-    path: str, name: str, model: mujoco.MjModel, log: Log, given: dict[str, Any]
+    path: str, name: str, model: mujoco.MjModel, log: Log, given: dict[str, Any], alone: bool
 ) -> tuple[Parameter, float]:
     """A parameter that is a path into the model or into its start."""
     fields: dict[str, Any] = {"where": path, "unit": unit_of(model, path)}
@@ -96,11 +100,29 @@ def _in_model(
         moved = _moved(model, place, log)
         fields |= {"value": measured_start(model, path, log, own), "scale": moved}
         return Parameter(name=name, **{**fields, **given}), moved
-    value = read(model, resolve(model, path))
+    of_body = spread_place(path, model)
+    value = (
+        read(model, resolve(model, path))
+        if of_body is None
+        else float(spreads(model, of_body[0])[of_body[1]])
+    )
     attribute = path.rpartition(".")[2].partition("[")[0]
     scale = abs(value) or 1.0
     fields |= {"value": value, "scale": scale, "lower": 0.0 if attribute in POSITIVE else -np.inf}
+    if attribute == "inertia":
+        fields |= _possible(model, resolve(model, path), alone)
     return Parameter(name=name, **{**fields, **given}), KNOWN * scale
+
+
+def _possible(model: mujoco.MjModel, slot: Slot, alone: bool) -> dict[str, float]:
+    """Bounds of a principal inertia I_k that is free alone: |I_i - I_j| <= I_k <= I_i + I_j."""
+    if slot.column is None or len(slot.rows) != 1 or not alone:
+        return {}
+    a, b = np.delete(model.body_inertia[slot.rows[0]], slot.column)
+    own = float(model.body_inertia[slot.rows[0], slot.column])
+    # A bound must not be the value itself, as that of a flat body is.
+    low, high = min(float(abs(a - b)), own * (1 - 1e-6)), max(float(a + b), own * (1 + 1e-6))
+    return {"lower": low, "upper": high}
 
 
 def unit_of(model: mujoco.MjModel, path: str) -> str:
@@ -116,7 +138,8 @@ def unit_of(model: mujoco.MjModel, path: str) -> str:
     elif kind == "joint":
         joints = [j for j in range(model.njnt) if fnmatchcase(model.joint(j).name, name)]
     if not joints or attribute not in UNITS:
-        return "kg" if (kind, attribute) == ("body", "mass") else ""
+        units = {"mass": "kg", "inertia": "kg m^2", "spread": "kg m^2"}
+        return units.get(attribute, "") if kind == "body" else ""
     types = (int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE))
     found = int(model.jnt_type[joints[0]])
     return UNITS[attribute][types.index(found)] if found in types else ""
