@@ -22,6 +22,7 @@ from identification.model.parameter import ParameterSet
 from identification.model.predictor import Plant
 from identification.prediction.fit import ROUGH, WindowFit, solve
 from identification.prediction.problem import (
+    MOST_STEPS,
     Problem,
     no_moves,
     problem,
@@ -35,6 +36,7 @@ from identification.prediction.unseen import Own, Unseen, predict
 
 GROWTH = (0.25, 0.5, 1.0)  # of the horizon
 FEWEST = 4  # samples of the shortest windows
+ROUGH_STEPS = MOST_STEPS // 3  # of the fits that only find where the last one begins
 SAME = 0.05  # relative change of the errors' scale below which it is settled
 MOST_SCALES = 6  # fits at most until it is
 SHARES = (1.0, 0.5, 0.2, 0.05, 0.01)  # of the size that a score gives, to begin with
@@ -109,16 +111,19 @@ def fit_nominal(
         length = factor * horizon
         if any(length < FEWEST * r.log.sampling_time for r in fitted) and factor < 1:
             continue
-        task = problem(plant, fitted, shared, own, length, values, scale)
+        task = problem(plant, fitted, shared, own, length, values, scale, ROUGH_STEPS)
         q = task.prior.mean if found is None else found.q
         found = solve(task, q, task.settled(q, no_moves(task)), tolerance=ROUGH, progress=progress)
         _refuse_idle(found)
         values, scale = found.shared, _rms(found)
     if found is None:
         raise InputError(f"windows of {horizon:g} s fit no record; choose another horizon")
+    task, q = problem(plant, fitted, shared, own, horizon, values, scale), found.q
+    moves = task.settled(q, no_moves(task))
     for _ in range(MOST_SCALES):
-        task, old = with_scale(found.problem, scale), scale
-        found = solve(task, found.q, found.moves, progress=progress)
+        task, old = with_scale(task, scale), scale
+        found = solve(task, q, moves, progress=progress)
+        q, moves = found.q, found.moves
         scale = _rms(found)
         if np.all(np.abs(np.log(scale / old)) < SAME):
             break

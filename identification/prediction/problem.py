@@ -110,6 +110,7 @@ def problem(
     length: float,
     values: Mapping[str, float],
     scale: np.ndarray,
+    most_steps: int = MOST_STEPS,
 ) -> Problem:
     """Cut records into windows, each of which begins where the robot was measured.
 
@@ -122,6 +123,7 @@ def problem(
         values: of all parameters that are not the plant's own; they say where unmeasured states
             begin.
         scale: s of each output, shape (ny,), in its unit.
+        most_steps: see `most_windows`.
 
     Raises:
         InputError: windows do not fit a record.
@@ -129,7 +131,7 @@ def problem(
     parts = []
     space = shared.plus(own).space
     begun = {**plant.parameters.values(), **values}
-    most = most_windows(plant, records, length)
+    most = most_windows(plant, records, length, most_steps)
     for record in records:
         fixed = {n: v for n, v in {**values, **record.values}.items() if n not in space.names}
         predictor = Predictor(plant, record.log, space.names, fixed)
@@ -139,10 +141,12 @@ def problem(
     return Problem(tuple(parts), Unknowns(shared, own, tuple(r.log.name for r in records)))
 
 
-def most_windows(plant: Plant, records: Sequence[Record], length: float) -> int:
-    """How many windows of each record are simulated at most: a share of `MOST_STEPS`."""
+def most_windows(
+    plant: Plant, records: Sequence[Record], length: float, most_steps: int = MOST_STEPS
+) -> int:
+    """How many windows of each record are simulated at most, so that all take `most_steps`."""
     each = max(length / plant.model.opt.timestep, 1.0)
-    return max(FEWEST_WINDOWS, int(MOST_STEPS / (each * max(1, len(records)))))
+    return max(FEWEST_WINDOWS, int(most_steps / (each * max(1, len(records)))))
 
 
 def no_moves(problem_: Problem) -> tuple[np.ndarray, ...]:

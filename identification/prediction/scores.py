@@ -119,7 +119,7 @@ class _Base:
             zip(fit.problem.parts, fit.moves, fit.tangents, strict=True)
         ):
             own = {**plant.parameters.values(), **part.predictor.fixed, **fit.of_record(k)}
-            rows, probes = [], []
+            rows, probes = [[own[n] for n in names]], []
             for c in group:
                 for name, size in zip(c.sizes, c.effect.sizes, strict=True):
                     probe = (-size.probe if size.sign < 0 else size.probe) * c.probe
@@ -133,9 +133,9 @@ class _Base:
             rest = {n: v for n, v in part.predictor.fixed.items() if n not in names}
             predictor = replace(part.predictor, names=tuple(names), fixed=rest)
             moved = replace(part, space=space, predictor=predictor)
-            y = moved.outputs(space.encode(values), [d] * len(values))
-            r = np.stack([part.joined(one, d) for one in y], axis=-1)  # (W, m, k)
-            S = (t.r[..., None] - r) / np.array(probes)
+            y = moved.outputs(space.encode(values), [d] * len(values), is_rough=True)
+            r = np.stack([part.joined(one, d) for one in y], axis=-1)  # (W, m, 1 + k)
+            S = (r[..., :1] - r[..., 1:]) / np.array(probes)
             U = t.U * (t.s > 0)[:, None]
             S = S - U @ (np.swapaxes(U, 1, 2) @ S)
             out.append(S.reshape(-1, len(probes)))

@@ -14,6 +14,7 @@ from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.prediction.discovery import discover_records
 from identification.prediction.result import RecordsDiscovery
+from identification.robot.checks import refuse_horizon
 from identification.robot.robot import Robot
 
 
@@ -70,6 +71,9 @@ def discover(
                 model.nominal_model, model.log, model.candidates, progress, options
             )
         fitted = (model.log, *model.others)
+        if not model.records:
+            for log in fitted:
+                refuse_horizon(model.file, log)
         return discover_records(
             model.nominal_model, fitted, model.records, model.candidates, progress, options
         )

@@ -8,13 +8,19 @@
 
 Each Δd_w is eliminated separately, so that one more window costs only its simulations (condensing;
 Bock 1983). A tangent takes 1 + nx + p simulations of the log, all in one batch; a trial step takes
-one. The information on q is that of S_w after the initial states are projected out.
+one. Where the model is integrated by RK4, the simulations whose differences make the slopes take
+one evaluation of the dynamics a step instead of four: slopes may err by a few per cent, because the
+residual that the steps make small is exact (inexact Gauss-Newton; Dembo, Eisenstat, Steihaug 1982).
+The information on q is that of S_w after the initial states are projected out.
 """
 
 from __future__ import annotations
 
+import copy
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
+import mujoco
 import numpy as np
 
 from identification.model.coordinates import Coordinates
@@ -23,6 +29,8 @@ from identification.model.rollout import State, hold, rollout, substeps
 from identification.model.sensitivity import FORWARD_STEP
 from identification.windows.windows import FirstStates, Windows, moved
 
+RK4 = int(mujoco.mjtIntegrator.mjINT_RK4)
+ONE = int(mujoco.mjtIntegrator.mjINT_IMPLICITFAST)  # evaluation of the dynamics a step
 FELT = 1e-6  # of the strongest direction of a state; weaker ones are not felt
 
 
@@ -77,10 +85,18 @@ class Shooting:
         left = (self.cut.outputs - y) @ self.whitener.T
         return np.hstack([left.reshape(len(d), -1), -d * self.first.weight])
 
-    def outputs(self, q: np.ndarray, moves: list[np.ndarray]) -> np.ndarray:
-        """Outputs of k points q (k, p), each over all windows from its d: (k, W, L, ny)."""
+    def outputs(
+        self, q: np.ndarray, moves: Sequence[np.ndarray], is_rough: bool = False
+    ) -> np.ndarray:
+        """Outputs of k points q (k, p), each over all windows from its d: (k, W, L, ny).
+
+        Args:
+            q: the points.
+            moves: d of each, shape (W, nx).
+            is_rough: with one evaluation of the dynamics a step, where only differences matter.
+        """
         predictor, W = self.predictor, len(self.cut.starts)
-        model = predictor.plant.model
+        model = rough(predictor.plant.model) if is_rough else predictor.plant.model
         _, numbers = predictor.settings(self.space.decode(q))
         starts = [self.states(d) for d in moves]
         rows = (np.concatenate([getattr(s, f) for s in starts]) for f in ("qpos", "qvel", "act"))
@@ -112,6 +128,15 @@ class Shooting:
         steps = np.arange((cut.inputs.shape[1] - 1) * every + 1)
         rows = every * cut.starts[:, None] + steps
         return made[:, rows].reshape(-1, len(steps), held.shape[1]), every, "zoh"
+
+
+def rough(model: mujoco.MjModel) -> mujoco.MjModel:
+    """The model with one evaluation of the dynamics a step, where it takes more."""
+    if model.opt.integrator != RK4:
+        return model
+    model = copy.copy(model)
+    model.opt.integrator = ONE
+    return model
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,15 +208,16 @@ def tangent(
         DivergenceError: a window left the finite numbers.
     """
     p, nx = len(q), d.shape[1]
-    h = step
+    h, is_rough = step, shooting.predictor.plant.model.opt.integrator == RK4
     points = np.concatenate([np.tile(q, (1 + nx, 1)), q + h * np.eye(p)])
     moves = [d, *(d + h * e for e in np.eye(nx)), *[d] * p]
-    y = shooting.outputs(points, moves)
+    y = shooting.outputs(points, moves, is_rough)
     r = np.stack([shooting.joined(*pair) for pair in zip(y, moves, strict=True)], axis=-1)
+    at = shooting.residual(q, d) if is_rough else r[..., 0]
     slopes = (r[..., :1] - r[..., 1:]) / h  # (W, m, nx + p)
     X, S = slopes[..., :nx], slopes[..., nx:]
     size = np.linalg.norm(X, axis=1)
     size = np.where(size > 0, size, 1.0)
     U, s, Vt = np.linalg.svd(X / size[:, None], full_matrices=False)
     s = np.where(s > FELT * s[:, :1], s, 0.0)
-    return Tangent(r=r[..., 0], S=S, U=U, s=s, Vt=Vt, size=size)
+    return Tangent(r=at, S=S, U=U, s=s, Vt=Vt, size=size)
