@@ -9,6 +9,7 @@ half of the first record is fitted; its second half and the record with pulses c
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +17,8 @@ from scipy.io import loadmat
 
 from identification import Log, decimate
 from robots import needed
-from robots.emps_evidence import protocol
-from robots.measured_robot import MODELS, Free, MeasuredRobot, PublishedSize
+from robots.emps_evidence import protocol, published_errors
+from robots.measured_robot import MODELS, Free, MeasuredRobot, PublishedModel, PublishedSize
 
 MODEL = MODELS / "emps.xml"
 EVERY = 10  # samples of 1 ms
@@ -58,6 +59,8 @@ def read(data: Path) -> MeasuredRobot:
         free=FREE, horizon=0.2, fit=(first,), confirm=(second, pulses),
         second=((second,), (first, pulses)),
         expected=("asymmetric_viscous_friction",), published=PUBLISHED,
+        models=(PublishedModel(name="their values, symmetric friction", source=SOURCE,
+                               errors=partial(published_errors, MODEL)),),
         evidence=lambda outcome: protocol(MODEL, log, pulses, outcome),
     )  # fmt: skip
 

@@ -13,7 +13,16 @@ from typing import Any
 
 import numpy as np
 
-from identification import JointPlant, Log, Parameter, Predictor, axes, estimate, joint_plant
+from identification import (
+    JointPlant,
+    Log,
+    Parameter,
+    Predictor,
+    axes,
+    estimate,
+    joint_plant,
+    window_error,
+)
 from identification.effects.rows import read_model
 from robots.measured_robot import Outcome
 
@@ -45,6 +54,11 @@ def protocol(model: Path, log: Log, pulses: Log, outcome: Outcome) -> dict[str, 
     known = {n: v for n, v in outcome.values.items() if n in plant.parameters.values()}
     rows["fitted over windows of 0.2 s, with what is named"] = 1e3 * free_run(plant, pulses, known)
     return {"free_run_mm": rows, "published_mm": OTHERS}
+
+
+def published_errors(model: Path, log: Log, horizon: float) -> np.ndarray:
+    """Window errors of the authors' values with symmetric friction, shape (W, L, 1)."""
+    return window_error(plant_of(model, log), log, horizon)
 
 
 def plant_of(model: Path, log: Log) -> JointPlant:

@@ -109,9 +109,8 @@ def _xl330(evidence: dict[str, Any]) -> list[str]:
     return [
         "The authors fitted free runs with the servo's own controller in the loop, which makes up"
         " for a wrong gain of the motor. Mean absolute error of their models by that protocol, on"
-        " whole records [mrad]; five versions of these numbers are in the history of their"
-        " repository (June and July 2026), and the other four do no better here. Their Coulomb"
-        " friction of 0.013 N m is not that of the servo of these records.\n",
+        " whole records [mrad]. The history of their repository has other versions of these numbers"
+        " (June and July 2026); none of them predicts the windows above better.\n",
         table(("unseen record", *models), rows),
     ]
 

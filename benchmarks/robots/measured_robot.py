@@ -123,6 +123,7 @@ class MeasuredRobot:
         horizon: over which predictions are judged [s].
         fit: records to fit.
         confirm: records that no fit may see.
+        unit: of the outputs, where it is not that of the model's sensors.
         second: another split of records, those to fit and those that confirm; None for the same
             records with their roles exchanged.
         fixed: values of effects' shapes that the model has.
@@ -142,6 +143,7 @@ class MeasuredRobot:
     horizon: float
     fit: tuple[Log, ...]
     confirm: tuple[Log, ...]
+    unit: str = ""
     second: tuple[tuple[Log, ...], tuple[Log, ...]] | None = None
     fixed: Mapping[str, float] = field(default_factory=dict)
     expected: tuple[str, ...] = ()

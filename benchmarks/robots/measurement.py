@@ -55,7 +55,7 @@ def measure(robot: MeasuredRobot, say: Callable[[str], None]) -> dict[str, Any]:
         "robot": robot.name, "title": robot.title, "source": robot.source, **_when(),
         "horizon": robot.horizon, "fit": [log.name for log in robot.fit],
         "confirm": [log.name for log in robot.confirm], "expected": list(robot.expected),
-        "unit": robot.fit[0].output_unit,
+        "unit": robot.unit or robot.fit[0].output_unit,
     }  # fmt: skip
     begun = time.perf_counter()
     try:

@@ -85,7 +85,7 @@ def read(data: Path) -> MeasuredRobot:
     return MeasuredRobot(
         name="silverbox", title="Silverbox, an electronic Duffing oscillator", source=SOURCE,
         model=MODELS / "silverbox.xml", free=FREE, horizon=HORIZON, fit=fit,
-        confirm=(test, arrow),
+        confirm=(test, arrow), unit="V",
         second=(tuple(realisation(voltages, k) for k in SECOND), (*fit, test)),
         expected=("hardening",),
         starts={"the mass begins a factor 2 off": {"m": 1.08e-5}}, published=PUBLISHED,

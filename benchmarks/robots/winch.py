@@ -23,7 +23,7 @@ STEP, WIDEST = 0.03, 0.8  # of the grid, and a gap that is still bridged [s]
 # Record, and the seconds that are used. Up1 is the beginning of Down1, and not used twice.
 FIT = (("5kg/ODrive2/Down1", 12.6, 44.0), ("5kg/ODrive2/Up05", 6.0, 22.0))
 CONFIRM = (
-    ("5kg/ODrive2/Down05", 8.0, 24.0), ("5kg/ODrive2/Down25", 6.0, 11.5),
+    ("5kg/ODrive2/Down05", 8.0, 24.0), ("5kg/ODrive2/Down25", 7.0, 9.5),
     ("5kg/ODrive0/Down1", 3.0, 30.5), ("5kg/ODrive0/Down05", 6.0, 23.0),
 )  # fmt: skip
 ONE_KG = (

@@ -29,6 +29,9 @@ def write_files(robot: MeasuredRobot, folder: Path) -> tuple[Path, dict[str, lis
         Path of the robot's TOML, and the paths of its records by role: "fit", "confirm", "apart".
     """
     path = write_model(robot, folder)
+    for each in robot.apart:
+        if each.model is not None:
+            shutil.copyfile(each.model, folder / each.model.name)
     apart = [log for each in robot.apart for log in each.logs]
     roles = {"fit": robot.fit, "confirm": robot.confirm, "apart": apart}
     paths: dict[str, list[Path]] = {role: [] for role in roles}
