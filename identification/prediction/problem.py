@@ -137,7 +137,7 @@ def problem(
         predictor = Predictor(plant, record.log, space.names, fixed)
         cut = spread(windows(record.log, length), most)
         first = first_states(predictor, np.array([begun[n] for n in space.names]), cut)
-        parts.append(Shooting(predictor, space, cut, first, np.diag(1 / scale)))
+        parts.append(Shooting(predictor, space, cut, first, np.diag(1 / scale), True))
     return Problem(tuple(parts), Unknowns(shared, own, tuple(r.log.name for r in records)))
 
 

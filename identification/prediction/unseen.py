@@ -202,7 +202,7 @@ def _errors(
         predictor = Predictor(plant, record.log, (), {**values, **mine})
         part = cut.rows(half)
         first = first_states(predictor, np.zeros(0), part)
-        shooting = Shooting(predictor, NOTHING, part, first, np.diag(1 / scale))
+        shooting = Shooting(predictor, NOTHING, part, first, np.diag(1 / scale), True)
         at = search_states(shooting, moves[half])
         d[half], errors[half] = at.d, shooting.error(at.tangent.r)
     return d, errors

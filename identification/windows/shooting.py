@@ -8,10 +8,11 @@
 
 Each Δd_w is eliminated separately, so that one more window costs only its simulations (condensing;
 Bock 1983). A tangent takes 1 + nx + p simulations of the log, all in one batch; a trial step takes
-one. Where the model is integrated by RK4, the simulations whose differences make the slopes take
-one evaluation of the dynamics a step instead of four: slopes may err by a few per cent, because the
-residual that the steps make small is exact (inexact Gauss-Newton; Dembo, Eisenstat, Steihaug 1982).
-The information on q is that of S_w after the initial states are projected out.
+one. Where the model is integrated by RK4, the simulations whose differences make the slopes may
+take one evaluation of the dynamics a step instead of four: slopes then err by a few per cent, which
+they may, because the residual that the steps make small is exact (inexact Gauss-Newton; Dembo,
+Eisenstat, Steihaug 1982). The information on q is that of S_w after the initial states are
+projected out.
 """
 
 from __future__ import annotations
@@ -44,6 +45,8 @@ class Shooting:
         cut: the windows.
         first: the prior of their initial states.
         whitener: C, shape (ny, ny).
+        has_rough_slopes: whether simulations whose differences make slopes take one evaluation of
+            the dynamics a step.
     """
 
     predictor: Predictor
@@ -51,6 +54,7 @@ class Shooting:
     cut: Windows
     first: FirstStates
     whitener: np.ndarray
+    has_rough_slopes: bool = False
 
     def rows(self, keep: np.ndarray) -> Shooting:
         """Some of the windows, by mask or by index."""
@@ -208,7 +212,8 @@ def tangent(
         DivergenceError: a window left the finite numbers.
     """
     p, nx = len(q), d.shape[1]
-    h, is_rough = step, shooting.predictor.plant.model.opt.integrator == RK4
+    h = step
+    is_rough = shooting.has_rough_slopes and shooting.predictor.plant.model.opt.integrator == RK4
     points = np.concatenate([np.tile(q, (1 + nx, 1)), q + h * np.eye(p)])
     moves = [d, *(d + h * e for e in np.eye(nx)), *[d] * p]
     y = shooting.outputs(points, moves, is_rough)

@@ -75,16 +75,13 @@ def test_a_score_is_that_of_least_squares_with_columns_by_hand():
     probe = score.candidate.effect.sizes[0].probe
     for part, t, d in zip(fit.problem.parts, fit.tangents, fit.moves, strict=True):
         plant = part.predictor.plant.with_values({name: probe})
-        moved = type(part)(
-            type(part.predictor)(plant, part.predictor.log, part.predictor.names,
-                                 part.predictor.fixed),
-            part.space, part.cut, part.first, part.whitener,
-        )  # fmt: skip
-        r = moved.residual(fit.q, d)
+        moved = replace(part, predictor=replace(part.predictor, plant=plant))
+        without, r = (p.joined(p.outputs(fit.q[None], [d], is_rough=True)[0], d)
+                      for p in (part, moved))  # fmt: skip
         for w in range(len(d)):  # states of each window by hand: project on all that they can do
             U = t.U[w][:, t.s[w] > 0]
             P = np.eye(len(U)) - U @ U.T
-            columns.append(P @ (t.r[w] - r[w]) / probe)
+            columns.append(P @ (without[w] - r[w]) / probe)
             rests.append(P @ t.r[w])
             bases.append(P @ t.S[w])
     below = np.diag(fit.problem.prior.weight)
