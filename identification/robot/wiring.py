@@ -35,9 +35,10 @@ from identification.logs.sampling import MIN_ROWS
 from identification.robot.balance import unbalanced_share
 from identification.robot.robot import Robot
 from identification.windows.window_error import first_error
-from identification.windows.windows import windows
+from identification.windows.windows import spread, windows
 
 READINGS = {"units": (unit_readings,), "wiring": (output_readings, input_readings)}
+MOST_WINDOWS = 60  # of a log that are simulated; a wrong reading is wrong everywhere
 LENGTHS = (0.1, 1.0)  # of windows, shares of a log, where the robot has no horizon of its own
 
 
@@ -98,7 +99,7 @@ def _unexplained(plant: JointPlant, length: float, log: Log) -> np.ndarray | Non
     if not MIN_ROWS * log.sampling_time <= length <= log.duration:
         return None  # too short to tell, and whoever fits it will say so
     try:
-        error = first_error(plant, log, length)
+        error = first_error(plant, log, length, MOST_WINDOWS)
     except DivergenceError:
         return None
-    return unexplained_share(windows(log, length).outputs, error)
+    return unexplained_share(spread(windows(log, length), MOST_WINDOWS).outputs, error)

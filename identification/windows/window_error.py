@@ -19,7 +19,7 @@ from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
 from identification.windows.shooting import Shooting
 from identification.windows.window_search import search_states
-from identification.windows.windows import first_states, windows
+from identification.windows.windows import first_states, spread, windows
 
 
 def window_error(
@@ -44,13 +44,14 @@ def window_error(
     return shooting.error(search_states(shooting, d).tangent.r)
 
 
-def first_error(plant: Plant, log: Log, length: float) -> np.ndarray:
+def first_error(plant: Plant, log: Log, length: float, most: int) -> np.ndarray:
     """Errors in the same windows, each from the mean of the prior of its initial state.
 
     Args:
         plant: the model, with its own values.
         log: what was measured.
         length: of a window [s].
+        most: windows, spread over the log.
 
     Returns:
         Shape (W, L, ny), in the outputs' unit.
@@ -59,15 +60,20 @@ def first_error(plant: Plant, log: Log, length: float) -> np.ndarray:
         InputError: the windows do not fit the log.
         DivergenceError: the model cannot be simulated.
     """
-    shooting, d = _fixed(plant, log, length, None)
+    shooting, d = _fixed(plant, log, length, None, most)
     return shooting.error(shooting.residual(np.zeros(0), d))
 
 
 def _fixed(
-    plant: Plant, log: Log, length: float, values: Mapping[str, float] | None
+    plant: Plant,
+    log: Log,
+    length: float,
+    values: Mapping[str, float] | None,
+    most: int | None = None,
 ) -> tuple[Shooting, np.ndarray]:
     """Windows of a model without free parameters, and zero changes of their states (W, nx)."""
     none, cut = np.zeros(0), windows(log, length)
+    cut = cut if most is None else spread(cut, most)
     predictor = Predictor(plant, log, (), dict(values or {}))
     sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
     believed = first_states(predictor, none, cut)

@@ -2,7 +2,7 @@
 
     x_w = x̄_w ⊕ d_w,   w = 1..W                     ⊕ in the tangent of qpos, in qvel and in act
     x̄_w  from the measured outputs and their rates; the other states from a free run
-    s_j  = rms motion of state j on that run         std of the prior of x_w about x̄_w
+    s_j  = rms motion of state j, measured or on that run     std of the prior of x_w about x̄_w
 
 In a free run the effects of all disturbances add up, and an unstable robot leaves the log after a
 short time. A window starts again after its length. `identification.windows.shooting` says how
@@ -90,10 +90,10 @@ class FirstStates:
 
 
 def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> FirstStates:
-    """States at the windows' starts: as measured, and from a free run where nothing is measured.
+    """States at the windows' starts: as measured, and from a free run where something is not.
 
     Where the free run diverges, states that are not measured begin at the plant's start and are
-    free without limit.
+    free without limit. Where all positions are measured, no free run is simulated.
 
     Args:
         predictor: the plant and the log.
@@ -102,6 +102,11 @@ def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> Firs
     """
     plant, log = predictor.plant, predictor.log
     model = plant.model
+    measured = _measured(model, log)
+    if measured is not None:
+        at = cut.starts
+        begun = State(measured.qpos[at], measured.qvel[at], measured.act[at])
+        return FirstStates(begun, 1 / _motion(model, measured))
     start, numbers = predictor.settings(values)
     fields = ("qpos", "qvel", "act")
     try:
@@ -114,14 +119,32 @@ def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> Firs
     except DivergenceError:
         rows = {f: np.repeat(np.atleast_2d(getattr(start, f)), len(cut.starts), 0) for f in fields}
         weight = np.zeros(2 * model.nv + model.na)
-    rate = np.gradient(log.outputs, log.sampling_time, axis=0)[cut.starts]
+    _put_measured(model, log, rows, cut.starts)
+    return FirstStates(State(**rows), weight)
+
+
+def _measured(model: mujoco.MjModel, log: Log) -> State | None:
+    """The states of all samples where every position is measured, and nothing else is a state."""
+    places = {i for field, i in output_columns(model, log.output_names) if field == "qpos"}
+    if model.na or model.nq != model.nv or len(places) < model.nq:
+        return None
+    n = len(log)
+    rows = {"qpos": np.zeros((n, model.nq)), "qvel": np.zeros((n, model.nv))}
+    _put_measured(model, log, rows, np.arange(n))
+    return State(rows["qpos"], rows["qvel"], np.zeros((n, 0)))
+
+
+def _put_measured(
+    model: mujoco.MjModel, log: Log, rows: dict[str, np.ndarray], at: np.ndarray
+) -> None:
+    """Write the measured positions of some samples, and their rates, into states."""
+    rate = np.gradient(log.outputs, log.sampling_time, axis=0)[at]
     columns = list(enumerate(output_columns(model, log.output_names)))
     for k, (field, i) in sorted(columns, key=lambda item: item[1][0]):  # rates last
-        rows[field][:, i] = log.outputs[cut.starts, k]
+        rows[field][:, i] = log.outputs[at, k]
         if field == "qpos":
             joint = int(np.flatnonzero(model.jnt_qposadr == i)[0])
             rows["qvel"][:, model.jnt_dofadr[joint]] = rate[:, k]
-    return FirstStates(State(**rows), weight)
 
 
 def _motion(model: mujoco.MjModel, run: State) -> np.ndarray:
