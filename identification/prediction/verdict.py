@@ -53,7 +53,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     sure = all(n.effect.confidence >= 0.5 or n.one_of for n in named)
     findings = _findings(state, rejected)
     doubtful = any(f.kind is FindingKind.UNPROVEN_EFFECT for f in findings)
-    needed = needed_input_error(model.fit)
+    needed = needed_input_error(model.fit, model.unseen.floor)
     verdict: Verdict = "nothing missing"
     if named and sure:
         curves = [n.effect.candidate.effect.name.startswith(UNLISTED) for n in named]
