@@ -22,7 +22,7 @@ from identification.logs.noise import noise_floor
 from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
 from identification.prediction.fit import ROUGH, solve
-from identification.prediction.problem import most_windows, no_moves, problem
+from identification.prediction.problem import MOST_STEPS, most_windows, no_moves, problem
 from identification.prediction.records import Record
 from identification.prediction.unknowns import Prior
 from identification.windows.shooting import Shooting
@@ -132,7 +132,8 @@ def predict(
     for factor in LENGTHS:
         try:
             length = factor * horizon
-            most = most_windows(plant, records, length)
+            steps = MOST_STEPS if factor == 1.0 else MOST_STEPS // 3  # the others only agree or not
+            most = most_windows(plant, records, length, steps)
             cuts = [spread(windows(r.log, length), most) for r in records]
         except InputError:
             if factor == 1.0:
