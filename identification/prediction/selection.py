@@ -24,6 +24,7 @@ from identification.errors import InputError
 from identification.prediction.model import WindowModel, with_effect
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore, window_scores
+from identification.prediction.several_places import list_several
 from identification.prediction.unseen import Prediction, compare
 
 Progress = Callable[[str], None]
@@ -51,8 +52,16 @@ class Contender:
         return self.model.candidates[-1]
 
 
-def score_all(model: WindowModel, effects: Sequence[Effect]) -> tuple[WindowScore, ...]:
-    """Scores of what a model lacks: effects everywhere, then their best shapes at one place."""
+def score_all(
+    model: WindowModel, effects: Sequence[Effect], options: DiscoveryOptions
+) -> tuple[WindowScore, ...]:
+    """Scores of what a model lacks: everywhere, then the best shapes at one place, and at several.
+
+    Args:
+        model: fitted.
+        effects: the candidates.
+        options: what is beyond chance.
+    """
     has = {(c.effect.name, c.where) for c in model.candidates}
     everywhere = {c.effect.name for c in model.candidates if not c.effect.places[c.where]}
     lacking = [e for e in effects if e.name not in everywhere]
@@ -61,7 +70,13 @@ def score_all(model: WindowModel, effects: Sequence[Effect]) -> tuple[WindowScor
     for s in common:
         best.setdefault(s.candidate.effect.name, s.candidate)
     single = window_scores(model.fit, _without(list_single([*best.values()]), has))
-    return tuple(sorted((*common, *single), key=lambda s: -s.fall))
+    found = sorted((*common, *single), key=lambda s: -s.fall)
+    beyond = [
+        s for s in found
+        if is_significant(s, len(found), options) and is_plausible(s, options)
+    ]  # fmt: skip
+    several = window_scores(model.fit, list_several(beyond))
+    return tuple(sorted((*found, *several), key=lambda s: -s.fall))
 
 
 def _without(candidates: Sequence[Candidate], has: set[tuple[str, str]]) -> list[Candidate]:
