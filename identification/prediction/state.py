@@ -26,7 +26,6 @@ from identification.prediction.selection import (
 )
 from identification.prediction.unseen import Unseen, compare, predict
 
-
 RIVAL = 0.5  # of what an effect explained; one that keeps more beside another is not its rival
 
 
