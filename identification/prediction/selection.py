@@ -83,10 +83,34 @@ def _without(candidates: Sequence[Candidate], has: set[tuple[str, str]]) -> list
     return [c for c in candidates if (c.effect.name, c.where) not in has]
 
 
-def list_contenders(scores: Sequence[WindowScore], options: DiscoveryOptions) -> list[WindowScore]:
-    """The few best scores that are beyond chance, the best shape of each effect at each place."""
+def list_contenders(
+    scores: Sequence[WindowScore], options: DiscoveryOptions, errors: int
+) -> list[WindowScore]:
+    """The few best scores that are beyond chance, the best shape of each effect at each place.
+
+    The best curve of the data is among them only where its criterion promises to be better than
+    that of every law: a curve can imitate any law of what it depends on.
+
+    Args:
+        scores: of all candidates, the best first.
+        options: what is beyond chance, and how many are refitted.
+        errors: number of errors that count as a sample of the criterion.
+    """
+    laws = _best_few([s for s in scores if not s.candidate.effect.is_curve], scores, options)
+    curves = _best_few([s for s in scores if s.candidate.effect.is_curve], scores, options)[:1]
+
+    def promised(s: WindowScore) -> float:
+        return -errors * np.log(max(1e-12, 1 - s.fall)) - len(s.size) * np.log(max(2, errors))
+
+    best = max([promised(s) for s in laws], default=0.0)
+    return [*laws, *(s for s in curves if promised(s) > best)]
+
+
+def _best_few(
+    listed: Sequence[WindowScore], scores: Sequence[WindowScore], options: DiscoveryOptions
+) -> list[WindowScore]:
     each: dict[tuple[str, str], WindowScore] = {}
-    for s in scores:
+    for s in listed:
         if is_significant(s, len(scores), options) and is_plausible(s, options):
             each.setdefault((s.candidate.effect.name, s.candidate.where), s)
     out: list[WindowScore] = []
@@ -125,7 +149,7 @@ def refit_contenders(
     Of two that are no more than a bare mention apart the one comes first that is the same in all
     records.
     """
-    chosen = list_contenders(scores, options)
+    chosen = list_contenders(scores, options, _windows(model) * len(model.scale))
     out = []
     for s in chosen:
         label = f"{s.candidate.effect.name}, {s.candidate.where}"
@@ -160,7 +184,9 @@ def is_proven(found: Prediction, refits: int, options: DiscoveryOptions) -> bool
 
 def criterion(model: WindowModel) -> float:
     """Negative BIC of the fitted windows, in units of twice the log likelihood."""
-    fit = model.fit
-    W = sum(len(p.cut.starts) for p in fit.problem.parts)
-    ny = len(model.scale)
+    fit, W, ny = model.fit, _windows(model), len(model.scale)
     return -W * ny * float(np.log(fit.cost)) - len(fit.q) * float(np.log(W))
+
+
+def _windows(model: WindowModel) -> int:
+    return sum(len(p.cut.starts) for p in model.fit.problem.parts)

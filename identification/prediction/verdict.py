@@ -84,6 +84,8 @@ def _named(
     """An accepted effect at the values of the final model, with its rivals."""
     options, mine = state.task.options, accepted.candidate
     is_final = any(_key(c) == _key(mine) for c in state.model.candidates)
+    is_law = not mine.effect.is_curve  # which curves may imitate, but are no rival of its name
+    others = [o for o in others if not (is_law and o.candidate.effect.is_curve)]
     near = [accepted, *others]
     shares = compute_confidence(near)
     rivals = [
