@@ -3,7 +3,8 @@
 nominal model:     windows of a quarter, a half and the whole horizon; each fit begins where the
                    last one ended
 with an effect:    the fit begins at its parent, with the size that the score gives or the part of
-                   it that is best; size zero is its parent, so that a child never explains less
+                   it that is best, and the states that then are best; size zero is its parent, so
+                   that a child never explains less
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ FEWEST = 4  # samples of the shortest windows
 ROUGH_STEPS = MOST_STEPS // 3  # of the fits that only find where the last one begins
 SAME = 0.05  # relative change of the errors' scale below which it is settled
 MOST_SCALES = 6  # fits at most until it is
-SHARES = (1.0, 0.5, 0.2, 0.05, 0.01)  # of the size that a score gives, to begin with
+SHARES = (1.0, 0.3, 0.05, 0.01)  # of the size that a score gives, to begin with
 FINE = 1e-3  # relative fall of the criterion at which the refit of an effect ends
 MOST_REFIT = 12  # its linearisations; an effect that takes more is not what is missing
 SHAPE_STD = 1.0  # prior of a shape's coordinate about the value that scored best
@@ -157,17 +158,18 @@ def with_effect(
     begun = []
     for share in SHARES:
         q = _begin(task, parent, score, share)
-        try:
-            cost = task.cost(q, fit.moves)
+        try:  # the states have made up for what was missing
+            moves = task.settled(q, fit.moves)
+            cost = task.cost(q, moves)
         except InputError:
             continue
-        begun.append((cost, q))
+        begun.append((cost, q, moves))
         if cost < fit.cost or not c.free:
             break
     if not begun:
         raise InputError(f"{c.effect.name}, {c.where} cannot be simulated at any size")
-    _, q = min(begun, key=lambda b: b[0])
-    found = solve(task, q, fit.moves, tolerance=FINE, most=MOST_REFIT)
+    _, q, moves = min(begun, key=lambda b: b[0])
+    found = solve(task, q, moves, tolerance=FINE, most=MOST_REFIT)
     if found.cost >= fit.cost:
         return None
     values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}
