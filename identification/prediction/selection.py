@@ -163,7 +163,7 @@ def refit_contenders(
             continue
         found = compare(model.unseen, new.unseen)
         gain = criterion(new) - criterion(model)
-        proven = gain > 0 and is_proven(found, len(chosen), options)
+        proven = gain > 0 and has_size(new, options) and is_proven(found, len(chosen), options)
         out.append(Contender(model=new, prediction=found, criterion=gain, is_proven=proven))
         at = model.unseen.lengths.index(1.0)
         progress(f"{label}: unseen mean square {-100 * found.falls[at]:+.0f} %, t {found.t:.1f}")
@@ -180,6 +180,13 @@ def is_proven(found: Prediction, refits: int, options: DiscoveryOptions) -> bool
     """Whether unseen windows are predicted better: beyond chance, everywhere, by enough."""
     beyond = found.t > options.min_proof_t and found.chance * refits < options.significance
     return beyond and found.is_everywhere and min(found.falls) > options.min_fall
+
+
+def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
+    """Whether a free size of the last effect is beyond its own std, where it has one."""
+    std, values, free = model.std, model.fit.values, model.candidates[-1].free
+    own = [n for n in model.fit.problem.names if n.partition(" [")[0] in free]
+    return not own or any(abs(values[n]) > options.min_proof_t * std[n] for n in own)
 
 
 def criterion(model: WindowModel) -> float:

@@ -12,10 +12,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import ttest_1samp
+from scipy.stats import ttest_1samp, ttest_ind
 
 from identification.discovery.effect_results import Gap
-from identification.discovery.findings.evidence import RemainingError, UnprovenEffect
+from identification.discovery.findings.evidence import (
+    DifferentRecord,
+    RemainingError,
+    UnprovenEffect,
+)
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction.input_error import needed_input_error
@@ -32,6 +36,7 @@ from identification.prediction.state import RecordsState
 from identification.prediction.unseen import PER_RECORD, Unseen
 
 RESAMPLES = 2000
+DIFFERENT = 2.0  # times worse than others a record is predicted that is told apart
 SEED = 0  # of the resampling, so that a verdict repeats
 LIKELY = 0.02  # a rival less likely than this is not listed
 UNLISTED = "curve"  # names of effects that begin so are curves drawn from the data
@@ -53,12 +58,18 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     sure = all(n.effect.confidence >= 0.5 or n.one_of for n in named)
     findings = _findings(state, rejected)
     doubtful = any(f.kind is FindingKind.UNPROVEN_EFFECT for f in findings)
+    different = any(f.kind is FindingKind.DIFFERENT_RECORD for f in findings)
     needed = needed_input_error(model.fit, model.unseen.floor)
     verdict: Verdict = "nothing missing"
     if named and sure:
         curves = [n.effect.candidate.effect.name.startswith(UNLISTED) for n in named]
         verdict = "unlisted effect" if all(curves) else "named"
-    elif named or doubtful or (_is_off(model, options) and needed > options.max_input_error):
+    elif (
+        named
+        or doubtful
+        or different
+        or (_is_off(model, options) and needed > options.max_input_error)
+    ):
         verdict = "unknown effect"
     if verdict == "unknown effect":
         rejected, named, model = (*(n.effect for n in named), *rejected), (), nominal
@@ -163,7 +174,34 @@ def _findings(state: RecordsState, rejected: Sequence[RefittedEffect]) -> tuple[
     )
     if state.accepted and ratio > 1 + state.task.options.min_gap_share:
         out.append(Finding(FindingKind.REMAINING_ERROR, RemainingError(ratio)))
+    out += [Finding(FindingKind.DIFFERENT_RECORD, e) for e in different_records(state)]
     return tuple(out)
+
+
+def different_records(state: RecordsState) -> list[DifferentRecord]:
+    """Records that the final model predicts much worse than the others, by Welch's t-test.
+
+    The sample are logarithms of the windows' mean squares, and the records are paid for.
+    """
+    unseen = state.model.unseen
+    errors = {
+        r.log.name: np.log(squares + unseen.floor)
+        for r, squares in zip(state.task.confirm, unseen.at_horizon, strict=True)
+    }
+    fitted = [r for r in state.task.records if r.role == "fit"]
+    scale = state.model.scale
+    for r, e in zip(fitted, state.model.fit.errors, strict=True):
+        errors[f"{r.log.name} (fit)"] = np.log(
+            np.mean((e / scale) ** 2, axis=(1, 2)) + unseen.floor
+        )
+    out = []
+    for name, mine in errors.items():
+        rest = np.concatenate([e for n, e in errors.items() if n != name])
+        ratio = float(np.exp((mine.mean() - rest.mean()) / 2))
+        chance = float(ttest_ind(mine, rest, equal_var=False, alternative="greater").pvalue)
+        if ratio > DIFFERENT and chance * len(errors) < state.task.options.significance:
+            out.append(DifferentRecord(name, ratio, chance))
+    return out
 
 
 def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
