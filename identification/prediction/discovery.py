@@ -10,6 +10,7 @@ from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.prediction.records import as_records
+from identification.prediction.records_fit import NO_HORIZON
 from identification.prediction.result import RecordsDiscovery
 from identification.prediction.selection import Progress
 from identification.prediction.starts import without_starts
@@ -45,10 +46,7 @@ def discover_records(
         DivergenceError: the nominal model cannot be simulated.
     """
     if nominal_model.horizon is None:
-        raise InputError(
-            "records are judged by predictions over a horizon, and none is given; write horizon ="
-            " 0.2 (in seconds) into the robot's file"
-        )
+        raise InputError(NO_HORIZON)
     records = as_records(fit, confirm, values)
     task = RecordsTask(
         nominal_model=without_starts(nominal_model), records=records, effects=tuple(effects),

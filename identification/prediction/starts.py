@@ -1,4 +1,4 @@
-"""Where a record begins is no parameter of predictions: each window begins at a state of its own."""
+"""A record's start is no parameter of predictions: each window begins at a state of its own."""
 
 from __future__ import annotations
 

@@ -5,8 +5,13 @@ from __future__ import annotations
 from identification.discovery.final_values import collect_final_values
 from identification.discovery.result import Discovery
 from identification.errors import refuse_kind
+from identification.prediction.model import predict_fitted
+from identification.prediction.record_errors import record_errors
+from identification.prediction.records import Record
+from identification.prediction.records_fit import RecordsFit
+from identification.prediction.unseen import predict
 from identification.robot.fitting import RobotFit
-from identification.robot.record_error import Confirmation, compare_values
+from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, compare_values
 from identification.robot.robot import Robot
 
 WITHOUT = "without what is named", "with it"
@@ -33,9 +38,29 @@ def confirm(robot: Robot, found: RobotFit | Discovery) -> tuple[Confirmation, ..
     refuse_kind(robot, Robot, "confirm takes a robot (read_robot)")
     refuse_kind(found, (RobotFit, Discovery), "confirm takes what fit or discover found")
     if isinstance(found, RobotFit):
+        if isinstance(found.found, RecordsFit):
+            return _over_windows(robot, found, found.found)
         return tuple(compare_values(robot, log, {}, found.values) for log in robot.records)
     after = collect_final_values(found)
     if not found.named:
         return tuple(compare_values(robot, log, {}, after) for log in robot.records)
     before = found.nominal.point.values
     return tuple(compare_values(robot, log, before, after, WITHOUT) for log in robot.records)
+
+
+def _over_windows(robot: Robot, fit: RobotFit, found: RecordsFit) -> tuple[Confirmation, ...]:
+    """The comparison that the fit has made already, or that of other records."""
+    if not robot.records:
+        return ()
+    if [*map(id, robot.records)] == [*map(id, fit.robot.records)]:
+        return fit.unseen
+    model, plant = found.model, robot.plant
+    records = [Record(log, "confirm", robot.values_of(log)) for log in robot.records]
+    each = (
+        predict(plant, records, found.horizon, model.scale, {}),
+        predict_fitted(plant, records, found.horizon, model.scale, model.fit, {}),
+    )
+    return tuple(
+        Confirmation(e.name, e.before, e.after, found.unit, (AS_WRITTEN, FITTED))
+        for e in record_errors(records, found.scale, each, ([], []))
+    )
