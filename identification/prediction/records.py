@@ -58,8 +58,10 @@ def as_records(
     own = [{**log.values, **given.get(log.name, {})} for log in every]
     named = list(zip(_distinct(every), own, strict=True))
     if confirm:
-        roles: list[Role] = [*["fit"] * len(fit), *["confirm"] * len(confirm)]
-        return tuple(Record(log, r, v) for (log, v), r in zip(named, roles, strict=True))
+        return (
+            *(Record(log, "fit", v) for log, v in named[: len(fit)]),
+            *(Record(log, "confirm", v) for log, v in named[len(fit) :]),
+        )
     return tuple(Record(log.part(part), role, v) for part, role in _HALVES for log, v in named)
 
 

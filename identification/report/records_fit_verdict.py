@@ -49,8 +49,8 @@ def _weak(found: RecordsFit) -> list[str]:
     if not weak:
         return []
     return [
-        f"Too weakly for these windows: {', '.join(weak)}, their std exceeds half the value. Fix one"
-        " of them, or record a motion that tells more of them."
+        f"Too weakly for these windows: {', '.join(weak)}, their std exceeds half the value. Fix"
+        " one of them, or record a motion that tells more of them."
     ]
 
 

@@ -44,8 +44,8 @@ def value_parameters(
             where = f"values of log {log.name!r}"
             if name in file.free or name in free:
                 raise InputError(
-                    f"{where} give {name}, which {file.path} frees: {free.get(name, name)}; keep one"
-                    " of both"
+                    f"{where} give {name}, which {file.path} frees (as {free.get(name, name)!r});"
+                    " keep one of both"
                 )
             if start_place(name, model) is not None:
                 raise InputError(
