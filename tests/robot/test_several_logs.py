@@ -9,8 +9,9 @@ import pytest
 from records_cases import AXIS, MJCF, PARAMETERS, STEP, record
 from robot_cases import refused, run
 
-from identification import confirm, fit, joint_plant, read_robot, write_log, write_robot
+from identification import confirm, discover, fit, joint_plant, read_robot, write_log, write_robot
 from identification.model.parameter import Parameter
+from identification.report.records_json import records_to_json
 from identification.robot.file import read_robot_file
 from identification.robot.fit_json import robot_fit_to_json
 
@@ -151,6 +152,26 @@ def test_records_with_offsets_of_their_own_recover_each(folder):
     assert said["records"][2]["own"][OFFSET]["value"] == pytest.approx(truth[2], rel=0.05)
     path = write_robot(robot, found.shared, folder / "again.toml", folder)
     assert read_robot_file(path).own == (OFFSET,)
+
+
+def test_a_discovery_has_own_parameters_and_values_of_logs_too(folder):
+    own, masses, mu = (0.05, -0.03, 0.02), (0.5, 0.9, 0.7), "transmitted_load_friction.mu@hinge"
+    logs = [
+        replace(measured(k, {OFFSET: f, MASS: m, mu: 0.15}), values={MASS: m})
+        for k, (f, m) in enumerate(zip(own, masses, strict=True), start=1)
+    ]
+    only = '[effects]\nonly = ["transmitted_load_friction", "quadratic_friction"]\n'
+    (folder / "own.toml").write_text(OWN + only)
+    *fitted, other = written(folder, *logs)
+    robot = read_robot(folder / "own.toml", fitted, confirm=[other])
+    found = discover(robot)
+    (named,) = found.named
+    assert named.effect.parameters["mu"][0] == pytest.approx(0.15, rel=0.05)
+    assert records_to_json(found)["final"][f"{OFFSET} [log_1]"]["value"] == pytest.approx(
+        -0.03, rel=0.05
+    )
+    (there,) = confirm(robot, found)
+    assert there.after < 0.2 * there.before
 
 
 def test_logs_of_one_name_are_told_apart(folder):
