@@ -81,8 +81,8 @@ def _of_discovery(robot: Robot, found: RecordsDiscovery) -> tuple[Confirmation, 
     for log in robot.records:
         if log.name not in errors:
             raise InputError(
-                f"the discovery did not see record {log.name!r}, known: {', '.join(errors)}; give it"
-                " to read_robot as one that confirms, and discover again"
+                f"the discovery did not see record {log.name!r}, known: {', '.join(errors)}; give"
+                " it to read_robot as one that confirms, and discover again"
             )
     each = (errors[log.name] for log in robot.records)
     return tuple(Confirmation(e.name, e.before, e.after, found.unit, WITHOUT) for e in each)
