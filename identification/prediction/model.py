@@ -129,7 +129,7 @@ def fit_nominal(
         if np.all(np.abs(np.log(scale / old)) < SAME):
             break
     confirm = [r for r in records if r.role == "confirm"]
-    return WindowModel((), found, _unseen(plant, confirm, horizon, old, found, {}), old)
+    return WindowModel((), found, predict_fitted(plant, confirm, horizon, old, found, {}), old)
 
 
 def with_effect(
@@ -173,7 +173,9 @@ def with_effect(
     if found.cost >= fit.cost:
         return None
     values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}
-    seen = _unseen(plant, confirm, horizon, parent.scale, found, {**values, **fixed}, parent.unseen)
+    seen = predict_fitted(
+        plant, confirm, horizon, parent.scale, found, {**values, **fixed}, parent.unseen
+    )
     return WindowModel((*parent.candidates, c), found, seen, parent.scale)
 
 
@@ -203,7 +205,9 @@ def refitted(
     horizon = float(nominal_model.horizon or 0.0)
     try:
         found = solve(task, q, fit.moves)
-        seen = _unseen(model.plant, confirm, horizon, model.scale, found, fixed, model.unseen)
+        seen = predict_fitted(
+            model.plant, confirm, horizon, model.scale, found, fixed, model.unseen
+        )
     except InputError:
         return None
     return WindowModel(tuple(candidates), found, seen, model.scale)
@@ -248,11 +252,25 @@ def _begin(task: Problem, parent: WindowModel, score: WindowScore, share: float)
     return np.asarray(task.prior.space.inside(q))
 
 
-def _unseen(
+def predict_fitted(
     plant: Plant, confirm: Sequence[Record], horizon: float, scale: np.ndarray, found: WindowFit,
     fixed: Mapping[str, float], near: Unseen | None = None,
 ) -> Unseen:  # fmt: skip
-    """Errors on unseen records; of parameters that each has for itself, its own halves tell."""
+    """Errors on unseen records; of parameters that each has for itself, its own halves tell.
+
+    Args:
+        plant: the model.
+        confirm: records that no fit has seen.
+        horizon: [s].
+        scale: s of each output, shape (ny,), in its unit.
+        found: the fit of other records.
+        fixed: values that are neither the plant's own nor fitted.
+        near: errors of a model nearby, at whose states the windows' search begins.
+
+    Raises:
+        InputError: no window of the horizon fits a record.
+        DivergenceError: the model cannot be simulated.
+    """
     unknowns, values = found.problem.unknowns, {**fixed, **found.shared}
     m = len(unknowns.own.names)
     start = unknowns.own.mean

@@ -24,9 +24,9 @@ from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction.input_error import needed_input_error
 from identification.prediction.model import WindowModel
+from identification.prediction.record_errors import error_unit, record_errors, scaled_squares
 from identification.prediction.result import (
     NamedByPrediction,
-    RecordError,
     RecordsDiscovery,
     RefittedEffect,
     Verdict,
@@ -76,14 +76,18 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     floor = model.unseen.floor
     before, after = (float(np.mean(np.concatenate(m.unseen.at_horizon))) for m in (nominal, model))
     above = before - min(floor, after)
-    scale, unit = _unit(state)
+    scale, unit = error_unit(task.records[0].log, nominal.scale)
     return RecordsDiscovery(
         records=task.records, options=options, horizon=task.horizon, verdict=verdict, named=named,
         rejected=rejected, share=float((before - after) / above) if above > 0 else 0.0,
         unexplained=verdict != "nothing missing" and (bool(findings) or not named),
         noise_rms=scale * float(np.sqrt(floor)), unit=unit, input_error=needed,
         before=_gap(nominal.unseen, scale), after=_gap(model.unseen, scale),
-        errors=_errors(state, model, scale), nominal=nominal, final=model,
+        errors=record_errors(
+            task.records, scale, (nominal.unseen, model.unseen),
+            [scaled_squares(m.fit.errors, nominal.scale) for m in (nominal, model)],
+        ),
+        nominal=nominal, final=model,
         scores=state.nominal_scores, remaining=state.scores if named else state.nominal_scores,
         findings=findings, seconds=state.seconds,
     )  # fmt: skip
@@ -221,30 +225,9 @@ def _by_record(blocks: np.ndarray, state: RecordsState) -> list[np.ndarray]:
     return np.split(blocks, np.cumsum(sizes)[:-1])
 
 
-def _unit(state: RecordsState) -> tuple[float, str]:
-    """What one unit of scaled error is, and its unit: rms over all outputs where they share one."""
-    unit = state.task.records[0].log.output_unit
-    scale = state.nominal.scale
-    return (float(np.sqrt(np.mean(scale**2))), unit) if unit else (1.0, "")
-
-
 def _gap(unseen: Unseen, scale: float) -> Gap:
     square = float(np.mean(np.concatenate(unseen.at_horizon)))
     return Gap(scale * float(np.sqrt(square)), unseen.fit_percent)
-
-
-def _errors(state: RecordsState, model: WindowModel, scale: float) -> tuple[RecordError, ...]:
-    out = []
-    confirm = zip(state.nominal.unseen.at_horizon, model.unseen.at_horizon, strict=True)
-    seen = zip(state.nominal.fit.errors, model.fit.errors, strict=True)
-    for record in state.task.records:
-        if record.role == "confirm":
-            a, b = next(confirm)
-        else:
-            a, b = (np.mean((e / state.nominal.scale) ** 2, axis=(1, 2)) for e in next(seen))
-        before, after = (scale * float(np.sqrt(x.mean())) for x in (a, b))
-        out.append(RecordError(name=record.log.name, role=record.role, before=before, after=after))
-    return tuple(out)
 
 
 def _key(candidate: object) -> tuple[str, str]:

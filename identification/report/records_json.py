@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
 from identification.effects.effect import Candidate
+from identification.prediction.model import WindowModel
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
 from identification.report.discovery_json import finding_to_json, finite
 from identification.report.finding_words import describe_finding
@@ -40,15 +40,17 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
         "input_error": found.input_error,
         "located": [describe_finding(finding) for finding in found.findings],
         "findings": [finding_to_json(finding) for finding in found.findings],
-        "nominal": _values_to_json(found.nominal.values, found.nominal.std),
-        "final": _values_to_json(found.final.values, found.final.std),
+        "nominal": _values_to_json(found.nominal),
+        "final": _values_to_json(found.final),
         "options": asdict(found.options),
         "seconds": float(sum(found.seconds.values())),
     }
     return {key: finite(value) for key, value in record.items()}
 
 
-def _values_to_json(values: Mapping[str, float], std: Mapping[str, float]) -> dict[str, Any]:
+def _values_to_json(model: WindowModel) -> dict[str, Any]:
+    """Fitted values, those of one record as `name [record]`, and what effects hold fixed."""
+    values, std = {**model.values, **model.fit.values}, model.std
     return {name: {"value": value, "std": std.get(name)} for name, value in values.items()}
 
 
