@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
-from identification.report.discovery_json import finding_to_json, finite
+from identification.report.finding_json import finding_to_json, finite
 from identification.report.finding_words import describe_finding
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from identification.discovery.final_values import collect_final_values
 from identification.discovery.result import Discovery
 from identification.errors import refuse_kind
+from identification.prediction.result import RecordsDiscovery
 from identification.robot.fitting import RobotFit
 from identification.robot.record_error import Confirmation, compare_values
 from identification.robot.robot import Robot
@@ -12,7 +13,9 @@ from identification.robot.robot import Robot
 WITHOUT = "without what is named", "with it"
 
 
-def confirm(robot: Robot, found: RobotFit | Discovery) -> tuple[Confirmation, ...]:
+def confirm(
+    robot: Robot, found: RobotFit | Discovery | RecordsDiscovery
+) -> tuple[Confirmation, ...]:
     """Compare two models on every record of a robot to which nothing was fitted.
 
     For a fit the two models have the values of the robot's file and the fitted values. For a
@@ -31,11 +34,14 @@ def confirm(robot: Robot, found: RobotFit | Discovery) -> tuple[Confirmation, ..
         DivergenceError: one of the models cannot be simulated.
     """
     refuse_kind(robot, Robot, "confirm takes a robot (read_robot)")
-    refuse_kind(found, (RobotFit, Discovery), "confirm takes what fit or discover found")
+    kinds = (RobotFit, Discovery, RecordsDiscovery)
+    refuse_kind(found, kinds, "confirm takes what fit or discover found")
     if isinstance(found, RobotFit):
         return tuple(compare_values(robot, log, {}, found.values) for log in robot.records)
-    after = collect_final_values(found)
+    if isinstance(found, RecordsDiscovery):
+        before, after = found.nominal.values, found.final.values
+    else:
+        before, after = found.nominal.point.values, collect_final_values(found)
     if not found.named:
         return tuple(compare_values(robot, log, {}, after) for log in robot.records)
-    before = found.nominal.point.values
     return tuple(compare_values(robot, log, before, after, WITHOUT) for log in robot.records)
