@@ -54,8 +54,8 @@ def main(folder, figure=None):
     print(discovery_text(found))
     before, after = found.nominal.values, found.final.values
     for name, value in after.items():
-        print(f"{name}: {before.get(name, 0.0):.2f}, with what is named {value:.2f}"
-              f" ± {found.final.std[name]:.2f}; published {PUBLISHED.get(name, 0.0):.2f}")  # fmt: skip
+        then, said = before.get(name, 0.0), PUBLISHED.get(name, 0.0)
+        print(f"{name}: {then:.2f} -> {value:.2f} ± {found.final.std[name]:.2f}; {said:.2f}")
     for horizon in (0.1, 0.2, 0.5):
         a, b = (np.mean(window_error(robot.plant, pulses, horizon, values) ** 2)
                 for values in (before, after))  # fmt: skip
