@@ -141,6 +141,13 @@ class DiscoveryOptions(KalmanOptions):
         "Effects are named although something is left only when they close more than this.",
         "judgement", most=1.0,
     )  # fmt: skip
+    max_input_error: float = option(
+        0.05, "of the inputs' own rms",
+        "Over a horizon: an error of prediction that inputs make which are off by no more, constant"
+        " over each window, is no reason to say that something is missing; currents and commanded"
+        " torques are seldom better.",
+        "judgement",
+    )  # fmt: skip
     max_named_input_error: float = option(
         1.0, "of the inputs' own motion",
         "Nothing that leaves anything is named where the inputs would have to err by more: the"

@@ -91,6 +91,8 @@ class RecordsDiscovery:
             effects take away, 0 to 1.
         unexplained: whether something is left that no named effect explains.
         noise_rms: of the sensors, over all outputs, in the unit of `errors`.
+        input_error: rms error of the inputs, constant over each window, that would make what the
+            final model leaves of the fitted windows; a share of the inputs' own rms.
         unit: of errors and noise; empty where outputs have several and their scale is the unit.
         before: the gap of the fitted nominal model on the records that confirm.
         after: the gap of the final model.
@@ -112,6 +114,7 @@ class RecordsDiscovery:
     share: float
     unexplained: bool
     noise_rms: float
+    input_error: float
     unit: str
     before: Gap
     after: Gap

@@ -23,6 +23,7 @@ from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
 from identification.prediction.fit import BLOCKS, WindowFit, projected
 
+NEW = 0.01  # of a column that base parameters cannot imitate; with less it is one of them again
 BATCH = 24  # columns at a time: bounds the memory of their trajectories
 
 
@@ -88,6 +89,7 @@ class _Base:
         F = np.vstack([S.reshape(-1, p) for S, _ in each] + [np.diag(fit.problem.prior.weight)])
         scale = np.linalg.norm(F, axis=0)
         self.Q = np.linalg.qr(F / np.where(scale > 0, scale, 1.0))[0]
+        self.free = np.linalg.qr(F[: len(F) - p] / np.where(scale > 0, scale, 1.0))[0]
         below = fit.problem.against(fit.q)[:, None]
         r = np.vstack([r.reshape(-1, 1) for _, r in each] + [below])
         self.r = self._without_base(r)[:, 0]
@@ -103,9 +105,16 @@ class _Base:
         for c, end in zip(group, ends, strict=True):
             own = [S[:, end - len(c.sizes) : end] for S in columns]
             S = block_diag(*own) if c.effect.own else np.vstack(own)
+            if not self._is_new(S):
+                continue
             below = np.zeros((len(self.fit.q), S.shape[1]))
             out.append(self._score(c, self._without_base(np.vstack([S, below]))))
         return out
+
+    def _is_new(self, S: np.ndarray) -> bool:
+        """Whether no free parameters of the model imitate all columns, whatever priors say."""
+        left = np.linalg.norm(S - self.free @ (self.free.T @ S), axis=0)
+        return bool(np.any(left > NEW * np.linalg.norm(S, axis=0)))
 
     def _columns(self, group: Sequence[Candidate]) -> list[np.ndarray]:
         """-∂r/∂η of the sizes of candidates, without the states' part, (rows, k) a record."""

@@ -105,7 +105,11 @@ def refit_contenders(
     options: DiscoveryOptions,
     progress: Progress,
 ) -> tuple[Contender, ...]:
-    """Refit the contenders of a round, the best first: proven ones before others, by criterion."""
+    """Refit the contenders of a round, the best first: proven ones before others, by criterion.
+
+    Of two that are no more than a bare mention apart the one comes first that is the same in all
+    records.
+    """
     chosen = list_contenders(scores, options)
     out = []
     for s in chosen:
@@ -124,7 +128,13 @@ def refit_contenders(
         out.append(Contender(model=new, prediction=found, criterion=gain, is_proven=proven))
         at = model.unseen.lengths.index(1.0)
         progress(f"{label}: unseen mean square {-100 * found.falls[at]:+.0f} %, t {found.t:.1f}")
-    return tuple(sorted(out, key=lambda c: (not c.is_proven, -c.criterion)))
+    best = max([c.criterion for c in out if c.is_proven], default=0.0)
+
+    def rank(c: Contender) -> tuple[bool, bool, float]:
+        near = c.criterion > best - options.bare_bic and not c.candidate.effect.own
+        return not c.is_proven, not near, -c.criterion
+
+    return tuple(sorted(out, key=rank))
 
 
 def is_proven(found: Prediction, refits: int, options: DiscoveryOptions) -> bool:

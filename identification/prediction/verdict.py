@@ -17,6 +17,8 @@ from scipy.stats import ttest_1samp
 from identification.discovery.effect_results import Gap
 from identification.discovery.findings.evidence import RemainingError, UnprovenEffect
 from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.options import DiscoveryOptions
+from identification.prediction.input_error import needed_input_error
 from identification.prediction.model import WindowModel
 from identification.prediction.result import (
     NamedByPrediction,
@@ -51,11 +53,12 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     sure = all(n.effect.confidence >= 0.5 or n.one_of for n in named)
     findings = _findings(state, rejected)
     doubtful = any(f.kind is FindingKind.UNPROVEN_EFFECT for f in findings)
+    needed = needed_input_error(model.fit)
     verdict: Verdict = "nothing missing"
     if named and sure:
         curves = [n.effect.candidate.effect.name.startswith(UNLISTED) for n in named]
         verdict = "unlisted effect" if all(curves) else "named"
-    elif named or doubtful:
+    elif named or doubtful or (_is_off(model, options) and needed > options.max_input_error):
         verdict = "unknown effect"
     if verdict == "unknown effect":
         rejected, named, model = (*(n.effect for n in named), *rejected), (), nominal
@@ -67,7 +70,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
         records=task.records, options=options, horizon=task.horizon, verdict=verdict, named=named,
         rejected=rejected, share=float((before - after) / above) if above > 0 else 0.0,
         unexplained=verdict != "nothing missing" and (bool(findings) or not named),
-        noise_rms=scale * float(np.sqrt(floor)), unit=unit,
+        noise_rms=scale * float(np.sqrt(floor)), unit=unit, input_error=needed,
         before=_gap(nominal.unseen, scale), after=_gap(model.unseen, scale),
         errors=_errors(state, model, scale), nominal=nominal, final=model,
         scores=state.nominal_scores, remaining=state.scores if named else state.nominal_scores,
@@ -159,6 +162,12 @@ def _findings(state: RecordsState, rejected: Sequence[RefittedEffect]) -> tuple[
     if state.accepted and ratio > 1 + state.task.options.min_gap_share:
         out.append(Finding(FindingKind.REMAINING_ERROR, RemainingError(ratio)))
     return tuple(out)
+
+
+def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
+    """Whether a model errs on unseen records by more than the sensors' noise."""
+    square = float(np.mean(np.concatenate(model.unseen.at_horizon)))
+    return square > model.unseen.floor * (1 + options.min_gap_share)
 
 
 def _unproven(r: RefittedEffect) -> UnprovenEffect:

@@ -29,6 +29,7 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
             for e in found.errors
         ],
         "horizon": found.horizon,
+        "input_error": found.input_error,
         "located": [describe_finding(finding) for finding in found.findings],
         "findings": [finding_to_json(finding) for finding in found.findings],
         "nominal": _values_to_json(found.nominal.values, found.nominal.std),

@@ -18,6 +18,7 @@ def records_verdict(found: RecordsDiscovery) -> list[str]:
             "Nothing is missing, as far as these records can tell: no candidate lowers the error of"
             f" prediction on unseen data beyond chance. It is {before} rms over"
             f" {found.horizon:g} s, where the sensors make {noise}."
+            f" Inputs that err by {100 * found.input_error:.2g} % of their rms would make the rest."
         ]
     if found.verdict == "unknown effect":
         return [_unknown(found)]
@@ -97,7 +98,8 @@ def _unknown(found: RecordsDiscovery) -> str:
     return (
         "Something is missing that none of the known effects surely explains: the fitted model is"
         f" {before} rms off over {found.horizon:g} s on unseen data, where the sensors make"
-        f" {noise}. It is not named here rather than named wrongly."
+        f" {noise}; inputs would have to err by {100 * found.input_error:.2g} % of their rms"
+        " to make that. It is not named here rather than named wrongly."
         + "".join(f" {sentence(describe_finding(finding))}" for finding in found.findings)
     )
 

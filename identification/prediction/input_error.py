@@ -1,0 +1,61 @@
+"""How much the inputs would have to err to make what a fitted model leaves.
+
+    δ_w = argmin ‖r⊥_w - S⊥_w δ‖²            S = -∂r/∂u, u the inputs, each constant over a window
+    share = √(Σ_w δ_wᵀ δ_w / Σ_w ū_wᵀ ū_w)      ū_w: rms of each input, δ and u scaled by rms u
+
+r⊥, S⊥: residual and sensitivity without what the state of a window makes up for. No log has exact
+inputs: a drive's current or a commanded torque is good to some per cent. What so small an error of
+the inputs explains is no reason to seek an effect; what needs a larger one is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from identification.prediction.fit import WindowFit, projected
+from identification.windows.shooting import Shooting, Tangent
+
+STEP = 1e-3  # of an input's rms, by which it is moved
+
+
+def needed_input_error(fit: WindowFit) -> float:
+    """Rms error of the inputs over a window that the residual needs, as a share of their own rms.
+
+    Args:
+        fit: the model, on the windows of the records that were fitted.
+    """
+    inputs = np.concatenate([p.predictor.log.inputs for p in fit.problem.parts])
+    size = np.sqrt(np.mean(inputs**2, axis=0))
+    moving = np.flatnonzero(size > 0)
+    needed, count = 0.0, 0
+    for k, (part, d, t) in enumerate(zip(fit.problem.parts, fit.moves, fit.tangents, strict=True)):
+        q = fit.q[fit.problem.unknowns.columns(k)]
+        S = _sensitivity(part, q, d, t, size, moving)
+        r = projected(t)[1]
+        δ = np.einsum("wkm,wm->wk", np.linalg.pinv(S, rcond=1e-3), r)
+        needed += float(np.sum(δ**2))
+        count += δ.size
+    return float(np.sqrt(needed / max(1, count)))
+
+
+def _sensitivity(
+    part: Shooting, q: np.ndarray, d: np.ndarray, t: Tangent, size: np.ndarray, moving: np.ndarray
+) -> np.ndarray:
+    """S⊥ of the inputs that move, each in units of its rms, shape (W, m, k)."""
+    out = []
+    at = part.joined(part.outputs(q[None], [d], is_rough=True)[0], d)
+    for j in moving:
+        step = np.zeros(len(size))
+        step[j] = STEP * size[j]
+        log = replace(part.predictor.log, inputs=part.predictor.log.inputs + step)
+        moved = replace(
+            part, predictor=replace(part.predictor, log=log),
+            cut=replace(part.cut, inputs=part.cut.inputs + step),
+        )  # fmt: skip
+        r = part.joined(moved.outputs(q[None], [d], is_rough=True)[0], d)
+        out.append((at - r) / STEP)
+    S = np.stack(out, axis=-1)
+    U = t.U * (t.s > 0)[:, None]
+    return np.asarray(S - U @ (np.swapaxes(U, 1, 2) @ S))
