@@ -36,12 +36,24 @@ def confirm(
     refuse_kind(robot, Robot, "confirm takes a robot (read_robot)")
     kinds = (RobotFit, Discovery, RecordsDiscovery)
     refuse_kind(found, kinds, "confirm takes what fit or discover found")
+    if isinstance(found, RecordsDiscovery):
+        return _of_records(robot, found)
     if isinstance(found, RobotFit):
         return tuple(compare_values(robot, log, {}, found.values) for log in robot.records)
-    if isinstance(found, RecordsDiscovery):
-        before, after = found.nominal.values, found.final.values
-    else:
-        before, after = found.nominal.point.values, collect_final_values(found)
+    after = collect_final_values(found)
     if not found.named:
         return tuple(compare_values(robot, log, {}, after) for log in robot.records)
+    before = found.nominal.point.values
     return tuple(compare_values(robot, log, before, after, WITHOUT) for log in robot.records)
+
+
+def _of_records(robot: Robot, found: RecordsDiscovery) -> tuple[Confirmation, ...]:
+    """The comparison that a discovery on records has made already, where it names something."""
+    if not found.named:
+        values = found.final.values
+        return tuple(compare_values(robot, log, {}, values) for log in robot.records)
+    return tuple(
+        Confirmation(e.name, e.before, e.after, found.unit, WITHOUT)
+        for e in found.errors
+        if e.role == "confirm"
+    )
