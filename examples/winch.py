@@ -52,12 +52,15 @@ def main(folder):
     robot = read_robot(ROBOT, fitted, confirm=unseen)
     found = discover(robot, progress=print)
     print(discovery_text(found))
-    for name, value in found.final.values.items():
-        print(f"{name}: {value:.3f} ± {found.final.std[name]:.2g}")
+    models = found.nominal.values, found.final.values
+    for name, value in models[1].items():
+        std = found.final.std.get(name, 0.0)
+        print(f"{name}: {models[0].get(name, 0.0):.3f} -> {value:.3f} ± {std:.2g}")
+    horizon = robot.file.horizon
     for log in light:
-        values = {**found.final.values, "m": 1.0}
-        e = window_error(robot.plant, log, robot.file.horizon, values)
-        print(f"{log.name}: {1e3 * np.sqrt(np.mean(e**2)):.1f} mm over {robot.file.horizon} s")
+        each = (window_error(robot.plant, log, horizon, {**m, "m": 1.0}) for m in models)
+        a, b = (1e3 * np.sqrt(np.mean(e**2)) for e in each)
+        print(f"{log.name}: {a:.1f} -> {b:.1f} mm over {horizon} s")
 
 
 if __name__ == "__main__":
