@@ -39,7 +39,7 @@ def pinned(count: Any) -> None:
 
 def answer_of(found: Any) -> dict[str, Any]:
     """A discovery as a row keeps it."""
-    from identification.report.discovery_json import finding_to_json
+    from identification.report.finding_json import finding_to_json
 
     above = found.before.rms**2 - min(found.noise_rms**2 + found.disturbance_rms**2,
                                       found.after.rms**2)  # fmt: skip

@@ -4,9 +4,13 @@
     i_c(q) = Σ a_n cos nq + b_n sin nq                  the drive's own current against cogging
 
 All in amperes of the motor. i_0 is whatever does not depend on the mass: a hook, a current's zero.
+The data are lifting/ and dynamic_torque/ of eliasoa/TTK4900_CDPR (NTNU).
+Run it: python examples/winch_strokes.py FOLDER [FIGURE.png]
 """
 
+import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from scipy.io import loadmat
@@ -164,3 +168,21 @@ def draw(strokes, wave, amperes, path):
     right.set(xlabel="drum [rev/s], lifting positive", ylabel="mean current [A]")
     right.legend(fontsize=7)
     figure.savefig(path, dpi=110)
+
+
+def main(folder, figure=None):
+    """The balance, the bare motors, and the ripple of the current."""
+    strokes = [stroke(folder / "lifting", *s) for s in STROKES]
+    amperes = balance(strokes)
+    without_load(folder)
+    wave = {motor: ripple(strokes, motor) for motor in (2, 0)}
+    if figure:
+        draw(strokes, wave[2], amperes, figure)
+
+
+if __name__ == "__main__":
+    where = Path(sys.argv[1] if len(sys.argv) > 1 else "data/ttk4900")
+    if (where / "lifting").exists() and (where / "dynamic_torque").exists():
+        main(where, *sys.argv[2:3])
+    else:
+        print(f"{where} lacks lifting or dynamic_torque: see github.com/eliasoa/TTK4900_CDPR")

@@ -90,6 +90,7 @@ _PUBLIC = {
     "Finding": "discovery.findings.finding",
     "FindingKind": "discovery.findings.finding",
     "collect_final_values": "discovery.final_values",
+    "RecordsDiscovery": "prediction.result",
     # words and figures
     "fit_verdict": "report.fit_verdict",
     "fit_to_json": "report.fit_json",
@@ -164,6 +165,7 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.model.predictor import Predictor as Predictor
     from identification.model.rollout import State as State
     from identification.model.sensitivity import sensitivity as sensitivity
+    from identification.prediction.result import RecordsDiscovery as RecordsDiscovery
     from identification.report.compare_figure import compare_figure as compare_figure
     from identification.report.discovery_json import discovery_to_json as discovery_to_json
     from identification.report.discovery_text import discovery_text as discovery_text

@@ -18,9 +18,9 @@ from scipy.io import loadmat
 from identification import Log, decimate
 from robots import needed
 from robots.emps_evidence import protocol, published_errors
-from robots.measured_robot import MODELS, Free, MeasuredRobot, PublishedModel, PublishedSize
+from robots.measured_robot import PROJECT_MODELS, Free, MeasuredRobot, PublishedModel, PublishedSize
 
-MODEL = MODELS / "emps.xml"
+MODEL = PROJECT_MODELS / "emps.xml"
 EVERY = 10  # samples of 1 ms
 SOURCE = "Janot, Gautier, Brunot 2019, nonlinearbenchmark.org"
 FREE = (

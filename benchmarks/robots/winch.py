@@ -16,7 +16,14 @@ import numpy as np
 from identification import Log
 from robots import needed
 from robots.gridded import gridded
-from robots.measured_robot import MODELS, Apart, Free, MeasuredRobot, PublishedSize
+from robots.measured_robot import (
+    MODELS,
+    PROJECT_MODELS,
+    Apart,
+    Free,
+    MeasuredRobot,
+    PublishedSize,
+)
 
 RADIUS, K_T, G = 0.020, 0.0551, 9.81  # [m], [N m/A], [m/s^2]: the authors'
 STEP, WIDEST = 0.03, 0.8  # of the grid, and a gap that is still bridged [s]
@@ -65,7 +72,7 @@ def read(data: Path) -> MeasuredRobot:
     )
     return MeasuredRobot(
         name="winch", title="Winch of a cable robot that lifts 5 kg", source=SOURCE,
-        model=MODELS / "winch.xml", free=FREE, horizon=0.96, fit=fit, confirm=confirm,
+        model=PROJECT_MODELS / "winch.xml", free=FREE, horizon=0.96, fit=fit, confirm=confirm,
         apart=(Apart(what="1 kg instead of 5 kg", logs=light, model=MODELS / "winch_1kg.xml"),),
         published=PUBLISHED,
     )  # fmt: skip

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import Finding
 from identification.discovery.result import Discovery
+from identification.prediction.result import RecordsDiscovery
 from identification.quantities import alike, quantity
 from identification.report.discovery_verdict import (
     diff_line,
@@ -16,12 +17,15 @@ from identification.report.discovery_verdict import (
 )
 from identification.report.effect_words import describe_effect, describe_rejected
 from identification.report.finding_words import describe_finding
+from identification.report.records_text import records_text
 
 SHOWN = 0.005  # an explanation with a smaller confidence gets no line
 
 
-def discovery_text(found: Discovery) -> str:
+def discovery_text(found: Discovery | RecordsDiscovery) -> str:
     """The whole outcome, in paragraphs."""
+    if isinstance(found, RecordsDiscovery):
+        return records_text(found)
     title, lines = describe_rejected(found)
     parts = [
         "\n".join(discovery_verdict(found)),

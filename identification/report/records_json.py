@@ -8,7 +8,7 @@ from typing import Any
 from identification.effects.effect import Candidate
 from identification.prediction.model import WindowModel
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
-from identification.report.discovery_json import finding_to_json, finite
+from identification.report.finding_json import finding_to_json, finite
 from identification.report.finding_words import describe_finding
 
 READS = {  # what a curve is drawn over, by the last word of its name

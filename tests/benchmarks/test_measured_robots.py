@@ -8,7 +8,6 @@ import pytest
 from measured_cases import DATA, oscillator, oscillator_log, with_data
 from robots import ROBOTS, reader
 from robots.gridded import gridded
-from robots.measured_robot import PROJECT_MODELS
 from robots.page import page
 from robots.unseen import MOST, spread
 from robots.words import amount, number
@@ -153,12 +152,3 @@ def test_the_page_tells_of_every_record_and_of_a_refusal(tmp_path):
     text = page(tmp_path)
     assert "| emps | 1, 1 | refused |" in text
     assert "steps are too coarse" in text
-
-
-def test_models_of_the_bench_that_the_project_has_too_differ_in_their_step_alone():
-    from robots.measured_robot import MODELS
-
-    mine, other = (read_model(f / "emps.xml").compile() for f in (MODELS, PROJECT_MODELS))
-    assert mine.body_mass == pytest.approx(other.body_mass)
-    assert mine.actuator_gear == pytest.approx(other.actuator_gear)
-    assert mine.dof_damping == pytest.approx(other.dof_damping)

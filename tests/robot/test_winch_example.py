@@ -1,6 +1,8 @@
-"""The winch of a cable robot: laws of the example, and its records where they are at hand."""
+"""The winch of a cable robot: laws of the example, and its records where they are at hand.
 
-import importlib.util
+The records are read from the folder TTK4900_DATA, else from ../shared/data/ttk4900.
+"""
+
 import os
 import sys
 from dataclasses import replace
@@ -9,19 +11,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from identification import Log, Predictor
-from identification.windows.window_estimate import estimate_windows
+from identification import Log, Predictor, estimate_windows, read_robot
 
-PATH = Path(__file__).parents[2] / "examples" / "winch.py"
-DATA = Path(os.environ.get("TTK4900_DATA", "data/ttk4900")) / "lifting"
-sys.path.insert(0, str(PATH.parent))
-SPEC = importlib.util.spec_from_file_location("winch", PATH)
-winch = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(winch)
-sys.path.remove(str(PATH.parent))
-strokes = sys.modules["winch_strokes"]
+EXAMPLES = Path(__file__).parents[2] / "examples"
+DATA = Path(os.environ.get("TTK4900_DATA", EXAMPLES.parents[1] / "shared" / "data" / "ttk4900"))
+DATA = DATA / "lifting"
+sys.path.insert(0, str(EXAMPLES))
+import winch  # noqa: E402
+import winch_strokes as strokes  # noqa: E402
+
+sys.path.remove(str(EXAMPLES))
+F_C, F_0 = "coulomb_friction.f_c@cable", "offset.f_0@cable"
+TRUST = ["units", "wiring", "start"]
 WAVE = np.array([0.3, -0.7, 0.5, 0.2, 0.0, 0.4])  # [A]
-MASS, LOAD = 5, 5 * 9.81 * 0.02  # [kg], [N m]
+MASS, LOAD = 5, 5 * 9.81  # [kg], [N]
 
 
 def write_record(folder, t, turns, rate, current):
@@ -39,11 +42,12 @@ def test_a_record_is_read_in_si_units_and_lifting_is_positive(tmp_path):
     q = strokes.TURN * 0.5 * t
     current = -(18.7 + strokes.waves(q) @ WAVE)  # the drive's sign
     write_record(tmp_path, t, q / strokes.TURN, np.full(len(t), 0.5), current)
-    log = winch.winch_log(tmp_path, "5kg/ODrive2/Up05", WAVE)
-    assert log.time[0] == pytest.approx(t[3])
-    assert log.outputs[:, 0] == pytest.approx(strokes.TURN * 0.5 * log.time, abs=1e-6)
-    assert log.inputs == pytest.approx(np.full((len(log), 1), 18.7), abs=1e-5)
-    one = winch.stroke(tmp_path, "5kg/ODrive2/Up05", 1.0, 20.0)
+    log = winch.winch_log(tmp_path, "5kg/ODrive2/Up05", 1.0, 20.0)
+    first = t[t >= 1.0][0]  # the log begins at its first sample
+    expected = strokes.RADIUS * strokes.TURN * 0.5 * (first + log.time)
+    assert log.outputs[:, 0] == pytest.approx(expected, abs=1e-6)
+    assert np.mean(log.inputs) == pytest.approx(18.7, abs=0.1)
+    one = strokes.stroke(tmp_path, "5kg/ODrive2/Up05", 1.0, 20.0)
     assert (one.mass, one.motor) == (5, 2)
     assert one.mean == pytest.approx(18.7, abs=1e-5)
     assert one.wave == pytest.approx(WAVE, abs=1e-5)
@@ -78,59 +82,48 @@ def test_the_table_of_the_balance_says_what_its_columns_are(capsys):
 
 
 def record(current, seconds=0.6, step=0.03):
-    """A log of no motion but its first sample, with a held current [A]; it needs some travel."""
+    """A log of a held current [A]; its travel means nothing, but there has to be some."""
     n = round(seconds / step)
-    u = np.broadcast_to(np.asarray(current, dtype=float), (n,))[:, None]
-    y = np.linspace(0.0, 1.0, n)[:, None]
     return Log(
-        time=step * np.arange(n),
-        inputs=u,
-        outputs=y,
-        input_names=("motor",),
-        output_names=("angle",),
-        hold="foh",
-    )
+        time=step * np.arange(n), inputs=np.full((n, 1), current),
+        outputs=np.linspace(0.0, 1.0, n)[:, None], input_names=("motor",), output_names=("wound",),
+        units={"motor": "A", "wound": "m"}, hold="foh",
+    )  # fmt: skip
 
 
-def test_the_current_m_g_r_over_k_t_holds_the_load_and_no_other():
+def test_the_current_m_g_r_over_k_t_holds_the_load_and_a_motor_within_friction_stands():
     def end(current):
-        plant = winch.winch_plant(record(current), MASS).with_values({"q_0": 0.0, "v_0": 0.0})
-        return Predictor(plant, record(current), ()).predict(np.empty((1, 0)))[0, -1, 0]
+        log = record(current)
+        plant = read_robot(winch.ROBOT, log, trust=TRUST).plant
+        return Predictor(plant, log, ()).predict(np.empty((1, 0)))[0, -1, 0]
 
-    hold = LOAD / strokes.K_T
-    assert end(hold) == pytest.approx(0.0, abs=1e-9)
-    friction = 0.05 / strokes.K_T  # a little more than it lifts, a little less and it pays out
-    assert end(hold + 1.5 * friction) > 1.0
-    assert end(hold - 1.5 * friction) < -1.0
+    hold, friction = LOAD / 2.755, 2.5 / 2.755  # [A]
+    for share in (0.0, 0.9, -0.9):
+        assert end(hold + share * friction) == pytest.approx(0.0, abs=1e-6)
+    assert end(hold + 1.5 * friction) > 0.01
+    assert end(hold - 1.5 * friction) < -0.01
 
 
 def simulated(f_c, f_0):
     """Two seconds up, two down, near balance, with a current that hunts for the speed."""
-    t = 0.03 * np.arange(140)
+    log = record(0.0, seconds=4.2)
+    t = log.time
     hunt = 0.3 * np.sin(5 * t) + 0.2 * np.sin(11 * t)
-    current = (-f_0 + np.where(t < 2.1, 1, -1) * 1.15 * f_c) / strokes.K_T + hunt
-    log = Log(
-        time=t,
-        inputs=current[:, None],
-        outputs=np.sin(t)[:, None],
-        input_names=("motor",),
-        output_names=("angle",),
-        hold="foh",
-    )
-    plant = winch.winch_plant(log, MASS)
-    values = {winch.F_C: f_c, winch.F_0: f_0, "q_0": 0.0, "v_0": 3.0}
-    y = Predictor(plant.with_values(values), log, ()).predict(np.empty((1, 0)))[0]
-    noise = np.random.default_rng(2).normal(0, 1e-3, y.shape)
-    return replace(log, outputs=y + noise)
+    current = (LOAD - f_0 + np.where(t < 2.1, 1, -1) * 1.15 * f_c) / 2.755 + hunt
+    log = replace(log, inputs=current[:, None])
+    plant = read_robot(winch.ROBOT, log, trust=TRUST).plant
+    y = Predictor(plant, log, (), {F_C: f_c, F_0: f_0}).predict(np.empty((1, 0)))[0]
+    return replace(log, outputs=y + np.random.default_rng(2).normal(0, 2e-5, y.shape))
 
 
 def test_friction_and_load_come_back_from_a_simulated_record():
-    log = simulated(0.077, -0.951)
-    assert log.outputs.max() > 3 + log.outputs[0]  # it went up, and came down
-    assert log.outputs[-1] < log.outputs.max() - 3
-    fit = estimate_windows(winch.winch_plant(log, MASS), log, (winch.F_C, winch.F_0), 0.3)
-    assert fit.values[winch.F_C] == pytest.approx(0.077, rel=0.03)
-    assert fit.values[winch.F_0] == pytest.approx(-0.951, rel=0.005)
+    log = simulated(3.9, 1.5)
+    assert log.outputs.max() > 0.05  # it went up, and came down
+    assert log.outputs[-1] < log.outputs.max() - 0.05
+    plant = read_robot(winch.ROBOT, log, trust=TRUST).plant
+    fit = estimate_windows(plant, log, (F_C, F_0), 0.3)
+    assert fit.values[F_C] == pytest.approx(3.9, rel=0.03)
+    assert fit.values[F_0] == pytest.approx(1.5, rel=0.03)
 
 
 @pytest.mark.skipif(
@@ -138,10 +131,10 @@ def test_friction_and_load_come_back_from_a_simulated_record():
     reason="TTK4900_DATA names no folder with lifting; see github.com/eliasoa/TTK4900_CDPR",
 )
 def test_the_records_show_the_authors_asymmetry_one_cogging_and_friction_that_grows_with_load():
-    all_ = [winch.stroke(DATA, *s) for s in winch.STROKES]
+    all_ = [strokes.stroke(DATA, *s) for s in strokes.STROKES]
     for s in all_:
         if s.mass == MASS and abs(s.w) < 1.5 * strokes.TURN:
-            share = s.mean * strokes.K_T / LOAD - 1
+            share = s.mean * strokes.K_T / (LOAD * strokes.RADIUS) - 1
             assert (0.045 < share < 0.07) if s.w > 0 else (-0.12 < share < -0.10)
     two = [s for s in all_ if s.motor == 2]
     slow = [s for s in two if abs(s.w) < 1.5 * strokes.TURN]
@@ -153,11 +146,11 @@ def test_the_records_show_the_authors_asymmetry_one_cogging_and_friction_that_gr
     assert mu > 10 * std[3]
     assert i_0 > 10 * std[0]
 
-    name, begin, _, end = winch.LOGS[0]
-    log = winch.winch_log(DATA, name).between(begin, end)
-    fit = estimate_windows(winch.winch_plant(log, MASS), log, (winch.F_C, winch.F_0), 1.0,
-                           tolerance=1e-4)  # fmt: skip
+    log = winch.winch_log(DATA, *winch.FITTED[0])
+    plant = read_robot(winch.ROBOT, log, trust=["wiring", "units"]).plant
+    fit = estimate_windows(plant, log, (F_C, F_0), 0.96, tolerance=1e-3)
     up, down = (next(s.mean for s in slow if s.mass == MASS and sign * s.w > 5) for sign in (1, -1))
-    level = fit.values[winch.F_C] + 4e-4 * strokes.TURN
-    assert level == pytest.approx(strokes.K_T * (up - down) / 2, rel=0.06)
-    assert -fit.values[winch.F_0] == pytest.approx(strokes.K_T * (up + down) / 2, rel=0.01)
+    force = strokes.K_T / strokes.RADIUS
+    viscous = strokes.TURN * strokes.RADIUS  # 1 N s/m at 1 rev/s
+    assert fit.values[F_C] + viscous == pytest.approx(force * (up - down) / 2, rel=0.06)
+    assert LOAD - fit.values[F_0] == pytest.approx(force * (up + down) / 2, rel=0.01)

@@ -1,30 +1,36 @@
-"""The real motor example: its loader and model against what is known, then its records."""
+"""The servo of the example: its reader and its model against what is known, then its records.
+
+The records are read from the folder XL330_DATA, else from ../shared/data/xl330/raw.
+"""
 
 import json
+import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
 
-from identification import Log, Predictor
-from identification.windows.window_estimate import estimate_windows
+from identification import Log, Predictor, estimate_windows, read_model, read_robot, window_error
 
-PATH = Path(__file__).parents[2] / "examples" / "xl330.py"
-RAW = Path(__file__).parents[3] / "shared" / "data" / "xl330" / "raw"
-sys.path.insert(0, str(PATH.parent))  # the example imports its own reader
+EXAMPLES = Path(__file__).parents[2] / "examples"
+RAW = Path(os.environ.get("XL330_DATA", EXAMPLES.parents[1] / "shared" / "data" / "xl330" / "raw"))
+MODEL = EXAMPLES.parent / "models" / "xl330.xml"
+NAMES = ("g", "D", "J_a", "coulomb_friction.f_c@hinge", "offset.f_0@hinge")
+HORIZON = 0.2  # [s]
+sys.path.insert(0, str(EXAMPLES))
 import xl330  # noqa: E402
-import xl330_log  # noqa: E402
 
-sys.path.pop(0)
+sys.path.remove(str(EXAMPLES))
 
 
 def made_up(n=300, seed=2):
     """A log of a voltage that reverses often, and positions that mean nothing yet."""
     levels = np.random.default_rng(seed).uniform(-5, 5, n // 10 + 1)
     u = np.repeat(levels, 10)[:n, None]
-    time = xl330_log.STEP * np.arange(n)
+    time = xl330.STEP * np.arange(n)
     return Log(
         time=time,
         inputs=u,
@@ -47,17 +53,17 @@ def test_a_record_is_read_on_an_even_grid_with_signs_and_without_what_the_motor_
     fall = [{**entries[-1], "timestamp": time[-1] + 0.2, "load": 0, "torque_enable": False}]
     record = {"kp": 100, "trajectory": "ramp", "entries": entries + fall}
     (tmp_path / "a.json").write_text(json.dumps(record))
-    log = xl330_log.read_xl330(tmp_path / "a.json")
+    log = xl330.read_xl330(tmp_path / "a.json")
     np.testing.assert_allclose(log.inputs, -3.5, rtol=1e-12)
     np.testing.assert_allclose(log.outputs[:, 0], 0.5 * log.time, atol=1e-9)
-    assert log.sampling_time == xl330_log.STEP
-    assert time[-1] - time[0] - xl330_log.STEP < log.duration <= time[-1] - time[0]
-    assert [one.name for one in xl330_log.read_all(tmp_path, (100,))] == ["ramp, k_p 100"]
-    assert xl330_log.read_all(tmp_path, (200,)) == []
+    assert log.sampling_time == xl330.STEP
+    assert time[-1] - time[0] - xl330.STEP < log.duration <= time[-1] - time[0]
+    assert [one.name for one in xl330.read_all(tmp_path, (100,))] == ["ramp, k_p 100"]
+    assert xl330.read_all(tmp_path, (200,)) == []
 
 
 def test_left_alone_it_swings_with_the_period_of_its_mass_and_armature():
-    model = mujoco.MjModel.from_xml_path(str(xl330.MODEL))
+    model = read_model(MODEL).compile()
     model.dof_damping[0] = 0
     data = mujoco.MjData(model)
     data.qpos[0] = 0.01
@@ -75,19 +81,12 @@ def test_left_alone_it_swings_with_the_period_of_its_mass_and_armature():
 
 def test_known_values_are_recovered_from_the_noisy_angle_of_the_model():
     empty = made_up()
-    plant = xl330.xl330_plant(empty)
-    truth = {"g": 0.12, "D": 0.03, "J_a": 0.003, xl330.F_C: 0.03, xl330.F_0: 0.005}
+    plant = read_robot(xl330.ROBOT, empty, trust=["steps", "units", "wiring"]).plant
+    truth = dict(zip(NAMES, (0.12, 0.03, 0.003, 0.03, 0.005), strict=True))
     y = Predictor(plant, empty, (), truth).predict(np.empty((1, 0)))[0]
-    noisy = y + 5e-4 * np.random.default_rng(4).standard_normal(y.shape)
-    log = Log(
-        time=empty.time,
-        inputs=empty.inputs,
-        outputs=noisy,
-        input_names=("motor",),
-        output_names=("angle",),
-        hold="foh",
-    )
-    fit = estimate_windows(plant, log, xl330.NAMES, xl330.HORIZON, tolerance=1e-4)
+    noise = 5e-4 * np.random.default_rng(4).standard_normal(y.shape)
+    log = replace(empty, outputs=y + noise)
+    fit = estimate_windows(plant, log, NAMES, HORIZON, tolerance=1e-4)
     for (name, value), std in zip(fit.values.items(), fit.std, strict=True):
         assert abs(value - truth[name]) < 4 * std, name
         assert std < 0.05 * truth[name] + 5e-4, name
@@ -95,17 +94,18 @@ def test_known_values_are_recovered_from_the_noisy_angle_of_the_model():
 
 
 @pytest.mark.skipif(
-    not RAW.exists(), reason="no records of the XL330 in ../shared/data; see github.com/Rhoban/bam"
+    not RAW.exists(), reason="XL330_DATA names no folder of records; see github.com/Rhoban/bam"
 )
-def test_what_one_gain_shows_predicts_another_and_friction_under_load_predicts_it_better():
-    (log,) = (x for x in xl330_log.read_all(RAW, (400,)) if x.name.startswith("sin_time_square"))
-    (other,) = (x for x in xl330_log.read_all(RAW, (200,)) if x.name.startswith("sin_time_square"))
-    plant, mu = xl330.xl330_plant(log), "load_dependent_friction.mu@hinge"
-    fit = estimate_windows(plant, log, xl330.NAMES, xl330.HORIZON, tolerance=1e-2)
-    names, start = (*xl330.NAMES, mu), {**fit.values, mu: 0.1}
-    more = estimate_windows(plant, log, names, xl330.HORIZON, start, tolerance=1e-2)
+def test_friction_under_the_transmitted_load_predicts_another_gain_better():
+    (log,) = (x for x in xl330.read_all(RAW, (400,)) if x.name.startswith("sin_time_square"))
+    (other,) = (x for x in xl330.read_all(RAW, (200,)) if x.name.startswith("sin_time_square"))
+    plant, mu = read_robot(xl330.ROBOT, log).plant, "transmitted_load_friction.mu@hinge"
+    fit = estimate_windows(plant, log, NAMES, HORIZON, tolerance=1e-2)
+    start = {**fit.values, mu: 0.1}
+    more = estimate_windows(plant, log, (*NAMES, mu), HORIZON, start, tolerance=1e-2)
     begun, found, better = (
-        xl330.rms(xl330.errors(plant, [other], e)) for e in ({}, fit.values, more.values)
+        np.mean(window_error(plant, other, HORIZON, e) ** 2)
+        for e in ({}, fit.values, more.values)
     )  # fmt: skip
     assert found < 0.5 * begun
-    assert better < 0.9 * found
+    assert better < 0.7 * found

@@ -1,0 +1,50 @@
+"""The words of a user for a discovery over a horizon: text, JSON and confirmation take it."""
+
+import pytest
+from records_cases import MJCF, records
+
+from identification import (
+    RecordsDiscovery,
+    confirm,
+    discover,
+    discovery_text,
+    discovery_to_json,
+    read_robot,
+)
+
+MU = "transmitted_load_friction.mu@hinge"
+TOML = """
+model = "pendulum.xml"
+free = ["joint/hinge.armature", "joint/hinge.damping"]
+horizon = 0.2
+[parameters."joint/hinge.armature"]
+value = 1.5e-3
+[parameters."joint/hinge.damping"]
+value = 0.03
+[effects]
+only = ["transmitted_load_friction"]
+"""
+
+
+@pytest.fixture
+def path(tmp_path):
+    (tmp_path / "pendulum.xml").write_text(MJCF)
+    (tmp_path / "robot.toml").write_text(TOML)
+    return tmp_path / "robot.toml"
+
+
+@pytest.mark.parametrize("mu", [0.15, 0.0])
+def test_text_json_and_confirmation_take_what_records_say(path, mu):
+    first, second, third = records(3, {MU: mu} if mu else None)
+    robot = read_robot(path, [first, second], confirm=[third])
+    found = discover(robot)
+    assert isinstance(found, RecordsDiscovery)
+    verdict = "Missing from the model" if mu else "Nothing is missing"
+    assert discovery_text(found).startswith(verdict)
+    assert discovery_to_json(found)["verdict"] == ("named" if mu else "nothing missing")
+    (compared,) = confirm(robot, found)
+    assert compared.log == third.name
+    assert compared.unit == "rad"
+    (error,) = (e for e in found.errors if e.role == "confirm")
+    assert compared.after == pytest.approx(error.after, rel=0.01)
+    assert compared.after < (0.5 if mu else 1.0) * compared.before
