@@ -20,7 +20,8 @@ from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.prediction.fit import WindowFit, projected
-from identification.prediction.model import Progress, WindowModel, fit_nominal
+from identification.prediction.model import Progress, WindowModel
+from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.problem import at_values, no_moves
 from identification.prediction.record_errors import (
     RecordError,

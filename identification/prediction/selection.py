@@ -21,7 +21,8 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import list_common, list_single
 from identification.effects.effect import Candidate, Effect
 from identification.errors import InputError
-from identification.prediction.model import WindowModel, with_effect
+from identification.prediction.extension import with_effect
+from identification.prediction.model import WindowModel
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.several_places import list_several

@@ -14,7 +14,9 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect
 from identification.errors import InputError
-from identification.prediction.model import WindowModel, fit_nominal, refitted
+from identification.prediction.extension import refitted
+from identification.prediction.model import WindowModel
+from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.selection import (

@@ -12,19 +12,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import ttest_1samp, ttest_ind
+from scipy.stats import ttest_1samp
 
 from identification.discovery.effect_results import Gap
-from identification.discovery.findings.evidence import (
-    DifferentRecord,
-    RemainingError,
-    UnprovenEffect,
-)
-from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction.input_error import needed_input_error
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import error_unit, record_errors, scaled_squares
+from identification.prediction.remaining import find_remaining
 from identification.prediction.result import (
     NamedByPrediction,
     RecordsDiscovery,
@@ -36,7 +32,6 @@ from identification.prediction.state import RecordsState
 from identification.prediction.unseen import PER_RECORD, Unseen
 
 RESAMPLES = 2000
-DIFFERENT = 2.0  # times worse than others a record is predicted that is told apart
 SEED = 0  # of the resampling, so that a verdict repeats
 LIKELY = 0.02  # a rival less likely than this is not listed
 UNLISTED = "curve"  # names of effects that begin so are curves drawn from the data
@@ -56,7 +51,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     )
     rejected = tuple(_refitted(c.model, c, 0.0) for c in state.rejected)
     sure = all(n.effect.confidence >= 0.5 or n.one_of for n in named)
-    findings = _findings(state, rejected)
+    findings = find_remaining(state, rejected)
     doubtful = any(f.kind is FindingKind.UNPROVEN_EFFECT for f in findings)
     different = any(f.kind is FindingKind.DIFFERENT_RECORD for f in findings)
     needed = needed_input_error(model.fit, model.unseen.floor)
@@ -166,57 +161,10 @@ def _refitted(model: WindowModel, contender: Contender, confidence: float) -> Re
     )  # fmt: skip
 
 
-def _findings(state: RecordsState, rejected: Sequence[RefittedEffect]) -> tuple[Finding, ...]:
-    """What the final model leaves: errors above the sensors' noise, and doubtful effects."""
-    out = []
-    for r in rejected:
-        if r.prediction.is_everywhere and r.prediction.t > state.task.options.min_proof_t:
-            out.append(Finding(FindingKind.UNPROVEN_EFFECT, _unproven(r)))
-    square = float(np.mean(np.concatenate(state.model.unseen.at_horizon)))
-    ratio = (
-        float(np.sqrt(square / state.model.unseen.floor)) if state.model.unseen.floor else np.inf
-    )
-    if state.accepted and ratio > 1 + state.task.options.min_gap_share:
-        out.append(Finding(FindingKind.REMAINING_ERROR, RemainingError(ratio)))
-    out += [Finding(FindingKind.DIFFERENT_RECORD, e) for e in different_records(state)]
-    return tuple(out)
-
-
-def different_records(state: RecordsState) -> list[DifferentRecord]:
-    """Records that the final model predicts much worse than the others, by Welch's t-test.
-
-    The sample are logarithms of the windows' mean squares, and the records are paid for.
-    """
-    unseen = state.model.unseen
-    errors = {
-        r.log.name: np.log(squares + unseen.floor)
-        for r, squares in zip(state.task.confirm, unseen.at_horizon, strict=True)
-    }
-    fitted = [r for r in state.task.records if r.role == "fit"]
-    scale = state.model.scale
-    for r, e in zip(fitted, state.model.fit.errors, strict=True):
-        errors[f"{r.log.name} (fit)"] = np.log(
-            np.mean((e / scale) ** 2, axis=(1, 2)) + unseen.floor
-        )
-    out = []
-    for name, mine in errors.items():
-        rest = np.concatenate([e for n, e in errors.items() if n != name])
-        ratio = float(np.exp((mine.mean() - rest.mean()) / 2))
-        chance = float(ttest_ind(mine, rest, equal_var=False, alternative="greater").pvalue)
-        if ratio > DIFFERENT and chance * len(errors) < state.task.options.significance:
-            out.append(DifferentRecord(name, ratio, chance))
-    return out
-
-
 def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
     """Whether a model errs on unseen records by more than the sensors' noise."""
     square = float(np.mean(np.concatenate(model.unseen.at_horizon)))
     return square > model.unseen.floor * (1 + options.min_gap_share)
-
-
-def _unproven(r: RefittedEffect) -> UnprovenEffect:
-    c = r.candidate
-    return UnprovenEffect(c.effect.name, c.where, max(r.prediction.falls), r.prediction.t)
 
 
 def _by_record(blocks: np.ndarray, state: RecordsState) -> list[np.ndarray]:

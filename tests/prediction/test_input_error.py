@@ -8,7 +8,7 @@ from records_cases import HORIZON, NOISE, STEP, nominal_model, pendulum, record
 
 from identification.model.predictor import Predictor
 from identification.prediction.input_error import needed_input_error
-from identification.prediction.model import fit_nominal
+from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 
 

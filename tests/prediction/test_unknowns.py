@@ -11,7 +11,8 @@ from records_cases import FREE, nominal_model, pendulum, record, records
 from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
 from identification.model.coordinates import Coordinates
-from identification.prediction.model import fit_nominal, with_effect
+from identification.prediction.extension import with_effect
+from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.scores import window_scores
 from identification.prediction.unknowns import Prior, Unknowns
