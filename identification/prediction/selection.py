@@ -90,8 +90,9 @@ def list_contenders(
     """The few best scores that are beyond chance, the best shape of each effect at each place.
 
     All that explain about as much as the best one are refitted, up to twice the usual number: a
-    score is linear, and what is right may be one of them. The best curve of the data is among them only where its criterion promises to be better than
-    that of every law: a curve can imitate any law of what it depends on.
+    score is linear, and what is right may be one of them. The best curve of the data is among them
+    only where its criterion promises to be better than that of every law: a curve can imitate any
+    law of what it depends on.
 
     Args:
         scores: of all candidates, the best first.
