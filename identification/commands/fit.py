@@ -12,7 +12,7 @@ from identification.commands.robots import OnRobot
 
 @dataclass(frozen=True)
 class Fit(OnRobot):
-    """Estimate free parameters on the first half of a log, confirm them on the rest."""
+    """Estimate free parameters from one log or several, confirm them on what was not fitted."""
 
     def run(self) -> int:
         """Fit, confirm, say, keep."""
@@ -28,7 +28,7 @@ class Fit(OnRobot):
 
         def keep(out: Path) -> None:
             place = self.output.out or out
-            write_robot(robot, found.values, out / "robot.toml", place)
+            write_robot(robot, found.shared, out / "robot.toml", place)
 
         conclude(self, record, _text(record), keep)
         return 0

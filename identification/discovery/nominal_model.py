@@ -26,8 +26,8 @@ class NominalModel:
     Attributes:
         plant: the model with all candidate effects compiled in.
         names: of the free parameters, p of them.
-        std: std of the prior of each, relative for a positive parameter and else in the parameter's
-            unit, shape (p,).
+        std: std of the prior of each in coordinates (`identification.model.coordinates`): relative
+            for a positive parameter, else in units of the parameter's scale, shape (p,).
         horizon: length of the windows over which predictions are judged [s]; None for a free run
             of the whole log, which says little of a robot that integrates what disturbs it.
         own: those of the names of which each record has a value of its own.

@@ -41,6 +41,8 @@ class Log:
         hold: the input between samples: "zoh" keeps the last value, "foh" draws a straight line.
         remarks: what was changed when it was read from a file, a sentence each.
         splits: named parts [start, end) [s], such as estimation and validation.
+        values: values of a robot's parameters that hold in this log alone, by name, such as a
+            payload.
         begun: time between the first sample of the whole record and the first one of this part of
             it [s]; what changes with time in a robot goes on from part to part.
 
@@ -60,6 +62,7 @@ class Log:
     notes: str = ""
     hold: str = "zoh"
     splits: Splits = field(default_factory=dict)
+    values: Mapping[str, float] = field(default_factory=dict)
     begun: float = 0.0
     remarks: tuple[str, ...] = ()
 
@@ -73,6 +76,7 @@ class Log:
         put("output_names", tuple(self.output_names))
         put("extras", MappingProxyType({k: _frozen(v) for k, v in self.extras.items()}))
         put("units", MappingProxyType(dict(self.units)))
+        put("values", MappingProxyType(dict(self.values)))
         put("splits", MappingProxyType({k: (a, b) for k, (a, b) in self.splits.items()}))
         self._check()
 
@@ -103,7 +107,7 @@ class Log:
     def __reduce__(self) -> tuple[Callable[[dict[str, Any]], Log], tuple[dict[str, Any]]]:
         # A mapping proxy cannot be pickled, but logs are sent to other processes.
         values = {name: getattr(self, name) for name in self.__dataclass_fields__}
-        for name in ("extras", "units", "splits"):
+        for name in ("extras", "units", "values", "splits"):
             values[name] = dict(values[name])
         return _rebuild, (values,)
 

@@ -74,6 +74,11 @@ def read_log(
 
     raw = read_bytes(path)
     sidecar = read_sidecar(path.with_suffix(".toml"), said, named_in)
+    if sidecar.values and not lenient:
+        raise InputError(
+            f"{sidecar.path} gives values of a robot under [values], which only the robots of"
+            " read_robot have; leave them out"
+        )
     table = _read_table(raw, path, inputs, outputs, optional, sidecar, lenient)
     check_keys(f"column under 'units' in {sidecar.path}:", sidecar.units, ("time", *columns))
     table = renamed(table, sidecar)
@@ -106,6 +111,7 @@ def read_log(
         notes=sidecar.notes,
         hold=sidecar.hold,
         splits=sidecar.splits,
+        values=sidecar.values,
         remarks=remarks,
     )
 

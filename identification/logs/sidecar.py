@@ -11,6 +11,8 @@ q1 = "angle_1"                      # or, of a file without a header, columns = 
 [splits]                            # [start, end) [s]
 estimation = [0, 10]
 validation = [10, 20]
+[values]                            # of the robot, in this log alone
+"body/weight.mass" = 1.0
 """
 
 from __future__ import annotations
@@ -43,6 +45,7 @@ class Sidecar:
     units: Mapping[str, str] = field(default_factory=dict)
     columns: Mapping[str, str] = field(default_factory=dict)
     splits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    values: Mapping[str, float] = field(default_factory=dict)
 
 
 def read_sidecar(
@@ -133,6 +136,15 @@ def _texts(value: object) -> dict[str, str]:
     return {name: _text(v) for name, v in value.items()}
 
 
+def _numbers(value: object) -> dict[str, float]:
+    if not isinstance(value, dict):
+        raise TypeError
+    numbers = {name: _number(v) for name, v in value.items()}
+    if not all(map(isfinite, numbers.values())):
+        raise TypeError
+    return numbers
+
+
 def _splits(value: object) -> dict[str, tuple[float, float]]:
     if not isinstance(value, dict):
         raise TypeError
@@ -152,4 +164,5 @@ _KEYS: dict[str, tuple[str, Callable[[object], Any]]] = {
     "units": ('a table of units, such as current = "mA"', _texts),
     "columns": ('a table of names, such as q1 = "angle_1", or a list of them', _texts),
     "splits": ("a table of parts in seconds, such as estimation = [0, 10]", _splits),
+    "values": ('a table of numbers, such as "body/weight.mass" = 1.0', _numbers),
 }

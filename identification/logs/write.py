@@ -61,6 +61,9 @@ def _toml(log: Log) -> str:
     if log.splits:
         lines += ["", "[splits]"]
         lines += [f"{_quote(name)} = [{a!r}, {b!r}]" for name, (a, b) in log.splits.items()]
+    if log.values:
+        lines += ["", "[values]"]
+        lines += [f"{_quote(name)} = {float(value)!r}" for name, value in log.values.items()]
     return "\n".join(lines).lstrip() + "\n" if lines else ""
 
 

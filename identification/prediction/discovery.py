@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.logs.log import Log
-from identification.model.plant import start_place
 from identification.prediction.records import as_records
+from identification.prediction.records_fit import NO_HORIZON
 from identification.prediction.result import RecordsDiscovery
 from identification.prediction.selection import Progress
+from identification.prediction.starts import without_starts
 from identification.prediction.state import RecordsTask, first_state, next_state
 from identification.prediction.verdict import conclude
 
@@ -46,13 +46,10 @@ def discover_records(
         DivergenceError: the nominal model cannot be simulated.
     """
     if nominal_model.horizon is None:
-        raise InputError(
-            "records are judged by predictions over a horizon, and none is given; write horizon ="
-            " 0.2 (in seconds) into the robot's file"
-        )
+        raise InputError(NO_HORIZON)
     records = as_records(fit, confirm, values)
     task = RecordsTask(
-        nominal_model=_without_starts(nominal_model), records=records, effects=tuple(effects),
+        nominal_model=without_starts(nominal_model), records=records, effects=tuple(effects),
         horizon=nominal_model.horizon, options=options or DiscoveryOptions(),
     )  # fmt: skip
     say = progress or _say_nothing
@@ -60,17 +57,6 @@ def discover_records(
     while not state.is_finished:
         state = next_state(state, say)
     return conclude(state)
-
-
-def _without_starts(nominal_model: NominalModel) -> NominalModel:
-    """Without the start of a record: where a window begins is no parameter but found for each."""
-    plant, names = nominal_model.plant, nominal_model.names
-    at = plant.parameters
-    keep = [k for k, n in enumerate(names) if start_place(at[n].where, plant.model) is None]
-    return replace(
-        nominal_model, names=tuple(names[k] for k in keep), std=nominal_model.std[keep],
-        own=tuple(n for n in nominal_model.own if n in {names[k] for k in keep}),
-    )  # fmt: skip
 
 
 def _say_nothing(line: str) -> None:

@@ -27,6 +27,7 @@ from identification.windows.shooting import Tangent
 DAMPING = Damping(first=1e-3, raised=5.0, lowered=10.0, least=1e-9, floor=1e-9)
 MOST_DAMPING = 1e3  # beyond, a step is too short to gain anything
 ROUGH = 1e-2  # relative fall of the criterion that ends a fit whose last digits do not matter
+FELT = 1e-20  # sum of squares of a column, in units of the errors' scale
 BLOCKS = 40  # of windows, over all records, for the std
 
 _Step = tuple[np.ndarray, tuple[np.ndarray, ...]]  # Δq (p,), and Δd (W, nx) of each record
@@ -86,9 +87,14 @@ class WindowFit:
 
     @property
     def std(self) -> np.ndarray:
-        """Std of each value by blocks of windows, in its unit, shape (p,)."""
-        q = self.q
-        return np.sqrt(np.diag(self.covariance)) * self.problem.prior.space.slope(q)
+        """Std of each value by blocks of windows, in its unit, shape (p,); inf where none feels it.
+
+        A parameter is felt where its column of S is beyond rounding, or a prior tells it.
+        """
+        q, felt = self.q, self.problem.prior.weight > 0
+        felt |= sum(np.sum(t.S**2, axis=(0, 1)) for t in self.tangents) > FELT
+        std = np.sqrt(np.diag(self.covariance)) * self.problem.prior.space.slope(q)
+        return np.where(felt, std, np.inf)
 
     @property
     def covariance(self) -> np.ndarray:

@@ -1,11 +1,11 @@
 """How much the inputs would have to err to make what a fitted model leaves.
 
-    δ_w = argmin ‖r⊥_w - S⊥_w δ‖²            S = -∂r/∂u, u the inputs, each constant over a window
-    share = √(Σ_w δ_wᵀ δ_w / Σ_w ū_wᵀ ū_w)      ū_w: rms of each input, δ and u scaled by rms u
+    Σ_w ‖r⊥_w‖² = σ² n + α² Σ_w ‖S⊥_w‖²           α: rms error of the inputs, a share of their rms
 
-r⊥, S⊥: residual and sensitivity without what the state of a window makes up for. No log has exact
-inputs: a drive's current or a commanded torque is good to some per cent. What so small an error of
-the inputs explains is no reason to seek an effect; what needs a larger one is.
+S = -∂r/∂u, u the inputs in units of their rms, each error constant over a window; r⊥, S⊥: residual
+and sensitivity without what the state of a window makes up for; n: readings less the states that
+they tell, σ: the sensors' noise. No log has exact inputs: a drive's current or a commanded torque
+is good to some per cent. What so small an error of the inputs makes is no reason to seek an effect.
 """
 
 from __future__ import annotations
@@ -20,24 +20,23 @@ from identification.windows.shooting import Shooting, Tangent
 STEP = 1e-3  # of an input's rms, by which it is moved
 
 
-def needed_input_error(fit: WindowFit) -> float:
+def needed_input_error(fit: WindowFit, floor: float) -> float:
     """Rms error of the inputs over a window that the residual needs, as a share of their own rms.
 
     Args:
         fit: the model, on the windows of the records that were fitted.
+        floor: σ², mean square of the sensors' noise in units of the errors' scale.
     """
     inputs = np.concatenate([p.predictor.log.inputs for p in fit.problem.parts])
     size = np.sqrt(np.mean(inputs**2, axis=0))
     moving = np.flatnonzero(size > 0)
-    needed, count = 0.0, 0
+    left, felt = 0.0, 0.0
     for k, (part, d, t) in enumerate(zip(fit.problem.parts, fit.moves, fit.tangents, strict=True)):
         q = fit.q[fit.problem.unknowns.columns(k)]
-        S = _sensitivity(part, q, d, t, size, moving)
-        r = projected(t)[1]
-        δ = np.einsum("wkm,wm->wk", np.linalg.pinv(S, rcond=1e-3), r)
-        needed += float(np.sum(δ**2))
-        count += δ.size
-    return float(np.sqrt(needed / max(1, count)))
+        readings = part.cut.outputs.size - t.freedom
+        left += float(np.sum(projected(t)[1] ** 2)) - floor * readings
+        felt += float(np.sum(_sensitivity(part, q, d, t, size, moving) ** 2))
+    return float(np.sqrt(max(0.0, left) / felt)) if felt > 0 else np.inf
 
 
 def _sensitivity(

@@ -7,7 +7,7 @@ a supply voltage), is its own.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from identification.errors import InputError
@@ -44,7 +44,8 @@ def as_records(
     Args:
         fit: logs to fit.
         confirm: logs that no fit may see.
-        values: by the name of a log, values that hold for it alone.
+        values: by the name of a log, values that hold for it alone, beside those that the log says
+            itself (`Log.values`).
 
     Raises:
         InputError: there is no log to fit, the columns differ, or a log is given twice.
@@ -52,18 +53,32 @@ def as_records(
     if not fit:
         raise InputError("no log is to be fitted; give at least one")
     _refuse_different([*fit, *confirm])
-    own = values or {}
+    given = values or {}
+    every = [*fit, *confirm]
+    own = [{**log.values, **given.get(log.name, {})} for log in every]
+    named = list(zip(_distinct(every), own, strict=True))
     if confirm:
         return (
-            *(Record(log, "fit", own.get(log.name, {})) for log in fit),
-            *(Record(log, "confirm", own.get(log.name, {})) for log in confirm),
+            *(Record(log, "fit", v) for log, v in named[: len(fit)]),
+            *(Record(log, "confirm", v) for log, v in named[len(fit) :]),
         )
-    return tuple(
-        Record(log.part(part), role, own.get(log.name, {})) for part, role in _HALVES for log in fit
-    )
+    return tuple(Record(log.part(part), role, v) for part, role in _HALVES for log, v in named)
 
 
 _HALVES: tuple[tuple[str, Role], ...] = (("estimation", "fit"), ("validation", "confirm"))
+
+
+def _distinct(logs: Sequence[Log]) -> list[Log]:
+    """Logs of which none bears the name of another: what a record has for itself is told by it."""
+    out: list[Log] = []
+    for log in logs:
+        used = {other.name for other in out}
+        name, k = log.name, 1
+        while name in used:
+            k += 1
+            name = f"{log.name} ({k})"
+        out.append(log if name == log.name else replace(log, name=name))
+    return out
 
 
 def _refuse_different(logs: Sequence[Log]) -> None:

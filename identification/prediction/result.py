@@ -13,6 +13,7 @@ from identification.discovery.findings.finding import Finding
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.prediction.model import WindowModel
+from identification.prediction.record_errors import RecordError
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction
@@ -56,24 +57,6 @@ class NamedByPrediction:
     one_of: bool
     agrees: tuple[str, ...]
     disagrees: tuple[str, ...]
-
-
-@dataclass(frozen=True, kw_only=True)
-class RecordError:
-    """Errors on one record, over windows of the horizon.
-
-    Attributes:
-        name: of the record.
-        role: "fit" or "confirm".
-        before: rms of the nominal model, over all outputs, in the outputs' unit where they have
-            one, else in units of their scale.
-        after: rms of the final model.
-    """
-
-    name: str
-    role: str
-    before: float
-    after: float
 
 
 @dataclass(frozen=True, kw_only=True)

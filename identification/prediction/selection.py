@@ -21,9 +21,11 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import list_common, list_single
 from identification.effects.effect import Candidate, Effect
 from identification.errors import InputError
-from identification.prediction.model import WindowModel, with_effect
+from identification.prediction.extension import with_effect
+from identification.prediction.model import WindowModel
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore, window_scores
+from identification.prediction.several_places import list_several
 from identification.prediction.unseen import Prediction, compare
 
 Progress = Callable[[str], None]
@@ -51,8 +53,16 @@ class Contender:
         return self.model.candidates[-1]
 
 
-def score_all(model: WindowModel, effects: Sequence[Effect]) -> tuple[WindowScore, ...]:
-    """Scores of what a model lacks: effects everywhere, then their best shapes at one place."""
+def score_all(
+    model: WindowModel, effects: Sequence[Effect], options: DiscoveryOptions
+) -> tuple[WindowScore, ...]:
+    """Scores of what a model lacks: everywhere, then the best shapes at one place, and at several.
+
+    Args:
+        model: fitted.
+        effects: the candidates.
+        options: what is beyond chance.
+    """
     has = {(c.effect.name, c.where) for c in model.candidates}
     everywhere = {c.effect.name for c in model.candidates if not c.effect.places[c.where]}
     lacking = [e for e in effects if e.name not in everywhere]
@@ -61,17 +71,47 @@ def score_all(model: WindowModel, effects: Sequence[Effect]) -> tuple[WindowScor
     for s in common:
         best.setdefault(s.candidate.effect.name, s.candidate)
     single = window_scores(model.fit, _without(list_single([*best.values()]), has))
-    return tuple(sorted((*common, *single), key=lambda s: -s.fall))
+    found = sorted((*common, *single), key=lambda s: -s.fall)
+    beyond = [
+        s for s in found
+        if is_significant(s, len(found), options) and is_plausible(s, options)
+    ]  # fmt: skip
+    several = window_scores(model.fit, list_several(beyond))
+    return tuple(sorted((*found, *several), key=lambda s: -s.fall))
 
 
 def _without(candidates: Sequence[Candidate], has: set[tuple[str, str]]) -> list[Candidate]:
     return [c for c in candidates if (c.effect.name, c.where) not in has]
 
 
-def list_contenders(scores: Sequence[WindowScore], options: DiscoveryOptions) -> list[WindowScore]:
-    """The few best scores that are beyond chance, the best shape of each effect at each place."""
+def list_contenders(
+    scores: Sequence[WindowScore], options: DiscoveryOptions, errors: int
+) -> list[WindowScore]:
+    """The few best scores that are beyond chance, the best shape of each effect at each place.
+
+    The best curve of the data is among them only where its criterion promises to be better than
+    that of every law: a curve can imitate any law of what it depends on.
+
+    Args:
+        scores: of all candidates, the best first.
+        options: what is beyond chance, and how many are refitted.
+        errors: number of errors that count as a sample of the criterion.
+    """
+    laws = _best_few([s for s in scores if not s.candidate.effect.is_curve], scores, options)
+    curves = _best_few([s for s in scores if s.candidate.effect.is_curve], scores, options)[:1]
+
+    def promised(s: WindowScore) -> float:
+        return -errors * np.log(max(1e-12, 1 - s.fall)) - len(s.size) * np.log(max(2, errors))
+
+    best = max([promised(s) for s in laws], default=0.0)
+    return [*laws, *(s for s in curves if promised(s) > best)]
+
+
+def _best_few(
+    listed: Sequence[WindowScore], scores: Sequence[WindowScore], options: DiscoveryOptions
+) -> list[WindowScore]:
     each: dict[tuple[str, str], WindowScore] = {}
-    for s in scores:
+    for s in listed:
         if is_significant(s, len(scores), options) and is_plausible(s, options):
             each.setdefault((s.candidate.effect.name, s.candidate.where), s)
     out: list[WindowScore] = []
@@ -110,7 +150,7 @@ def refit_contenders(
     Of two that are no more than a bare mention apart the one comes first that is the same in all
     records.
     """
-    chosen = list_contenders(scores, options)
+    chosen = list_contenders(scores, options, _windows(model) * len(model.scale))
     out = []
     for s in chosen:
         label = f"{s.candidate.effect.name}, {s.candidate.where}"
@@ -124,7 +164,7 @@ def refit_contenders(
             continue
         found = compare(model.unseen, new.unseen)
         gain = criterion(new) - criterion(model)
-        proven = gain > 0 and is_proven(found, len(chosen), options)
+        proven = gain > 0 and has_size(new, options) and is_proven(found, len(chosen), options)
         out.append(Contender(model=new, prediction=found, criterion=gain, is_proven=proven))
         at = model.unseen.lengths.index(1.0)
         progress(f"{label}: unseen mean square {-100 * found.falls[at]:+.0f} %, t {found.t:.1f}")
@@ -143,9 +183,18 @@ def is_proven(found: Prediction, refits: int, options: DiscoveryOptions) -> bool
     return beyond and found.is_everywhere and min(found.falls) > options.min_fall
 
 
+def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
+    """Whether a free size of the last effect is beyond its own std, where it has one."""
+    std, values, free = model.std, model.fit.values, model.candidates[-1].free
+    own = [n for n in model.fit.problem.names if n.partition(" [")[0] in free]
+    return not own or any(abs(values[n]) > options.min_proof_t * std[n] for n in own)
+
+
 def criterion(model: WindowModel) -> float:
     """Negative BIC of the fitted windows, in units of twice the log likelihood."""
-    fit = model.fit
-    W = sum(len(p.cut.starts) for p in fit.problem.parts)
-    ny = len(model.scale)
+    fit, W, ny = model.fit, _windows(model), len(model.scale)
     return -W * ny * float(np.log(fit.cost)) - len(fit.q) * float(np.log(W))
+
+
+def _windows(model: WindowModel) -> int:
+    return sum(len(p.cut.starts) for p in model.fit.problem.parts)

@@ -7,14 +7,16 @@ fit the nominal model  ->  score all candidates  ->  refit the best  ->  predict
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect
 from identification.errors import InputError
-from identification.prediction.model import WindowModel, fit_nominal, refitted
+from identification.prediction.extension import refitted
+from identification.prediction.model import WindowModel
+from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.selection import (
@@ -25,6 +27,8 @@ from identification.prediction.selection import (
     score_all,
 )
 from identification.prediction.unseen import Unseen, compare, predict
+
+RIVAL = 0.5  # of what an effect explained; one that keeps more beside another is not its rival
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,7 +104,7 @@ def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
     begun = predict(base.plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen)
     _refuse_worse(begun, nominal.unseen, task.options)
     watch.stop("nominal fit")
-    scores = score_all(nominal, task.effects)
+    scores = score_all(nominal, task.effects, task.options)
     watch.stop("scores")
     if scores:
         progress(f"{len(scores)} candidates scored, {scores[0].candidate.effect.name} first")
@@ -128,9 +132,10 @@ def next_state(state: RecordsState, progress: Progress) -> RecordsState:
         state = _pruned(replace(state, rejected=tried), progress)
         watch.stop("refits")
         return replace(state, is_finished=True, seconds=watch.seconds)
-    best, others = tried[0], tried[1:]
+    best = tried[0]
     watch.stop("refits")
-    scores = score_all(best.model, task.effects)
+    scores = score_all(best.model, task.effects, task.options)
+    others = _rivals(state, best, tried[1:], scores)
     watch.stop("scores")
     accepted = (*state.accepted, best)
     return replace(
@@ -138,6 +143,28 @@ def next_state(state: RecordsState, progress: Progress) -> RecordsState:
         accepted=accepted, alternatives=(*state.alternatives, others), scores=scores, rejected=(),
         seconds=watch.seconds,
     )  # fmt: skip
+
+
+def _rivals(
+    state: RecordsState, best: Contender, others: Sequence[Contender],
+    scores: Sequence[WindowScore],
+) -> tuple[Contender, ...]:  # fmt: skip
+    """Those of other contenders that explain less than half as much once the best is there.
+
+    What still explains as much is no rival of the best one: it is missing too.
+    """
+    before, after = (
+        {_key(s.candidate): s.fall * cost for s in reversed(each)}
+        for each, cost in ((state.scores, state.model.fit.cost), (scores, best.model.fit.cost))
+    )
+    return tuple(
+        o for o in others
+        if after.get(_key(o.candidate), 0.0) < RIVAL * before.get(_key(o.candidate), 0.0)
+    )  # fmt: skip
+
+
+def _key(c: Candidate) -> tuple[str, str]:
+    return c.effect.name, c.where
 
 
 def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
@@ -160,7 +187,7 @@ def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
 
 
 def _is_same(a: Candidate, b: Candidate) -> bool:
-    return (a.effect.name, a.where) == (b.effect.name, b.where)
+    return _key(a) == _key(b)
 
 
 def _refuse_worse(begun: Unseen, fitted: Unseen, options: DiscoveryOptions) -> None:

@@ -11,7 +11,7 @@ logarithm lets no single record decide.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.stats import ttest_1samp
@@ -21,10 +21,9 @@ from identification.estimation.metrics import fit_percent
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
-from identification.prediction.fit import ROUGH, solve
-from identification.prediction.problem import most_windows, no_moves, problem
+from identification.prediction.own_values import Own, of_halves, own_values
+from identification.prediction.problem import MOST_STEPS, most_windows
 from identification.prediction.records import Record
-from identification.prediction.unknowns import Prior
 from identification.windows.shooting import Shooting
 from identification.windows.window_search import search_states
 from identification.windows.windows import Windows, first_states, spread, windows
@@ -86,19 +85,6 @@ class Prediction:
         return min(self.gains) > 0 and min(self.falls) > 0
 
 
-@dataclass(frozen=True)
-class Own:
-    """Parameters of which each record has a value of its own.
-
-    Attributes:
-        prior: what is known of them.
-        start: where their search begins, shape (m,), in coordinates.
-    """
-
-    prior: Prior = field(default_factory=Prior)
-    start: np.ndarray = field(default_factory=lambda: np.zeros(0))
-
-
 def predict(
     plant: Plant,
     records: Sequence[Record],
@@ -128,11 +114,12 @@ def predict(
     """
     squares, moves, lengths = [], [], []
     percent = np.zeros(len(scale))
-    halves = [_own_values(plant, r, horizon, scale, values, own or Own()) for r in records]
+    halves = [own_values(plant, r, horizon, scale, values, own or Own()) for r in records]
     for factor in LENGTHS:
         try:
             length = factor * horizon
-            most = most_windows(plant, records, length)
+            steps = MOST_STEPS if factor == 1.0 else MOST_STEPS // 3  # the others only agree or not
+            most = most_windows(plant, records, length, steps)
             cuts = [spread(windows(r.log, length), most) for r in records]
         except InputError:
             if factor == 1.0:
@@ -155,7 +142,7 @@ def predict(
     return Unseen(
         lengths=tuple(lengths), squares=tuple(squares), moves=tuple(moves),
         floor=float(np.mean(noise)), fit_percent=percent,
-        own={r.log.name: _of_both(*h) for r, h in zip(records, halves, strict=True)},
+        own={r.log.name: of_halves(*h) for r, h in zip(records, halves, strict=True)},
     )  # fmt: skip
 
 
@@ -206,25 +193,3 @@ def _errors(
         at = search_states(shooting, moves[half])
         d[half], errors[half] = at.d, shooting.error(at.tangent.r)
     return d, errors
-
-
-def _own_values(
-    plant: Plant, record: Record, horizon: float, scale: np.ndarray, values: Mapping[str, float],
-    own: Own,
-) -> tuple[dict[str, float], dict[str, float]]:  # fmt: skip
-    """A record's own values for its first half, told by the second one, and the reverse."""
-    if not own.prior.names:
-        return {}, {}
-    task = problem(plant, [record], Prior(), own.prior, horizon, values, scale)
-    (part,) = task.parts
-    is_late = part.cut.starts >= len(record.log) // 2
-    out = []
-    for half in (is_late, ~is_late):
-        mine = replace(task, parts=(part.rows(half if half.any() else ~half),))
-        found = solve(mine, own.start, no_moves(mine), tolerance=ROUGH)
-        out.append(found.of_record(0))
-    return out[0], out[1]
-
-
-def _of_both(a: Mapping[str, float], b: Mapping[str, float]) -> dict[str, tuple[float, float]]:
-    return {n: ((a[n] + b[n]) / 2, abs(a[n] - b[n]) / 2) for n in a}

@@ -15,14 +15,14 @@ import numpy as np
 from scipy.stats import ttest_1samp
 
 from identification.discovery.effect_results import Gap
-from identification.discovery.findings.evidence import RemainingError, UnprovenEffect
-from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction.input_error import needed_input_error
 from identification.prediction.model import WindowModel
+from identification.prediction.record_errors import error_unit, record_errors, scaled_squares
+from identification.prediction.remaining import find_remaining
 from identification.prediction.result import (
     NamedByPrediction,
-    RecordError,
     RecordsDiscovery,
     RefittedEffect,
     Verdict,
@@ -51,28 +51,38 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     )
     rejected = tuple(_refitted(c.model, c, 0.0) for c in state.rejected)
     sure = all(n.effect.confidence >= 0.5 or n.one_of for n in named)
-    findings = _findings(state, rejected)
+    findings = find_remaining(state, rejected)
     doubtful = any(f.kind is FindingKind.UNPROVEN_EFFECT for f in findings)
-    needed = needed_input_error(model.fit)
+    different = any(f.kind is FindingKind.DIFFERENT_RECORD for f in findings)
+    needed = needed_input_error(model.fit, model.unseen.floor)
     verdict: Verdict = "nothing missing"
     if named and sure:
         curves = [n.effect.candidate.effect.name.startswith(UNLISTED) for n in named]
         verdict = "unlisted effect" if all(curves) else "named"
-    elif named or doubtful or (_is_off(model, options) and needed > options.max_input_error):
+    elif (
+        named
+        or doubtful
+        or different
+        or (_is_off(model, options) and needed > options.max_input_error)
+    ):
         verdict = "unknown effect"
     if verdict == "unknown effect":
         rejected, named, model = (*(n.effect for n in named), *rejected), (), nominal
     floor = model.unseen.floor
     before, after = (float(np.mean(np.concatenate(m.unseen.at_horizon))) for m in (nominal, model))
     above = before - min(floor, after)
-    scale, unit = _unit(state)
+    scale, unit = error_unit(task.records[0].log, nominal.scale)
     return RecordsDiscovery(
         records=task.records, options=options, horizon=task.horizon, verdict=verdict, named=named,
         rejected=rejected, share=float((before - after) / above) if above > 0 else 0.0,
         unexplained=verdict != "nothing missing" and (bool(findings) or not named),
         noise_rms=scale * float(np.sqrt(floor)), unit=unit, input_error=needed,
         before=_gap(nominal.unseen, scale), after=_gap(model.unseen, scale),
-        errors=_errors(state, model, scale), nominal=nominal, final=model,
+        errors=record_errors(
+            task.records, scale, (nominal.unseen, model.unseen),
+            [scaled_squares(m.fit.errors, nominal.scale) for m in (nominal, model)],
+        ),
+        nominal=nominal, final=model,
         scores=state.nominal_scores, remaining=state.scores if named else state.nominal_scores,
         findings=findings, seconds=state.seconds,
     )  # fmt: skip
@@ -84,6 +94,8 @@ def _named(
     """An accepted effect at the values of the final model, with its rivals."""
     options, mine = state.task.options, accepted.candidate
     is_final = any(_key(c) == _key(mine) for c in state.model.candidates)
+    is_law = not mine.effect.is_curve  # which curves may imitate, but are no rival of its name
+    others = [o for o in others if not (is_law and o.candidate.effect.is_curve)]
     near = [accepted, *others]
     shares = compute_confidence(near)
     rivals = [
@@ -149,30 +161,10 @@ def _refitted(model: WindowModel, contender: Contender, confidence: float) -> Re
     )  # fmt: skip
 
 
-def _findings(state: RecordsState, rejected: Sequence[RefittedEffect]) -> tuple[Finding, ...]:
-    """What the final model leaves: errors above the sensors' noise, and doubtful effects."""
-    out = []
-    for r in rejected:
-        if r.prediction.is_everywhere and r.prediction.t > state.task.options.min_proof_t:
-            out.append(Finding(FindingKind.UNPROVEN_EFFECT, _unproven(r)))
-    square = float(np.mean(np.concatenate(state.model.unseen.at_horizon)))
-    ratio = (
-        float(np.sqrt(square / state.model.unseen.floor)) if state.model.unseen.floor else np.inf
-    )
-    if state.accepted and ratio > 1 + state.task.options.min_gap_share:
-        out.append(Finding(FindingKind.REMAINING_ERROR, RemainingError(ratio)))
-    return tuple(out)
-
-
 def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
     """Whether a model errs on unseen records by more than the sensors' noise."""
     square = float(np.mean(np.concatenate(model.unseen.at_horizon)))
     return square > model.unseen.floor * (1 + options.min_gap_share)
-
-
-def _unproven(r: RefittedEffect) -> UnprovenEffect:
-    c = r.candidate
-    return UnprovenEffect(c.effect.name, c.where, max(r.prediction.falls), r.prediction.t)
 
 
 def _by_record(blocks: np.ndarray, state: RecordsState) -> list[np.ndarray]:
@@ -181,30 +173,9 @@ def _by_record(blocks: np.ndarray, state: RecordsState) -> list[np.ndarray]:
     return np.split(blocks, np.cumsum(sizes)[:-1])
 
 
-def _unit(state: RecordsState) -> tuple[float, str]:
-    """What one unit of scaled error is, and its unit: rms over all outputs where they share one."""
-    unit = state.task.records[0].log.output_unit
-    scale = state.nominal.scale
-    return (float(np.sqrt(np.mean(scale**2))), unit) if unit else (1.0, "")
-
-
 def _gap(unseen: Unseen, scale: float) -> Gap:
     square = float(np.mean(np.concatenate(unseen.at_horizon)))
     return Gap(scale * float(np.sqrt(square)), unseen.fit_percent)
-
-
-def _errors(state: RecordsState, model: WindowModel, scale: float) -> tuple[RecordError, ...]:
-    out = []
-    confirm = zip(state.nominal.unseen.at_horizon, model.unseen.at_horizon, strict=True)
-    seen = zip(state.nominal.fit.errors, model.fit.errors, strict=True)
-    for record in state.task.records:
-        if record.role == "confirm":
-            a, b = next(confirm)
-        else:
-            a, b = (np.mean((e / state.nominal.scale) ** 2, axis=(1, 2)) for e in next(seen))
-        before, after = (scale * float(np.sqrt(x.mean())) for x in (a, b))
-        out.append(RecordError(name=record.log.name, role=record.role, before=before, after=after))
-    return tuple(out)
 
 
 def _key(candidate: object) -> tuple[str, str]:

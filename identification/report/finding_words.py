@@ -146,6 +146,13 @@ def _oversized_effect(e: records.OversizedEffect) -> str:
     )
 
 
+def _different_record(e: records.DifferentRecord) -> str:
+    return (
+        f"record {e.record} is predicted {e.ratio:.2g} times worse than the others: something is"
+        " different in it"
+    )
+
+
 def _remaining_error(e: records.RemainingError) -> str:
     return (
         f"an error on unseen data that is {e.noise_ratio:.3g} times the sensors' noise is left, and"
@@ -176,5 +183,6 @@ WORDS: dict[FindingKind, Callable[[Any], str]] = {
     FindingKind.DOUBTFUL_EFFECT: _doubtful_effect,
     FindingKind.OVERSIZED_EFFECT: _oversized_effect,
     FindingKind.REMAINING_ERROR: _remaining_error,
+    FindingKind.DIFFERENT_RECORD: _different_record,
     FindingKind.UNPROVEN_EFFECT: _unproven_effect,
 }

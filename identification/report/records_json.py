@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
+from identification.effects.effect import Candidate
+from identification.prediction.model import WindowModel
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
 from identification.report.finding_json import finding_to_json, finite
 from identification.report.finding_words import describe_finding
+
+READS = {  # what a curve is drawn over, by the last word of its name
+    "speed": "rate of {}",
+    "load": "force of the drives of {}",
+    "position": "position of {}",
+    "time": "time",
+}
 
 
 def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
@@ -32,23 +40,24 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
         "input_error": found.input_error,
         "located": [describe_finding(finding) for finding in found.findings],
         "findings": [finding_to_json(finding) for finding in found.findings],
-        "nominal": _values_to_json(found.nominal.values, found.nominal.std),
-        "final": _values_to_json(found.final.values, found.final.std),
+        "nominal": _values_to_json(found.nominal),
+        "final": _values_to_json(found.final),
         "options": asdict(found.options),
         "seconds": float(sum(found.seconds.values())),
     }
     return {key: finite(value) for key, value in record.items()}
 
 
-def _values_to_json(values: Mapping[str, float], std: Mapping[str, float]) -> dict[str, Any]:
+def _values_to_json(model: WindowModel) -> dict[str, Any]:
+    """Fitted values, those of one record as `name [record]`, and what effects hold fixed."""
+    values, std = {**model.values, **model.fit.values}, model.std
     return {name: {"value": value, "std": std.get(name)} for name, value in values.items()}
 
 
 def _refitted_to_json(effect: RefittedEffect) -> dict[str, Any]:
     seen = effect.prediction
     return {
-        "name": effect.candidate.effect.name,
-        "where": effect.candidate.where,
+        **_called(effect.candidate),
         "confidence": effect.confidence,
         "parameters": {
             name: {"value": value, "std": std, "unit": unit}
@@ -59,13 +68,23 @@ def _refitted_to_json(effect: RefittedEffect) -> dict[str, Any]:
     }
 
 
+def _called(candidate: Candidate) -> dict[str, Any]:
+    """Name and place; a curve of the data has no name, but says what it depends on."""
+    effect, where = candidate.effect, candidate.where
+    if not effect.is_curve:
+        return {"name": effect.name, "where": where}
+    word = effect.name.rpartition("_")[2]
+    joint = where.removeprefix("joint ")
+    return {
+        "name": "unlisted", "where": where, "depends_on": word, "reads": READS[word].format(joint)
+    }  # fmt: skip
+
+
 def _named_to_json(named: NamedByPrediction) -> dict[str, Any]:
     return {
         **_refitted_to_json(named.effect),
         "rivals": [
-            {"name": r.candidate.effect.name, "where": r.candidate.where,
-             "confidence": r.confidence}
-            for r in named.rivals
+            {**_called(r.candidate), "confidence": r.confidence} for r in named.rivals
         ],
         "one_of": named.one_of,
         "agrees": list(named.agrees),

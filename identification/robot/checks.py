@@ -92,13 +92,19 @@ def _left(log: Log, every: int) -> bool:
     return all(last - first >= MIN_ROWS for first, last in rows)
 
 
-def refuse_horizon(file: RobotFile, log: Log) -> None:
-    """Refuse a horizon that does not fit into both parts of a log.
+def refuse_horizon(file: RobotFile, log: Log, is_whole: bool = False) -> None:
+    """Refuse a horizon that does not fit into both parts of a log, or into all of it.
+
+    Args:
+        file: the robot's, with the horizon.
+        log: what is predicted.
+        is_whole: whether the log is used from end to end, because others confirm.
 
     Raises:
-        InputError: a part is shorter than a window.
+        InputError: it is shorter than a window, or a part of it is.
     """
-    most = min(len(log.part("estimation")), len(log.part("validation")))
+    parts = [log] if is_whole else [log.part("estimation"), log.part("validation")]
+    most = min(map(len, parts))
     _refuse(file, log, most, _samples(file, log) <= most)
 
 

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from identification.discovery.final_values import collect_final_values
 from identification.discovery.result import Discovery
-from identification.errors import refuse_kind
+from identification.errors import InputError, refuse_kind
+from identification.prediction.model import predict_fitted
+from identification.prediction.record_errors import record_errors
+from identification.prediction.records import Record
+from identification.prediction.records_fit import RecordsFit
 from identification.prediction.result import RecordsDiscovery
+from identification.prediction.unseen import predict
 from identification.robot.fitting import RobotFit
-from identification.robot.record_error import Confirmation, compare_values
+from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, compare_values
 from identification.robot.robot import Robot
 
 WITHOUT = "without what is named", "with it"
@@ -20,7 +25,8 @@ def confirm(
 
     For a fit the two models have the values of the robot's file and the fitted values. For a
     discovery that names something they are the fitted model without the named effects and the one
-    with them. For any other discovery they have the values of the file and the fitted values.
+    with them. For any other discovery they have the values of the file and the fitted values. A
+    discovery over a horizon has compared the records already.
 
     Args:
         robot: the result of `read_robot`, with the records.
@@ -30,16 +36,20 @@ def confirm(
         One comparison for each record: the rms errors over the robot's horizon, or of a free run.
 
     Raises:
-        InputError: windows of the robot's horizon do not fit a record.
+        InputError: windows of the robot's horizon do not fit a record, or a discovery over a
+            horizon was made without it.
         DivergenceError: one of the models cannot be simulated.
     """
     refuse_kind(robot, Robot, "confirm takes a robot (read_robot)")
-    kinds = (RobotFit, Discovery, RecordsDiscovery)
-    refuse_kind(found, kinds, "confirm takes what fit or discover found")
-    if isinstance(found, RecordsDiscovery):
-        return _of_records(robot, found)
+    refuse_kind(
+        found, (RobotFit, Discovery, RecordsDiscovery), "confirm takes what fit or discover found"
+    )
     if isinstance(found, RobotFit):
+        if isinstance(found.found, RecordsFit):
+            return _over_windows(robot, found, found.found)
         return tuple(compare_values(robot, log, {}, found.values) for log in robot.records)
+    if isinstance(found, RecordsDiscovery):
+        return _of_discovery(robot, found)
     after = collect_final_values(found)
     if not found.named:
         return tuple(compare_values(robot, log, {}, after) for log in robot.records)
@@ -47,13 +57,32 @@ def confirm(
     return tuple(compare_values(robot, log, before, after, WITHOUT) for log in robot.records)
 
 
-def _of_records(robot: Robot, found: RecordsDiscovery) -> tuple[Confirmation, ...]:
-    """The comparison that a discovery on records has made already, where it names something."""
-    if not found.named:
-        values = found.final.values
-        return tuple(compare_values(robot, log, {}, values) for log in robot.records)
-    return tuple(
-        Confirmation(e.name, e.before, e.after, found.unit, WITHOUT)
-        for e in found.errors
-        if e.role == "confirm"
+def _over_windows(robot: Robot, fit: RobotFit, found: RecordsFit) -> tuple[Confirmation, ...]:
+    """The comparison that the fit has made already, or that of other records."""
+    if not robot.records:
+        return ()
+    if [*map(id, robot.records)] == [*map(id, fit.robot.records)]:
+        return fit.unseen
+    model, plant = found.model, robot.plant
+    records = [Record(log, "confirm", robot.values_of(log)) for log in robot.records]
+    each = (
+        predict(plant, records, found.horizon, model.scale, {}),
+        predict_fitted(plant, records, found.horizon, model.scale, model.fit, {}),
     )
+    return tuple(
+        Confirmation(e.name, e.before, e.after, found.unit, (AS_WRITTEN, FITTED))
+        for e in record_errors(records, found.scale, each, ([], []))
+    )
+
+
+def _of_discovery(robot: Robot, found: RecordsDiscovery) -> tuple[Confirmation, ...]:
+    """What a discovery over a horizon has found on the robot's records."""
+    errors = {e.name: e for e in found.errors if e.role == "confirm"}
+    for log in robot.records:
+        if log.name not in errors:
+            raise InputError(
+                f"the discovery did not see record {log.name!r}, known: {', '.join(errors)}; give"
+                " it to read_robot as one that confirms, and discover again"
+            )
+    each = (errors[log.name] for log in robot.records)
+    return tuple(Confirmation(e.name, e.before, e.after, found.unit, WITHOUT) for e in each)

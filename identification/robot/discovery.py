@@ -71,9 +71,8 @@ def discover(
                 model.nominal_model, model.log, model.candidates, progress, options
             )
         fitted = (model.log, *model.others)
-        if not model.records:
-            for log in fitted:
-                refuse_horizon(model.file, log)
+        for each in (*fitted, *model.records):
+            refuse_horizon(model.file, each, is_whole=bool(model.records))
         return discover_records(
             model.nominal_model, fitted, model.records, model.candidates, progress, options
         )

@@ -3,9 +3,10 @@
 model = "emps.xml"                   # MJCF, beside this file
 outputs = ["position"]               # sensors that the log has; all joint positions if not given
 free = ["M", "joint/slide.damping", "coulomb_friction.f_c@slide"]
+own = ["coulomb_friction.f_c@slide"] # of the free ones, those that differ from log to log
 horizon = 0.2                        # [s] to judge predictions over; a free run if not given
 every = 10                           # keep every n-th sample
-trust = ["wiring"]                   # judgements that are not to refuse a log: see TRUST below
+trust = ["wiring"]                   # judgements that are not to refuse a log: robot/trust.py
 [fixed]                              # values of effects' parameters that are not free
 "stribeck_friction.v_s" = 0.05
 [start]                              # entries of the initial state; else the log's, or the model's
@@ -33,7 +34,7 @@ A free name is a key under `parameters`, a path into the model or its start, or 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf, isfinite
 from pathlib import Path
@@ -42,20 +43,14 @@ from typing import Any
 from identification.errors import InputError, unknown_name
 from identification.files import read_bytes
 from identification.logs.names import quoted
+from identification.robot.trust import trusted
 
 _LARGEST = 2**20  # [bytes]; it is written by hand
-TRUST = {  # what a user may know better than a check
-    "sensors": "a sensor that repeats one value is not frozen",
-    "start": "simulations begin where the model does, also where the log begins elsewhere",
-    "steps": "the model's steps are fine enough",
-    "time": "the log's time is in seconds",
-    "units": "the outputs are in the units that the log says",
-    "wiring": "the signs and the order of the columns are right",
-}
 _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
     "model": (str, "a path in quotes"),
     "outputs": (list, "a list of sensors"),
     "free": (list, "a list of parameters"),
+    "own": (list, "a list of free parameters"),
     "horizon": ((int, float), "a number of seconds"),
     "every": (int, "a whole number of samples"),
     "trust": (list, "a list of words in quotes"),
@@ -85,10 +80,11 @@ class RobotFile:
         path: path of the file.
         model: path of the MJCF.
         free: names of the free parameters.
+        own: those of the free parameters of which each log has a value of its own.
         outputs: sensors; empty for all joint positions.
         horizon: length of the windows over which predictions are judged [s]; None for a free run.
         every: n, where every n-th sample is kept.
-        trust: words of `TRUST`: judgements that do not refuse a log.
+        trust: words of `identification.robot.trust.TRUST`: judgements that do not refuse a log.
         start: entries of the initial state by path.
         log: what the TOML beside a log says, for all logs that do not say it themselves.
         columns: column of the log by actuator or sensor.
@@ -102,6 +98,7 @@ class RobotFile:
     path: Path
     model: Path
     free: tuple[str, ...]
+    own: tuple[str, ...] = ()
     outputs: tuple[str, ...] = ()
     horizon: float | None = None
     every: int = 1
@@ -156,6 +153,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
         path=path,
         model=model,
         free=_texts(content["free"], "free", path),
+        own=_own(content, path),
         outputs=_texts(content.get("outputs", []), "outputs", path),
         horizon=content.get("horizon"),
         every=content.get("every", 1),
@@ -171,22 +169,6 @@ def read_robot_file(path: str | Path) -> RobotFile:
     )
 
 
-def trusted(words: Sequence[Any], where: str) -> tuple[str, ...]:
-    """The judgements that a user overrules.
-
-    Args:
-        words: of `TRUST`.
-        where: who gave them, for messages.
-
-    Raises:
-        InputError: a word is unknown.
-    """
-    for word in words:
-        if word not in TRUST:
-            raise unknown_name(f"word under trust in {where}:", str(word), TRUST)
-    return tuple(words)
-
-
 def _check(
     table: Mapping[str, Any], kinds: Mapping[str, tuple[type | tuple[type, ...], str]], where: str
 ) -> None:
@@ -200,6 +182,19 @@ def _check(
             good = isfinite(value) and (key not in _POSITIVE or value > 0)
         if not good:
             raise InputError(f"{key} in {where} must be {words}; correct it there")
+
+
+def _own(content: Mapping[str, Any], path: Path) -> tuple[str, ...]:
+    own = _texts(content.get("own", []), "own", path)
+    for name in own:
+        if name not in content["free"]:
+            raise unknown_name(f"free parameter under own in {path}:", name, content["free"])
+    if own and "horizon" not in content:
+        raise InputError(
+            f"own in {path} is for records that are predicted over a horizon; write horizon = 0.2"
+            " (in seconds) into it"
+        )
+    return own
 
 
 def _texts(values: list[Any], key: str, path: Path) -> tuple[str, ...]:

@@ -5,17 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from identification.estimation.fit import Fit
-from identification.logs.noise import noise_floor
-from identification.quantities import finite_or_none
 from identification.report.fit_json import fit_to_json
-from identification.report.fit_verdict import window_sentences
+from identification.report.records_fit_json import records_fit_to_json
 from identification.robot.fitting import RobotFit
 from identification.robot.record_error import Confirmation
 from identification.robot.repetition import find_repetitions
-from identification.windows.window_estimate import WindowEstimate
 
 FARTHEST = 100.0  # a value that changes by this factor is not believed
 
@@ -31,33 +26,14 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     if isinstance(found, Fit):
         record = {**fit_to_json(found), "horizon": None}
     else:
-        record = _windows(result, found)
+        record = records_fit_to_json(found)
     repeated = find_repetitions(result.robot)
-    said = (*confirmed, *repeated)
+    said = (*(confirmed or result.unseen), *repeated)
     verdict = [*_far(record["parameters"]), *record["verdict"], *map(str, said)]
     return {
         **record, "confirm": [vars(c) for c in confirmed], "verdict": verdict,
         "findings": [r.finding for r in repeated],
         "remarks": list(result.robot.remarks),
-    }  # fmt: skip
-
-
-def _windows(result: RobotFit, found: WindowEstimate) -> dict[str, Any]:
-    """An estimate over windows as plain values, with the keys of a fit."""
-    robot, unseen = result.robot, result.unseen
-    floor = float(np.sqrt(np.mean(noise_floor(robot.log.outputs) ** 2)))
-    rows = zip(found.values.items(), found.std, found.start, found.at_bound, strict=True)
-    said = [] if unseen is None else [str(unseen)]
-    return {
-        "parameters": {
-            name: {"value": value, "std": finite_or_none(std),
-                   "unit": robot.plant.parameters[name].unit, "initial": float(first),
-                   "at_bound": bool(bound)}
-            for (name, value), std, first, bound in rows
-        },
-        "rms": found.rms, "validation_rms": None if unseen is None else unseen.after,
-        "noise_floor": floor, "seconds": found.seconds, "horizon": found.length,
-        "verdict": [*window_sentences(found, floor), *said],
     }  # fmt: skip
 
 

@@ -1,7 +1,9 @@
-"""The free parameters of a robot, fitted to the first half of its log.
+"""The free parameters of a robot, fitted to one log or to several.
 
-The fit minimises the error of a free run. If the robot's file gives a horizon, it minimises the
-errors in windows of that length, each of which begins at a state of its own.
+The fit of a free run minimises its error over the first half of one log. If the robot's file gives
+a horizon, the fit minimises the errors in windows of that length, each of which begins at a state
+of its own, over all logs; it is the fit of a discovery's nominal model
+(`identification.prediction.records_fit`).
 """
 
 from __future__ import annotations
@@ -12,10 +14,10 @@ from dataclasses import dataclass
 from identification.errors import InputError, refuse_kind
 from identification.estimation.estimation import estimate
 from identification.estimation.fit import Fit, assess
+from identification.prediction.records_fit import RecordsFit, fit_records
 from identification.robot.checks import refuse_horizon
-from identification.robot.record_error import Confirmation, compare_unseen
+from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation
 from identification.robot.robot import Robot
-from identification.windows.window_estimate import WindowEstimate, estimate_windows
 
 FEWEST = 10  # measured values for each parameter
 
@@ -26,54 +28,96 @@ class RobotFit:
 
     Attributes:
         robot: the robot that was fitted.
-        found: a fit of a free run, or an estimate over windows.
-        unseen: the values of the robot's file compared with the fitted ones, on the part of the log
-            that was not fitted; None for a fit of a free run, which contains this comparison.
+        found: a fit of a free run, or of windows of one or several records.
     """
 
     robot: Robot
-    found: Fit | WindowEstimate
-    unseen: Confirmation | None = None
+    found: Fit | RecordsFit
 
     @property
     def values(self) -> dict[str, float]:
-        """The fitted values by name, in their units."""
+        """The fitted values by name, in their units; a record's own ones are `name [record]`."""
         return self.found.estimate.values if isinstance(self.found, Fit) else self.found.values
 
     @property
+    def shared(self) -> dict[str, float]:
+        """Those of the fitted values that hold for all records."""
+        return self.values if isinstance(self.found, Fit) else self.found.shared
+
+    @property
     def std(self) -> dict[str, float]:
-        """Their std by name, in the same units; inf where the log does not determine them."""
+        """Their std by name, in the same units; inf where a free run does not determine them."""
         return dict(zip(self.values, self.found.std.tolist(), strict=True))
+
+    @property
+    def start(self) -> dict[str, float]:
+        """The values with which the fit began, by name, in their units."""
+        at = self.found.estimate.start if isinstance(self.found, Fit) else self.found.start
+        return dict(zip(self.values, map(float, at), strict=True))
+
+    @property
+    def at_bound(self) -> dict[str, bool]:
+        """Whether a value lies on a bound, by name."""
+        return dict(zip(self.values, map(bool, self.found.at_bound), strict=True))
+
+    @property
+    def converged(self) -> bool:
+        """Whether the search ended by itself."""
+        if isinstance(self.found, Fit):
+            return self.found.estimate.status == "converged"
+        return self.found.model.fit.converged
+
+    @property
+    def unseen(self) -> tuple[Confirmation, ...]:
+        """The values of the robot's file and the fitted ones on what the fit has not seen.
+
+        One comparison for each record over the horizon; none for a free run, whose `found` has the
+        error on the part that was not fitted.
+        """
+        if isinstance(self.found, Fit):
+            return ()
+        return tuple(
+            Confirmation(e.name, e.before, e.after, self.found.unit, (AS_WRITTEN, FITTED))
+            for e in self.found.errors
+            if e.role == "confirm"
+        )
 
 
 def fit(robot: Robot, progress: Callable[[str], None] | None = None) -> RobotFit:
-    """Estimate the free parameters of a robot on the part `estimation` of its log, or on its half.
+    """Estimate the free parameters of a robot from its logs.
+
+    Without a horizon in the robot's file, a free run of the part `estimation` of its only log (or
+    of its first half) is fitted. With one, the windows of all logs are; where no records confirm,
+    those of the same part of each log, and the rest of it confirms.
 
     Args:
         robot: the result of `read_robot`.
         progress: is told one line per accepted step.
 
     Raises:
-        InputError: the log is too short, the horizon does not fit into it, or a free parameter has
-            no effect.
+        InputError: there are several logs and no horizon, a log is too short, the horizon does not
+            fit into it, or a free parameter has no effect.
         DivergenceError: the model cannot be simulated with the values at which the fit begins.
     """
     refuse_kind(robot, Robot, "fit takes a robot (read_robot)")
-    file, log = robot.file, robot.log
-    if robot.others:
+    file, logs = robot.file, (robot.log, *robot.others)
+    is_whole = file.horizon is not None and bool(robot.records)
+    if file.horizon is None and robot.others:
         raise InputError(
-            "fit takes one log; discover takes several, and gives the fitted values with them"
+            f"{len(logs)} logs are fitted together over a horizon, and none is given; write"
+            f" horizon = 0.2 (in seconds) into {file.path}"
         )
-    part = log.part("estimation")
-    if part.outputs.size < FEWEST * len(file.free):
+    parts = logs if is_whole else [log.part("estimation") for log in logs]
+    count = sum(part.outputs.size for part in parts)
+    if count < FEWEST * len(file.free):
         raise InputError(
-            f"the log has {part.outputs.size} values to fit {len(file.free)} parameters to; it"
-            f" needs {FEWEST} for each: record longer, or free fewer parameters"
+            f"the log has {count} values to fit {len(file.free)} parameters to; it needs {FEWEST}"
+            " for each: record longer, or free fewer parameters"
         )
-    refuse_horizon(file, log)
+    model = robot.nominal_model
     if file.horizon is None:
-        estimated = estimate(robot.plant, part, file.free, progress=progress)
-        return RobotFit(robot, assess(estimated, log))
-    names = tuple(n for n in file.free if n not in robot.starts)
-    found = estimate_windows(robot.plant, part, names, float(file.horizon), progress=progress)
-    return RobotFit(robot, found, compare_unseen(robot, {}, found.values))
+        estimated = estimate(model.plant, parts[0], file.free, progress=progress)
+        return RobotFit(robot, assess(estimated, robot.log))
+    for log in (*logs, *robot.records):
+        refuse_horizon(file, log, is_whole)
+    return RobotFit(robot, fit_records(model, logs, robot.records, progress))

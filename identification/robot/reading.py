@@ -9,10 +9,11 @@ from pathlib import Path
 from identification.effects.axes import axes
 from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
-from identification.robot.file import RobotFile, read_robot_file, trusted
+from identification.robot.file import RobotFile, read_robot_file
 from identification.robot.robot import Robot, read_robot_log, robot_of
 from identification.robot.start import start_sentence
 from identification.robot.step_error import refuse_coarse_steps
+from identification.robot.trust import trusted
 from identification.robot.wiring import refuse_miswired
 
 
@@ -31,7 +32,7 @@ def read_robot(
             them are fitted together.
         confirm: records of the same robot to which nothing will be fitted.
         trust: judgements that are not to refuse a log, beside those of the file's key `trust`:
-            words of `identification.robot.file.TRUST`.
+            words of `identification.robot.trust.TRUST`.
 
     Raises:
         InputError: a file cannot be what it should be, a name is unknown, a sensor froze, the

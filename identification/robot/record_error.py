@@ -80,13 +80,16 @@ def compare_unseen(
     part = log.part("validation")
     if robot.file.horizon is not None:
         return compare_values(robot, part, before, after)
-    rows = np.isin(log.time, part.time)
-    a, b = (float(np.sqrt(np.mean(_free_run(robot, log, v)[rows] ** 2))) for v in (before, after))
+    rows, own = np.isin(log.time, part.time), robot.values_of(log)
+    a, b = (
+        float(np.sqrt(np.mean(_free_run(robot, log, {**v, **own})[rows] ** 2)))
+        for v in (before, after)
+    )
     return Confirmation(part.name, a, b, part.output_unit, (AS_WRITTEN, FITTED))
 
 
 def _rms(robot: Robot, log: Log, values: Mapping[str, float]) -> float:
-    horizon, here = robot.file.horizon, {**values, **robot.started(log)}
+    horizon, here = robot.file.horizon, {**values, **robot.values_of(log), **robot.started(log)}
     if horizon is None:
         error = _free_run(robot, log, here)
     else:

@@ -56,7 +56,8 @@ class Repetition:
 def find_repetitions(robot: Robot) -> tuple[Repetition, ...]:
     """The confirming parts and records of a robot that repeat what is fitted."""
     fitted = [log.part("estimation") for log in (robot.log, *robot.others)]
-    whole = bool(robot.others and robot.records)  # then each log is fitted from end to end
+    many = bool(robot.others) or robot.file.horizon is not None
+    whole = many and bool(robot.records)  # then each log is fitted from end to end
     unseen = [] if whole else [log.part("validation") for log in (robot.log, *robot.others)]
     pieces = [robot.log, *robot.others] if whole else fitted
     shares = ((log.name, replayed_share(pieces, log)) for log in (*unseen, *robot.records))

@@ -30,6 +30,7 @@ from identification.robot.checks import (
 )
 from identification.robot.file import RobotFile
 from identification.robot.model_file import robot_spec, with_step
+from identification.robot.own_values import refuse_impossible, value_parameters
 from identification.robot.parameters import free_parameter, measured_start, unit_of
 from identification.robot.start import start_of
 
@@ -59,8 +60,14 @@ class Robot:
 
     @property
     def nominal_model(self) -> NominalModel:
-        """The nominal model with which a discovery begins."""
-        return NominalModel(self.plant, self.file.free, self.std, self.file.horizon)
+        """The nominal model with which a fit or a discovery begins.
+
+        Over a horizon each record brings the values that hold for it alone; a free run has one log.
+        """
+        file, plant = self.file, self.plant
+        if file.horizon is None:
+            plant = plant.with_values(self.log.values)
+        return NominalModel(plant, file.free, self.std, file.horizon, file.own)
 
     @property
     def candidates(self) -> tuple[Effect, ...]:
@@ -83,9 +90,16 @@ class Robot:
         }
 
     def plant_of(self, log: Log) -> JointPlant:
-        """The plant as it begins in a log."""
+        """The plant as it begins in a log, with the values that hold there."""
         start = start_of(self.file, self.plant.model, log)
-        return replace(self.plant, bare=replace(self.plant.bare, start=start))
+        plant = replace(self.plant, bare=replace(self.plant.bare, start=start))
+        return plant.with_values(log.values) if log.values else plant
+
+    def values_of(self, log: Log) -> dict[str, float]:
+        """What logs give a value of their own, by name: that of this log, or the model's."""
+        own = self.plant.parameters
+        logs = (self.log, *self.others, *self.records, log)
+        return {n: log.values.get(n, own[n].value) for each in logs for n in each.values}
 
 
 def read_robot_log(file: RobotFile, path: str | Path) -> Log:
@@ -149,8 +163,10 @@ def robot_of(
         if name not in {e.name for e in effects}:
             raise unknown_name("effect", name, (e.name for e in effects))
     priors = [free_parameter(file, name, model, effects, log) for name in file.free]
+    logs = (log, *others, *records)
+    valued = value_parameters(file, model, effects, logs)
     plant = joint_plant(
-        spec, [r for r, _ in priors], log, joints=known, effects=effects,
+        spec, [*(r for r, _ in priors), *valued], log, joints=known, effects=effects,
         start=start_of(file, model, log),
     )  # fmt: skip
     for name in file.fixed:
@@ -161,6 +177,7 @@ def robot_of(
                 f"{name!r} under fixed in {file.path} is no number of an effect; write its value"
                 f" into {file.model}, or name it under free"
             )
+    refuse_impossible(plant, logs)
     std = np.array([std for _, std in priors])
     return Robot(
         file, log, plant.with_values(file.fixed), std, tuple(records), tuple(others), said

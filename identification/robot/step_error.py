@@ -75,7 +75,7 @@ def step_error(robot: Robot) -> StepError:
     log, h = robot.log, robot.log.sampling_time
     samples = 1 + int(min(SECONDS, log.duration) / h)
     coarse, fine = (
-        Predictor(r.plant, log, ()).predict(np.empty((1, 0)), samples)[0]
+        Predictor(r.plant, log, (), dict(log.values)).predict(np.empty((1, 0)), samples)[0]
         for r in (robot, _stepped(robot, 0.5))
     )
     d, lag = coarse - fine, round((robot.file.horizon or 0.0) / h)

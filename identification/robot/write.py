@@ -29,6 +29,7 @@ def write_robot(robot: Robot, values: Mapping[str, float], path: Path, place: Pa
         f"outputs = {_list(robot.log.output_names)}",
         f"free = {_list(names)}",
     ]
+    lines += [f"own = {_list(file.own)}"] if file.own else []
     lines += [] if file.horizon is None else [f"horizon = {file.horizon!r}"]
     lines += [f"every = {file.every}"] if file.every > 1 else []
     lines += [f"trust = {_list(file.trust)}"] if file.trust else []

@@ -26,6 +26,7 @@ EVIDENCE_OF = {
     FindingKind.DOUBTFUL_EFFECT: records.DoubtfulEffect(REJECTED),
     FindingKind.OVERSIZED_EFFECT: records.OversizedEffect(score_of(LATE, 0.3, 412.0), {"tau": 0.1}),
     FindingKind.REMAINING_ERROR: records.RemainingError(7.1),
+    FindingKind.DIFFERENT_RECORD: records.DifferentRecord("c.csv", 4.2, 1e-6),
     FindingKind.UNPROVEN_EFFECT: records.UnprovenEffect("stiffness", "joint a", 0.2, 1.9),
 }  # fmt: skip
 FINDINGS = tuple(Finding(kind, EVIDENCE_OF[kind]) for kind in FindingKind)

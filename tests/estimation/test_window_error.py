@@ -5,7 +5,9 @@ import pytest
 from estimation_plants import record, slider
 
 from identification import Log
+from identification.windows.window_error import _fixed as fixed
 from identification.windows.window_error import window_error
+from identification.windows.window_search import search_states
 
 NOISE = 1e-4
 
@@ -49,3 +51,12 @@ def test_the_start_of_a_window_is_the_best_there_is():
     y = log.outputs[:20, 0] - free
     expected = y - X @ np.linalg.lstsq(X, y, rcond=None)[0]
     np.testing.assert_allclose(error, expected, atol=1e-8)
+
+
+def test_a_window_ends_where_it_ends_alone():
+    shooting, d = fixed(slider(damping=4.0), noisy(), 0.4, None)
+    together = search_states(shooting, d)
+    for k in (0, len(d) // 2, len(d) - 1):
+        keep = np.array([k])
+        alone = search_states(shooting.rows(keep), d[keep])
+        assert together.cost[k] == pytest.approx(alone.cost[0], rel=0.02)

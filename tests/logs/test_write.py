@@ -66,6 +66,15 @@ def test_digits_round_the_columns_and_leave_the_time_even(tmp_path, digits):
     assert back.outputs == pytest.approx(log.outputs, rel=10.0 ** (1 - digits))
 
 
+def test_values_of_a_robot_are_read_back_by_those_who_have_use_for_them(tmp_path, refusal):
+    log = replace(wave(), values={"body/weight.mass": 1.0, 'a "name"': 0.1 / 3})
+    write_log(log, tmp_path / "log.csv")
+    assert read(tmp_path / "log.csv", lenient=True).values == log.values
+    assert "under [values]" in refusal(read, tmp_path / "log.csv")
+    (tmp_path / "log.toml").write_text("values.mass = inf")
+    assert "values in" in refusal(read, tmp_path / "log.csv", lenient=True)
+
+
 def test_a_log_that_says_no_more_than_its_columns_is_one_file(tmp_path):
     write_log(replace(wave(), units={}), tmp_path / "log.csv")
     assert [f.name for f in tmp_path.iterdir()] == ["log.csv"]

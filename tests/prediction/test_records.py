@@ -37,6 +37,15 @@ def test_what_cannot_be_one_robot_is_refused(refusal):
     assert "elbow" in refusal(as_records, [a], [foreign])
 
 
+def test_what_a_log_says_of_itself_holds_for_its_record():
+    from dataclasses import replace
+
+    a, b = replace(record(1), values={"J": 1.0, "d": 2.0}), replace(record(2), name="record 1")
+    made = as_records([a, b], values={a.name: {"d": 3.0}})
+    assert [dict(r.values) for r in made] == 2 * [{"J": 1.0, "d": 3.0}, {"d": 3.0}]
+    assert [r.log.name for r in made[:2]] == ["record 1 [estimation]", "record 1 (2) [estimation]"]
+
+
 @pytest.mark.parametrize("hold", ["zoh", "foh"])
 def test_one_hold_is_for_all_records(hold, refusal):
     from dataclasses import replace

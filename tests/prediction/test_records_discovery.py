@@ -97,9 +97,3 @@ def test_the_command_takes_several_logs_and_several_confirm_flags(folder, capsys
     assert record["effects"][0]["name"] == "transmitted_load_friction"
     assert all(r["after"] < r["before"] for r in record["records"])
     assert {p.name for p in out.iterdir()} >= {"report.html", "result.json", "robot.toml"}
-
-
-def test_a_fit_of_several_logs_is_refused(folder, capsys):
-    logs = [str(folder / f"log_{k}.csv") for k in range(2)]
-    assert main(["fit", str(folder / "robot.toml"), *logs]) == 2
-    assert "discover takes several" in capsys.readouterr().err

@@ -9,7 +9,8 @@ from records_cases import FREE, HORIZON, nominal_model, pendulum, record, record
 
 from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
-from identification.prediction.model import fit_nominal, with_effect
+from identification.prediction.extension import with_effect
+from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.scores import window_scores
 from identification.prediction.unseen import compare, predict

@@ -33,6 +33,7 @@ SAYS = {
     FindingKind.DOUBTFUL_EFFECT: "tau = 250 ± 100 µs (delay), explains",
     FindingKind.OVERSIZED_EFFECT: "tau = 0.300 s where 0.100 s is thought to be the most",
     FindingKind.REMAINING_ERROR: "7.1 times the sensors' noise",
+    FindingKind.DIFFERENT_RECORD: "c.csv is predicted 4.2 times worse",
     FindingKind.UNPROVEN_EFFECT: "mean square -20 %), but not beyond chance (t = 1.9)",
 }
 

@@ -93,13 +93,15 @@ def test_how_much_a_log_may_be_thinned_is_told(folder, capsys):
 
 
 @pytest.mark.parametrize(
-    ("command", "horizon", "most"),
-    [("fit", h, 6) for h in (0, -1, 0.02, 6.1)] + [("discover", h, 3) for h in (0, 0.02, 5, 6.1)],
+    ("confirm", "horizon", "most"),
+    [(False, h, 6) for h in (0, -1, 0.02, 6.1)] + [(True, h, 12) for h in (0.02, 12.1)],
 )
-def test_how_long_a_horizon_may_be_is_told(folder, capsys, command, horizon, most):
+@pytest.mark.parametrize("command", ["fit", "discover"])
+def test_how_long_a_horizon_may_be_is_told(folder, capsys, command, confirm, horizon, most):
     path = folder / "horizon.toml"
     path.write_text(f"horizon = {horizon}\n" + TOML)
-    said = refused(capsys, command, path, folder / "plain.csv")
+    other = ["--confirm", folder / "other.csv"] if confirm else []
+    said = refused(capsys, command, path, folder / "plain.csv", *other)
     assert f"horizon in {path} is {horizon} s" in said
     assert f"it may be 0.03 s, of 3 samples, to {most} s, to fit" in said
 

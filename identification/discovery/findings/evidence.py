@@ -230,6 +230,21 @@ class RemainingError:
 
 
 @dataclass(frozen=True)
+class DifferentRecord:
+    """A record that is predicted much worse than the others.
+
+    Attributes:
+        record: its name.
+        ratio: rms error of its windows over that of the others' windows (geometric means).
+        chance: of as large a difference by luck.
+    """
+
+    record: str
+    ratio: float
+    chance: float
+
+
+@dataclass(frozen=True)
 class UnprovenEffect:
     """An effect that predicts unseen records better on average, but not beyond chance.
 
@@ -250,4 +265,5 @@ Evidence = (
     WorstOutput | WorstInterval | MedianFrequency | ForceEvidence | InputHold | SpectralLine
     | NoisyOutput | CorrelatedInnovations | ParametersAtLimit | LargeInputError | RobotChange
     | StructuredInputError | DoubtfulEffect | OversizedEffect | RemainingError | UnprovenEffect
+    | DifferentRecord
 )  # fmt: skip

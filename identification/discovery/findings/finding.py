@@ -32,6 +32,7 @@ class FindingKind(StrEnum):
     OVERSIZED_EFFECT = "oversized effect"
     REMAINING_ERROR = "remaining error"
     UNPROVEN_EFFECT = "unproven effect"
+    DIFFERENT_RECORD = "different record"
 
 
 EVIDENCE: dict[FindingKind, type[Evidence]] = {
@@ -51,6 +52,7 @@ EVIDENCE: dict[FindingKind, type[Evidence]] = {
     FindingKind.OVERSIZED_EFFECT: records.OversizedEffect,
     FindingKind.REMAINING_ERROR: records.RemainingError,
     FindingKind.UNPROVEN_EFFECT: records.UnprovenEffect,
+    FindingKind.DIFFERENT_RECORD: records.DifferentRecord,
 }
 
 

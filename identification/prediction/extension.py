@@ -1,0 +1,155 @@
+"""A model with one effect more, or with fewer, refitted from where it is.
+
+The fit begins at the parent, with the size that the score gives or the part of it that is best, and
+the states that then are best. Size zero is the parent, so that a child never explains less.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from identification.discovery.nominal_model import NominalModel
+from identification.effects.effect import Candidate
+from identification.errors import InputError
+from identification.model.coordinates import coordinates
+from identification.model.parameter import ParameterSet
+from identification.model.predictor import Plant
+from identification.prediction.fit import solve
+from identification.prediction.model import WindowModel, predict_fitted
+from identification.prediction.problem import (
+    Problem,
+    with_unknowns,
+)
+from identification.prediction.records import Record
+from identification.prediction.scores import WindowScore, inside
+from identification.prediction.unknowns import Prior
+
+SHARES = (1.0, 0.3, 0.05, 0.01)  # of the size that a score gives, to begin with
+FINE = 1e-3  # relative fall of the criterion at which the refit of an effect ends
+MOST_REFIT = 12  # its linearisations; an effect that takes more is not what is missing
+SHAPE_STD = 1.0  # prior of a shape's coordinate about the value that scored best
+SMALL = 1e-3  # of a probe: where the search for a size begins that must not be zero
+
+
+def with_effect(
+    parent: WindowModel, score: WindowScore, horizon: float, confirm: Sequence[Record]
+) -> WindowModel | None:
+    """The model with one effect more, refitted; None where it explains no more than its parent.
+
+    Args:
+        parent: the model without it.
+        score: of the effect on the parent: where its size begins.
+        horizon: [s].
+        confirm: records that no fit may see.
+
+    Raises:
+        InputError: its start cannot be simulated, whatever the size.
+    """
+    c, fit, plant = score.candidate, parent.fit, parent.plant
+    old = fit.problem.unknowns
+    sizes = _free(plant, c, [n for n in c.free if n not in old.local.names])
+    shapes = _free(plant, c, [n for n in _shapes(c) if n not in old.local.names])
+    shared, own = old.shared.plus(shapes), old.own
+    shared, own = (shared, own.plus(sizes)) if c.effect.own else (shared.plus(sizes), own)
+    free = (*shared.names, *own.names)
+    fixed = {n: v for n, v in (*c.fixed.items(), *c.whole.items()) if n not in free}
+    task = with_unknowns(fit.problem, shared, own, fixed)
+    begun = []
+    for share in SHARES:
+        q = _begin(task, parent, score, share)
+        try:  # the states have made up for what was missing
+            moves = task.settled(q, fit.moves)
+            cost = task.cost(q, moves)
+        except InputError:
+            continue
+        begun.append((cost, q, moves))
+        if cost < fit.cost or not c.free:
+            break
+    if not begun:
+        raise InputError(f"{c.effect.name}, {c.where} cannot be simulated at any size")
+    _, q, moves = min(begun, key=lambda b: b[0])
+    found = solve(task, q, moves, tolerance=FINE, most=MOST_REFIT)
+    if found.cost >= fit.cost:
+        return None
+    values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}
+    seen = predict_fitted(
+        plant, confirm, horizon, parent.scale, found, {**values, **fixed}, parent.unseen
+    )
+    return WindowModel((*parent.candidates, c), found, seen, parent.scale)
+
+
+def refitted(
+    model: WindowModel,
+    candidates: Sequence[Candidate],
+    nominal_model: NominalModel,
+    confirm: Sequence[Record],
+) -> WindowModel | None:
+    """A model with fewer effects, refitted from where it is; None where it cannot be simulated.
+
+    Args:
+        model: with more effects.
+        candidates: those that it keeps.
+        nominal_model: its other free parameters, and the horizon.
+        confirm: records that no fit may see.
+    """
+    fit, old = model.fit, model.fit.problem.unknowns
+    keep = {*nominal_model.names, *(n for c in candidates for n in (*c.free, *_shapes(c)))}
+    values = {n: v for c in candidates for n, v in (*c.fixed.items(), *c.whole.items())}
+    absent = {
+        n: 0.0 for c in model.candidates for n in c.sizes if n not in values and n not in keep
+    }
+    fixed = {**absent, **values}
+    task = with_unknowns(fit.problem, old.shared.only([*keep]), old.own.only([*keep]), fixed)
+    q = np.array([fit.q[fit.problem.names.index(n)] for n in task.names])
+    horizon = float(nominal_model.horizon or 0.0)
+    try:
+        found = solve(task, q, fit.moves)
+        seen = predict_fitted(
+            model.plant, confirm, horizon, model.scale, found, fixed, model.unseen
+        )
+    except InputError:
+        return None
+    return WindowModel(tuple(candidates), found, seen, model.scale)
+
+
+def _free(plant: Plant, c: Candidate, names: Sequence[str]) -> Prior:
+    """Parameters of an effect: of sizes nothing is known, shapes are near the grid's value."""
+    if not names:
+        return Prior()
+    values = {**plant.parameters.values(), **c.fixed}
+    start = [_away(plant.parameters, n, 0.0) if n in c.sizes else values[n] for n in names]
+    first = inside(plant.parameters, names, np.array(start))
+    space = coordinates(plant.parameters, names, first, linear=c.sizes)
+    weight = np.array([0.0 if n in c.sizes else 1 / SHAPE_STD for n in names])
+    return Prior(space, space.encode(first), weight)
+
+
+def _begin(task: Problem, parent: WindowModel, score: WindowScore, share: float) -> np.ndarray:
+    """Where a child's q begins: at its parent, with a share of the sizes that the score gives."""
+    c, unknowns = score.candidate, task.unknowns
+    q = np.array(task.prior.mean)
+    old = dict(zip(parent.fit.problem.names, parent.fit.q, strict=True))
+    sizes = score.size.reshape(-1, len(c.sizes)) * np.ones((len(unknowns.records), 1))
+    parameters = parent.plant.parameters
+    for k in range(len(unknowns.records)):
+        for name, value in zip(c.sizes, sizes[k], strict=True):
+            if name in unknowns.local.names:
+                at = unknowns.columns(k)[unknowns.local.names.index(name)]
+                q[at] = _away(parameters, name, share * value) / task.prior.space.scale[at]
+    for k, name in enumerate(task.names):
+        q[k] = old.get(name, q[k])
+    return np.asarray(task.prior.space.inside(q))
+
+
+def _shapes(c: Candidate) -> list[str]:
+    """The plant's parameters of an effect's free shapes."""
+    return [c.effect.parameter(s.name, c.where) for s in c.effect.shapes if s.free]
+
+
+def _away(parameters: ParameterSet, name: str, value: float) -> float:
+    """A size that is not zero."""
+    record = parameters[name]
+    least = SMALL * record.scale
+    return value if abs(value) > least else least * (1 if record.upper > 0 else -1)

@@ -1,0 +1,124 @@
+"""The fit of a model without effects, over windows of several records.
+
+Windows of a quarter, a half and the whole horizon; each fit begins where the last one ended. The
+errors count in units of their own rms, so that fits are repeated until it is settled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from identification.discovery.nominal_model import NominalModel
+from identification.errors import InputError
+from identification.logs.noise import noise_floor
+from identification.model.coordinates import coordinates
+from identification.prediction.fit import ROUGH, WindowFit, solve
+from identification.prediction.model import Progress, WindowModel, predict_fitted
+from identification.prediction.problem import (
+    MOST_STEPS,
+    no_moves,
+    problem,
+    with_scale,
+)
+from identification.prediction.records import Record
+from identification.prediction.unknowns import Prior
+
+GROWTH = (0.25, 0.5, 1.0)  # of the horizon
+FEWEST = 4  # samples of the shortest windows
+ROUGH_STEPS = MOST_STEPS // 3  # of the fits that only find where the last one begins
+SAME = 0.05  # relative change of the errors' scale below which it is settled
+MOST_SCALES = 6  # fits at most until it is
+
+
+def fit_nominal(
+    nominal_model: NominalModel, records: Sequence[Record], progress: Progress | None = None
+) -> WindowModel:
+    """Fit a model without effects, over windows that grow to its horizon.
+
+    The scale of the errors, against which priors count, is that of the fit itself: fits are
+    repeated until it is settled.
+
+    Args:
+        nominal_model: the model; its plant's own values are where the search begins, and the
+            priors' means.
+        records: to fit and to confirm.
+        progress: is told one line per linearisation.
+
+    Raises:
+        InputError: there is no horizon, windows do not fit a record, or a start lies on a bound.
+        DivergenceError: the start cannot be simulated.
+    """
+    plant, horizon = nominal_model.plant, nominal_model.horizon
+    if horizon is None:
+        raise InputError("windows need a horizon; give one in seconds")
+    shared, own = _priors(nominal_model)
+    fitted = [r for r in records if r.role == "fit"]
+    scale = _scale_of_change(fitted)
+    values: dict[str, float] = {}
+    found: WindowFit | None = None
+    for factor in GROWTH:
+        length = factor * horizon
+        if any(length < FEWEST * r.log.sampling_time for r in fitted) and factor < 1:
+            continue
+        task = problem(plant, fitted, shared, own, length, values, scale, ROUGH_STEPS)
+        q = task.prior.mean if found is None else found.q
+        found = solve(task, q, task.settled(q, no_moves(task)), tolerance=ROUGH, progress=progress)
+        _refuse_idle(found)
+        values, scale = found.shared, _rms(found)
+    if found is None:
+        raise InputError(f"windows of {horizon:g} s fit no record; choose another horizon")
+    task, q = problem(plant, fitted, shared, own, horizon, values, scale), found.q
+    moves = task.settled(q, no_moves(task))
+    for _ in range(MOST_SCALES):
+        task, old = with_scale(task, scale), scale
+        found = solve(task, q, moves, progress=progress)
+        q, moves = found.q, found.moves
+        scale = _rms(found)
+        if np.all(np.abs(np.log(scale / old)) < SAME):
+            break
+    confirm = [r for r in records if r.role == "confirm"]
+    return WindowModel((), found, predict_fitted(plant, confirm, horizon, old, found, {}), old)
+
+
+def _priors(nominal_model: NominalModel) -> tuple[Prior, Prior]:
+    """What is known of the free parameters of a nominal model: shared ones, and own ones."""
+    plant, names, own = nominal_model.plant, nominal_model.names, nominal_model.own
+    values = plant.parameters.values()
+    first = np.array([values[n] for n in names])
+    space = coordinates(plant.parameters, names, first)
+    prior = Prior(space, space.encode(first), 1 / np.asarray(nominal_model.std, float))
+    return prior.only([n for n in names if n not in own]), prior.only(own)
+
+
+def _refuse_idle(found: WindowFit) -> None:
+    """Refuse parameters that no output of any window feels.
+
+    Raises:
+        InputError: there is one.
+    """
+    felt = sum(np.sum(t.S**2, axis=(0, 1)) for t in found.tangents)
+    idle = [n for n, square in zip(found.problem.names, np.atleast_1d(felt), strict=True)
+            if square == 0]  # fmt: skip
+    if idle:
+        raise InputError(
+            f"{', '.join(idle)} ha{'s' if len(idle) == 1 else 've'} no effect on any window of the"
+            " records, where each window begins at a state of its own; leave it fixed, or check"
+            " where it goes in the model"
+        )
+
+
+def _rms(found: WindowFit) -> np.ndarray:
+    """Rms error of each output over the windows, no less than the sensors' noise, (ny,)."""
+    logs = [p.predictor.log for p in found.problem.parts]
+    noise = np.mean([noise_floor(log.outputs) ** 2 for log in logs], axis=0)
+    square = np.mean(np.concatenate([np.mean(e**2, axis=1) for e in found.errors]), axis=0)
+    return np.sqrt(np.maximum(square, noise) + 1e-300)
+
+
+def _scale_of_change(records: Sequence[Record]) -> np.ndarray:
+    """Rms change of each output between samples: a scale before any model is known, (ny,)."""
+    return np.sqrt(
+        np.mean([np.mean(np.diff(r.log.outputs, axis=0) ** 2, axis=0) for r in records], axis=0)
+    )

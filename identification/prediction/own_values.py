@@ -1,0 +1,50 @@
+"""Parameters that an unseen record has for itself: one half of it tells them for the other half."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from identification.model.predictor import Plant
+from identification.prediction.fit import ROUGH, solve
+from identification.prediction.problem import no_moves, problem
+from identification.prediction.records import Record
+from identification.prediction.unknowns import Prior
+
+
+@dataclass(frozen=True)
+class Own:
+    """Parameters of which each record has a value of its own.
+
+    Attributes:
+        prior: what is known of them.
+        start: where their search begins, shape (m,), in coordinates.
+    """
+
+    prior: Prior = field(default_factory=Prior)
+    start: np.ndarray = field(default_factory=lambda: np.zeros(0))
+
+
+def own_values(
+    plant: Plant, record: Record, horizon: float, scale: np.ndarray, values: Mapping[str, float],
+    own: Own,
+) -> tuple[dict[str, float], dict[str, float]]:  # fmt: skip
+    """A record's own values for its first half, told by the second one, and the reverse."""
+    if not own.prior.names:
+        return {}, {}
+    task = problem(plant, [record], Prior(), own.prior, horizon, values, scale)
+    (part,) = task.parts
+    is_late = part.cut.starts >= len(record.log) // 2
+    out = []
+    for half in (is_late, ~is_late):
+        mine = replace(task, parts=(part.rows(half if half.any() else ~half),))
+        found = solve(mine, own.start, no_moves(mine), tolerance=ROUGH)
+        out.append(found.of_record(0))
+    return out[0], out[1]
+
+
+def of_halves(a: Mapping[str, float], b: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+    """Mean and its std of values that two halves of a record tell."""
+    return {n: ((a[n] + b[n]) / 2, abs(a[n] - b[n]) / 2) for n in a}

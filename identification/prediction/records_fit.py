@@ -1,0 +1,193 @@
+"""Parameters fitted to the windows of one or several records, and judged on unseen ones.
+
+    D = σ H σ,   H = Σ_w S_wᵀ(I - P_w) S_w,   D v = λ v
+
+σ are the std of what was known before. Along q = σ v with λ < 1 the windows tell less than that:
+there the fitted values are those of the prior, whatever their std.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
+from identification.errors import InputError
+from identification.logs.log import Log
+from identification.prediction.fit import WindowFit, projected
+from identification.prediction.model import Progress, WindowModel
+from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.problem import at_values, no_moves
+from identification.prediction.record_errors import (
+    RecordError,
+    error_unit,
+    record_errors,
+    scaled_squares,
+)
+from identification.prediction.records import Record, as_records
+from identification.prediction.selection import is_proven
+from identification.prediction.starts import without_starts
+from identification.prediction.unseen import Prediction, Unseen, compare, predict
+from identification.windows.window_search import search_states
+
+NO_HORIZON = (
+    "records are judged by predictions over a horizon, and none is given; write horizon = 0.2 (in"
+    " seconds) into the robot's file"
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordsFit:
+    """Where a fit of records ended, and how it predicts those that it has not seen.
+
+    Attributes:
+        records: what was fitted and what confirms.
+        horizon: over which records are predicted [s].
+        model: the fitted model.
+        begun: errors of the values with which the fit began, on the records that confirm.
+        seconds: wall time [s].
+    """
+
+    records: tuple[Record, ...]
+    horizon: float
+    model: WindowModel
+    begun: Unseen
+    seconds: float
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The fitted values by name, in their units; a record's own ones are `name [record]`."""
+        return self.model.fit.values
+
+    @property
+    def shared(self) -> dict[str, float]:
+        """Those of them that hold for all records."""
+        return self.model.fit.shared
+
+    @property
+    def std(self) -> np.ndarray:
+        """Std of each value by blocks of windows, in its unit, shape (p,)."""
+        return self.model.fit.std
+
+    @property
+    def start(self) -> np.ndarray:
+        """The values with which the fit began, in their units, shape (p,)."""
+        prior = self.model.fit.problem.prior
+        return np.asarray(prior.space.decode(prior.mean))
+
+    @property
+    def at_bound(self) -> np.ndarray:
+        """Which values lie on a bound, shape (p,)."""
+        fit = self.model.fit
+        return fit.problem.prior.space.on_bound(fit.q)
+
+    @property
+    def own(self) -> Mapping[str, Mapping[str, tuple[float, float]]]:
+        """Of each record that confirms, the values that it has for itself, and their std."""
+        return self.model.unseen.own
+
+    @property
+    def rms(self) -> float:
+        """Rms error of the windows that were fitted, in `unit`."""
+        squares = scaled_squares(self.model.fit.errors, self.model.scale)
+        return self.scale * float(np.sqrt(np.mean(np.concatenate(squares))))
+
+    @property
+    def unseen_rms(self) -> tuple[float, float]:
+        """Rms errors on the records that confirm: begun and fitted, in `unit`."""
+        before, after = (
+            self.scale * float(np.sqrt(np.mean(np.concatenate(u.at_horizon))))
+            for u in (self.begun, self.model.unseen)
+        )
+        return before, after
+
+    @property
+    def noise_rms(self) -> float:
+        """Rms of the sensors' noise, in `unit`."""
+        return self.scale * float(np.sqrt(self.model.unseen.floor))
+
+    @property
+    def unit(self) -> str:
+        """Of all errors; empty where outputs have several units, whose scale is then the unit."""
+        return error_unit(self.records[0].log, self.model.scale)[1]
+
+    @cached_property
+    def errors(self) -> tuple[RecordError, ...]:
+        """By record, with the values with which the fit began and with the fitted ones."""
+        fit, scale = self.model.fit, self.model.scale
+        fitted = [scaled_squares(each, scale) for each in (_begun_errors(fit), fit.errors)]
+        unseen = self.begun, self.model.unseen
+        return record_errors(self.records, self.scale, unseen, fitted)
+
+    @property
+    def worse(self) -> Prediction | None:
+        """By how much it predicts unseen records worse than the values with which it began.
+
+        None where that is not proven.
+        """
+        found = compare(self.model.unseen, self.begun)
+        return found if is_proven(found, 1, DiscoveryOptions()) else None
+
+    @property
+    def blind(self) -> np.ndarray:
+        """Directions of q that the windows tell less of than was known before, shape (k, p)."""
+        weight = self.model.fit.problem.prior.weight
+        σ = 1 / np.where(weight > 0, weight, 1.0)
+        H = sum(np.einsum("wmp,wmq->pq", S, S) for S, _ in map(projected, self.model.fit.tangents))
+        λ, v = np.linalg.eigh(σ[:, None] * H * σ)
+        rows = (σ[:, None] * v[:, λ < 1]).T
+        return np.asarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))
+
+    @property
+    def scale(self) -> float:
+        """One unit of a scaled error, in `unit`."""
+        return error_unit(self.records[0].log, self.model.scale)[0]
+
+
+def fit_records(
+    nominal_model: NominalModel,
+    fit: Sequence[Log],
+    confirm: Sequence[Log] = (),
+    progress: Progress | None = None,
+    values: Mapping[str, Mapping[str, float]] | None = None,
+) -> RecordsFit:
+    """Fit the free parameters of a model to records, over windows of its horizon.
+
+    Args:
+        nominal_model: the model, its free parameters, what is known of them, and the horizon.
+        fit: logs to fit.
+        confirm: logs that the fit may not see; where there is none, the first half of each log is
+            fitted and the second half confirms.
+        progress: is told one line per linearisation.
+        values: by the name of a log, values of parameters that hold for it alone.
+
+    Raises:
+        InputError: there is no horizon, windows do not fit a log, or a parameter has no effect.
+        DivergenceError: the values with which the fit begins cannot be simulated.
+    """
+    base = without_starts(nominal_model)
+    if base.horizon is None:
+        raise InputError(NO_HORIZON)
+    clock = time.perf_counter()
+    records = as_records(fit, confirm, values)
+    model = fit_nominal(base, records, progress)
+    unseen = [r for r in records if r.role == "confirm"]
+    begun = predict(base.plant, unseen, base.horizon, model.scale, {}, model.unseen)
+    return RecordsFit(
+        records=records, horizon=base.horizon, model=model, begun=begun,
+        seconds=time.perf_counter() - clock,
+    )  # fmt: skip
+
+
+def _begun_errors(fit: WindowFit) -> list[np.ndarray]:
+    """y - ŷ of the fitted windows at the values with which the fit began, (W, L, ny) a record."""
+    problem, out = fit.problem, []
+    for k, (part, still) in enumerate(zip(problem.parts, no_moves(problem), strict=True)):
+        held = at_values(part, problem.prior.mean[problem.unknowns.columns(k)])
+        out.append(held.error(search_states(held, still).tangent.r))
+    return out

@@ -1,0 +1,68 @@
+"""What the final model of a discovery leaves, as findings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.stats import ttest_ind
+
+from identification.discovery.findings.evidence import (
+    DifferentRecord,
+    RemainingError,
+    UnprovenEffect,
+)
+from identification.discovery.findings.finding import Finding, FindingKind
+from identification.prediction.result import (
+    RefittedEffect,
+)
+from identification.prediction.state import RecordsState
+
+DIFFERENT = 2.0  # times worse than others a record is predicted that is told apart
+
+
+def find_remaining(state: RecordsState, rejected: Sequence[RefittedEffect]) -> tuple[Finding, ...]:
+    """What the final model leaves: errors above the sensors' noise, and doubtful effects."""
+    out = []
+    for r in rejected:
+        if r.prediction.is_everywhere and r.prediction.t > state.task.options.min_proof_t:
+            out.append(Finding(FindingKind.UNPROVEN_EFFECT, _unproven(r)))
+    square = float(np.mean(np.concatenate(state.model.unseen.at_horizon)))
+    ratio = (
+        float(np.sqrt(square / state.model.unseen.floor)) if state.model.unseen.floor else np.inf
+    )
+    if state.accepted and ratio > 1 + state.task.options.min_gap_share:
+        out.append(Finding(FindingKind.REMAINING_ERROR, RemainingError(ratio)))
+    out += [Finding(FindingKind.DIFFERENT_RECORD, e) for e in different_records(state)]
+    return tuple(out)
+
+
+def different_records(state: RecordsState) -> list[DifferentRecord]:
+    """Records that the final model predicts much worse than the others, by Welch's t-test.
+
+    The sample are logarithms of the windows' mean squares, and the records are paid for.
+    """
+    unseen = state.model.unseen
+    errors = {
+        r.log.name: np.log(squares + unseen.floor)
+        for r, squares in zip(state.task.confirm, unseen.at_horizon, strict=True)
+    }
+    fitted = [r for r in state.task.records if r.role == "fit"]
+    scale = state.model.scale
+    for r, e in zip(fitted, state.model.fit.errors, strict=True):
+        errors[f"{r.log.name} (fit)"] = np.log(
+            np.mean((e / scale) ** 2, axis=(1, 2)) + unseen.floor
+        )
+    out = []
+    for name, mine in errors.items():
+        rest = np.concatenate([e for n, e in errors.items() if n != name])
+        ratio = float(np.exp((mine.mean() - rest.mean()) / 2))
+        chance = float(ttest_ind(mine, rest, equal_var=False, alternative="greater").pvalue)
+        if ratio > DIFFERENT and chance * len(errors) < state.task.options.significance:
+            out.append(DifferentRecord(name, ratio, chance))
+    return out
+
+
+def _unproven(r: RefittedEffect) -> UnprovenEffect:
+    c = r.candidate
+    return UnprovenEffect(c.effect.name, c.where, max(r.prediction.falls), r.prediction.t)

@@ -1,0 +1,41 @@
+"""A fit of the windows of records as plain values, for JSON, with the keys of a fit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from identification.prediction.records_fit import RecordsFit
+from identification.quantities import finite_or_none
+from identification.report.records_fit_verdict import records_fit_verdict
+
+
+def records_fit_to_json(found: RecordsFit) -> dict[str, Any]:
+    """The numbers and the verdict of a fit; unknown and infinite numbers are null."""
+    rows = zip(found.values.items(), found.std, found.start, found.at_bound, strict=True)
+    units = {p.name: p.unit for p in found.model.plant.parameters}
+    return {
+        "parameters": {
+            name: {"value": value, "std": finite_or_none(std),
+                   "unit": units[name.partition(" [")[0]], "initial": float(first),
+                   "at_bound": bool(bound)}
+            for (name, value), std, first, bound in rows
+        },
+        "rms": found.rms,
+        "validation_rms": found.unseen_rms[1],
+        "noise_floor": found.noise_rms,
+        "seconds": found.seconds,
+        "horizon": found.horizon,
+        "records": [
+            {"file": e.name, "role": e.role, "before": e.before, "after": e.after,
+             **_own(found, e.name, e.role)}
+            for e in found.errors
+        ],
+        "verdict": records_fit_verdict(found),
+    }  # fmt: skip
+
+
+def _own(found: RecordsFit, record: str, role: str) -> dict[str, Any]:
+    """What a record that confirms has for itself; that of a fitted one is a parameter."""
+    own = found.own.get(record, {}) if role == "confirm" else {}
+    values = {n: {"value": v, "std": finite_or_none(std)} for n, (v, std) in own.items()}
+    return {"own": values} if values else {}

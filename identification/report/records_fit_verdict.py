@@ -1,0 +1,68 @@
+"""What a fit of the windows of records means, in sentences that say what to do next."""
+
+from __future__ import annotations
+
+from identification.estimation.identifiability import in_words
+from identification.prediction.records_fit import RecordsFit
+from identification.report.fit_verdict import WEAK
+
+
+def records_fit_verdict(found: RecordsFit) -> list[str]:
+    """Did it converge, what the windows cannot tell, what they leave, and whether it is worse."""
+    fit = found.model.fit
+    said = ["The search converged." if fit.converged else "The search ran out of iterations."]
+    if bound := [n for n, at in zip(found.values, found.at_bound, strict=True) if at]:
+        said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
+    said += _blind(found) + _weak(found)
+    windows = sum(len(part.cut.starts) for part in fit.problem.parts)
+    floor, rms = found.noise_rms, found.rms
+    ratio = f", {rms / floor:.2f} of the noise floor {floor:.3g}" if floor > 0 else ""
+    said.append(f"{windows} windows of {found.horizon:g} s leave {rms:.3g} rms{ratio}.")
+    return said + _worse(found)
+
+
+def _blind(found: RecordsFit) -> list[str]:
+    """Directions that the windows tell less of than was known before."""
+    names, out = found.model.fit.problem.names, []
+    for direction in found.blind:
+        moved = in_words(direction, names)
+        one = names[int(abs(direction).argmax())]
+        if "," in moved:
+            out.append(
+                f"The windows tell less along ({moved}) than was known before the fit; what does"
+                " not change along it is known. Fix one of these, or record a motion that tells"
+                " them apart."
+            )
+        else:
+            out.append(
+                f"The windows tell less of {one} than was known before the fit; fix it, or record a"
+                " motion that shows it."
+            )
+    return out
+
+
+def _weak(found: RecordsFit) -> list[str]:
+    """Positive parameters of which the windows leave too little."""
+    space = found.model.fit.problem.prior.space
+    rows = zip(found.values.items(), found.std, space.logarithmic, strict=True)
+    weak = [n for (n, v), std, positive in rows if positive and std > WEAK * abs(v)]
+    if not weak:
+        return []
+    return [
+        f"Too weakly for these windows: {', '.join(weak)}, their std exceeds half the value. Fix"
+        " one of them, or record a motion that tells more of them."
+    ]
+
+
+def _worse(found: RecordsFit) -> list[str]:
+    """Whether unseen records are predicted worse than with the values at the beginning."""
+    if found.worse is None:
+        return []
+    before, after = found.unseen_rms
+    percent = 100 * ((after / before) ** 2 - 1)
+    return [
+        "The fitted values predict what was not fitted worse than the values with which the fit"
+        f" began (mean square {percent:+.0f} %, t = {found.worse.t:.1f}): do not use them. Fit more"
+        " records, state in the robot's file what is known of the free parameters (known), or leave"
+        " some of them out."
+    ]

@@ -1,0 +1,74 @@
+"""Values of a robot that hold in one log alone: `[values]` in the TOML beside the log.
+
+A weight that is hung on an arm, or the voltage of its supply, is known of each log and differs from
+log to log. Such a value is no free parameter, and a log that does not give it has the model's own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import mujoco
+
+from identification.effects.effect import Effect
+from identification.effects.effect_parameters import effect_parameters
+from identification.effects.joint_plant import JointPlant
+from identification.errors import InputError
+from identification.logs.log import Log
+from identification.model.parameter import Parameter
+from identification.model.plant import start_place
+from identification.robot.file import RobotFile
+from identification.robot.parameters import free_parameter
+
+
+def value_parameters(
+    file: RobotFile, model: mujoco.MjModel, effects: Sequence[Effect], logs: Sequence[Log]
+) -> list[Parameter]:
+    """The parameters of the model that some log gives a value, beside those of effects.
+
+    Args:
+        file: the robot's.
+        model: its model.
+        effects: those that are compiled in.
+        logs: all logs of the robot.
+
+    Raises:
+        InputError: a name is neither a path into the model nor a number of an effect, or is an
+            entry of the start, or is free.
+    """
+    numbers = {p.name for e in effects for p in effect_parameters(e)}
+    free = {str(file.records.get(n, {}).get("path", n)): n for n in file.free}
+    found: dict[str, Parameter] = {}
+    for log in logs:
+        for name in log.values:
+            where = f"values of log {log.name!r}"
+            if name in file.free or name in free:
+                raise InputError(
+                    f"{where} give {name}, which {file.path} frees (as {free.get(name, name)!r});"
+                    " keep one of both"
+                )
+            if start_place(name, model) is not None:
+                raise InputError(
+                    f"{where} give {name}, an entry of the start, which each log begins by itself;"
+                    f" leave it out, or write it under [start] of {file.path}"
+                )
+            if name in numbers or name in found:
+                continue
+            try:
+                found[name] = free_parameter(file, name, model, effects, log)[0]
+            except InputError as error:
+                raise InputError(f"{where}: {error}") from error
+    return [*found.values()]
+
+
+def refuse_impossible(plant: JointPlant, logs: Sequence[Log]) -> None:
+    """Refuse values of logs outside the bounds of their parameters.
+
+    Raises:
+        InputError: there is one.
+    """
+    for log in logs:
+        try:
+            plant.parameters.with_values(log.values)
+        except InputError as error:
+            raise InputError(f"values of log {log.name!r}: {error}") from error

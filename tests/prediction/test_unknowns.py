@@ -1,0 +1,91 @@
+"""Parameters that records share, and those that each has for itself."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from records_cases import FREE, nominal_model, pendulum, record, records
+
+from identification.discovery.scoring.sensitivities import list_common
+from identification.effects.joint_plant import candidates
+from identification.model.coordinates import Coordinates
+from identification.prediction.extension import with_effect
+from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.records import as_records
+from identification.prediction.scores import window_scores
+from identification.prediction.unknowns import Prior, Unknowns
+
+SHIFTS = (0.02, -0.015, 0.01)  # of three records' inputs [s]
+
+
+def prior(*names):
+    p = len(names)
+    space = Coordinates(names, np.zeros(p, bool), *(np.full(p, x) for x in (-9.0, 9.0, 1.0)))
+    return Prior(space, np.arange(p, dtype=float), np.ones(p))
+
+
+@given(st.integers(0, 3), st.integers(0, 3), st.integers(1, 4))
+def test_every_entry_is_felt_by_all_records_or_by_one(p, m, count):
+    shared, own = (prior(*(f"{w}{k}" for k in range(n))) for w, n in (("a", p), ("b", m)))
+    unknowns = Unknowns(shared, own, tuple(f"r{k}" for k in range(count)))
+    felt = np.zeros(p + m * count, int)
+    for r in range(count):
+        columns = unknowns.columns(r)
+        felt[columns] += 1
+        names = [unknowns.all.names[k].partition(" ")[0] for k in columns]
+        assert tuple(names) == unknowns.local.names
+    assert np.all(felt[:p] == count)
+    assert np.all(felt[p:] == 1)
+
+
+def shifted(shift, seed):
+    log = record(seed, plant=pendulum(), values={"time_shift.tau@drive": shift})
+    return replace(log, name=f"record {seed}")
+
+
+def test_records_whose_clocks_differ_have_a_shift_each():
+    base = replace(nominal_model(), horizon=0.26)  # the inputs jump within windows
+    logs = [shifted(s, k) for k, s in enumerate(SHIFTS, 1)]
+    roles = as_records(logs[:2], logs[2:])
+    parent = fit_nominal(base, roles)
+    effect = next(e for e in candidates(pendulum(), FREE) if e.name == "time_shift")
+    assert effect.own
+    score = window_scores(parent.fit, list_common([effect]))[0]
+    assert score.size.shape == (2,)
+    child = with_effect(parent, score, base.horizon, roles[2:])
+    found = [child.fit.values[f"time_shift.tau@drive [record {k}]"] for k in (1, 2)]
+    np.testing.assert_allclose(found, SHIFTS[:2], atol=1e-3)
+    value, _ = child.unseen.own["record 3"]["time_shift.tau@drive"]
+    assert value == pytest.approx(SHIFTS[2], abs=1e-3)
+    assert np.mean(child.unseen.at_horizon[0]) < 0.1 * np.mean(parent.unseen.at_horizon[0])
+
+
+def with_offset(base):
+    """Std of the priors, that of an offset 0.1 N m."""
+    return np.append(base.std, 0.1 / pendulum().parameters["offset.f_0@hinge"].scale)
+
+
+def test_offsets_of_their_own_leave_what_is_shared_as_it_is():
+    offset = "offset.f_0@hinge"
+    logs = [
+        replace(record(k, values={offset: f}, plant=pendulum()), name=f"record {k}")
+        for k, f in enumerate((0.05, -0.05, 0.02), 1)
+    ]
+    base = nominal_model()
+    own = replace(base, names=(*base.names, offset), std=with_offset(base), own=(offset,))
+    found = fit_nominal(own, as_records(logs[:2], logs[2:])).fit
+    assert found.values[f"{offset} [record 1]"] == pytest.approx(0.05, abs=2e-3)
+    assert found.values[f"{offset} [record 2]"] == pytest.approx(-0.05, abs=2e-3)
+    assert found.shared["J"] == pytest.approx(2e-3, rel=0.03)
+    assert found.of_record(1)[offset] == found.values[f"{offset} [record 2]"]
+
+
+def test_one_record_with_a_parameter_of_its_own_is_a_record_with_a_shared_one():
+    offset, base, logs = "offset.f_0@hinge", nominal_model(), records(2)
+    more = replace(base, names=(*base.names, offset), std=with_offset(base))
+    roles = as_records(logs[:1], logs[1:])
+    shared, own = (fit_nominal(replace(more, own=o), roles) for o in ((), (offset,)))
+    np.testing.assert_allclose(own.fit.q, shared.fit.q, rtol=1e-9)
+    assert own.fit.cost == pytest.approx(shared.fit.cost, rel=1e-9)

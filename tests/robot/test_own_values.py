@@ -1,0 +1,133 @@
+"""Values that differ from log to log: those that are sought in each, and those that are given."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pendulum_robot import MASS, OFFSET, OWN, TOML, assert_true, make_folder, measured, written
+from records_cases import STEP
+from robot_cases import refused
+
+from identification import confirm, discover, fit, read_robot, write_robot
+from identification.report.records_json import records_to_json
+from identification.robot.file import read_robot_file
+from identification.robot.fit_json import robot_fit_to_json
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return make_folder(tmp_path)
+
+
+def test_records_with_masses_of_their_own_give_one_friction(folder):
+    masses = 0.5, 1.0, 0.7
+    logs = [
+        replace(measured(k, {MASS: m}), values={MASS: m}) for k, m in enumerate(masses, start=1)
+    ]
+    *fitted, other = written(folder, *logs)
+    assert f'"{MASS}" = 1.0' in fitted[1].with_suffix(".toml").read_text()
+    robot = read_robot(folder / "robot.toml", fitted, confirm=[other])
+    found = fit(robot)
+    assert_true(found, "d", 0.02)
+    assert_true(found, "J", 2e-3)
+    (there,) = confirm(robot, found)
+    assert there.after < 6e-4
+    silent = [replace(log, values={}) for log in (robot.log, *robot.others)]
+    wrong = fit(read_robot(folder / "robot.toml", silent, trust=["wiring"]))
+    assert abs(wrong.values["J"] - 2e-3) > 4 * abs(found.values["J"] - 2e-3)
+
+
+def test_a_free_run_has_the_values_of_its_log(folder):
+    (folder / "robot.toml").write_text(TOML.replace("horizon = 0.2\n", ""))
+    log = replace(measured(1, {MASS: 0.8}), values={MASS: 0.8})
+    robot = read_robot(folder / "robot.toml", *written(folder, log))
+    assert robot.plant.parameters[MASS].value == 0.5
+    assert robot.nominal_model.plant.parameters[MASS].value == 0.8
+    assert_true(fit(robot), "d", 0.02)
+
+
+def test_records_with_offsets_of_their_own_recover_each(folder):
+    truth = 0.05, -0.03, 0.02
+    paths = written(folder, *(measured(k, {OFFSET: f}) for k, f in enumerate(truth, start=1)))
+    robot = read_robot(folder / "own.toml", paths[:2], confirm=paths[2:])
+    assert robot.nominal_model.own == (OFFSET,)
+    found = fit(robot)
+    assert set(found.shared) == {"J", "d"}
+    for k in range(2):
+        assert_true(found, f"{OFFSET} [log_{k}]", truth[k])
+    assert_true(found, "d", 0.02)
+    said = json.loads(json.dumps(robot_fit_to_json(found, confirm(robot, found))))
+    assert said["parameters"][f"{OFFSET} [log_0]"]["unit"] == "N m"
+    assert said["records"][2]["own"][OFFSET]["value"] == pytest.approx(truth[2], rel=0.05)
+    path = write_robot(robot, found.shared, folder / "again.toml", folder)
+    assert read_robot_file(path).own == (OFFSET,)
+
+
+def test_a_discovery_has_own_parameters_and_values_of_logs_too(folder):
+    own, masses, mu = (0.05, -0.03, 0.02), (0.5, 0.9, 0.7), "transmitted_load_friction.mu@hinge"
+    logs = [
+        replace(measured(k, {OFFSET: f, MASS: m, mu: 0.15}), values={MASS: m})
+        for k, (f, m) in enumerate(zip(own, masses, strict=True), start=1)
+    ]
+    only = '[effects]\nonly = ["transmitted_load_friction", "quadratic_friction"]\n'
+    (folder / "own.toml").write_text(OWN + only)
+    *fitted, other = written(folder, *logs)
+    robot = read_robot(folder / "own.toml", fitted, confirm=[other])
+    found = discover(robot)
+    (named,) = found.named
+    assert named.effect.parameters["mu"][0] == pytest.approx(0.15, rel=0.05)
+    assert records_to_json(found)["final"][f"{OFFSET} [log_1]"]["value"] == pytest.approx(
+        -0.03, rel=0.05
+    )
+    (there,) = confirm(robot, found)
+    assert there.after < 0.2 * there.before
+
+
+def test_logs_of_one_name_are_told_apart(folder):
+    truth = 0.05, -0.03
+    logs = [replace(measured(k, {OFFSET: f}), name="log") for k, f in enumerate(truth, start=1)]
+    found = fit(read_robot(folder / "own.toml", logs))
+    for name, f in zip(("log [estimation]", "log (2) [estimation]"), truth, strict=True):
+        assert found.values[f"{OFFSET} [{name}]"] == pytest.approx(f, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"body/arn.mass": 1.0}, "did you mean 'arm'?"),
+        ({"joint/hinge.damping": 1.0}, "frees (as 'd'); keep one"),
+        ({"J": 1.0}, "frees (as 'J'); keep one"),
+        ({"qpos[0]": 1.0}, "an entry of the start"),
+        ({MASS: -1.0}, "outside its range"),
+        ({"offset.f_0@hing": 1.0}, "known: hinge"),
+        ({"voltage": 1.0}, "known: "),
+    ],
+)
+def test_values_of_a_log_are_checked(folder, capsys, values, said):
+    paths = written(folder, measured(1), replace(measured(2), values=values))
+    told = refused(capsys, "fit", folder / "robot.toml", *paths)
+    assert "values of log 'log_1'" in told
+    assert said in told
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ((f'own = ["{OFFSET}"]', 'own = ["offset"]'), "known: J, d, offset.f_0@hinge"),
+        ((f'own = ["{OFFSET}"]', "own = 3"), "own in"),
+        (("horizon = 0.2\n", ""), "write horizon = 0.2"),
+    ],
+)
+def test_own_parameters_are_checked(folder, refusal, change, said):
+    (folder / "own.toml").write_text(OWN.replace(*change))
+    assert said in refusal(read_robot_file, folder / "own.toml")
+
+
+def test_a_value_of_a_size_is_a_value_like_any_other(folder):
+    logs = [replace(measured(k, {OFFSET: f}), values={OFFSET: f})
+            for k, f in ((1, 0.05), (2, -0.03))]  # fmt: skip
+    robot = read_robot(folder / "robot.toml", written(folder, *logs))
+    assert robot.values_of(robot.log) == {OFFSET: 0.05}
+    assert np.isclose(robot.log.sampling_time, STEP)
+    assert_true(fit(robot), "d", 0.02)

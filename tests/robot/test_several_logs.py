@@ -1,0 +1,83 @@
+"""A fit of several logs is one fit: finer, confirmed on others, and honest where it fails."""
+
+import pytest
+from pendulum_robot import TOML, assert_true, make_folder, measured, written
+from robot_cases import refused, run
+
+from identification import confirm, fit, read_robot
+from identification.robot.file import read_robot_file
+from identification.robot.fit_json import robot_fit_to_json
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return make_folder(tmp_path)
+
+
+def test_the_command_fits_several_logs_and_confirms_them_on_another(folder, capsys):
+    *logs, other = written(folder, *map(measured, (1, 2, 3)))
+    out = folder / "out"
+    said = run(capsys, "fit", folder / "robot.toml", *logs, "--confirm", other, "--out", out)
+    assert [(r["file"], r["role"]) for r in said["records"]] == [
+        ("log_0", "fit"), ("log_1", "fit"), ("log_2", "confirm"),
+    ]  # fmt: skip
+    assert all(r["after"] < 0.5 * r["before"] for r in said["records"])
+    (there,) = said["confirm"]
+    assert (there["before"], there["after"]) == tuple(said["records"][2][k] for k in
+                                                      ("before", "after"))  # fmt: skip
+    assert said["validation_rms"] == pytest.approx(there["after"])
+    assert sum("On log_2: " in sentence for sentence in said["verdict"]) == 1
+    for name, true in (("J", 2e-3), ("d", 0.02)):
+        p = said["parameters"][name]
+        assert abs(p["value"] - true) < 4 * p["std"]
+    again = read_robot_file(out / "robot.toml").records
+    assert again["d"]["value"] == said["parameters"]["d"]["value"]
+
+
+def test_more_logs_make_estimates_finer(folder):
+    logs = written(folder, *map(measured, range(1, 4)))
+    one, several = (fit(read_robot(folder / "robot.toml", paths)) for paths in (logs[0], logs))
+    assert several.std["d"] < one.std["d"]
+    assert_true(several, "d", 0.02)
+    assert [c.log for c in several.unseen] == [f"log_{k} [validation]" for k in range(3)]
+    assert several.converged
+    assert not any(several.at_bound.values())
+    assert several.start == {"J": pytest.approx(1.5e-3), "d": pytest.approx(0.03)}
+
+
+def test_other_records_are_compared_as_those_that_were_given_with_the_robot(folder):
+    *logs, other = written(folder, *map(measured, (1, 2, 3)))
+    robot = read_robot(folder / "robot.toml", logs, confirm=[other])
+    found = fit(robot)
+    (given,) = confirm(robot, found)
+    (again,) = confirm(read_robot(folder / "robot.toml", logs, confirm=[other]), found)
+    assert again.before == pytest.approx(given.before)
+    assert again.after == pytest.approx(given.after, rel=1e-3)
+
+
+def test_several_logs_need_a_horizon(folder, capsys):
+    (folder / "robot.toml").write_text(TOML.replace("horizon = 0.2\n", ""))
+    logs = written(folder, measured(1), measured(2))
+    assert "write horizon = 0.2" in refused(capsys, "fit", folder / "robot.toml", *logs)
+
+
+def test_what_cannot_be_known_apart_is_said(folder):
+    text = TOML.replace('"d"]', '"d", "body/arm.inertia[1]"]')
+    (folder / "robot.toml").write_text(text)
+    found = fit(read_robot(folder / "robot.toml", *written(folder, measured(1))))
+    (said,) = [s for s in robot_fit_to_json(found)["verdict"] if "tell less" in s]
+    assert "J +" in said or "J -" in said
+    assert "body/arm.inertia[1]" in said
+    assert "d " not in said[said.index("(") : said.index(")")]
+    total = found.values["J"] + found.values["body/arm.inertia[1]"]
+    assert total == pytest.approx(2e-3 + 1e-3, rel=0.02)
+
+
+def test_a_fit_that_predicts_unseen_records_worse_says_so(folder):
+    begun = {"J": 1.5e-3, "d": 0.03}
+    logs = written(folder, measured(1), measured(2, begun))
+    robot = read_robot(folder / "robot.toml", logs[0], confirm=logs[1:])
+    found = fit(robot)
+    assert any("worse than" in s for s in robot_fit_to_json(found)["verdict"])
+    good = fit(read_robot(folder / "robot.toml", logs[0]))
+    assert not any("worse than" in s for s in robot_fit_to_json(good)["verdict"])
