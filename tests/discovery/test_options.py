@@ -32,7 +32,7 @@ def test_the_page_has_every_option_with_its_value_unit_reason_and_source():
 
 @pytest.mark.parametrize("name", [field.name for field in FIELDS])
 def test_every_option_is_read_by_some_code(name):
-    folders = ("identification/discovery", "identification/kalman")
+    folders = ("identification/discovery", "identification/kalman", "identification/prediction")
     trees = [ast.parse(p.read_text(encoding="utf-8"))
              for folder in folders for p in (ROOT / folder).rglob("*.py")]  # fmt: skip
     read = [n for tree in trees for n in ast.walk(tree)
