@@ -89,8 +89,10 @@ def list_contenders(
 ) -> list[WindowScore]:
     """The few best scores that are beyond chance, the best shape of each effect at each place.
 
-    The best curve of the data is among them only where its criterion promises to be better than
-    that of every law: a curve can imitate any law of what it depends on.
+    All that explain about as much as the best one are refitted, up to twice the usual number: a
+    score is linear, and what is right may be one of them. The best curve of the data is among them
+    only where its criterion promises to be better than that of every law: a curve can imitate any
+    law of what it depends on.
 
     Args:
         scores: of all candidates, the best first.
@@ -122,7 +124,8 @@ def _best_few(
         if s.fall > max(least, own):
             out.append(s)
             best.setdefault(s.candidate.effect.name, s.fall)
-    return out[: options.max_refits]
+    near = sum(s.fall > options.equal_share * out[0].fall for s in out) if out else 0
+    return out[: max(options.max_refits, min(near, 2 * options.max_refits))]
 
 
 def is_significant(s: WindowScore, count: int, options: DiscoveryOptions) -> bool:
