@@ -111,6 +111,12 @@ class DiscoveryOptions(KalmanOptions):
         " taken.",
         "Kass and Raftery 1995: not worth more than a bare mention",
     )  # fmt: skip
+    strong_bic: float = option(
+        10.0, "of BIC",
+        "Over a horizon: a law with fewer numbers is taken instead of one whose criterion is better"
+        " by less, where unseen records cannot tell them apart.",
+        "Kass and Raftery 1995: very strong evidence",
+    )  # fmt: skip
 
     # The proof on unseen samples.
     proof_blocks: int = option(

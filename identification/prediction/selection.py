@@ -2,12 +2,13 @@
 
     contenders    beyond chance by blocks, of a plausible size, and near the best score
     proven        predicts unseen windows better: beyond chance, over every length, and by enough
-    chosen        of the proven ones the one with the best criterion on the fitted windows
+    chosen        of the proven ones the one with the best criterion on the fitted windows, or one
+                  with fewer numbers that unseen records cannot tell from it
 
     criterion = -W n_y ln V - k ln W        W windows, k free parameters: BIC of W n_y errors
 
 Errors within a window go along with each other, so that a window counts as one sample of each
-output. Unseen records prove, but do not choose.
+output. Unseen records prove; they choose only between a law and one with fewer numbers.
 """
 
 from __future__ import annotations
@@ -21,6 +22,13 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import list_common, list_single
 from identification.effects.effect import Candidate, Effect
 from identification.errors import InputError
+from identification.prediction.contenders import (
+    count_numbers,
+    is_plausible,
+    is_significant,
+    list_contenders,
+    list_simpler,
+)
 from identification.prediction.extension import with_effect
 from identification.prediction.model import WindowModel
 from identification.prediction.records import Record
@@ -84,62 +92,6 @@ def _without(candidates: Sequence[Candidate], has: set[tuple[str, str]]) -> list
     return [c for c in candidates if (c.effect.name, c.where) not in has]
 
 
-def list_contenders(
-    scores: Sequence[WindowScore], options: DiscoveryOptions, errors: int
-) -> list[WindowScore]:
-    """The few best scores that are beyond chance, the best shape of each effect at each place.
-
-    All that explain about as much as the best one are refitted, up to twice the usual number: a
-    score is linear, and what is right may be one of them. The best curve of the data is among them
-    only where its criterion promises to be better than that of every law: a curve can imitate any
-    law of what it depends on.
-
-    Args:
-        scores: of all candidates, the best first.
-        options: what is beyond chance, and how many are refitted.
-        errors: number of errors that count as a sample of the criterion.
-    """
-    laws = _best_few([s for s in scores if not s.candidate.effect.is_curve], scores, options)
-    curves = _best_few([s for s in scores if s.candidate.effect.is_curve], scores, options)[:1]
-
-    def promised(s: WindowScore) -> float:
-        return -errors * np.log(max(1e-12, 1 - s.fall)) - len(s.size) * np.log(max(2, errors))
-
-    best = max([promised(s) for s in laws], default=0.0)
-    return [*laws, *(s for s in curves if promised(s) > best)]
-
-
-def _best_few(
-    listed: Sequence[WindowScore], scores: Sequence[WindowScore], options: DiscoveryOptions
-) -> list[WindowScore]:
-    each: dict[tuple[str, str], WindowScore] = {}
-    for s in listed:
-        if is_significant(s, len(scores), options) and is_plausible(s, options):
-            each.setdefault((s.candidate.effect.name, s.candidate.where), s)
-    out: list[WindowScore] = []
-    best: dict[str, float] = {}
-    for s in each.values():
-        least = options.refit_share * max([t.fall for t in out], default=0.0)
-        own = options.other_place_share * best.get(s.candidate.effect.name, 0.0)
-        if s.fall > max(least, own):
-            out.append(s)
-            best.setdefault(s.candidate.effect.name, s.fall)
-    near = sum(s.fall > options.equal_share * out[0].fall for s in out) if out else 0
-    return out[: max(options.max_refits, min(near, 2 * options.max_refits))]
-
-
-def is_significant(s: WindowScore, count: int, options: DiscoveryOptions) -> bool:
-    """Whether a score is beyond chance among `count` of them, and large enough to matter."""
-    return s.p_value * count < options.significance and s.fall > options.min_fall
-
-
-def is_plausible(s: WindowScore, options: DiscoveryOptions) -> bool:
-    """Whether sizes have signs and magnitudes that physics admits."""
-    sizes = s.candidate.effect.sizes
-    pairs = zip(s.size, sizes * (len(s.size) // len(sizes)), strict=True)
-    return all(z.sign * v >= 0 and abs(v) <= options.size_factor * z.largest for v, z in pairs)
-
-
 def refit_contenders(
     model: WindowModel,
     scores: Sequence[WindowScore],
@@ -150,34 +102,69 @@ def refit_contenders(
 ) -> tuple[Contender, ...]:
     """Refit the contenders of a round, the best first: proven ones before others, by criterion.
 
-    Of two that are no more than a bare mention apart the one comes first that is the same in all
-    records.
+    Laws with fewer numbers that act as the best one does are refitted too. A law with fewer numbers
+    comes before the best one where unseen records cannot tell them apart and the criterion does not
+    speak very strongly; so does, of two that are no more than a bare mention apart, the one that is
+    the same in all records.
     """
     chosen = list_contenders(scores, options, _windows(model) * len(model.scale))
-    out = []
-    for s in chosen:
-        label = f"{s.candidate.effect.name}, {s.candidate.where}"
-        try:
-            new = with_effect(model, s, horizon, confirm)
-        except InputError as error:
-            progress(f"{label}: left out, {error}")
-            continue
-        if new is None:
-            progress(f"{label}: explains no more than without it")
-            continue
-        found = compare(model.unseen, new.unseen)
-        gain = criterion(new) - criterion(model)
-        proven = gain > 0 and has_size(new, options) and is_proven(found, len(chosen), options)
-        out.append(Contender(model=new, prediction=found, criterion=gain, is_proven=proven))
-        at = model.unseen.lengths.index(1.0)
-        progress(f"{label}: unseen mean square {-100 * found.falls[at]:+.0f} %, t {found.t:.1f}")
-    best = max([c.criterion for c in out if c.is_proven], default=0.0)
+    refits = len(chosen)
 
-    def rank(c: Contender) -> tuple[bool, bool, float]:
-        near = c.criterion > best - options.bare_bic and not c.candidate.effect.own
-        return not c.is_proven, not near, -c.criterion
+    def refit(s: WindowScore) -> list[Contender]:
+        c = _refit(model, s, horizon, confirm, options, refits, progress)
+        return [] if c is None else [c]
 
-    return tuple(sorted(out, key=rank))
+    out = [c for s in chosen for c in refit(s)]
+    proven = [c for c in out if c.is_proven]
+    if proven:
+        best = max(proven, key=lambda c: c.criterion)
+        tried = {(c.candidate.effect.name, c.candidate.where) for c in out}
+        for s in list_simpler(best.candidate, scores, options):
+            if (s.candidate.effect.name, s.candidate.where) not in tried:
+                out += refit(s)
+    return _ranked(out, refits, options)
+
+
+def _refit(
+    model: WindowModel, s: WindowScore, horizon: float, confirm: Sequence[Record],
+    options: DiscoveryOptions, refits: int, progress: Progress,
+) -> Contender | None:  # fmt: skip
+    label = f"{s.candidate.effect.name}, {s.candidate.where}"
+    try:
+        new = with_effect(model, s, horizon, confirm)
+    except InputError as error:
+        progress(f"{label}: left out, {error}")
+        return None
+    if new is None:
+        progress(f"{label}: explains no more than without it")
+        return None
+    found = compare(model.unseen, new.unseen)
+    gain = criterion(new) - criterion(model)
+    proven = gain > 0 and has_size(new, options) and is_proven(found, refits, options)
+    at = model.unseen.lengths.index(1.0)
+    progress(f"{label}: unseen mean square {-100 * found.falls[at]:+.0f} %, t {found.t:.1f}")
+    return Contender(model=new, prediction=found, criterion=gain, is_proven=proven)
+
+
+def _ranked(
+    found: Sequence[Contender], refits: int, options: DiscoveryOptions
+) -> tuple[Contender, ...]:
+    """Contenders in the order of `refit_contenders`."""
+    out = sorted(found, key=lambda c: (not c.is_proven, -c.criterion))
+    for c in out[1:]:
+        best = out[0]
+        if not c.is_proven:
+            continue
+        apart = best.criterion - c.criterion
+        is_shared = best.candidate.effect.own and not c.candidate.effect.own
+        fewer = count_numbers(c.candidate) < count_numbers(best.candidate)
+        told = is_proven(compare(c.model.unseen, best.model.unseen), refits, options)
+        if (is_shared and apart < options.bare_bic) or (
+            fewer and apart < options.strong_bic and not told
+        ):
+            out.remove(c)
+            out.insert(0, c)
+    return tuple(out)
 
 
 def is_proven(found: Prediction, refits: int, options: DiscoveryOptions) -> bool:

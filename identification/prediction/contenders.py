@@ -1,0 +1,95 @@
+"""Which candidates are refitted: the few best scores that are beyond chance, and simpler ones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from identification.discovery.options import DiscoveryOptions
+from identification.effects.effect import Candidate
+from identification.prediction.scores import WindowScore
+
+SIMPLER = 2  # laws with fewer numbers that are refitted beside a winner
+
+
+def list_contenders(
+    scores: Sequence[WindowScore], options: DiscoveryOptions, errors: int
+) -> list[WindowScore]:
+    """The few best scores that are beyond chance, the best shape of each effect at each place.
+
+    All that explain about as much as the best one are refitted, up to twice the usual number: a
+    score is linear, and what is right may be one of them. The best curve of the data is among them
+    only where its criterion promises to be better than that of every law: a curve can imitate any
+    law of what it depends on.
+
+    Args:
+        scores: of all candidates, the best first.
+        options: what is beyond chance, and how many are refitted.
+        errors: number of errors that count as a sample of the criterion.
+    """
+    laws = _best_few([s for s in scores if not s.candidate.effect.is_curve], scores, options)
+    curves = _best_few([s for s in scores if s.candidate.effect.is_curve], scores, options)[:1]
+
+    def promised(s: WindowScore) -> float:
+        return -errors * np.log(max(1e-12, 1 - s.fall)) - len(s.size) * np.log(max(2, errors))
+
+    best = max([promised(s) for s in laws], default=0.0)
+    return [*laws, *(s for s in curves if promised(s) > best)]
+
+
+def _best_few(
+    listed: Sequence[WindowScore], scores: Sequence[WindowScore], options: DiscoveryOptions
+) -> list[WindowScore]:
+    each: dict[tuple[str, str], WindowScore] = {}
+    for s in listed:
+        if is_significant(s, len(scores), options) and is_plausible(s, options):
+            each.setdefault((s.candidate.effect.name, s.candidate.where), s)
+    out: list[WindowScore] = []
+    best: dict[str, float] = {}
+    for s in each.values():
+        least = options.refit_share * max([t.fall for t in out], default=0.0)
+        own = options.other_place_share * best.get(s.candidate.effect.name, 0.0)
+        if s.fall > max(least, own):
+            out.append(s)
+            best.setdefault(s.candidate.effect.name, s.fall)
+    near = sum(s.fall > options.equal_share * out[0].fall for s in out) if out else 0
+    return out[: max(options.max_refits, min(near, 2 * options.max_refits))]
+
+
+def is_significant(s: WindowScore, count: int, options: DiscoveryOptions) -> bool:
+    """Whether a score is beyond chance among `count` of them, and large enough to matter."""
+    return s.p_value * count < options.significance and s.fall > options.min_fall
+
+
+def is_plausible(s: WindowScore, options: DiscoveryOptions) -> bool:
+    """Whether sizes have signs and magnitudes that physics admits."""
+    sizes = s.candidate.effect.sizes
+    pairs = zip(s.size, sizes * (len(s.size) // len(sizes)), strict=True)
+    return all(z.sign * v >= 0 and abs(v) <= options.size_factor * z.largest for v, z in pairs)
+
+
+def list_simpler(
+    winner: Candidate, scores: Sequence[WindowScore], options: DiscoveryOptions
+) -> list[WindowScore]:
+    """The best scores of laws with fewer numbers that act as the winner does, at its place.
+
+    Args:
+        winner: which promised most.
+        scores: of all candidates, the best first.
+        options: what is beyond chance.
+    """
+    each: dict[str, WindowScore] = {}
+    for s in scores:
+        c = s.candidate
+        is_alike = c.where == winner.where and {*c.effect.hooks} == {*winner.effect.hooks}
+        if not (is_alike and count_numbers(c) < count_numbers(winner)):
+            continue
+        if is_significant(s, len(scores), options) and is_plausible(s, options):
+            each.setdefault(c.effect.name, s)
+    return [*each.values()][:SIMPLER]
+
+
+def count_numbers(c: Candidate) -> int:
+    """How many numbers of an effect are estimated."""
+    return len(c.free) + sum(shape.free for shape in c.effect.shapes)
