@@ -151,7 +151,7 @@ def _ranked(
 ) -> tuple[Contender, ...]:
     """Contenders in the order of `refit_contenders`."""
     out = sorted(found, key=lambda c: (not c.is_proven, -c.criterion))
-    for c in out[1:]:
+    for c in tuple(out[1:]):
         best = out[0]
         if not c.is_proven:
             continue
@@ -162,8 +162,7 @@ def _ranked(
         if (is_shared and apart < options.bare_bic) or (
             fewer and apart < options.strong_bic and not told
         ):
-            out.remove(c)
-            out.insert(0, c)
+            out = [c, *(o for o in out if o is not c)]
     return tuple(out)
 
 
