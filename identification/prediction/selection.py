@@ -33,7 +33,7 @@ from identification.prediction.extension import with_effect
 from identification.prediction.model import WindowModel
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore, window_scores
-from identification.prediction.several_places import list_several
+from identification.prediction.several_places import several_scores
 from identification.prediction.unseen import Prediction, compare
 
 Progress = Callable[[str], None]
@@ -84,7 +84,7 @@ def score_all(
         s for s in found
         if is_significant(s, len(found), options) and is_plausible(s, options)
     ]  # fmt: skip
-    several = window_scores(model.fit, list_several(beyond))
+    several = several_scores(model.fit, beyond, options)
     return tuple(sorted((*found, *several), key=lambda s: -s.fall))
 
 

@@ -1,7 +1,8 @@
 """An effect at several of its places at once, each with a size of its own.
 
 Where one size for all places and one place alone both fall short (friction under load at two
-joints of six), the places whose own scores are beyond chance are taken together.
+joints of six), all places are scored together. Places whose own size is of a sign that physics
+does not admit, or not beyond its std, are then left out, and the others are scored again.
 """
 
 from __future__ import annotations
@@ -9,8 +10,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect
-from identification.prediction.scores import WindowScore
+from identification.prediction.fit import WindowFit
+from identification.prediction.scores import WindowScore, window_scores
+
+MOST_EFFECTS = 4  # that are tried at several places; each takes a simulation for each of them
+ROUNDS = 3  # of leaving places out
 
 
 def at_several(effect: Effect, places: Sequence[str]) -> Effect:
@@ -28,25 +34,54 @@ def at_several(effect: Effect, places: Sequence[str]) -> Effect:
     return replace(effect, sizes=sizes, places={" and ".join(places): ""})
 
 
-def list_several(significant: Sequence[WindowScore]) -> list[Candidate]:
-    """Candidates at several places: of each effect the places where it is beyond chance.
+def several_scores(
+    fit: WindowFit, significant: Sequence[WindowScore], options: DiscoveryOptions
+) -> list[WindowScore]:
+    """Scores of the best effects at several places.
 
     Args:
+        fit: the model without them.
         significant: scores that are beyond chance and plausible, the best first.
+        options: what a size must be to count.
     """
-    best: dict[str, list[WindowScore]] = {}
+    first: dict[str, Candidate] = {}
     for s in significant:
-        c = s.candidate
-        own = best.setdefault(c.effect.name, [])
-        if c.effect.places[c.where] and c.where not in [o.candidate.where for o in own]:
-            own.append(s)
+        if not s.candidate.effect.own and len(_single(s.candidate.effect)) > 1:
+            first.setdefault(s.candidate.effect.name, s.candidate)
     out = []
-    for scores in best.values():
-        if len(scores) < 2:
-            continue
-        first = scores[0].candidate
-        known = list(first.effect.places)
-        places = sorted((s.candidate.where for s in scores), key=known.index)
-        effect = at_several(first.effect, places)
-        out.append(Candidate(effect, next(iter(effect.places)), first.shape, first.probe))
+    for c in [*first.values()][:MOST_EFFECTS]:
+        places = _single(c.effect)
+        for _ in range(ROUNDS):
+            found = window_scores(fit, [_at(c, places)])
+            keep = felt_places(found[0], places, c.effect, options) if found else []
+            if found and keep == places:
+                out += found
+            if keep == places or len(keep) < 2:
+                break
+            places = keep
     return out
+
+
+def felt_places(
+    score: WindowScore, places: Sequence[str], effect: Effect, options: DiscoveryOptions
+) -> list[str]:
+    """The places at which all sizes have a sign that physics admits and are beyond their std."""
+    m = len(effect.sizes)
+    out = []
+    for k, where in enumerate(places):
+        own = zip(
+            score.size[m * k : m * (k + 1)], score.std[m * k : m * (k + 1)], effect.sizes,
+            strict=True,
+        )  # fmt: skip
+        if all(z.sign * v >= 0 and abs(v) > options.min_proof_t * std for v, std, z in own):
+            out.append(where)
+    return out
+
+
+def _single(effect: Effect) -> list[str]:
+    return [where for where, suffix in effect.places.items() if suffix]
+
+
+def _at(c: Candidate, places: Sequence[str]) -> Candidate:
+    effect = at_several(c.effect, places)
+    return Candidate(effect, next(iter(effect.places)), c.shape, c.probe)

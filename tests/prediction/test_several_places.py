@@ -3,19 +3,13 @@
 import numpy as np
 import pytest
 
+from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect, Size
 from identification.prediction.scores import WindowScore
-from identification.prediction.several_places import at_several, list_several
+from identification.prediction.several_places import at_several, felt_places
 
 PLACES = {"all joints": "", "joint a": "@a", "joint b": "@b", "joint c": "@c"}
 EFFECT = Effect("friction", "μ |f|", (Size("mu", "", 0.2, 0.002, 1),), places=PLACES)
-
-
-def score(where, fall):
-    return WindowScore(
-        candidate=Candidate(EFFECT, where, {}), size=np.array([0.05]), std=np.array([0.01]),
-        fall=fall, p_value=1e-6,
-    )  # fmt: skip
 
 
 def test_its_parameters_are_those_of_the_single_places():
@@ -27,11 +21,23 @@ def test_its_parameters_are_those_of_the_single_places():
     assert [*Candidate(several, where, {}).sizes] == singles
 
 
-def test_places_beyond_chance_are_taken_together_in_their_order():
-    found = list_several([score("joint c", 0.2), score("all joints", 0.15), score("joint a", 0.1)])
-    assert [c.where for c in found] == ["joint a and joint c"]
+def several(sizes, std, places=("joint a", "joint b", "joint c")):
+    effect = at_several(EFFECT, places)
+    return WindowScore(
+        candidate=Candidate(effect, next(iter(effect.places)), {}), size=np.array(sizes),
+        std=np.array(std), fall=0.2, p_value=1e-6,
+    )  # fmt: skip
 
 
-@pytest.mark.parametrize("where", [["joint b"], ["all joints"], ["all joints", "joint b"], []])
-def test_one_place_is_no_new_candidate(where):
-    assert list_several([score(w, 0.1) for w in where]) == []
+@pytest.mark.parametrize(
+    ("sizes", "std", "kept"),
+    [
+        ((0.06, 0.08, 0.05), (0.01, 0.01, 0.01), ["joint a", "joint b", "joint c"]),
+        ((0.06, -0.08, 0.05), (0.01, 0.01, 0.01), ["joint a", "joint c"]),  # a sign
+        ((0.06, 0.08, 0.01), (0.01, 0.01, 0.01), ["joint a", "joint b"]),  # within its std
+        ((-0.06, -0.08, 0.01), (0.01, 0.01, 0.01), []),
+    ],
+)
+def test_places_stay_where_the_size_is_admitted_and_beyond_its_std(sizes, std, kept):
+    places = ["joint a", "joint b", "joint c"]
+    assert felt_places(several(sizes, std), places, EFFECT, DiscoveryOptions()) == kept
