@@ -48,7 +48,7 @@ def several_scores(
     for s in significant:
         if not s.candidate.effect.own and len(_single(s.candidate.effect)) > 1:
             first.setdefault(s.candidate.effect.name, s.candidate)
-    out = []
+    out: list[WindowScore] = []
     for c in [*first.values()][:MOST_EFFECTS]:
         places = _single(c.effect)
         for _ in range(ROUNDS):
