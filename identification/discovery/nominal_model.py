@@ -9,6 +9,7 @@ import numpy as np
 
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
+from identification.errors import InputError
 from identification.kalman.point import evaluate_point
 from identification.kalman.refit import Refit, refit
 from identification.logs.log import Log
@@ -31,6 +32,9 @@ class NominalModel:
         horizon: length of the windows over which predictions are judged [s]; None for a free run
             of the whole log, which says little of a robot that integrates what disturbs it.
         own: those of the names of which each record has a value of its own.
+
+    Raises:
+        InputError: there is not one std for each name.
     """
 
     plant: Plant
@@ -38,6 +42,13 @@ class NominalModel:
     std: np.ndarray
     horizon: float | None = None
     own: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if np.shape(self.std) != (len(self.names),):
+            raise InputError(
+                f"{len(self.names)} free parameters have std of the shape {np.shape(self.std)};"
+                " give one for each"
+            )
 
 
 def fit_with_effects(

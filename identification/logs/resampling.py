@@ -96,9 +96,12 @@ def even_out(
     out = {c.name: _held(c, t, h) if c.name in inputs and hold == "zoh" else
            np.interp(t, c.time, c.values) if c.name in inputs else
            PchipInterpolator(c.time, c.values)(t) for c in own}  # fmt: skip
-    for c in timed:
+    # An input that usually comes with every sample was not held where it did not come.
+    names = {c.name for c in timed}
+    steady = [c for c in own if c.name not in names and np.median(np.diff(c.time)) < 1.5 * h]
+    for c in (*timed, *steady):
         _refuse_gap(name, c, out[c.name], h)
-    return Even(t, out, _sentence(name, timed, t, h))
+    return Even(t, out, _sentence(name, [*timed, *steady], t, h))
 
 
 def _samples(log: str, name: str, time: FloatArray, values: FloatArray) -> _Channel:

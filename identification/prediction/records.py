@@ -10,6 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+import numpy as np
+
 from identification.errors import InputError
 from identification.logs.log import Log
 
@@ -84,9 +86,10 @@ def _distinct(logs: Sequence[Log]) -> list[Log]:
 def _refuse_different(logs: Sequence[Log]) -> None:
     first = logs[0]
     for k, log in enumerate(logs):
-        if any(log is other for other in logs[:k]):
+        if any(_is_same(log, other) for other in logs[:k]):
             raise InputError(
-                f"log {log.name!r} is given twice; a record that was fitted confirms nothing"
+                f"log {log.name!r} is given twice; a record counts once, and confirms nothing when"
+                " it was fitted: leave one of them out"
             )
         for what in ("input_names", "output_names", "hold"):
             mine, others = getattr(log, what), getattr(first, what)
@@ -96,3 +99,8 @@ def _refuse_different(logs: Sequence[Log]) -> None:
                     f" {first.name!r} has {others}; give records of one robot and one set of"
                     " columns"
                 )
+
+
+def _is_same(a: Log, b: Log) -> bool:
+    """Whether two logs are one record, to the bit."""
+    return a is b or (np.array_equal(a.inputs, b.inputs) and np.array_equal(a.outputs, b.outputs))

@@ -6,6 +6,8 @@ from identification.estimation.identifiability import in_words
 from identification.prediction.records_fit import RecordsFit
 from identification.report.fit_verdict import WEAK
 
+MUCH = 3.0  # times the noise floor, beyond which a fit is told to lack something
+
 
 def records_fit_verdict(found: RecordsFit) -> list[str]:
     """Did it converge, what the windows cannot tell, what they leave, and whether it is worse."""
@@ -17,7 +19,14 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
     windows = sum(len(part.cut.starts) for part in fit.problem.parts)
     floor, rms = found.noise_rms, found.rms
     ratio = f", {rms / floor:.2f} of the noise floor {floor:.3g}" if floor > 0 else ""
-    said.append(f"{windows} windows of {found.horizon:g} s leave {rms:.3g} rms{ratio}.")
+    left = f"{rms:.3g} {found.unit}".rstrip()
+    each = "1 window" if windows == 1 else f"{windows} windows"
+    said.append(f"{each} of {found.horizon:g} s leave {left} rms{ratio}.")
+    if floor > 0 and rms > MUCH * floor:
+        said.append(
+            "That is far more than the sensors make: the model lacks something, or a column is not"
+            " what the model takes it for; discover looks for what is missing."
+        )
     return said + _worse(found)
 
 

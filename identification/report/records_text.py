@@ -7,6 +7,7 @@ from identification.quantities import alike, quantity
 from identification.report.effect_words import describe_effect
 from identification.report.finding_words import describe_finding, sentence
 
+NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
 SHOWN = 6  # candidates with the best scores that are listed
 
 
@@ -17,8 +18,7 @@ def records_verdict(found: RecordsDiscovery) -> list[str]:
         return [
             "Nothing is missing, as far as these records can tell: no candidate lowers the error of"
             f" prediction on unseen data beyond chance. It is {before} rms over"
-            f" {found.horizon:g} s, where the sensors make {noise}."
-            f" Inputs that err by {100 * found.input_error:.2g} % of their rms would make the rest."
+            f" {found.horizon:g} s, where the sensors make {noise}." + _rest(found)
         ]
     if found.verdict == "unknown effect":
         return [_unknown(found)]
@@ -59,6 +59,13 @@ def describe_refitted(effect: RefittedEffect) -> str:
 def _sizes(effect: RefittedEffect) -> str:
     pairs = effect.parameters.items()
     return ", ".join(f"{name} = {quantity(v, std, unit)}" for name, (v, std, unit) in pairs)
+
+
+def _rest(found: RecordsDiscovery) -> str:
+    """How far the inputs would have to err to make what the sensors do not."""
+    if found.input_error < NO_ERROR:
+        return " The sensors alone would make it."
+    return f" Inputs that err by {100 * found.input_error:.2g} % of their rms would make the rest."
 
 
 def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
