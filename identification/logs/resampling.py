@@ -26,6 +26,7 @@ from identification.logs.sampling import MIN_ROWS, FloatArray, grid
 
 ALLOWED = 0.01  # of a channel's motion, that the bridge of a gap may err by
 CLEAR = 2.0  # std of its noise, that it may err by
+HELD = 10.0  # intervals that an input may stay away and count as held, if it comes every interval
 MOST = 0.05  # of the log, that one gap may be: beyond it the rest of the log is no witness
 ROUND = 0.02  # of the rate, by which it may be rounded: any rate near the samples' own would do
 
@@ -99,8 +100,10 @@ def even_out(
     # An input that usually comes with every sample was not held where it did not come.
     names = {c.name for c in timed}
     steady = [c for c in own if c.name not in names and np.median(np.diff(c.time)) < 1.5 * h]
-    for c in (*timed, *steady):
+    for c in timed:
         _refuse_gap(name, c, out[c.name], h)
+    for c in steady:
+        _refuse_pause(name, c, h)
     return Even(t, out, _sentence(name, [*timed, *steady], t, h))
 
 
@@ -128,6 +131,17 @@ def _held(c: _Channel, t: FloatArray, h: float) -> FloatArray:
     stamps = np.append(c.time, max(t[-1] + h, c.time[-1]) + h)
     work = np.concatenate([[0.0], np.cumsum(c.values * np.diff(stamps))])
     return np.asarray((np.interp(t + h, stamps, work) - np.interp(t, stamps, work)) / h)
+
+
+def _refuse_pause(log: str, c: _Channel, h: float) -> None:
+    """Refuse an input that stays away for long though it usually comes with every sample."""
+    gaps = np.diff(c.time)
+    k = int(np.argmax(gaps))
+    if gaps[k] > HELD * h:
+        raise InputError(
+            f"log {log!r} has no {c.name} for {gaps[k]:.3g} s from {c.time[k]:.6g} s, though it"
+            " usually comes with every sample; fill it in, or cut the log there"
+        )
 
 
 def _refuse_gap(log: str, c: _Channel, y: FloatArray, h: float) -> None:

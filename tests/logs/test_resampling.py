@@ -104,3 +104,10 @@ def test_a_file_without_a_header_is_read_by_a_list_of_columns(csv, refusal, wher
     path.with_suffix(".toml").unlink()
     said = {"columns": ["time", "skip", "u", "y"]}
     assert len(read_log(path, ["u"], ["y"], said=said)) == 20
+
+
+def test_an_input_that_stays_away_is_refused_though_the_outputs_go_on(refusal):
+    t = 0.01 * np.arange(1000)
+    u = np.where((t > 3) & (t < 3.6), np.nan, np.sign(np.sin(5 * t)))
+    said = refusal(even_out, "log", t, {"u": u, "q": np.sin(t)}, ["u"], "zoh")
+    assert "no u for 0.6" in said
