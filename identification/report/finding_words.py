@@ -163,7 +163,7 @@ def _remaining_error(e: records.RemainingError) -> str:
 def _unproven_effect(e: records.UnprovenEffect) -> str:
     return (
         f"{e.name.replace('_', ' ')}, {e.where}, predicts unseen data better on average (mean"
-        f" square {-100 * e.fall:+.0f} %), but not beyond chance (t = {e.t:.1f})"
+        f" square {-100 * e.fall:+.0f} %), but is not proven (t = {e.t:.1f})"
     )
 
 
