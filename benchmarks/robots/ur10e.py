@@ -77,8 +77,15 @@ def evidence_of(folder: Path, values: Mapping[str, float]) -> dict[str, object]:
     return evidence(folder, values)
 
 
-def published_errors(path: Path, log: Log, horizon: float) -> np.ndarray:
-    """Window errors of the authors' parameters, from the best first states, shape (W, L, 6)."""
+def published_errors(path: Path, whole: Log, log: Log, horizon: float) -> np.ndarray:
+    """Window errors of the authors' parameters, from the best first states, shape (W, L, 6).
+
+    Args:
+        path: of the arm's model.
+        whole: a record in which all joints move.
+        log: a record, or a part of one.
+        horizon: of the windows [s].
+    """
     from robots.ur10e_evidence import published
 
     spec = published(path)
@@ -93,7 +100,7 @@ def published_errors(path: Path, log: Log, horizon: float) -> np.ndarray:
     with TemporaryDirectory() as folder:
         file = Path(folder) / path.name
         file.write_text(spec.to_xml(), encoding="utf-8")
-        plant = joint_plant(file, records, log, joints=axes(spec.compile(), log))
+        plant = joint_plant(file, records, whole, joints=axes(spec.compile(), whole))
     return window_error(plant, log, horizon)
 
 
@@ -111,7 +118,7 @@ def read(data: Path) -> MeasuredRobot:
         "transmitted_load_friction", "gravity_load_friction"), published=_published(),
         evidence=lambda outcome: evidence_of(folder, outcome.values),
         models=(PublishedModel(name="their parameters", source=SOURCE,
-                               errors=partial(published_errors, model)),),
+                               errors=partial(published_errors, model, fit[0])),),
     )  # fmt: skip
 
 
