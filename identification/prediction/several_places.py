@@ -65,7 +65,7 @@ def several_scores(
 def felt_places(
     score: WindowScore, places: Sequence[str], effect: Effect, options: DiscoveryOptions
 ) -> list[str]:
-    """The places at which all sizes have a sign that physics admits and are beyond their std."""
+    """The places at which all sizes are plausible, in sign and magnitude, and beyond their std."""
     m = len(effect.sizes)
     out = []
     for k, where in enumerate(places):
@@ -73,7 +73,11 @@ def felt_places(
             score.size[m * k : m * (k + 1)], score.std[m * k : m * (k + 1)], effect.sizes,
             strict=True,
         )  # fmt: skip
-        if all(z.sign * v >= 0 and abs(v) > options.min_proof_t * std for v, std, z in own):
+        if all(
+            z.sign * v >= 0
+            and options.min_proof_t * std < abs(v) <= options.size_factor * z.largest
+            for v, std, z in own
+        ):
             out.append(where)
     return out
 

@@ -35,6 +35,7 @@ def several(sizes, std, places=("joint a", "joint b", "joint c")):
         ((0.06, 0.08, 0.05), (0.01, 0.01, 0.01), ["joint a", "joint b", "joint c"]),
         ((0.06, -0.08, 0.05), (0.01, 0.01, 0.01), ["joint a", "joint c"]),  # a sign
         ((0.06, 0.08, 0.01), (0.01, 0.01, 0.01), ["joint a", "joint b"]),  # within its std
+        ((0.06, 1.5, 0.05), (0.01, 0.01, 0.01), ["joint a", "joint c"]),  # too large
         ((-0.06, -0.08, 0.01), (0.01, 0.01, 0.01), []),
     ],
 )
