@@ -192,6 +192,11 @@ class Candidate:
     probe: float = 1.0
 
     @property
+    def key(self) -> tuple[str, str]:
+        """Its effect and its place, whatever its shapes."""
+        return self.effect.name, self.where
+
+    @property
     def sizes(self) -> tuple[str, ...]:
         """The plant's parameters that are zero without it."""
         return tuple(self.effect.parameter(s.name, self.where) for s in self.effect.sizes)

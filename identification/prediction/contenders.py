@@ -44,7 +44,7 @@ def _best_few(
     each: dict[tuple[str, str], WindowScore] = {}
     for s in listed:
         if is_significant(s, len(scores), options) and is_plausible(s, options):
-            each.setdefault((s.candidate.effect.name, s.candidate.where), s)
+            each.setdefault(s.candidate.key, s)
     out: list[WindowScore] = []
     best: dict[str, float] = {}
     for s in each.values():

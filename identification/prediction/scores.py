@@ -23,7 +23,8 @@ from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
 from identification.prediction.fit import BLOCKS, WindowFit, projected
 
-NEW = 0.01  # of a column that base parameters cannot imitate; with less it is one of them again
+NEW = 0.01  # of a column that free parameters cannot imitate; with less it is one of them again
+SMALL = 1e-4  # of a probe, by which a size is moved to see whether free parameters imitate it
 BATCH = 24  # columns at a time: bounds the memory of their trajectories
 
 
@@ -68,6 +69,17 @@ def window_scores(fit: WindowFit, candidates: Sequence[Candidate]) -> tuple[Wind
     return tuple(sorted(out, key=lambda s: -s.fall))
 
 
+def find_imitated(fit: WindowFit, scores: Sequence[WindowScore]) -> set[tuple[str, str]]:
+    """Effects, with their places, that free parameters imitate: the same by another name.
+
+    Args:
+        fit: the model without them.
+        scores: of those that are asked for, the best first.
+    """
+    base, asked = _Base(fit), {s.candidate.key: s.candidate for s in reversed(scores)}
+    return {key for key, candidate in asked.items() if base.is_imitated(candidate)}
+
+
 def _groups(candidates: Sequence[Candidate]) -> Iterator[list[Candidate]]:
     group: list[Candidate] = []
     for candidate in candidates:
@@ -105,19 +117,28 @@ class _Base:
         for c, end in zip(group, ends, strict=True):
             own = [S[:, end - len(c.sizes) : end] for S in columns]
             S = block_diag(*own) if c.effect.own else np.vstack(own)
-            if not self._is_new(S):
-                continue
             below = np.zeros((len(self.fit.q), S.shape[1]))
             out.append(self._score(c, self._without_base(np.vstack([S, below]))))
         return out
 
-    def _is_new(self, S: np.ndarray) -> bool:
-        """Whether no free parameters of the model imitate all columns, whatever priors say."""
-        left = np.linalg.norm(S - self.free @ (self.free.T @ S), axis=0)
-        return bool(np.any(left > NEW * np.linalg.norm(S, axis=0)))
+    def is_imitated(self, candidate: Candidate) -> bool:
+        """Whether free parameters of the model imitate all columns, whatever priors say.
 
-    def _columns(self, group: Sequence[Candidate]) -> list[np.ndarray]:
-        """-∂r/∂η of the sizes of candidates, without the states' part, (rows, k) a record."""
+        Its step is as small as that of the free parameters: where joints stick, a large one shows
+        something else.
+        """
+        S = np.vstack(self._columns([candidate], SMALL))
+        size = np.linalg.norm(S, axis=0)
+        left = np.linalg.norm(S - self.free @ (self.free.T @ S), axis=0)
+        return bool(np.all(left < NEW * size))
+
+    def _columns(self, group: Sequence[Candidate], share: float = 1.0) -> list[np.ndarray]:
+        """-∂r/∂η of the sizes of candidates, without the states' part, (rows, k) a record.
+
+        Args:
+            group: the candidates.
+            share: of their probes, by which sizes are moved.
+        """
         fit = self.fit
         plant = fit.problem.parts[0].predictor.plant
         names = list(dict.fromkeys(
@@ -131,7 +152,7 @@ class _Base:
             rows, probes = [[own[n] for n in names]], []
             for c in group:
                 for name, size in zip(c.sizes, c.effect.sizes, strict=True):
-                    probe = (-size.probe if size.sign < 0 else size.probe) * c.probe
+                    probe = (-size.probe if size.sign < 0 else size.probe) * c.probe * share
                     rows.append([{**own, **c.fixed, name: own[name] + probe}[n] for n in names])
                     probes.append(probe)
             values = np.array(rows)

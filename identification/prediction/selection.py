@@ -32,7 +32,7 @@ from identification.prediction.contenders import (
 from identification.prediction.extension import with_effect
 from identification.prediction.model import WindowModel
 from identification.prediction.records import Record
-from identification.prediction.scores import WindowScore, window_scores
+from identification.prediction.scores import WindowScore, find_imitated, window_scores
 from identification.prediction.several_places import several_scores
 from identification.prediction.unseen import Prediction, compare
 
@@ -71,7 +71,7 @@ def score_all(
         effects: the candidates.
         options: what is beyond chance.
     """
-    has = {(c.effect.name, c.where) for c in model.candidates}
+    has = {c.key for c in model.candidates}
     everywhere = {c.effect.name for c in model.candidates if not c.effect.places[c.where]}
     lacking = [e for e in effects if e.name not in everywhere]
     common = window_scores(model.fit, _without(list_common(lacking), has))
@@ -84,12 +84,14 @@ def score_all(
         s for s in found
         if is_significant(s, len(found), options) and is_plausible(s, options)
     ]  # fmt: skip
+    known = find_imitated(model.fit, beyond)
+    found, beyond = ([s for s in each if s.candidate.key not in known] for each in (found, beyond))
     several = several_scores(model.fit, beyond, options)
     return tuple(sorted((*found, *several), key=lambda s: -s.fall))
 
 
 def _without(candidates: Sequence[Candidate], has: set[tuple[str, str]]) -> list[Candidate]:
-    return [c for c in candidates if (c.effect.name, c.where) not in has]
+    return [c for c in candidates if c.key not in has]
 
 
 def refit_contenders(
@@ -118,9 +120,9 @@ def refit_contenders(
     proven = [c for c in out if c.is_proven]
     if proven:
         best = max(proven, key=lambda c: c.criterion)
-        tried = {(c.candidate.effect.name, c.candidate.where) for c in out}
+        tried = {c.candidate.key for c in out}
         for s in list_simpler(best.candidate, scores, options):
-            if (s.candidate.effect.name, s.candidate.where) not in tried:
+            if s.candidate.key not in tried:
                 out += refit(s)
     return _ranked(out, refits, options)
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.effect import Candidate, Effect
+from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
@@ -154,24 +154,20 @@ def _rivals(
     What still explains as much is no rival of the best one: it is missing too.
     """
     before, after = (
-        {_key(s.candidate): s.fall * cost for s in reversed(each)}
+        {s.candidate.key: s.fall * cost for s in reversed(each)}
         for each, cost in ((state.scores, state.model.fit.cost), (scores, best.model.fit.cost))
     )
     return tuple(
         o for o in others
-        if after.get(_key(o.candidate), 0.0) < RIVAL * before.get(_key(o.candidate), 0.0)
+        if after.get(o.candidate.key, 0.0) < RIVAL * before.get(o.candidate.key, 0.0)
     )  # fmt: skip
-
-
-def _key(c: Candidate) -> tuple[str, str]:
-    return c.effect.name, c.where
 
 
 def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
     """Without the effects that later ones made needless; the last one was just proved."""
     task = state.task
     for old in state.accepted[:-1]:
-        rest = tuple(c for c in state.model.candidates if not _is_same(c, old.candidate))
+        rest = tuple(c for c in state.model.candidates if c.key != old.candidate.key)
         without = refitted(state.model, rest, task.nominal_model, task.confirm)
         if without is None:
             continue
@@ -184,10 +180,6 @@ def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
             alternatives=tuple(state.alternatives[k] for k in keep),
         )  # fmt: skip
     return state
-
-
-def _is_same(a: Candidate, b: Candidate) -> bool:
-    return _key(a) == _key(b)
 
 
 def _refuse_worse(begun: Unseen, fitted: Unseen, options: DiscoveryOptions) -> None:

@@ -34,7 +34,6 @@ from identification.prediction.unseen import PER_RECORD, Unseen
 RESAMPLES = 2000
 SEED = 0  # of the resampling, so that a verdict repeats
 LIKELY = 0.02  # a rival less likely than this is not listed
-UNLISTED = "curve"  # names of effects that begin so are curves drawn from the data
 
 
 def conclude(state: RecordsState) -> RecordsDiscovery:
@@ -57,7 +56,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     needed = needed_input_error(model.fit, model.unseen.floor)
     verdict: Verdict = "nothing missing"
     if named and sure:
-        curves = [n.effect.candidate.effect.name.startswith(UNLISTED) for n in named]
+        curves = [n.effect.candidate.effect.is_curve for n in named]
         verdict = "unlisted effect" if all(curves) else "named"
     elif (
         named
@@ -93,7 +92,7 @@ def _named(
 ) -> NamedByPrediction:
     """An accepted effect at the values of the final model, with its rivals."""
     options, mine = state.task.options, accepted.candidate
-    is_final = any(_key(c) == _key(mine) for c in state.model.candidates)
+    is_final = any(c.key == mine.key for c in state.model.candidates)
     is_law = not mine.effect.is_curve  # which curves may imitate, but are no rival of its name
     others = [o for o in others if not (is_law and o.candidate.effect.is_curve)]
     near = [accepted, *others]
@@ -176,7 +175,3 @@ def _by_record(blocks: np.ndarray, state: RecordsState) -> list[np.ndarray]:
 def _gap(unseen: Unseen, scale: float) -> Gap:
     square = float(np.mean(np.concatenate(unseen.at_horizon)))
     return Gap(scale * float(np.sqrt(square)), unseen.fit_percent)
-
-
-def _key(candidate: object) -> tuple[str, str]:
-    return candidate.effect.name, candidate.where  # type: ignore[attr-defined]

@@ -12,7 +12,7 @@ from identification.effects.joint_plant import candidates
 from identification.prediction.extension import with_effect
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
-from identification.prediction.scores import window_scores
+from identification.prediction.scores import find_imitated, window_scores
 from identification.prediction.unseen import compare, predict
 
 LOAD = {"transmitted_load_friction.mu@hinge": 0.15}
@@ -133,3 +133,9 @@ def test_a_parameter_without_effect_is_refused(refusal):
     more = replace(base, names=(*base.names, "cogging.n"), std=np.append(base.std, 1.0))
     said = refusal(fit_nominal, more, as_records(logs[:1], logs[1:]))
     assert "cogging.n has no effect" in said
+
+
+def test_a_free_parameter_by_another_name_is_imitated_and_a_law_is_not():
+    """The arm's inertia is free as its armature, so that no other inertia of it is missing."""
+    found = scored(rubbed(), "inertia_mismatch", "transmitted_load_friction")
+    assert {name for name, _ in find_imitated(rubbed().fit, found)} == {"inertia_mismatch"}
