@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
 from identification.quantities import alike, quantity
 from identification.report.effect_words import describe_effect
@@ -57,8 +59,10 @@ def describe_refitted(effect: RefittedEffect) -> str:
 
 
 def _sizes(effect: RefittedEffect) -> str:
-    pairs = effect.parameters.items()
-    return ", ".join(f"{name} = {quantity(v, std, unit)}" for name, (v, std, unit) in pairs)
+    return ", ".join(
+        f"{name} = {quantity(v, std, unit)}" if np.isfinite(std) else f"{name} not felt"
+        for name, (v, std, unit) in effect.parameters.items()
+    )
 
 
 def _rest(found: RecordsDiscovery) -> str:
