@@ -35,7 +35,7 @@ def force_effects(g: Group) -> list[Effect]:
 def _drags(g: Group) -> list[Effect]:
     """Forces that grow with speed."""
     F, V, A = g.F, g.V, g.A
-    less = Shape("n", "", (0.33, 0.67), 0.1, 0.95, free=False, about="the power")
+    less = Shape("n", "", (0.33, 0.67), 0.1, 0.95, about="the power")
     return [
         g.force(laws.asymmetric_viscous_friction, "-d_a |v|",
                 (g.size("d_a", 0.3 * F / V, f"{g.f} s/{g.x}",

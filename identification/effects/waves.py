@@ -7,7 +7,9 @@ from math import pi
 from identification.effects.effect import Shape, Size
 from identification.effects.joint_group import Group
 
-PERIODS = (2.0, 4.0, 8.0, 16.0)  # of a slide's travel, to try
+# Of a slide's travel, to try: a wave that is off by one period of the travel is out of step with
+# the true one at an end, so that none is left out up to the pitch of usual linear motors.
+PERIODS = tuple(map(float, range(2, 33)))
 SEEN = 2.0  # periods within the travel, below which a curve is not seen to repeat
 
 
@@ -33,4 +35,4 @@ def waves(g: Group) -> Shape | None:
         high = max(48.0, *seen)
         return Shape("n", "", seen, least, high, free=False, about="periods in a turn")
     grid = tuple(2 * pi * w / g.L for w in PERIODS)
-    return Shape("n", "rad/m", grid, 0.9 * least, 4 * grid[-1], about="wave number")
+    return Shape("n", "rad/m", grid, 0.9 * least, 2 * grid[-1], about="wave number")

@@ -19,7 +19,10 @@ from identification.model.predictor import Plant
 from identification.prediction.fit import solve
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.problem import (
+    THIN,
     Problem,
+    thinned,
+    thinned_moves,
     with_unknowns,
 )
 from identification.prediction.records import Record
@@ -56,21 +59,8 @@ def with_effect(
     free = (*shared.names, *own.names)
     fixed = {n: v for n, v in (*c.fixed.items(), *c.whole.items()) if n not in free}
     task = with_unknowns(fit.problem, shared, own, fixed)
-    begun = []
-    for share in SHARES:
-        q = _begin(task, parent, score, share)
-        try:  # the states have made up for what was missing
-            moves = task.settled(q, fit.moves)
-            cost = task.cost(q, moves)
-        except InputError:
-            continue
-        begun.append((cost, q, moves))
-        if cost < fit.cost or not c.free:
-            break
-    if not begun:
-        raise InputError(f"{c.effect.name}, {c.where} cannot be simulated at any size")
-    _, q, moves = min(begun, key=lambda b: b[0])
-    found = solve(task, q, moves, tolerance=FINE, most=MOST_REFIT)
+    q = _first(task, parent, score)
+    found = solve(task, q, task.settled(q, fit.moves), tolerance=FINE, most=MOST_REFIT)
     if found.cost >= fit.cost:
         return None
     values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}
@@ -78,6 +68,32 @@ def with_effect(
         plant, confirm, horizon, parent.scale, found, {**values, **fixed}, parent.unseen
     )
     return WindowModel((*parent.candidates, c), found, seen, parent.scale)
+
+
+def _first(task: Problem, parent: WindowModel, score: WindowScore) -> np.ndarray:
+    """Where the fit of all windows begins: at the fit of some of them.
+
+    Raises:
+        InputError: its start cannot be simulated, whatever the size.
+    """
+    c, fit = score.candidate, parent.fit
+    few, old = thinned(task, THIN), thinned_moves(fit.moves, THIN)
+    least = thinned(fit.problem, THIN).cost(fit.q, old)
+    begun = []
+    for share in SHARES:
+        q = _begin(task, parent, score, share)
+        try:  # the states have made up for what was missing
+            moves = few.settled(q, old)
+            cost = few.cost(q, moves)
+        except InputError:
+            continue
+        begun.append((cost, q, moves))
+        if cost < least or not c.free:
+            break
+    if not begun:
+        raise InputError(f"{c.effect.name}, {c.where} cannot be simulated at any size")
+    _, q, moves = min(begun, key=lambda b: b[0])
+    return solve(few, q, moves, tolerance=FINE).q
 
 
 def refitted(
@@ -127,10 +143,13 @@ def _free(plant: Plant, c: Candidate, names: Sequence[str]) -> Prior:
 
 
 def _begin(task: Problem, parent: WindowModel, score: WindowScore, share: float) -> np.ndarray:
-    """Where a child's q begins: at its parent, with a share of the sizes that the score gives."""
+    """Where a child's q begins: at its parent, moved by a share of what the score gives.
+
+    The parent's parameters make room for the effect: what they imitated of it goes back.
+    """
     c, unknowns = score.candidate, task.unknowns
     q = np.array(task.prior.mean)
-    old = dict(zip(parent.fit.problem.names, parent.fit.q, strict=True))
+    old = dict(zip(parent.fit.problem.names, parent.fit.q + share * score.along, strict=True))
     sizes = score.size.reshape(-1, len(c.sizes)) * np.ones((len(unknowns.records), 1))
     parameters = parent.plant.parameters
     for k in range(len(unknowns.records)):

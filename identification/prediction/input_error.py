@@ -14,7 +14,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from identification.prediction.fit import WindowFit, projected
+from identification.prediction.fit import WindowFit
+from identification.prediction.point import projected
 from identification.windows.shooting import Shooting, Tangent
 
 STEP = 1e-3  # of an input's rms, by which it is moved

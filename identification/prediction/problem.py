@@ -27,6 +27,7 @@ from identification.windows.windows import first_states, spread, windows
 # from the model makes them wrong, and each of some hundred simulations takes as much longer.
 MOST_STEPS = 24_000
 FEWEST_WINDOWS = 10  # of a record, so that blocks of them can be compared
+THIN = 3  # one window of so many screens candidates, and finds where a fit of all windows begins
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,28 @@ class Problem:
             float(np.sum(part.residual(own, moves) ** 2)) for part, own, moves in self._each(q, d)
         )
         return data + float(np.sum(self.against(q) ** 2))
+
+    def best(
+        self, q: np.ndarray, choices: Sequence[Sequence[np.ndarray]]
+    ) -> tuple[tuple[np.ndarray, ...], float]:
+        """Of several moves of the states the best, each window for itself, and V there.
+
+        Args:
+            q: shape (p,).
+            choices: moves of the windows' states, each of them one array (W, nx) a record.
+
+        Raises:
+            DivergenceError: a window left the finite numbers.
+        """
+        moves, cost = [], float(np.sum(self.against(q) ** 2))
+        for k, part in enumerate(self.parts):
+            own, each = q[self.unknowns.columns(k)], [c[k] for c in choices]
+            y = part.outputs(np.tile(own, (len(each), 1)), each)
+            squares = np.array([np.sum(part.joined(*pair) ** 2, axis=1)
+                                for pair in zip(y, each, strict=True)])  # fmt: skip
+            cost += float(squares.min(axis=0).sum())
+            moves.append(np.stack(each)[squares.argmin(axis=0), np.arange(len(squares[0]))])
+        return tuple(moves), cost
 
     def tangents(self, q: np.ndarray, d: Sequence[np.ndarray]) -> tuple[Tangent, ...]:
         """All windows linearised, one tangent a record, its S with a column for each of q."""
@@ -169,6 +192,22 @@ def with_unknowns(
         predictor = replace(part.predictor, names=space.names, fixed=rest)
         parts.append(replace(part, space=space, predictor=predictor))
     return Problem(tuple(parts), Unknowns(shared, own, problem_.unknowns.records))
+
+
+def thinned(problem_: Problem, every: int) -> Problem:
+    """Some of the windows: one of `every`, but no fewer than `FEWEST_WINDOWS` a record."""
+    parts = tuple(p.rows(kept(len(p.cut.starts), every)) for p in problem_.parts)
+    return replace(problem_, parts=parts)
+
+
+def thinned_moves(moves: Sequence[np.ndarray], every: int) -> tuple[np.ndarray, ...]:
+    """The moves of the states of the windows that `thinned` keeps."""
+    return tuple(d[kept(len(d), every)] for d in moves)
+
+
+def kept(count: int, every: int) -> np.ndarray:
+    """Indices of the windows of a record that `thinned` keeps."""
+    return np.arange(0, count, max(1, min(every, count // FEWEST_WINDOWS)))
 
 
 def with_scale(problem_: Problem, scale: np.ndarray) -> Problem:

@@ -19,9 +19,10 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
 from identification.logs.log import Log
-from identification.prediction.fit import WindowFit, projected
+from identification.prediction.fit import WindowFit
 from identification.prediction.model import Progress, WindowModel
 from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.point import projected
 from identification.prediction.problem import at_values, no_moves
 from identification.prediction.record_errors import (
     RecordError,

@@ -3,6 +3,7 @@
     r⊥, S_j⊥       residual and sensitivities without what states and base parameters make up for
     η̂_j = (S⊥ᵀS⊥)⁻¹ S⊥ᵀ r⊥                    the size, at once
     fall_j = 1 - ‖r⊥ - S⊥ η̂_j‖²/‖r⊥‖²          share of the residual's square that it takes away
+    Δq_j = -(FᵀF)⁻¹ FᵀS_j η̂_j                  how the free parameters go along, F: their columns
     W_j = η̂ᵀ H (Σ_b g_b g_bᵀ)⁻¹ H η̂ ~ m F(m, B - m),   g_b = Σ_{w in b} S⊥ᵀ(r⊥ - S⊥ η̂),  H = S⊥ᵀS⊥
 
 W needs no noise model: blocks of windows are its sample (White 1980).
@@ -21,7 +22,8 @@ from identification.effects.effect import Candidate
 from identification.errors import InputError
 from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
-from identification.prediction.fit import BLOCKS, WindowFit, projected
+from identification.prediction.fit import BLOCKS, WindowFit
+from identification.prediction.point import projected
 
 NEW = 0.01  # of a column that free parameters cannot imitate; with less it is one of them again
 SMALL = 1e-4  # of a probe, by which a size is moved to see whether free parameters imitate it
@@ -39,6 +41,7 @@ class WindowScore:
         std: of η̂ by blocks, shape (m,).
         fall: share of the residual's square that it takes away, 0 to 1.
         p_value: chance of as much by luck, by blocks.
+        along: Δq of the model's free parameters, which make room for it, shape (p,).
     """
 
     candidate: Candidate
@@ -46,6 +49,7 @@ class WindowScore:
     std: np.ndarray
     fall: float
     p_value: float
+    along: np.ndarray
 
 
 def window_scores(fit: WindowFit, candidates: Sequence[Candidate]) -> tuple[WindowScore, ...]:
@@ -100,8 +104,9 @@ class _Base:
         p = len(fit.q)
         F = np.vstack([S.reshape(-1, p) for S, _ in each] + [np.diag(fit.problem.prior.weight)])
         scale = np.linalg.norm(F, axis=0)
-        self.Q = np.linalg.qr(F / np.where(scale > 0, scale, 1.0))[0]
-        self.free = np.linalg.qr(F[: len(F) - p] / np.where(scale > 0, scale, 1.0))[0]
+        self.scale = np.where(scale > 0, scale, 1.0)
+        self.Q, self.R = np.linalg.qr(F / self.scale)
+        self.free = np.linalg.qr(F[: len(F) - p] / self.scale)[0]
         below = fit.problem.against(fit.q)[:, None]
         r = np.vstack([r.reshape(-1, 1) for _, r in each] + [below])
         self.r = self._without_base(r)[:, 0]
@@ -118,7 +123,7 @@ class _Base:
             own = [S[:, end - len(c.sizes) : end] for S in columns]
             S = block_diag(*own) if c.effect.own else np.vstack(own)
             below = np.zeros((len(self.fit.q), S.shape[1]))
-            out.append(self._score(c, self._without_base(np.vstack([S, below]))))
+            out.append(self._score(c, np.vstack([S, below])))
         return out
 
     def is_imitated(self, candidate: Candidate) -> bool:
@@ -171,7 +176,8 @@ class _Base:
             out.append(S.reshape(-1, len(probes)))
         return out
 
-    def _score(self, candidate: Candidate, S: np.ndarray) -> WindowScore:
+    def _score(self, candidate: Candidate, columns: np.ndarray) -> WindowScore:
+        S = self._without_base(columns)
         norm = np.linalg.norm(S, axis=0)
         unit = S / np.where(norm > 0, norm, 1.0)
         H = unit.T @ unit
@@ -187,9 +193,11 @@ class _Base:
         inverse = np.linalg.pinv(H, rcond=1e-12, hermitian=True)
         std = np.sqrt(np.maximum(np.diag(inverse @ spread @ inverse), 0.0))
         back = np.where(norm > 0, 1 / np.where(norm > 0, norm, 1.0), 0.0)
+        along = np.linalg.lstsq(self.R, self.Q.T @ (columns @ (size * back)), rcond=1e-8)[0]
         return WindowScore(
-            candidate=candidate, size=size * back, std=std * back, fall=fall, p_value=p
-        )
+            candidate=candidate, size=size * back, std=std * back, fall=fall, p_value=p,
+            along=-along / self.scale,
+        )  # fmt: skip
 
     def _by_blocks(self, rows: np.ndarray) -> np.ndarray:
         """Sums of rows over blocks of windows, shape (B, k)."""

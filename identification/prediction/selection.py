@@ -1,14 +1,9 @@
 """The next effect of a model: the best candidates are refitted, and unseen records decide.
 
-    contenders    beyond chance by blocks, of a plausible size, and near the best score
-    proven        predicts unseen windows better: beyond chance, over every length, and by enough
-    chosen        of the proven ones the one with the best criterion on the fitted windows, or one
-                  with fewer numbers that unseen records cannot tell from it
-
-    criterion = -W n_y ln V - k ln W        W windows, k free parameters: BIC of W n_y errors
-
-Errors within a window go along with each other, so that a window counts as one sample of each
-output. Unseen records prove; they choose only between a law and one with fewer numbers.
+contenders    beyond chance by blocks, of a plausible size, and near the best score
+proven        predicts unseen windows better: beyond chance, over every length, and by enough
+chosen        of the proven ones the one for which most speaks (`evidence`), or one with fewer
+              numbers that all windows cannot tell from it
 """
 
 from __future__ import annotations
@@ -19,21 +14,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.scoring.sensitivities import list_common, list_single
-from identification.effects.effect import Candidate, Effect
+from identification.effects.effect import Candidate
 from identification.errors import InputError
 from identification.prediction.contenders import (
     count_numbers,
-    is_plausible,
-    is_significant,
     list_contenders,
     list_simpler,
 )
+from identification.prediction.evidence import count_windows, evidence, fitted_gains
 from identification.prediction.extension import with_effect
 from identification.prediction.model import WindowModel
 from identification.prediction.records import Record
-from identification.prediction.scores import WindowScore, find_imitated, window_scores
-from identification.prediction.several_places import several_scores
+from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction, compare
 
 Progress = Callable[[str], None]
@@ -46,12 +38,16 @@ class Contender:
     Attributes:
         model: with it.
         prediction: of unseen records, over the model without it.
-        criterion: of the fitted windows, over the model without it.
+        gains: by block of the fitted windows, then of the unseen ones, shape (B,).
+        numbers: that it adds to the model, those of each record counted.
+        criterion: E, what speaks for it against the model without it (`evidence`).
         is_proven: whether unseen records prove it.
     """
 
     model: WindowModel
     prediction: Prediction
+    gains: np.ndarray
+    numbers: int
     criterion: float
     is_proven: bool
 
@@ -59,39 +55,6 @@ class Contender:
     def candidate(self) -> Candidate:
         """The effect, its shapes as they began."""
         return self.model.candidates[-1]
-
-
-def score_all(
-    model: WindowModel, effects: Sequence[Effect], options: DiscoveryOptions
-) -> tuple[WindowScore, ...]:
-    """Scores of what a model lacks: everywhere, then the best shapes at one place, and at several.
-
-    Args:
-        model: fitted.
-        effects: the candidates.
-        options: what is beyond chance.
-    """
-    has = {c.key for c in model.candidates}
-    everywhere = {c.effect.name for c in model.candidates if not c.effect.places[c.where]}
-    lacking = [e for e in effects if e.name not in everywhere]
-    common = window_scores(model.fit, _without(list_common(lacking), has))
-    best: dict[str, Candidate] = {}
-    for s in common:
-        best.setdefault(s.candidate.effect.name, s.candidate)
-    single = window_scores(model.fit, _without(list_single([*best.values()]), has))
-    found = sorted((*common, *single), key=lambda s: -s.fall)
-    beyond = [
-        s for s in found
-        if is_significant(s, len(found), options) and is_plausible(s, options)
-    ]  # fmt: skip
-    known = find_imitated(model.fit, beyond)
-    found, beyond = ([s for s in each if s.candidate.key not in known] for each in (found, beyond))
-    several = several_scores(model.fit, beyond, options)
-    return tuple(sorted((*found, *several), key=lambda s: -s.fall))
-
-
-def _without(candidates: Sequence[Candidate], has: set[tuple[str, str]]) -> list[Candidate]:
-    return [c for c in candidates if c.key not in has]
 
 
 def refit_contenders(
@@ -102,14 +65,14 @@ def refit_contenders(
     options: DiscoveryOptions,
     progress: Progress,
 ) -> tuple[Contender, ...]:
-    """Refit the contenders of a round, the best first: proven ones before others, by criterion.
+    """Refit the contenders of a round, the best first: proven ones before others, by evidence.
 
     Laws with fewer numbers that act as the best one does are refitted too. A law with fewer numbers
-    comes before the best one where unseen records cannot tell them apart and the criterion does not
-    speak very strongly; so does, of two that are no more than a bare mention apart, the one that is
-    the same in all records.
+    comes before the best one where resamples cannot tell them apart and the evidence does not
+    speak very strongly.
     """
-    chosen = list_contenders(scores, options, _windows(model) * len(model.scale))
+    windows = sum(len(p.cut.starts) for p in model.fit.problem.parts)
+    chosen = list_contenders(scores, options, windows * len(model.scale))
     refits = len(chosen)
 
     def refit(s: WindowScore) -> list[Contender]:
@@ -124,7 +87,7 @@ def refit_contenders(
         for s in list_simpler(best.candidate, scores, options):
             if s.candidate.key not in tried:
                 out += refit(s)
-    return _ranked(out, refits, options)
+    return _ranked(out, options)
 
 
 def _refit(
@@ -141,31 +104,41 @@ def _refit(
         progress(f"{label}: explains no more than without it")
         return None
     found = compare(model.unseen, new.unseen)
-    gain = criterion(new) - criterion(model)
+    gains = np.concatenate([fitted_gains(model, new), found.blocks])
+    c, records = s.candidate, len(model.unseen.at_horizon) + len(model.fit.problem.parts)
+    numbers = count_numbers(c) * (records if c.effect.own else 1)
+    windows, outputs = count_windows(model), len(model.scale)
+    gain = float(evidence([gains], [numbers], windows, outputs)[0, 0])
     proven = gain > 0 and has_size(new, options) and is_proven(found, refits, options)
     at = model.unseen.lengths.index(1.0)
     progress(f"{label}: unseen mean square {-100 * found.falls[at]:+.0f} %, t {found.t:.1f}")
-    return Contender(model=new, prediction=found, criterion=gain, is_proven=proven)
+    return Contender(
+        model=new, prediction=found, gains=gains, numbers=numbers, criterion=gain,
+        is_proven=proven,
+    )  # fmt: skip
 
 
-def _ranked(
-    found: Sequence[Contender], refits: int, options: DiscoveryOptions
-) -> tuple[Contender, ...]:
+def _ranked(found: Sequence[Contender], options: DiscoveryOptions) -> tuple[Contender, ...]:
     """Contenders in the order of `refit_contenders`."""
     out = sorted(found, key=lambda c: (not c.is_proven, -c.criterion))
     for c in tuple(out[1:]):
         best = out[0]
-        if not c.is_proven:
-            continue
         apart = best.criterion - c.criterion
-        is_shared = best.candidate.effect.own and not c.candidate.effect.own
-        fewer = count_numbers(c.candidate) < count_numbers(best.candidate)
-        told = is_proven(compare(c.model.unseen, best.model.unseen), refits, options)
-        if (is_shared and apart < options.bare_bic) or (
-            fewer and apart < options.strong_bic and not told
-        ):
-            out = [c, *(o for o in out if o is not c)]
+        fewer = c.numbers < best.numbers
+        if c.is_proven and fewer and apart < options.strong_bic:
+            each = evidences([best, c])[:, 1:]
+            if np.mean(each[1] >= each[0]) > options.significance:
+                out = [c, *(o for o in out if o is not c)]
     return tuple(out)
+
+
+def evidences(contenders: Sequence[Contender]) -> np.ndarray:
+    """E of contenders for one place in each resample, shape (k, R); the first is of all blocks."""
+    model = contenders[0].model
+    return evidence(
+        [c.gains for c in contenders], [c.numbers for c in contenders], count_windows(model),
+        len(model.scale),
+    )  # fmt: skip
 
 
 def is_proven(found: Prediction, refits: int, options: DiscoveryOptions) -> bool:
@@ -179,13 +152,3 @@ def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
     std, values, free = model.std, model.fit.values, model.candidates[-1].free
     own = [n for n in model.fit.problem.names if n.partition(" [")[0] in free]
     return not own or any(abs(values[n]) > options.min_proof_t * std[n] for n in own)
-
-
-def criterion(model: WindowModel) -> float:
-    """Negative BIC of the fitted windows, in units of twice the log likelihood."""
-    fit, W, ny = model.fit, _windows(model), len(model.scale)
-    return -W * ny * float(np.log(fit.cost)) - len(fit.q) * float(np.log(W))
-
-
-def _windows(model: WindowModel) -> int:
-    return sum(len(p.cut.starts) for p in model.fit.problem.parts)

@@ -19,12 +19,12 @@ from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
+from identification.prediction.screening import score_all
 from identification.prediction.selection import (
     Contender,
     Progress,
     is_proven,
     refit_contenders,
-    score_all,
 )
 from identification.prediction.unseen import Unseen, compare, predict
 

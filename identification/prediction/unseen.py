@@ -148,15 +148,12 @@ def predict(
 
 def compare(without: Unseen, with_it: Unseen) -> Prediction:
     """What the second of two models predicts better than the first, window by window."""
-    falls, gains = [], []
+    falls, gains, floor = [], [], without.floor
     for a, b in zip(without.squares, with_it.squares, strict=True):
         falls.append(1 - float(np.concatenate(b).mean() / np.concatenate(a).mean()))
-        gains.append([np.log(x + without.floor) - np.log(y + without.floor)
-                      for x, y in zip(a, b, strict=True)])  # fmt: skip
+        gains.append([window_gains(x, y, floor) for x, y in zip(a, b, strict=True)])
     here = gains[without.lengths.index(1.0)]
-    blocks = np.concatenate([
-        [b.mean() for b in np.array_split(g, min(PER_RECORD, max(1, len(g) // 2)))] for g in here
-    ])  # fmt: skip
+    blocks = np.concatenate(block_gains(without.at_horizon, with_it.at_horizon, floor))
     t, chance = 0.0, 1.0
     if len(blocks) > 2 and blocks.std() > 0:
         test = ttest_1samp(blocks, 0.0, alternative="greater")
@@ -165,6 +162,22 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
         t=t, chance=chance, gains=tuple(float(np.concatenate(g).mean()) for g in gains),
         falls=tuple(falls), records=tuple(float(g.mean()) for g in here), blocks=blocks,
     )  # fmt: skip
+
+
+def window_gains(without: np.ndarray, with_it: np.ndarray, floor: float) -> np.ndarray:
+    """g of windows, shape (W,), from their mean squares in units of s², and ε²."""
+    return np.asarray(np.log(without + floor) - np.log(with_it + floor))
+
+
+def block_gains(
+    without: Sequence[np.ndarray], with_it: Sequence[np.ndarray], floor: float
+) -> list[np.ndarray]:
+    """Mean g of blocks of neighbouring windows, one array a record."""
+    each = [window_gains(a, b, floor) for a, b in zip(without, with_it, strict=True)]
+    return [
+        np.array([b.mean() for b in np.array_split(g, min(PER_RECORD, max(1, len(g) // 2)))])
+        for g in each
+    ]
 
 
 def _errors(

@@ -1,9 +1,8 @@
 """The verdict of a discovery by prediction.
 
-    P_j = share of resamples of the unseen blocks in which contender j predicts best
-
-Blocks are drawn with replacement (bootstrap). A name below even odds is no name: what was tried is
-then told, and the verdict is "unknown effect".
+The confidence of a name is the share of resamples in which most speaks for it
+(`identification.prediction.evidence`). A name below even odds is no name, unless it is told with
+its look-alike: what was tried is then told, and the verdict is "unknown effect".
 """
 
 from __future__ import annotations
@@ -17,6 +16,7 @@ from scipy.stats import ttest_1samp
 from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
+from identification.prediction.evidence import compute_confidence
 from identification.prediction.input_error import needed_input_error
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import error_unit, record_errors, scaled_squares
@@ -27,12 +27,10 @@ from identification.prediction.result import (
     RefittedEffect,
     Verdict,
 )
-from identification.prediction.selection import Contender
+from identification.prediction.selection import Contender, evidences
 from identification.prediction.state import RecordsState
 from identification.prediction.unseen import PER_RECORD, Unseen
 
-RESAMPLES = 2000
-SEED = 0  # of the resampling, so that a verdict repeats
 LIKELY = 0.02  # a rival less likely than this is not listed
 
 
@@ -96,7 +94,7 @@ def _named(
     is_law = not mine.effect.is_curve  # which curves may imitate, but are no rival of its name
     others = [o for o in others if not (is_law and o.candidate.effect.is_curve)]
     near = [accepted, *others]
-    shares = compute_confidence(near)
+    shares = compute_confidence(evidences(near))
     rivals = [
         _refitted(o.model, o, float(share))
         for o, share in zip(others, shares[1:], strict=True)
@@ -120,19 +118,6 @@ def _named(
         agrees=tuple(r.log.name for r, g in zip(confirm, gains, strict=True) if g > 0),
         disagrees=tuple(worse),
     )  # fmt: skip
-
-
-def compute_confidence(contenders: Sequence[Contender]) -> np.ndarray:
-    """Share of resamples in which each contender predicts unseen blocks best, shape (k,).
-
-    Args:
-        contenders: models that were refitted from one parent.
-    """
-    gains = np.array([c.prediction.blocks for c in contenders])  # (k, B)
-    rng = np.random.default_rng(SEED)
-    drawn = rng.integers(0, gains.shape[1], (RESAMPLES, gains.shape[1]))
-    best = gains[:, drawn].mean(axis=2).argmax(axis=0)
-    return np.bincount(best, minlength=len(contenders)) / RESAMPLES
 
 
 def _refitted(model: WindowModel, contender: Contender, confidence: float) -> RefittedEffect:

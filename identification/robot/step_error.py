@@ -5,7 +5,9 @@
     e = rms (d(t) - d(t - H))        the difference that grows in that time
 
 Half the step has 2⁻ᵖ of the error of an integrator of order p. So e is half of Euler's error, and
-nearly all of RK4's. An error that is larger than the noise would be taken for an effect.
+nearly all of RK4's. An error that is larger than the noise would be taken for an effect, unless the
+model as it is written predicts the log much worse than that over the horizon: what is missing is
+then larger than what the steps make.
 """
 
 from __future__ import annotations
@@ -19,9 +21,11 @@ from identification.errors import DivergenceError, InputError
 from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor
 from identification.robot.robot import Robot
+from identification.windows.window_error import window_error
 
 SECONDS = 2.0  # of a free run; a longer one of an unstable robot would diverge
 HALVINGS = 6  # of the timestep that are tried, to find one that is small enough
+SMALL = 0.3  # of the error of prediction; its square is less than a tenth of what is to be explained
 NONE = 1e-6  # of an output's motion: so small an error does not matter even without noise
 INTEGRATORS = ("Euler", "RK4", "implicit", "implicitfast")  # as MuJoCo counts them
 RK4 = INTEGRATORS.index("RK4")
@@ -54,7 +58,7 @@ def refuse_coarse_steps(robot: Robot) -> None:
         worst = step_error(robot)
     except DivergenceError:  # the search will say why
         return
-    if worst.error <= worst.noise:
+    if worst.error <= worst.noise or worst.error <= SMALL * _error_of_prediction(robot, worst):
         return
     option, unit = robot.plant.model.opt, robot.log.units.get(worst.output, "")
     raise InputError(
@@ -84,6 +88,18 @@ def step_error(robot: Robot) -> StepError:
     e, noise = np.sqrt(np.mean(d**2, axis=0)), _noise(log.outputs)
     k = int(np.argmax(e / noise))
     return StepError(log.output_names[k], float(e[k]), float(noise[k]))
+
+
+def _error_of_prediction(robot: Robot, worst: StepError) -> float:
+    """Rms error of an output over the horizon with the values as written; 0 in a free run."""
+    horizon, log = robot.file.horizon, robot.log
+    if horizon is None:
+        return 0.0
+    try:
+        error = window_error(robot.plant, log, horizon, dict(log.values))
+    except InputError:  # no window fits the log, or it diverges: the search will say why
+        return 0.0
+    return float(np.sqrt(np.mean(error[..., log.output_names.index(worst.output)] ** 2)))
 
 
 def _noise(y: np.ndarray) -> np.ndarray:

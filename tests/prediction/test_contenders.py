@@ -1,6 +1,7 @@
 """Which candidates are refitted, and which comes first."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,9 +10,9 @@ from numba import njit
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect, Shape, Size
 from identification.prediction.contenders import count_numbers, list_contenders, list_simpler
+from identification.prediction.evidence import compute_confidence, evidence
 from identification.prediction.scores import WindowScore
-from identification.prediction.selection import Contender, _ranked
-from identification.prediction.unseen import Unseen, compare
+from identification.prediction.selection import Contender, _ranked, evidences
 
 OPTIONS = DiscoveryOptions()
 
@@ -33,7 +34,7 @@ def score(e, fall, p_value=1e-9):
     return WindowScore(
         candidate=Candidate(e, "joint a", {s.name: 1.0 for s in e.shapes}),
         size=np.full(len(e.sizes), 0.1), std=np.full(len(e.sizes), 0.01), fall=fall,
-        p_value=p_value,
+        p_value=p_value, along=np.zeros(0),
     )  # fmt: skip
 
 
@@ -70,55 +71,66 @@ def test_simpler_laws_act_as_the_winner_does():
 
 @dataclass(frozen=True)
 class Model:
-    """What the ranking sees of a model."""
+    """What the ranking sees of a model: W = 80 windows of one output."""
 
-    unseen: Unseen
-    candidates: tuple = ()
-    fit: None = field(default=None)
-
-
-def unseen(level, seed=0):
-    rng = np.random.default_rng(seed)
-    squares = tuple((level * rng.uniform(0.8, 1.2, 40),) for _ in range(3))
-    return Unseen(
-        lengths=(0.5, 1.0, 2.0), squares=squares, moves=((), (), ()), floor=1e-3,
-        fit_percent=np.zeros(1),
-    )  # fmt: skip
+    candidates: tuple
+    fit: object
+    unseen: object
+    scale: tuple = (1.0,)
 
 
-def contender(e, level, criterion, seed, is_proven=True):
-    model = Model(unseen(level, seed), (score(e, 0.5).candidate,))
+def contender(e, gain, seed=0, numbers=1, is_proven=True):
+    windows = SimpleNamespace(cut=SimpleNamespace(starts=np.arange(40)))
+    model = Model(
+        (score(e, 0.5).candidate,),
+        SimpleNamespace(problem=SimpleNamespace(parts=(windows,))),
+        SimpleNamespace(at_horizon=(np.zeros(40),)),
+    )
+    gains = gain + 0.1 * np.random.default_rng(seed).normal(size=20)
     return Contender(
-        model=model, prediction=compare(unseen(1.0), model.unseen), criterion=criterion,
-        is_proven=is_proven,
+        model=model, prediction=None, gains=gains, numbers=numbers,
+        criterion=float(evidence([gains], [numbers], 80, 1)[0, 0]), is_proven=is_proven,
     )  # fmt: skip
 
 
 def ranked(*contenders):
-    return [c.candidate.effect.name for c in _ranked(contenders, 3, OPTIONS)]
+    return [c.candidate.effect.name for c in _ranked(contenders, OPTIONS)]
 
 
-def test_fewer_numbers_come_first_where_unseen_records_cannot_tell():
-    rich = contender(effect("rich", shapes=1), 0.30, 105.0, seed=1)
-    plain = contender(effect("plain"), 0.305, 100.0, seed=2)
+def test_fewer_numbers_come_first_where_resamples_cannot_tell():
+    rich = contender(effect("rich"), 1.06, seed=1, numbers=2)
+    plain = contender(effect("plain"), 1.0, seed=2)
     assert ranked(rich, plain) == ["plain", "rich"]
+    better = contender(effect("rich"), 1.07, seed=1, numbers=2)
+    assert better.criterion > plain.criterion  # but not surely
+    assert ranked(better, plain) == ["plain", "rich"]
 
 
-def test_more_numbers_come_first_where_unseen_records_or_the_criterion_tell():
-    rich = contender(effect("rich", shapes=1), 0.1, 105.0, seed=1)
-    plain = contender(effect("plain"), 0.3, 100.0, seed=2)
-    assert ranked(rich, plain) == ["rich", "plain"]
-    sure = contender(effect("rich", shapes=1), 0.30, 140.0, seed=1)
-    assert ranked(sure, plain) == ["rich", "plain"]
+def test_more_numbers_come_first_where_all_windows_tell():
+    rich = contender(effect("rich"), 2.0, seed=1, numbers=2)
+    plain = contender(effect("plain"), 1.0, seed=2)
+    assert ranked(plain, rich) == ["rich", "plain"]
 
 
 def test_what_is_not_proven_comes_last():
-    worse = contender(effect("plain"), 0.3, 200.0, seed=2, is_proven=False)
-    rich = contender(effect("rich", shapes=1), 0.3, 100.0, seed=1)
+    worse = contender(effect("plain"), 2.0, seed=2, is_proven=False)
+    rich = contender(effect("rich"), 1.0, seed=1, numbers=2)
     assert ranked(worse, rich) == ["rich", "plain"]
 
 
-def test_what_all_records_share_comes_before_what_each_has_for_itself():
-    own = contender(effect("shift", own=True), 0.3, 101.0, seed=1)
-    shared = contender(effect("delay"), 0.3, 100.0, seed=2)
-    assert ranked(own, shared) == ["delay", "shift"]
+def test_a_law_that_adds_nothing_to_another_has_no_share_of_its_confidence():
+    plain, rich = contender(effect("plain"), 1.0), contender(effect("rich"), 1.0, numbers=2)
+    assert list(compute_confidence(evidences([plain, rich]))) == [1.0, 0.0]
+
+
+def test_the_evidence_of_all_blocks_is_twice_the_gain_in_likelihood_less_the_price_of_numbers():
+    gains = [np.array([0.2, 0.4]), np.array([0.1, 0.1])]
+    found = evidence(gains, [1, 3], windows=50, outputs=2)[:, 0]
+    np.testing.assert_allclose(found, [2 * 50 * 0.3 - np.log(50), 2 * 50 * 0.1 - 3 * np.log(50)])
+
+
+def test_confidence_is_shared_by_equals_as_their_blocks_scatter():
+    a, b = (contender(effect(n), 1.0, seed=k) for k, n in enumerate("ab"))
+    shares = compute_confidence(evidences([a, b]))
+    assert shares.sum() == pytest.approx(1.0)
+    assert 0 < shares.min() < shares.max() < 1

@@ -25,7 +25,7 @@ def several(sizes, std, places=("joint a", "joint b", "joint c")):
     effect = at_several(EFFECT, places)
     return WindowScore(
         candidate=Candidate(effect, next(iter(effect.places)), {}), size=np.array(sizes),
-        std=np.array(std), fall=0.2, p_value=1e-6,
+        std=np.array(std), fall=0.2, p_value=1e-6, along=np.zeros(0),
     )  # fmt: skip
 
 

@@ -1,0 +1,153 @@
+"""The criterion of all windows, linearised at a point, and the steps of a search from there.
+
+    (H + μ diag H) Δq = g,    H = Σ_w S_wᵀ(I - P_w) S_w + W²
+                              g = Σ_w S_wᵀ(I - P_w) r_w + W²(q̄ - q)
+
+P_w projects on what the states of a window make up for, W = diag(1/σ) are the priors. A step moves
+parameters and states together. Where a joint sticks or a limit is met the criterion is not smooth
+in the states, and a few windows would bar the way of all: each window may keep the state that it
+had, and where that is not enough, its state is sought anew at the new parameters (variable
+projection; Golub, Pereyra 1973).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.estimation.levenberg_marquardt import Cost
+from identification.prediction.problem import Problem
+from identification.windows.shooting import Tangent
+
+Moves = tuple[np.ndarray, ...]  # of the windows' states, one array (W, nx) a record
+
+
+@dataclass(frozen=True)
+class Step:
+    """Where a trial step ends.
+
+    Attributes:
+        q: the parameters there, shape (p,).
+        moves: of the windows' states there, one array (W, nx) a record.
+        cost: V there; infinite where it cannot be simulated.
+        promised: V there by the linearisation.
+    """
+
+    q: np.ndarray
+    moves: Moves
+    cost: float
+    promised: float
+
+
+@dataclass(frozen=True)
+class AtPoint:
+    """The criterion linearised at parameters and states, for `levenberg_marquardt`.
+
+    Attributes:
+        problem: windows and priors.
+        q: shape (p,).
+        moves: of the windows' states, one array (W, nx) a record.
+        tangents: the windows linearised there, one a record.
+        tolerance: relative fall of V that is worth a search of the states.
+    """
+
+    problem: Problem
+    q: np.ndarray
+    moves: Moves
+    tangents: tuple[Tangent, ...]
+    tolerance: float
+
+    @property
+    def cost(self) -> float:
+        """V."""
+        data = sum(float(np.sum(t.r**2)) for t in self.tangents)
+        return data + float(np.sum(self.problem.against(self.q) ** 2))
+
+    def step(self, μ: Cost) -> Step:
+        """Where the step with damping μ ends."""
+        dq, dd = step_of(self.problem, self.q, self.tangents, float(μ))
+        space = self.problem.prior.space
+        q = np.clip(self.q + dq, space.lower, space.upper)
+        promised = self._promised(q, dd)
+        moves = tuple(d + more for d, more in zip(self.moves, dd, strict=True))
+        try:
+            moves, cost = self.problem.best(q, (moves, self.moves))
+            if cost >= self.cost and self.cost - promised > self.tolerance * self.cost:
+                moves = self.problem.settled(q, moves)
+                cost = self.problem.cost(q, moves)
+        except InputError:  # it diverged, or has no start: the search must go elsewhere
+            return Step(q, moves, np.inf, promised)
+        return Step(q, moves, cost, promised)
+
+    def cost_after(self, step: Step) -> float:
+        """V after a step."""
+        return step.cost
+
+    def bend(self, step: Step, after: Cost, μ: Cost) -> None:
+        """The steps are never bent."""
+
+    def moved(self, step: Step, taken: np.ndarray) -> AtPoint:
+        """The criterion after a step."""
+        return linearised(self.problem, step.q, step.moves, self.tolerance)
+
+    def _promised(self, q: np.ndarray, dd: Sequence[np.ndarray]) -> float:
+        """V at q, the states moved by dd, by the linearisation."""
+        dq = q - self.q
+        left = sum(
+            float(np.sum((t.r - t.S @ dq - _along_states(t, d)) ** 2))
+            for t, d in zip(self.tangents, dd, strict=True)
+        )
+        return left + float(np.sum(self.problem.against(q) ** 2))
+
+
+def linearised(problem: Problem, q: np.ndarray, moves: Moves, tolerance: float) -> AtPoint:
+    """The criterion linearised at q (p,) and at moves of the states.
+
+    Raises:
+        DivergenceError: it cannot be simulated there, or beside it.
+    """
+    return AtPoint(problem, q, moves, problem.tangents(q, moves), tolerance)
+
+
+def projected(t: Tangent) -> tuple[np.ndarray, np.ndarray]:
+    """S and r without what the states of each window make up for: (W, m, p) and (W, m)."""
+    U = t.U * (t.s > 0)[:, None]
+    S = t.S - U @ (np.swapaxes(U, 1, 2) @ t.S)
+    return S, t.r - np.einsum("wmk,wk->wm", U, np.einsum("wmk,wm->wk", U, t.r))
+
+
+def step_of(
+    problem: Problem, q: np.ndarray, tangents: Sequence[Tangent], damping: float
+) -> tuple[np.ndarray, Moves]:
+    """The damped step of the parameters and of the windows' states."""
+    H, g = np.diag(problem.prior.weight**2), problem.prior.weight * problem.against(q)
+    for t in tangents:
+        against, left, share = _states(t, damping)
+        H = H + np.einsum("wmp,wmq->pq", t.S, t.S)
+        H = H - np.einsum("wkp,wk,wkq->pq", against, share, against)
+        g = g + np.einsum("wmp,wm->p", t.S, t.r) - np.einsum("wkp,wk,wk->p", against, share, left)
+    size = np.sqrt(np.maximum(np.diag(H), 0.0))
+    size = np.where(size > 0, size, 1.0)
+    scaled = H / np.outer(size, size) + damping * np.eye(len(g))
+    dq = np.linalg.lstsq(scaled, g / size, rcond=1e-14)[0] / size
+    moves = []
+    for t in tangents:
+        against, left, _ = _states(t, damping)
+        along = t.s / (t.s**2 + damping) * (left - against @ dq)
+        moves.append(np.einsum("wkx,wk->wx", t.Vt, along) / t.size)
+    return dq, tuple(moves)
+
+
+def _states(t: Tangent, damping: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    against = np.swapaxes(t.U, 1, 2) @ t.S  # Uᵀ S, (W, nx, p)
+    left = np.einsum("wmk,wm->wk", t.U, t.r)
+    return against, left, t.s**2 / (t.s**2 + damping)
+
+
+def _along_states(t: Tangent, moves: np.ndarray) -> np.ndarray:
+    """X Δd of each window, shape (W, m)."""
+    along = t.s * np.einsum("wkx,wx->wk", t.Vt, moves * t.size)
+    return np.einsum("wmk,wk->wm", t.U, along)

@@ -1,0 +1,77 @@
+"""Scores of all that a model lacks: everything on some windows, what is promising on all of them.
+
+A score of one place is worth as much as one of all places, and a shape that is best for all places
+together may be wrong for each of them. So every shape is scored at every place, on one window of
+`THIN`. What then explains a share of the best is scored again on all windows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.scoring.sensitivities import list_common, list_single
+from identification.effects.effect import Candidate, Effect
+from identification.prediction.contenders import is_plausible, is_significant
+from identification.prediction.fit import WindowFit
+from identification.prediction.model import WindowModel
+from identification.prediction.problem import THIN, kept, thinned, thinned_moves
+from identification.prediction.scores import WindowScore, find_imitated, window_scores
+from identification.prediction.several_places import several_scores
+
+SHAPES = 2  # of an effect at a place that are scored on all windows
+
+
+def score_all(
+    model: WindowModel, effects: Sequence[Effect], options: DiscoveryOptions
+) -> tuple[WindowScore, ...]:
+    """Scores of what a model lacks, at all places, at each, and at several, the best first.
+
+    Args:
+        model: fitted.
+        effects: the candidates.
+        options: what is beyond chance, and what is promising.
+    """
+    listed = _listed(model, effects)
+    few = window_scores(some_windows(model.fit), listed)
+    promising = _promising(few, options)
+    again = {id(c) for c in promising}
+    rest = [s for s in few if id(s.candidate) not in again]
+    found = sorted([*window_scores(model.fit, promising), *rest], key=lambda s: -s.fall)
+    beyond = [
+        s for s in found if is_significant(s, len(found), options) and is_plausible(s, options)
+    ]
+    known = find_imitated(model.fit, [s for s in beyond if id(s.candidate) in again])
+    found, beyond = ([s for s in each if s.candidate.key not in known] for each in (found, beyond))
+    several = several_scores(model.fit, beyond, options)
+    return tuple(sorted((*found, *several), key=lambda s: -s.fall))
+
+
+def some_windows(fit: WindowFit) -> WindowFit:
+    """A fit seen through one window of `THIN`; its values are those of all windows."""
+    tangents = tuple(t.rows(kept(len(t.r), THIN)) for t in fit.tangents)
+    moves = thinned_moves(fit.moves, THIN)
+    return replace(fit, problem=thinned(fit.problem, THIN), moves=moves, tangents=tangents)
+
+
+def _listed(model: WindowModel, effects: Sequence[Effect]) -> list[Candidate]:
+    """All shapes of what the model lacks, at all places together and at each of them."""
+    has = {c.key for c in model.candidates}
+    everywhere = {c.effect.name for c in model.candidates if not c.effect.places[c.where]}
+    common = list_common([e for e in effects if e.name not in everywhere])
+    return [c for c in (*common, *list_single(common)) if c.key not in has]
+
+
+def _promising(scores: Sequence[WindowScore], options: DiscoveryOptions) -> list[Candidate]:
+    """Candidates that may be refitted: plausible, with a share of the best one's gain."""
+    count: dict[tuple[str, str], int] = {}
+    plausible = [s for s in scores if is_plausible(s, options)]
+    least = options.refit_share * max([s.fall for s in plausible], default=0.0)
+    out = []
+    for s in plausible:
+        key = s.candidate.key
+        count[key] = count.get(key, 0) + 1
+        if s.fall >= least and count[key] <= SHAPES:
+            out.append(s.candidate)
+    return out
