@@ -2,11 +2,13 @@
 
     f = Σ_e force_e(s, p_e)                               s: the `Joint` state of a joint
     b = max(0, Σ_e friction_e(s, p_e))                    the largest friction there
-    r = M v/T + f_u + f_g + qfrc_passive + f              what would have to be resisted to stop
-    qfrc_passive += f - min(max(r, -b), b)
+    g = M v/T + f_u + f_g + qfrc_passive + f              what would have to be resisted to stop
+    qfrc_passive += f - min(max(g, -b), b)
 
 Friction holds a joint that less than b drives, without creeping, and brakes with b what it cannot
 stop within T = 3 steps (Coulomb's law as Duclusaud et al. 2024 integrate it: BAM, equation 3).
+Where a robot has several degrees of freedom, they pull at each other: the mass matrix is then whole,
+the bias is in the place of f_g, and all joints are held together (`identification.native.holding`).
 The numbers stand at the end of a joint's user data, in a row
 
     (T, what the records reach, parameters of the effects, key of the set of effects, TAG)
@@ -28,8 +30,10 @@ import numpy as np
 from identification.native import structs
 from identification.native.access import double, integer, offsets, word
 from identification.native.compose import total
-from identification.native.decorators import inlined
+from identification.native.decorators import inlined, internal
 from identification.native.element import Element, Function, Hook, Term
+from identification.native.holding import MOST, hold, invert
+from identification.native.library import mj_rne
 from identification.native.memory import load_byte, load_constant, load_double, store_double
 from identification.native.table import is_compiled
 from identification.native.tuples import replacer
@@ -37,6 +41,7 @@ from identification.native.tuples import replacer
 TAG = 7351.0609  # last entry of a row of ours
 STOP, REACH, FIRST, LAST = 0, 1, 6, 2  # columns of T, of what is reached, of the first parameter;
 # entries behind the last
+DRIVE, LOW, HIGH, STOPPING, FRICTION, ROWS = range(6)  # rows of the room for joints held together
 STEPS = 3.0  # T over the step: where joints are coupled, the inertia of one is less than M
 
 # What an effect sees of a hinge or slide joint.
@@ -66,14 +71,15 @@ M = offsets(
     " actuator_gear actuator_gainprm actuator_biasprm actuator_dyntype actuator_gaintype"
     " actuator_biastype actuator_ctrladr actuator_ctrllimited actuator_ctrlrange"
     " actuator_forcelimited actuator_forcerange jnt_type jnt_bodyid body_subtreemass M_rowadr"
-    " M_rownnz",
+    " M_rownnz M_colind nv",
 )
-D = offsets("mjData", "time qpos qvel ctrl qfrc_passive M subtree_com xanchor xaxis")
+D = offsets("mjData", "time qpos qvel ctrl qfrc_passive qfrc_bias M subtree_com xanchor xaxis")
 GRAVITY = structs.inner_word("mjModel", "opt", "gravity")
 FIELDS = frozenset((*M._fields, *D._fields, "opt.gravity"))  # everything the callback touches
 
 _JOINT = int(mujoco.mjtTrn.mjTRN_JOINT)
 _HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
+_SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 _NO_DYNAMICS = int(mujoco.mjtDyn.mjDYN_NONE)
 _FIXED = int(mujoco.mjtGain.mjGAIN_FIXED)
 _NO_BIAS, _AFFINE = int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtBias.mjBIAS_AFFINE)
@@ -165,6 +171,44 @@ def joint(m, d, j, row):  # type: ignore[no-untyped-def]
     )  # fmt: skip
 
 
+@inlined
+def drive_alone(m, d, j, room):  # type: ignore[no-untyped-def]
+    """The drive of a joint without effects into `room`, which others feel."""
+    kind, dof = integer(m, M.jnt_type, j), integer(m, M.jnt_dofadr, j)
+    if kind == _HINGE or kind == _SLIDE:
+        q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
+        f_u = drive_force(m, d, j, q, double(d, D.qvel, dof))
+        room[DRIVE, dof] = f_u if f_u == f_u else 0.0
+
+
+@internal
+def hold_together(m, d, stop, room, n):  # type: ignore[no-untyped-def]
+    """Subtract the friction of all joints; `room` has their drives and largest frictions."""
+    A, full, w = np.empty((n, n)), np.zeros((n, n)), np.zeros(n)
+    mj_rne(m, d, 0, word(d, D.qfrc_bias))  # MuJoCo itself does so right after the passive forces
+    for i in range(n):
+        first = integer(m, M.M_rowadr, i)
+        for k in range(first, first + integer(m, M.M_rownnz, i)):
+            full[i, integer(m, M.M_colind, k)] = double(d, D.M, k)
+        v = double(d, D.qvel, i)
+        g = room[DRIVE, i] - load_double(word(d, D.qfrc_bias) + 8 * i)
+        room[STOPPING, i] += g + load_double(word(d, D.qfrc_passive) + 8 * i)
+        for k in range(i + 1):
+            room[STOPPING, i] += full[i, k] * double(d, D.qvel, k) / stop
+            if k < i:
+                room[STOPPING, k] += full[i, k] * v / stop
+    invert(full, A, n)
+    for i in range(n):
+        for k in range(n):
+            w[i] += A[i, k] * room[STOPPING, k]
+    hold(A, w, room[LOW], room[HIGH], room[FRICTION], n)
+    for i in range(n):
+        f = room[FRICTION, i]
+        if f != 0.0:
+            at = word(d, D.qfrc_passive) + 8 * i
+            store_double(at, load_double(at) - f)
+
+
 def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
     """The callback of a set of joint effects, to be compiled.
 
@@ -175,32 +219,60 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
     force, friction = total(JOINT, terms, "force"), total(JOINT, terms, "friction")
     entries, with_sign = width(terms), replacer(Joint, "sign")
 
+    @inlined
+    def alone(m, d, j, row):  # type: ignore[no-untyped-def]
+        """Add what acts on a joint that is held by itself."""
+        dof = integer(m, M.jnt_dofadr, j)
+        at = word(d, D.qfrc_passive) + 8 * dof
+        s = joint(m, d, j, row)
+        f = force(s, row + 8 * FIRST, 0)
+        driven = f + s.f_g + load_double(at)
+        if s.f_u == s.f_u:  # where it is known
+            driven += s.f_u
+        g = driven + inertia(m, d, dof) * s.v / load_constant(row + 8 * STOP)
+        b = max(0.0, friction(with_sign(s, (1.0 if g > 0.0 else -1.0,)), row + 8 * FIRST, 0))
+        f -= max(-b, min(b, g))
+        if f != 0.0:
+            store_double(at, load_double(at) + f)
+
+    @inlined
+    def together(m, d, j, row, room, n):  # type: ignore[no-untyped-def]
+        """Add the force on a joint; its drive and its largest friction into `room`."""
+        dof = integer(m, M.jnt_dofadr, j)
+        at = word(d, D.qfrc_passive) + 8 * dof
+        s = joint(m, d, j, row)
+        f = force(s, row + 8 * FIRST, 0)
+        if f != 0.0:
+            store_double(at, load_double(at) + f)
+        room[DRIVE, dof] = s.f_u if s.f_u == s.f_u else 0.0
+        room[LOW, dof] = max(0.0, friction(with_sign(s, (-1.0,)), row + 8 * FIRST, 0))
+        room[HIGH, dof] = max(0.0, friction(with_sign(s, (1.0,)), row + 8 * FIRST, 0))
+
     def passive(m, d):  # type: ignore[no-untyped-def]
-        columns = word(m, M.nuser_jnt)
+        columns, n = word(m, M.nuser_jnt), word(m, M.nv)
         if columns < LAST:
             return
+        are_coupled, stop = 1 < n <= MOST, 0.0
+        room = np.zeros((ROWS, n if are_coupled else 1))
         for j in range(word(m, M.njnt)):
             end = word(m, M.jnt_user) + 8 * columns * (j + 1)
             if load_constant(end - 8) != TAG:
+                if are_coupled:
+                    drive_alone(m, d, j, room)
                 continue
-            at = word(d, D.qfrc_passive) + 8 * integer(m, M.jnt_dofadr, j)
             own = load_constant(end - 16)
             if own != key:
                 if not is_compiled(own):
+                    at = word(d, D.qfrc_passive) + 8 * integer(m, M.jnt_dofadr, j)
                     store_double(at, np.nan)
                 continue
-            row, dof = end - 8 * entries, integer(m, M.jnt_dofadr, j)
-            s = joint(m, d, j, row)
-            f = force(s, row + 8 * FIRST, 0)
-            driven = f + s.f_g + load_double(at)
-            if s.f_u == s.f_u:  # where it is known
-                driven += s.f_u
-            r = driven + inertia(m, d, dof) * s.v / load_constant(row + 8 * STOP)
-            ahead = 1.0 if r > 0.0 else -1.0
-            there = with_sign(s, (ahead,))
-            b = max(0.0, friction(there, row + 8 * FIRST, 0))
-            f -= max(-b, min(b, r))
-            if f != 0.0:
-                store_double(at, load_double(at) + f)
+            row = end - 8 * entries
+            stop = load_constant(row + 8 * STOP)
+            if are_coupled:
+                together(m, d, j, row, room, n)
+            else:
+                alone(m, d, j, row)
+        if are_coupled and (room[LOW].any() or room[HIGH].any()):
+            hold_together(m, d, stop, room, n)
 
     return {"passive": passive}

@@ -99,10 +99,9 @@ def reached(plant, joint):
     return plant.model.jnt_user[plant.model.joint(joint).id, -width:][:5].tolist()
 
 
-def forces(plant, joint, values):
-    """The force of a joint's effects in plain Python: (q, v, f_u, f_g, passive, M, time) -> f."""
-    every, T = {**plant.parameters.values(), **values}, stopping_time(plant, joint)
-    far = reached(plant, joint)
+def sums(plant, joint, values):
+    """Force and largest friction of a joint's effects in plain Python, each a function of `Joint`."""
+    every = {**plant.parameters.values(), **values}
     laws = {
         hook: [(e.hooks[hook].py_func, tuple(numbers_at(e, joint, every)), len(e.sizes))
                for e in plant.effects if hook in e.hooks]
@@ -112,11 +111,24 @@ def forces(plant, joint, values):
     def total(hook, s):
         return sum(law(s, p) for law, p, sizes in laws[hook] if any(p[:sizes]))
 
+    return lambda s: total("force", s), lambda s: max(0.0, total("friction", s))
+
+
+def seen(plant, joint, q, v, f_u, f_g, time):
+    """What the effects of a joint see."""
+    return Joint(time, q, v, f_u, f_g, 0.0, *reached(plant, joint))
+
+
+def forces(plant, joint, values):
+    """What acts on a joint that is held by itself: (q, v, f_u, f_g, passive, M, time) -> f."""
+    total, largest = sums(plant, joint, values)
+    T = stopping_time(plant, joint)
+
     def force(q, v, f_u, f_g, passive, M, time):
-        s = Joint(time, q, v, f_u, f_g, 0.0, *far)
-        f = total("force", s)
+        s = seen(plant, joint, q, v, f_u, f_g, time)
+        f = total(s)
         r = M * v / T + f_u + f_g + passive + f
-        b = max(0.0, total("friction", s._replace(sign=1.0 if r > 0 else -1.0)))
+        b = largest(s._replace(sign=1.0 if r > 0 else -1.0))
         return f - max(-b, min(b, r))
 
     return force

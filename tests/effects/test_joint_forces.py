@@ -13,10 +13,14 @@ from joint_cases import (
     arm_log,
     forces,
     run,
+    seen,
     slider,
     slider_log,
     steps,
+    stopping_time,
+    sums,
 )
+from scipy.optimize import lsq_linear
 
 from identification import InputError, Log, Parameter
 from identification.effects.joint_plant import joint_plant
@@ -150,7 +154,6 @@ def test_on_an_arm_the_forces_are_those_of_qfrc_applied():
         for where, factor in (("all joints", 3.0), ("joint elbow", 5.0)):
             values |= some(effect, where, factor) if where in effect.places else {}
     simulated = run(plant, arm_log(u), **values)
-    by_joint = [forces(plant, joint, values) for joint in ("shoulder", "elbow")]
     model = mujoco.MjModel.from_xml_string(ARM)
     assert model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
@@ -159,36 +162,53 @@ def test_on_an_arm_the_forces_are_those_of_qfrc_applied():
     for fraction in (20, 40):  # Euler's error is of first order: two steps tell the limit
         model.opt.timestep = STEP / fraction
         ends.append(
-            applied(model, by_joint, np.repeat(u[:-1], fraction, axis=0))[fraction - 1 :: fraction]
+            applied(plant, values, model, np.repeat(u[:-1], fraction, axis=0))[
+                fraction - 1 :: fraction
+            ]
         )
     limit = 2 * ends[1] - ends[0]
     error = np.abs(simulated[1:] - limit).max()
     assert error < 2e-4 < 0.02 < np.abs(simulated - run(plant, arm_log(u))).max()
 
 
-def applied(model, by_joint, inputs):
+def applied(plant, values, model, inputs):
+    """Positions of the arm whose friction is a bounded least-squares problem of its own."""
     data, still, out = mujoco.MjData(model), mujoco.MjData(model), []
-    M = np.empty((2, 2))
+    joints, M = ("shoulder", "elbow"), np.empty((2, 2))
+    laws = [sums(plant, joint, values) for joint in joints]
+    T = stopping_time(plant, joints[0])
     for u in inputs:
         data.ctrl = u
-        load = (
+        drive = np.array([
             2 * (u[0] + 0.1 - 0.3 * 2 * data.qpos[0] - 0.05 * 2 * data.qvel[0]),
             0.5 * np.clip(u[1], -0.4, 0.4),
-        )
+        ])  # fmt: skip
         still.qpos = data.qpos
         mujoco.mj_forward(model, still)  # at rest, all of the bias is gravity
         mujoco.mj_forward(model, data)
         mujoco.mj_fullM(model, M, data.qM) if hasattr(data, "qM") else mujoco.mj_fullM(
             model, data, M
         )
-        for j in range(2):
-            data.qfrc_applied[j] = by_joint[j](
-                data.qpos[j], data.qvel[j], load[j], -still.qfrc_bias[j], data.qfrc_passive[j],
-                M[j, j], data.time,
-            )  # fmt: skip
+        states = [
+            seen(plant, joint, data.qpos[j], data.qvel[j], drive[j], -still.qfrc_bias[j], data.time)
+            for j, joint in enumerate(joints)
+        ]
+        more = np.array([force(s) for (force, _), s in zip(laws, states, strict=True)])
+        g = M @ data.qvel / T + drive + data.qfrc_passive + more - data.qfrc_bias
+        low, high = (
+            np.array([b(s._replace(sign=sign)) for (_, b), s in zip(laws, states, strict=True)])
+            for sign in (-1.0, 1.0)
+        )
+        data.qfrc_applied = more - slow_friction(M, g, low, high)
         mujoco.mj_step(model, data)
         out.append(np.array(data.qpos))
     return np.array(out)
+
+
+def slow_friction(M, g, low, high):
+    """argmin (f - g)ᵀ M⁻¹ (f - g), -low <= f <= high."""
+    L = np.linalg.inv(np.linalg.cholesky(M))
+    return lsq_linear(L, L @ g, (-low - 1e-15, high + 1e-15), method="bvls", tol=1e-15).x
 
 
 PENDULUM = """<mujoco model="pendulum">

@@ -1,0 +1,57 @@
+"""Functions of MuJoCo's library that compiled callbacks call.
+
+LLVM finds them by their names, as it finds those of the C library, so that machine code that calls
+them can be kept and loaded again by another process.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from pathlib import Path
+from typing import Any
+
+import llvmlite.binding as llvm
+import mujoco
+from llvmlite import ir
+from numba import types
+from numba.extending import intrinsic
+
+
+def _library() -> ctypes.CDLL:
+    """MuJoCo's library, which `import mujoco` has loaded."""
+    folder = Path(mujoco.__file__).parent
+    found = sorted(p for p in folder.iterdir() if "mujoco" in p.name and _is_library(p))
+    if not found:
+        raise ImportError(f"{folder} holds no libmujoco; install mujoco again")
+    return ctypes.CDLL(str(found[0]))
+
+
+def _is_library(path: Path) -> bool:
+    return path.name.startswith(("libmujoco.", "mujoco.")) and any(
+        end in path.suffixes for end in (".so", ".dylib", ".dll")
+    )
+
+
+def _enter(name: str) -> None:
+    address = ctypes.cast(getattr(_library(), name), ctypes.c_void_p).value
+    llvm.add_symbol(name, address)
+
+
+_enter("mj_rne")
+
+
+@intrinsic
+def mj_rne(typing_context, m, d, with_acceleration, result):  # type: ignore[no-untyped-def]
+    """Recursive Newton-Euler: bias forces of a model and its data to the address `result`."""
+
+    def emit(context, builder, signature, args):  # type: ignore[no-untyped-def]
+        kinds: list[Any] = [ir.IntType(64), ir.IntType(64), ir.IntType(32), ir.IntType(64)]
+        function = builder.module.globals.get("mj_rne")
+        if function is None:
+            kind = ir.FunctionType(ir.VoidType(), kinds)
+            function = ir.Function(builder.module, kind, "mj_rne")
+        m, d, flag, out = args
+        builder.call(function, [m, d, builder.trunc(flag, kinds[2]), out])
+        return context.get_dummy_value()
+
+    return types.void(types.int64, types.int64, types.int64, types.int64), emit

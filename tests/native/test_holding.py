@@ -1,0 +1,78 @@
+"""Friction of joints that pull at each other: the complementarity problem and its solution."""
+
+import mujoco
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from joint_cases import run
+from scipy.optimize import lsq_linear
+
+from identification import Log, joint_plant
+from identification.native.holding import held
+
+SEEDS = st.integers(0, 10**6)
+
+
+def drawn(seed, n):
+    rng = np.random.default_rng(seed)
+    L = rng.normal(size=(n, n)) + (1 + n) * np.eye(n)
+    g = rng.normal(size=n) * 10 ** rng.uniform(-2, 2)
+    return L @ L.T, g, *(np.abs(rng.normal(size=(2, n))) * rng.integers(0, 2, (2, n)))
+
+
+@given(SEEDS, st.integers(1, 8))
+@settings(max_examples=200, deadline=None)
+def test_friction_solves_the_complementarity_problem(seed, n):
+    M, g, low, high = drawn(seed, n)
+    f = held(M, g, low, high)
+    w = np.linalg.solve(M, g - f)
+    near = 1e-7 * (1 + np.abs(g).max())
+    assert np.all((-low - near <= f) & (f <= high + near))
+    scale = near * np.linalg.norm(np.linalg.inv(M), 2)
+    assert np.all(w[f > -low + near] > -scale)  # backward only against all that low gives
+    assert np.all(w[f < high - near] < scale)
+
+
+@given(SEEDS, st.integers(1, 6))
+@settings(max_examples=50, deadline=None)
+def test_friction_is_a_bounded_least_squares_problem(seed, n):
+    M, g, low, high = drawn(seed, n)
+    L = np.linalg.inv(np.linalg.cholesky(M))
+    some, slow = low + high > 0, np.zeros(n)
+    if some.any():
+        bounds = (-low[some], high[some])
+        slow[some] = lsq_linear(L[:, some], L @ g, bounds, method="bvls", tol=1e-15).x
+    np.testing.assert_allclose(held(M, g, low, high), slow, atol=1e-6 * (1 + np.abs(g).max()))
+
+
+def test_what_is_not_coupled_is_clipped_by_itself():
+    M, g = np.diag([1.0, 2.0, 3.0]), np.array([0.5, -4.0, 2.0])
+    np.testing.assert_allclose(held(M, g, np.ones(3), np.ones(3)), [0.5, -1.0, 1.0], rtol=1e-15)
+
+
+TWO = """<mujoco><option timestep="0.002" integrator="RK4"/><worldbody>
+  <body><joint name="a" axis="0 1 0"/><inertial pos="0 0 -0.3" mass="1" diaginertia=".03 .03 .001"/>
+    <body pos="0 0 -0.5"><joint name="b" axis="0 1 0"/>
+      <inertial pos="0 0 -0.3" mass="1" diaginertia=".03 .03 .001"/></body></body></worldbody>
+  <actuator><motor name="u" joint="a"/><motor name="w" joint="b"/></actuator>
+  <sensor><jointpos name="qa" joint="a"/><jointpos name="qb" joint="b"/></sensor></mujoco>"""
+
+
+@pytest.mark.parametrize("level", [8.0, 12.0])
+def test_a_joint_that_friction_holds_does_not_creep_while_another_one_moves(level):
+    t = 0.01 * np.arange(200)
+    u = np.column_stack([8 * np.sin(6 * t), 0 * t])
+    log = Log(
+        time=t, inputs=u, outputs=np.sin(6 * t)[:, None] * [0.5, 0.1], input_names=("u", "w"),
+        output_names=("qa", "qb"),
+    )  # fmt: skip
+    plant = joint_plant(TWO, (), log)
+    y = run(plant, log, **{"coulomb_friction.f_c@b": level})
+    assert np.ptp(y[:, 0]) > 0.3
+    free = run(plant, log)
+    assert np.ptp(free[:, 1]) > 0.1
+    assert np.ptp(y[:, 1]) < 1e-9
+    stiff = mujoco.MjSpec.from_string(TWO)
+    stiff.joint("b").armature = 1e6  # a joint that is held is a joint that is not there
+    np.testing.assert_allclose(y, run(joint_plant(stiff.to_xml(), (), log), log), atol=2e-5)
