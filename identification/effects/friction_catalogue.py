@@ -18,7 +18,7 @@ def friction_effects(g: Group) -> list[Effect]:
     """Frictions of some joints; those without a place are left out by the caller."""
     F, A = g.F, g.A
     v_s = _peak(g, SPEEDS)
-    power = Shape("n", "", (1.0, 2.0), 0.5, 4.0, free=False, about="the power", usual=2.0)
+    power = Shape("n", "", (1.0, 2.0), 0.5, 4.0, about="the power", usual=2.0)
     out = [
         g.friction(laws.coulomb_friction, "at most f_c, against the motion",
                    (g.size("f_c", 0.3 * F, g.f, "level", 1),), "friction: Coulomb"),

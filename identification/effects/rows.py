@@ -19,7 +19,7 @@ from identification.effects.joint_layout import JointLayout
 from identification.effects.moving_bodies import movable
 from identification.errors import InputError, unknown_name
 from identification.logs.names import quoted
-from identification.native.joint_callback import FIRST, REACH, STEPS, STOP, TAG
+from identification.native.joint_callback import FIRST, REACH, STOP, TAG, stopping_steps
 
 _LONGEST = 200  # of MuJoCo's words in a message
 _HELD = {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}
@@ -67,7 +67,7 @@ def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis], layout: JointLayout) ->
             raise unknown_name("hinge or slide joint", axis.joint, joints)
         given = own.jnt_user[own.joint(axis.joint).id]
         row = np.zeros(layout.entries)
-        row[STOP], row[-2], row[-1] = STEPS * own.opt.timestep, layout.key, TAG
+        row[STOP], row[-2], row[-1] = stopping_steps(own.nv) * own.opt.timestep, layout.key, TAG
         row[REACH:FIRST] = reached(axis)
         joints[axis.joint].userdata = np.concatenate([given, row])
     spec.nuser_jnt = own.nuser_jnt + layout.entries

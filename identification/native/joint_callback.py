@@ -6,9 +6,9 @@
     qfrc_passive += f - min(max(g, -b), b)
 
 Friction holds a joint that less than b drives, without creeping, and brakes with b what it cannot
-stop within T = 3 steps (Coulomb's law as Duclusaud et al. 2024 integrate it: BAM, equation 3).
-Where a robot has several degrees of freedom, they pull at each other: the mass matrix is then whole,
-the bias is in the place of f_g, and all joints are held together (`identification.native.holding`).
+stop within T, one step (Coulomb's law as Duclusaud et al. 2024 integrate it: BAM, equation 3).
+Where a robot has several degrees of freedom, they pull at each other: the mass matrix is then
+whole, the bias is in the place of f_g, and all joints are held together (see `native.holding`).
 The numbers stand at the end of a joint's user data, in a row
 
     (T, what the records reach, parameters of the effects, key of the set of effects, TAG)
@@ -42,7 +42,8 @@ TAG = 7351.0609  # last entry of a row of ours
 STOP, REACH, FIRST, LAST = 0, 1, 6, 2  # columns of T, of what is reached, of the first parameter;
 # entries behind the last
 DRIVE, LOW, HIGH, STOPPING, FRICTION, ROWS = range(6)  # rows of the room for joints held together
-STEPS = 3.0  # T over the step: where joints are coupled, the inertia of one is less than M
+STEPS = 1.0  # T over the step, where joints are held together
+STEPS_ALONE = 3.0  # where each is held by itself, although the inertia of one is less than M then
 
 # What an effect sees of a hinge or slide joint.
 #   time [s]; q, v: position [rad or m] and velocity [rad/s or m/s]
@@ -84,6 +85,11 @@ _NO_DYNAMICS = int(mujoco.mjtDyn.mjDYN_NONE)
 _FIXED = int(mujoco.mjtGain.mjGAIN_FIXED)
 _NO_BIAS, _AFFINE = int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtBias.mjBIAS_AFFINE)
 _GAINS, _BIASES, _GEARS = mujoco.mjNGAIN, mujoco.mjNBIAS, 6
+
+
+def stopping_steps(nv: int) -> float:
+    """T over the step of a model with nv degrees of freedom."""
+    return STEPS if nv <= MOST else STEPS_ALONE
 
 
 def width(terms: Sequence[Term]) -> int:
@@ -175,7 +181,7 @@ def joint(m, d, j, row):  # type: ignore[no-untyped-def]
 def drive_alone(m, d, j, room):  # type: ignore[no-untyped-def]
     """The drive of a joint without effects into `room`, which others feel."""
     kind, dof = integer(m, M.jnt_type, j), integer(m, M.jnt_dofadr, j)
-    if kind == _HINGE or kind == _SLIDE:
+    if kind in (_HINGE, _SLIDE):
         q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
         f_u = drive_force(m, d, j, q, double(d, D.qvel, dof))
         room[DRIVE, dof] = f_u if f_u == f_u else 0.0

@@ -100,7 +100,7 @@ def reached(plant, joint):
 
 
 def sums(plant, joint, values):
-    """Force and largest friction of a joint's effects in plain Python, each a function of `Joint`."""
+    """Force and largest friction of a joint in plain Python, each a function of `Joint`."""
     every = {**plant.parameters.values(), **values}
     laws = {
         hook: [(e.hooks[hook].py_func, tuple(numbers_at(e, joint, every)), len(e.sizes))
