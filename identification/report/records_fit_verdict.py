@@ -10,9 +10,13 @@ MUCH = 3.0  # times the noise floor, beyond which a fit is told to lack somethin
 
 
 def records_fit_verdict(found: RecordsFit) -> list[str]:
-    """Did it converge, what the windows cannot tell, what they leave, and whether it is worse."""
+    """Is it worse than its start, did it converge, what the windows cannot tell and what they leave.
+
+    That it is worse comes first, because nothing else matters then.
+    """
     fit = found.model.fit
-    said = ["The search converged." if fit.converged else "The search ran out of iterations."]
+    said = _worse(found)
+    said.append("The search converged." if fit.converged else "The search ran out of iterations.")
     if bound := [n for n, at in zip(found.values, found.at_bound, strict=True) if at]:
         said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
     said += _blind(found) + _weak(found)
@@ -27,7 +31,7 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
             "That is far more than the sensors make: the model lacks something, or a column is not"
             " what the model takes it for; discover looks for what is missing."
         )
-    return said + _worse(found)
+    return said
 
 
 def _blind(found: RecordsFit) -> list[str]:

@@ -24,12 +24,14 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     """
     found = result.found
     if isinstance(found, Fit):
-        record = {**fit_to_json(found), "horizon": None}
+        record = {**fit_to_json(found), "horizon": None, "worse": None}
     else:
         record = records_fit_to_json(found)
     repeated = find_repetitions(result.robot)
     said = (*(confirmed or result.unseen), *repeated)
-    verdict = [*_far(record["parameters"]), *record["verdict"], *map(str, said)]
+    far = _far(record["parameters"])
+    first = int(result.is_worse)  # then nothing else of the verdict matters as much
+    verdict = [*record["verdict"][:first], *far, *record["verdict"][first:], *map(str, said)]
     return {
         **record, "confirm": [vars(c) for c in confirmed], "verdict": verdict,
         "findings": [r.finding for r in repeated],

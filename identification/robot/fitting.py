@@ -68,6 +68,14 @@ class RobotFit:
         return self.found.model.fit.converged
 
     @property
+    def is_worse(self) -> bool:
+        """Whether it predicts unseen records worse than the values with which it began.
+
+        Such values are not to be used. Only a fit over a horizon is compared in this way.
+        """
+        return isinstance(self.found, RecordsFit) and self.found.worse is not None
+
+    @property
     def unseen(self) -> tuple[Confirmation, ...]:
         """The values of the robot's file and the fitted ones on what the fit has not seen.
 

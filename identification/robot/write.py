@@ -11,7 +11,9 @@ from identification.files import write_text
 from identification.robot.robot import Robot
 
 
-def write_robot(robot: Robot, values: Mapping[str, float], path: Path, place: Path) -> Path:
+def write_robot(
+    robot: Robot, values: Mapping[str, float], path: Path, place: Path, remark: str = ""
+) -> Path:
     """Write a robot with new values; sizes of named effects become free parameters.
 
     Args:
@@ -19,12 +21,14 @@ def write_robot(robot: Robot, values: Mapping[str, float], path: Path, place: Pa
         values: values of its free parameters and of the effects that it now has, by name.
         path: path of the file to write.
         place: the folder from which the file will be read.
+        remark: one line about the values that stands above them as a comment.
     """
     file, at = robot.file, robot.plant.parameters
     shapes = {f"{e.name}.{s.name}" for e in robot.plant.effects for s in e.shapes}
     fixed = {**file.fixed, **{n: v for n, v in values.items() if n in shapes}}
     names = [*file.free, *(n for n in values if n not in (*file.free, *shapes))]
-    lines = [
+    lines = [f"# {remark}"] if remark else []
+    lines += [
         f"model = {_text(os.path.relpath(file.model, place))}",
         f"outputs = {_list(robot.log.output_names)}",
         f"free = {_list(names)}",

@@ -1,10 +1,13 @@
 """A fit of several logs is one fit: finer, confirmed on others, and honest where it fails."""
 
+import json
+
 import pytest
 from pendulum_robot import TOML, assert_true, make_folder, measured, written
 from robot_cases import refused, run
 
 from identification import confirm, fit, read_robot
+from identification.__main__ import main
 from identification.robot.file import read_robot_file
 from identification.robot.fit_json import robot_fit_to_json
 
@@ -78,6 +81,23 @@ def test_a_fit_that_predicts_unseen_records_worse_says_so(folder):
     logs = written(folder, measured(1), measured(2, begun))
     robot = read_robot(folder / "robot.toml", logs[0], confirm=logs[1:])
     found = fit(robot)
-    assert any("worse than" in s for s in robot_fit_to_json(found)["verdict"])
+    assert "worse than" in robot_fit_to_json(found)["verdict"][0]
+    assert found.is_worse
     good = fit(read_robot(folder / "robot.toml", logs[0]))
     assert not any("worse than" in s for s in robot_fit_to_json(good)["verdict"])
+
+
+def test_the_command_keeps_a_fit_that_is_worse_and_says_so_everywhere(folder, capsys):
+    logs = written(folder, measured(1), measured(2, {"J": 1.5e-3, "d": 0.03}))
+    out, robot = folder / "out", folder / "robot.toml"
+    call = ["fit", str(robot), str(logs[0]), "--confirm", str(logs[1]), "--out", str(out)]
+    assert main(call) == 1
+    text, error = capsys.readouterr()
+    assert "do not use them" in text.splitlines()[0]
+    assert "are not to be used (exit code 1)" in error
+    kept = json.loads((out / "result.json").read_text())
+    assert kept["worse"]["rise"] > 0
+    assert "do not use them" in kept["verdict"][0]
+    assert (out / "robot.toml").read_text().startswith("# The fitted values predict")
+    again = read_robot_file(out / "robot.toml").records
+    assert again["d"]["value"] == kept["parameters"]["d"]["value"]
