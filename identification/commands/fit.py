@@ -34,7 +34,7 @@ class Fit(OnRobot):
         def keep(out: Path) -> None:
             place = self.output.out or out
             remark = record["verdict"][0] if found.is_worse else ""
-            write_robot(robot, found.shared, out / "robot.toml", place, remark)
+            write_robot(robot, found.shared, out / "robot.toml", place, remark, found.own_values)
 
         conclude(self, record, _text(record), keep)
         if found.is_worse:

@@ -49,6 +49,19 @@ class WindowModel:
         return {**fixed, **self.fit.shared}
 
     @property
+    def own_values(self) -> dict[str, dict[str, float]]:
+        """Values that each record has for itself, by record and by name, in their units.
+
+        Those of fitted records are fitted, those of others the mean of what their halves tell.
+        """
+        unknowns = self.fit.problem.unknowns
+        names = unknowns.own.names
+        each = {r: self.fit.of_record(k) for k, r in enumerate(unknowns.records)}
+        fitted = {r: {n: values[n] for n in names} for r, values in each.items()}
+        told = {r: {n: v for n, (v, _) in own.items()} for r, own in self.unseen.own.items()}
+        return {r: own for r, own in {**told, **fitted}.items() if own}
+
+    @property
     def std(self) -> dict[str, float]:
         """Std of the free values by blocks of windows, by name, in their units."""
         return dict(zip(self.fit.problem.names, self.fit.std.tolist(), strict=True))

@@ -45,6 +45,11 @@ class RobotFit:
         return self.values if isinstance(self.found, Fit) else self.found.shared
 
     @property
+    def own_values(self) -> dict[str, dict[str, float]]:
+        """By record and by name, the values that each record has for itself, in their units."""
+        return {} if isinstance(self.found, Fit) else self.found.model.own_values
+
+    @property
     def std(self) -> dict[str, float]:
         """Their std by name, in the same units; inf where a free run does not determine them."""
         return dict(zip(self.values, self.found.std.tolist(), strict=True))
