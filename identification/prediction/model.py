@@ -16,6 +16,7 @@ from identification.model.predictor import Plant
 from identification.prediction.fit import WindowFit
 from identification.prediction.own_values import Own
 from identification.prediction.records import Record
+from identification.prediction.told_std import told_std
 from identification.prediction.unseen import Unseen, predict
 
 Progress = Callable[[str], None]
@@ -60,6 +61,11 @@ class WindowModel:
         fitted = {r: {n: values[n] for n in names} for r, values in each.items()}
         told = {r: {n: v for n, (v, _) in own.items()} for r, own in self.unseen.own.items()}
         return {r: own for r, own in {**told, **fitted}.items() if own}
+
+    @property
+    def told_std(self) -> dict[str, float]:
+        """These std as far as they can be known; NaN where too few windows tell of a value."""
+        return dict(zip(self.fit.problem.names, told_std(self.fit).tolist(), strict=True))
 
     @property
     def std(self) -> dict[str, float]:

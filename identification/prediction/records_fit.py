@@ -32,6 +32,7 @@ from identification.prediction.record_errors import (
 from identification.prediction.records import Record, as_records
 from identification.prediction.selection import is_proven
 from identification.prediction.starts import without_starts
+from identification.prediction.told_std import told_std
 from identification.prediction.unseen import Prediction, Unseen, compare, predict
 from identification.windows.window_search import search_states
 
@@ -73,8 +74,11 @@ class RecordsFit:
 
     @property
     def std(self) -> np.ndarray:
-        """Std of each value by blocks of windows, in its unit, shape (p,)."""
-        return self.model.fit.std
+        """Std of each value by blocks of windows, in its unit, shape (p,).
+
+        NaN where too few windows tell of it for a std to be known, inf where none does.
+        """
+        return told_std(self.model.fit)
 
     @property
     def at_bound(self) -> np.ndarray:

@@ -13,9 +13,7 @@ Kinds = Mapping[str, tuple[type | tuple[type, ...], str]]  # by key: the types, 
 POSITIVE = ("every", "known", "scale")
 
 
-def check_table(
-    table: Mapping[str, Any], kinds: Kinds, where: str
-) -> None:
+def check_table(table: Mapping[str, Any], kinds: Kinds, where: str) -> None:
     """Refuse a table with an unknown key or a value of a wrong kind.
 
     Args:
@@ -75,7 +73,9 @@ def read_own_values(content: Mapping[str, Any], path: Path) -> dict[str, dict[st
         where = f"own_values.{log} in {path}"
         if not isinstance(values, dict):
             raise InputError(f"{where} must be a table of numbers")
-        check_table(values, dict.fromkeys(content.get("own", []), ((int, float), "a number")), where)
+        check_table(
+            values, dict.fromkeys(content.get("own", []), ((int, float), "a number")), where
+        )
     return {log: {n: float(v) for n, v in values.items()} for log, values in found.items()}
 
 

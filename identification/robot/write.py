@@ -94,9 +94,7 @@ def _unless(robot: Robot, name: str, known: float) -> dict[str, object]:
     return {} if "known" in robot.file.records.get(name, {}) else {"known": known}
 
 
-def _means(
-    names: Sequence[str], own_values: Mapping[str, Mapping[str, float]]
-) -> dict[str, float]:
+def _means(names: Sequence[str], own_values: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
     """The mean over records of what each has for itself, by name."""
     each = {n: [own[n] for own in own_values.values() if n in own] for n in names}
     return {n: sum(values) / len(values) for n, values in each.items()}

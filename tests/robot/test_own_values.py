@@ -87,7 +87,7 @@ def test_a_named_effect_that_each_record_has_for_itself_is_written_with_its_valu
 
 
 def test_what_was_known_stays_known_where_the_fitted_robot_is_fitted_again(folder):
-    known = TOML.replace('value = 0.03', 'value = 0.03\nknown = 0.05')
+    known = TOML.replace("value = 0.03", "value = 0.03\nknown = 0.05")
     known = known.replace('"d"]', f'"d", "{OFFSET}"]') + f'[parameters."{OFFSET}"]\nvalue = 0.01\n'
     (folder / "robot.toml").write_text(known)
     logs = written(folder, measured(1))

@@ -1,7 +1,8 @@
 """The words of a user for a discovery over a horizon: text, JSON and confirmation take it."""
 
 import pytest
-from records_cases import MJCF, records
+from pendulum_robot import TOML, make_folder
+from records_cases import records
 
 from identification import (
     RecordsDiscovery,
@@ -13,23 +14,13 @@ from identification import (
 )
 
 MU = "transmitted_load_friction.mu@hinge"
-TOML = """
-model = "pendulum.xml"
-free = ["joint/hinge.armature", "joint/hinge.damping"]
-horizon = 0.2
-[parameters."joint/hinge.armature"]
-value = 1.5e-3
-[parameters."joint/hinge.damping"]
-value = 0.03
-[effects]
-only = ["transmitted_load_friction"]
-"""
+ONLY = '[effects]\nonly = ["transmitted_load_friction"]\n'
 
 
 @pytest.fixture
 def path(tmp_path):
-    (tmp_path / "pendulum.xml").write_text(MJCF)
-    (tmp_path / "robot.toml").write_text(TOML)
+    make_folder(tmp_path)
+    (tmp_path / "robot.toml").write_text(TOML + ONLY)
     return tmp_path / "robot.toml"
 
 

@@ -38,7 +38,7 @@ def test_the_command_fits_several_logs_and_confirms_them_on_another(folder, caps
 
 
 def test_more_logs_make_estimates_finer(folder):
-    logs = written(folder, *map(measured, range(1, 4)))
+    logs = written(folder, *(measured(k, samples=480) for k in range(1, 4)))
     one, several = (fit(read_robot(folder / "robot.toml", paths)) for paths in (logs[0], logs))
     assert several.std["d"] < one.std["d"]
     assert_true(several, "d", 0.02)
@@ -101,3 +101,12 @@ def test_the_command_keeps_a_fit_that_is_worse_and_says_so_everywhere(folder, ca
     assert (out / "robot.toml").read_text().startswith("# The fitted values predict")
     again = read_robot_file(out / "robot.toml").records
     assert again["d"]["value"] == kept["parameters"]["d"]["value"]
+
+
+@pytest.mark.parametrize(("samples", "told"), [(40, "the only window"), (80, "too few of 2")])
+def test_a_std_that_one_or_two_windows_cannot_tell_is_called_unknown(folder, capsys, samples, told):
+    logs = written(folder, measured(1, samples=samples))
+    said = run(capsys, "fit", folder / "robot.toml", *logs)
+    assert all(p["std"] is None for p in said["parameters"].values())
+    (sentence,) = [s for s in said["verdict"] if "cannot be known" in s]
+    assert sentence.startswith(f"The std of J, d cannot be known: {told}")
