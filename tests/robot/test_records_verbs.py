@@ -1,5 +1,7 @@
 """The words of a user for a discovery over a horizon: text, JSON and confirmation take it."""
 
+from dataclasses import replace
+
 import pytest
 from pendulum_robot import TOML, make_folder
 from records_cases import records
@@ -35,6 +37,7 @@ def test_text_json_and_confirmation_take_what_records_say(path, mu):
     assert discovery_to_json(found)["verdict"] == ("named" if mu else "nothing missing")
     (compared,) = confirm(robot, found)
     assert compared.log == third.name
+    assert confirm(replace(robot, records=()), found) == (compared,)
     assert compared.unit == "rad"
     (error,) = (e for e in found.errors if e.role == "confirm")
     assert compared.after == pytest.approx(error.after, rel=0.01)
