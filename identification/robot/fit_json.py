@@ -9,6 +9,7 @@ from identification.estimation.fit import Fit
 from identification.report.fit_json import fit_to_json
 from identification.report.records_fit_json import records_fit_to_json
 from identification.robot.fitting import RobotFit
+from identification.robot.free_inertias import impossible_sentence
 from identification.robot.record_error import Confirmation
 from identification.robot.repetition import find_repetitions
 
@@ -31,6 +32,8 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     said = (*(confirmed or result.unseen), *repeated)
     far = _far(record["parameters"])
     first = int(result.is_worse)  # then nothing else of the verdict matters as much
+    if no_body := impossible_sentence(result.robot, result.shared):
+        far.append(no_body)
     verdict = [*record["verdict"][:first], *far, *record["verdict"][first:], *map(str, said)]
     return {
         **record, "confirm": [vars(c) for c in confirmed], "verdict": verdict,
