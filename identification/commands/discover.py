@@ -93,7 +93,8 @@ class Discover(OnRobot):
         if self.output.out is not None:
             with whole_folder(self.output.out) as out:
                 write_records_report(found, out)
-                write_robot(robot, found.final.values, out / "robot.toml", self.output.out)
+                values, own = found.final.values, found.final.own_values
+                write_robot(robot, values, out / "robot.toml", self.output.out, own_values=own)
                 write_result(out / "result.json", self, record)
         return 0
 

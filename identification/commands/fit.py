@@ -9,13 +9,18 @@ from typing import Any
 from identification.commands.common import conclude, note, refuse_folder, table
 from identification.commands.robots import OnRobot
 
+WORSE = (
+    "the fitted values predict unseen records worse than those of the robot's file, and are not to"
+    " be used (exit code 1); everything that was found is kept"
+)
+
 
 @dataclass(frozen=True)
 class Fit(OnRobot):
     """Estimate free parameters from one log or several, confirm them on what was not fitted."""
 
     def run(self) -> int:
-        """Fit, confirm, say, keep."""
+        """Fit, confirm, say, keep; 1 where unseen records are predicted worse than before."""
         from identification.robot.confirmation import confirm
         from identification.robot.fit_json import robot_fit_to_json
         from identification.robot.fitting import fit
@@ -28,10 +33,13 @@ class Fit(OnRobot):
 
         def keep(out: Path) -> None:
             place = self.output.out or out
-            write_robot(robot, found.shared, out / "robot.toml", place)
+            remark = record["verdict"][0] if found.is_worse else ""
+            write_robot(robot, found.shared, out / "robot.toml", place, remark, found.own_values)
 
         conclude(self, record, _text(record), keep)
-        return 0
+        if found.is_worse:
+            note(f"identification: {WORSE}")
+        return int(found.is_worse)
 
 
 def _text(record: dict[str, Any]) -> str:
@@ -41,4 +49,6 @@ def _text(record: dict[str, Any]) -> str:
         for name, p in record["parameters"].items()
     ]  # fmt: skip
     head = ("parameter", "value", "std", "unit", "start", "")
-    return table(head, cells) + "\n" + "\n".join(record["verdict"])
+    first = int(record["worse"] is not None)  # a warning stands above the values it warns of
+    said = record["verdict"]
+    return "\n".join([*said[:first], table(head, cells), *said[first:]])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -32,6 +32,10 @@ class NominalModel:
         horizon: length of the windows over which predictions are judged [s]; None for a free run
             of the whole log, which says little of a robot that integrates what disturbs it.
         own: those of the names of which each record has a value of its own.
+        mean: means of priors by name, in the parameters' units; of the others it is the plant's
+            own value, where every search begins.
+        own_values: by record and by name, where the search of a record's own values begins; the
+            plant's own value where not given.
 
     Raises:
         InputError: there is not one std for each name.
@@ -42,6 +46,8 @@ class NominalModel:
     std: np.ndarray
     horizon: float | None = None
     own: tuple[str, ...] = ()
+    mean: Mapping[str, float] = field(default_factory=dict)
+    own_values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if np.shape(self.std) != (len(self.names),):
@@ -49,6 +55,11 @@ class NominalModel:
                 f"{len(self.names)} free parameters have std of the shape {np.shape(self.std)};"
                 " give one for each"
             )
+
+    @property
+    def linear(self) -> tuple[str, ...]:
+        """Names whose prior has a mean that is not positive: it is none of a logarithm."""
+        return tuple(n for n, mean in self.mean.items() if mean <= 0)
 
 
 def fit_with_effects(
@@ -89,11 +100,12 @@ def fit_with_effects(
     own = {**parameters.values(), **{n: v for c in candidates for n, v in c.fixed.items()}}
     begin = {**own, **start, **{n: _nonzero(parameters[n], {**own, **start}[n]) for n in sizes}}
     first = np.array([_inside(parameters[n], begin[n]) for n in names])
-    space = coordinates(parameters, names, first, linear=sizes)
+    space = coordinates(parameters, names, first, linear=(*sizes, *nominal_model.linear))
     space = _within_factor(space, parameters, nominal_model.names, options.nominal_factor)
     # A size has no prior, so that the mean of its prior is never used.
     known = {*nominal_model.names, *shapes}
-    mean = space.encode(np.where([n in known for n in names], [own[n] for n in names], first))
+    middle = {**own, **nominal_model.mean}
+    mean = space.encode(np.where([n in known for n in names], [middle[n] for n in names], first))
     of_shapes = np.full(len(shapes), 1 / options.shape_std)
     weight = np.concatenate([1 / nominal_model.std, np.zeros(len(sizes)), of_shapes])
     linear, level = (None, None) if near is None else (near.point.linear, near.level)

@@ -86,23 +86,38 @@ def misread(
     )
 
 
-def unit_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
-    """Other units of the outputs that are not explained.
+def unit_readings(
+    log: Log,
+    bad: np.ndarray,
+    column: Mapping[str, str],
+    wanted: Mapping[str, str] | None = None,
+) -> Iterator[Reading]:
+    """Other units of the outputs that are not explained, and of inputs that are wanted positions.
 
     Args:
         log: as it is read.
         bad: true where an output is not explained, shape (ny,).
         column: what an output or input is called in the log's file.
+        wanted: SI unit by name of the inputs that a drive compares with its joint's own motion.
     """
-    out = [column[n] for n in log.output_names]
-    for words in _units([log.units.get(n, "") for n in log.output_names]):
+    wanted, ny = wanted or {}, log.outputs.shape[1]
+    names = [*log.output_names, *(n for n in log.input_names if n in wanted)]
+    kinds = [(log.units.get(n, ""), False) for n in names[:ny]]
+    kinds += [(wanted[n], True) for n in names[ny:]]
+    for words in _units(kinds):
         changed = [k for k, word in enumerate(words) if word]
-        if all(bad[changed]):
-            scale = [UNITS[word][1] if word else 1.0 for word in words]
-            told = ", ".join(f'{out[k]} = "{words[k]}"' for k in changed)
-            said = f"were it in {' and '.join(dict.fromkeys(words[k] for k in changed))}"
-            yield Reading(replace(log, outputs=log.outputs * scale), changed, said,
-                          f"write {told} under [units] of the log's TOML", "units")  # fmt: skip
+        if not all(bad[k] for k in changed if k < ny):
+            continue
+        felt = changed if changed[-1] < ny else np.flatnonzero(bad).tolist()
+        scale = {n: UNITS[word][1] for n, word in zip(names, words, strict=True) if word}
+        other = replace(
+            log,
+            outputs=log.outputs * [scale.get(n, 1.0) for n in log.output_names],
+            inputs=log.inputs * [scale.get(n, 1.0) for n in log.input_names],
+        )
+        told = ", ".join(f'{column[names[k]]} = "{words[k]}"' for k in changed)
+        said = f"were it in {' and '.join(dict.fromkeys(words[k] for k in changed))}"
+        yield Reading(other, felt, said, f"write {told} under [units] of the log's TOML", "units")
 
 
 def output_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
@@ -151,16 +166,16 @@ def unexplained_share(y: np.ndarray, error: np.ndarray) -> np.ndarray:
     return np.where(moved > 0, ratio, 0.0)
 
 
-def _units(units: Sequence[str]) -> Iterator[tuple[str, ...]]:
-    """Other units of the columns, "" for as it is: of all that share one, and of one alone."""
-    kinds = [*dict.fromkeys(units)]
-    words = {si: ["", *(w for w, (of, _) in UNITS.items() if of == si != w)] for si in kinds}
-    for chosen in product(*(words[si] for si in kinds)):
+def _units(columns: Sequence[tuple[str, bool]]) -> Iterator[tuple[str, ...]]:
+    """Other units of columns of a kind, "" for as it is: of all of a kind, and of one alone."""
+    kinds = [*dict.fromkeys(columns)]
+    words = {k: ["", *(w for w, (of, _) in UNITS.items() if of == k[0] != w)] for k in kinds}
+    for chosen in product(*(words[kind] for kind in kinds)):
         if any(chosen):
-            yield tuple(chosen[kinds.index(si)] for si in units)
-    for k, si in enumerate(units):
-        if units.count(si) > 1:
-            yield from (tuple(w * (i == k) for i in range(len(units))) for w in words[si][1:])
+            yield tuple(chosen[kinds.index(kind)] for kind in columns)
+    for k, kind in enumerate(columns):
+        if columns.count(kind) > 1:
+            yield from (tuple(w * (i == k) for i in range(len(columns))) for w in words[kind][1:])
 
 
 def _exchanged(signals: np.ndarray, i: int, j: int) -> np.ndarray:

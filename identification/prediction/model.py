@@ -16,6 +16,7 @@ from identification.model.predictor import Plant
 from identification.prediction.fit import WindowFit
 from identification.prediction.own_values import Own
 from identification.prediction.records import Record
+from identification.prediction.told_std import told_std
 from identification.prediction.unseen import Unseen, predict
 
 Progress = Callable[[str], None]
@@ -47,6 +48,24 @@ class WindowModel:
         """Values of all parameters that are not the plant's own and hold for all records."""
         fixed = {n: v for c in self.candidates for n, v in (*c.fixed.items(), *c.whole.items())}
         return {**fixed, **self.fit.shared}
+
+    @property
+    def own_values(self) -> dict[str, dict[str, float]]:
+        """Values that each record has for itself, by record and by name, in their units.
+
+        Those of fitted records are fitted, those of others the mean of what their halves tell.
+        """
+        unknowns = self.fit.problem.unknowns
+        names = unknowns.own.names
+        each = {r: self.fit.of_record(k) for k, r in enumerate(unknowns.records)}
+        fitted = {r: {n: values[n] for n in names} for r, values in each.items()}
+        told = {r: {n: v for n, (v, _) in own.items()} for r, own in self.unseen.own.items()}
+        return {r: own for r, own in {**told, **fitted}.items() if own}
+
+    @property
+    def told_std(self) -> dict[str, float]:
+        """These std as far as they can be known; NaN where too few windows tell of a value."""
+        return dict(zip(self.fit.problem.names, told_std(self.fit).tolist(), strict=True))
 
     @property
     def std(self) -> dict[str, float]:

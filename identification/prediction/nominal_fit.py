@@ -23,7 +23,7 @@ from identification.prediction.problem import (
     with_scale,
 )
 from identification.prediction.records import Record
-from identification.prediction.unknowns import Prior
+from identification.prediction.unknowns import Prior, Unknowns
 
 GROWTH = (0.25, 0.5, 1.0)  # of the horizon
 FEWEST = 4  # samples of the shortest windows
@@ -42,7 +42,7 @@ def fit_nominal(
 
     Args:
         nominal_model: the model; its plant's own values are where the search begins, and the
-            priors' means.
+            priors' means where it says no other.
         records: to fit and to confirm.
         progress: is told one line per linearisation.
 
@@ -63,7 +63,7 @@ def fit_nominal(
         if any(length < FEWEST * r.log.sampling_time for r in fitted) and factor < 1:
             continue
         task = problem(plant, fitted, shared, own, length, values, scale, ROUGH_STEPS)
-        q = task.prior.mean if found is None else found.q
+        q = begin(nominal_model, task.unknowns) if found is None else found.q
         found = solve(task, q, task.settled(q, no_moves(task)), tolerance=ROUGH, progress=progress)
         _refuse_idle(found)
         values, scale = found.shared, _rms(found)
@@ -82,13 +82,27 @@ def fit_nominal(
     return WindowModel((), found, predict_fitted(plant, confirm, horizon, old, found, {}), old)
 
 
+def begin(nominal_model: NominalModel, unknowns: Unknowns) -> np.ndarray:
+    """Where the search begins, shape (p,), in coordinates: the plant's values, or a record's own.
+
+    Args:
+        nominal_model: says both.
+        unknowns: the free parameters, those of each record too.
+    """
+    values, of = nominal_model.plant.parameters.values(), nominal_model.own_values
+    first = [values[n] for n in unknowns.shared.names]
+    first += [of.get(r, {}).get(n, values[n]) for r in unknowns.records for n in unknowns.own.names]
+    return np.asarray(unknowns.all.space.encode(np.array(first)))
+
+
 def _priors(nominal_model: NominalModel) -> tuple[Prior, Prior]:
     """What is known of the free parameters of a nominal model: shared ones, and own ones."""
     plant, names, own = nominal_model.plant, nominal_model.names, nominal_model.own
     values = plant.parameters.values()
     first = np.array([values[n] for n in names])
-    space = coordinates(plant.parameters, names, first)
-    prior = Prior(space, space.encode(first), 1 / np.asarray(nominal_model.std, float))
+    space = coordinates(plant.parameters, names, first, linear=nominal_model.linear)
+    mean = np.array([nominal_model.mean.get(n, values[n]) for n in names])
+    prior = Prior(space, space.encode(mean), 1 / np.asarray(nominal_model.std, float))
     return prior.only([n for n in names if n not in own]), prior.only(own)
 
 

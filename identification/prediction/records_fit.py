@@ -21,7 +21,7 @@ from identification.errors import InputError
 from identification.logs.log import Log
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import Progress, WindowModel
-from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.nominal_fit import begin, fit_nominal
 from identification.prediction.point import projected
 from identification.prediction.problem import at_values, no_moves
 from identification.prediction.record_errors import (
@@ -33,6 +33,7 @@ from identification.prediction.record_errors import (
 from identification.prediction.records import Record, as_records
 from identification.prediction.selection import is_proven
 from identification.prediction.starts import without_starts
+from identification.prediction.told_std import told_std
 from identification.prediction.unseen import Prediction, Unseen, compare, predict
 from identification.windows.window_search import search_states
 
@@ -50,13 +51,15 @@ class RecordsFit:
         records: what was fitted and what confirms.
         horizon: over which records are predicted [s].
         model: the fitted model.
-        begun: errors of the values with which the fit began, on the records that confirm.
+        start: the values with which the fit began, in their units, shape (p,).
+        begun: errors of these values on the records that confirm.
         seconds: wall time [s].
     """
 
     records: tuple[Record, ...]
     horizon: float
     model: WindowModel
+    start: np.ndarray
     begun: Unseen
     seconds: float
 
@@ -72,14 +75,11 @@ class RecordsFit:
 
     @property
     def std(self) -> np.ndarray:
-        """Std of each value by blocks of windows, in its unit, shape (p,)."""
-        return self.model.fit.std
+        """Std of each value by blocks of windows, in its unit, shape (p,).
 
-    @property
-    def start(self) -> np.ndarray:
-        """The values with which the fit began, in their units, shape (p,)."""
-        prior = self.model.fit.problem.prior
-        return np.asarray(prior.space.decode(prior.mean))
+        NaN where too few windows tell of it for a std to be known, inf where none does.
+        """
+        return told_std(self.model.fit)
 
     @property
     def at_bound(self) -> np.ndarray:
@@ -121,7 +121,8 @@ class RecordsFit:
     def errors(self) -> tuple[RecordError, ...]:
         """By record, with the values with which the fit began and with the fitted ones."""
         fit, scale = self.model.fit, self.model.scale
-        fitted = [scaled_squares(each, scale) for each in (_begun_errors(fit), fit.errors)]
+        begun = _begun_errors(fit, fit.problem.prior.space.encode(self.start))
+        fitted = [scaled_squares(each, scale) for each in (begun, fit.errors)]
         unseen = self.begun, self.model.unseen
         return record_errors(self.records, self.scale, unseen, fitted)
 
@@ -179,16 +180,18 @@ def fit_records(
     model = fit_nominal(base, records, progress)
     unseen = [r for r in records if r.role == "confirm"]
     begun = predict(base.plant, unseen, base.horizon, model.scale, {}, model.unseen)
+    unknowns = model.fit.problem.unknowns
+    start = unknowns.all.space.decode(begin(base, unknowns))
     return RecordsFit(
-        records=records, horizon=base.horizon, model=model, begun=begun,
+        records=records, horizon=base.horizon, model=model, start=start, begun=begun,
         seconds=time.perf_counter() - clock,
     )  # fmt: skip
 
 
-def _begun_errors(fit: WindowFit) -> list[np.ndarray]:
-    """y - ŷ of the fitted windows at the values with which the fit began, (W, L, ny) a record."""
+def _begun_errors(fit: WindowFit, q: np.ndarray) -> list[np.ndarray]:
+    """y - ŷ of the fitted windows at q (p,), where the fit began, (W, L, ny) a record."""
     problem, out = fit.problem, []
     for k, (part, still) in enumerate(zip(problem.parts, no_moves(problem), strict=True)):
-        held = at_values(part, problem.prior.mean[problem.unknowns.columns(k)])
+        held = at_values(part, q[problem.unknowns.columns(k)])
         out.append(held.error(search_states(held, still).tangent.r))
     return out

@@ -47,6 +47,8 @@ class NamedByPrediction:
     Attributes:
         effect: as it was refitted, its values those of the final model.
         rivals: other effects that were refitted in its place and are not much worse.
+        compared: how many others were refitted in its place and compared with it; where there are
+            none, its confidence is the highest that is ever said.
         one_of: whether the records cannot tell it from its first rival.
         agrees: names of the records on which it lowers the error.
         disagrees: names of the records on which it raises the error, beyond chance.
@@ -54,6 +56,7 @@ class NamedByPrediction:
 
     effect: RefittedEffect
     rivals: tuple[RefittedEffect, ...]
+    compared: int
     one_of: bool
     agrees: tuple[str, ...]
     disagrees: tuple[str, ...]
@@ -85,6 +88,8 @@ class RecordsDiscovery:
         scores: of all candidates on the nominal model, the best first.
         remaining: of the other candidates on the final model, the best first.
         findings: what the final model leaves, and what is doubtful.
+        repeats: names of the records that confirm, but whose motion is that of a fitted record or
+            of one that confirms before them.
         seconds: wall time by kind of work [s].
     """
 
@@ -107,6 +112,7 @@ class RecordsDiscovery:
     scores: tuple[WindowScore, ...]
     remaining: tuple[WindowScore, ...]
     findings: tuple[Finding, ...]
+    repeats: tuple[str, ...]
     seconds: Mapping[str, float]
 
     @property

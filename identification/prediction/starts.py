@@ -21,4 +21,5 @@ def without_starts(nominal_model: NominalModel) -> NominalModel:
     return replace(
         nominal_model, names=kept, std=nominal_model.std[keep],
         own=tuple(n for n in nominal_model.own if n in kept),
+        mean={n: mean for n, mean in nominal_model.mean.items() if n in kept},
     )  # fmt: skip

@@ -16,10 +16,12 @@ from scipy.stats import ttest_1samp
 from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
+from identification.logs.replay import REPLAYED, replayed_share
 from identification.prediction.evidence import compute_confidence
 from identification.prediction.input_error import needed_input_error
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import error_unit, record_errors, scaled_squares
+from identification.prediction.records import Record
 from identification.prediction.remaining import find_remaining
 from identification.prediction.result import (
     NamedByPrediction,
@@ -81,8 +83,20 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
         ),
         nominal=nominal, final=model,
         scores=state.nominal_scores, remaining=state.scores if named else state.nominal_scores,
-        findings=findings, seconds=state.seconds,
+        findings=findings, repeats=_repeats(task.records), seconds=state.seconds,
     )  # fmt: skip
+
+
+def _repeats(records: Sequence[Record]) -> tuple[str, ...]:
+    """Names of the records that confirm no more than what was fitted, or than one before them."""
+    distinct = [r.log for r in records if r.role == "fit"]
+    repeats = []
+    for log in (r.log for r in records if r.role == "confirm"):
+        if replayed_share(distinct, log) > REPLAYED:
+            repeats.append(log.name)
+        else:
+            distinct.append(log)
+    return tuple(repeats)
 
 
 def _named(
@@ -115,6 +129,7 @@ def _named(
     return NamedByPrediction(
         effect=effect, rivals=tuple(rivals),
         one_of=bool(shares[1:].size and shares[1:].max() > options.set_confidence),
+        compared=len(others),
         agrees=tuple(r.log.name for r, g in zip(confirm, gains, strict=True) if g > 0),
         disagrees=tuple(worse),
     )  # fmt: skip
@@ -124,7 +139,7 @@ def _refitted(model: WindowModel, contender: Contender, confidence: float) -> Re
     """An effect at the values of a model that has it."""
     c = contender.candidate
     plant, unknowns = model.plant, model.fit.problem.unknowns
-    values, std = {**model.values, **model.fit.values}, model.std
+    values, std = {**model.values, **model.fit.values}, model.told_std
     parameters = {}
     for name in (*c.sizes, *c.fixed):
         record = plant.parameters[name]

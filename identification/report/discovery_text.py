@@ -9,6 +9,7 @@ from identification.discovery.findings.finding import Finding
 from identification.discovery.result import Discovery
 from identification.prediction.result import RecordsDiscovery
 from identification.quantities import alike, quantity
+from identification.report.discovery_tables import parameters_section
 from identification.report.discovery_verdict import (
     diff_line,
     discovery_verdict,
@@ -18,6 +19,7 @@ from identification.report.discovery_verdict import (
 from identification.report.effect_words import describe_effect, describe_rejected
 from identification.report.finding_words import describe_finding
 from identification.report.records_text import records_text
+from identification.report.records_values import text_table
 
 SHOWN = 0.005  # an explanation with a smaller confidence gets no line
 
@@ -31,6 +33,7 @@ def discovery_text(found: Discovery | RecordsDiscovery) -> str:
         "\n".join(discovery_verdict(found)),
         "\n".join(_diff(found)),
         "\n".join(_gap(found)),
+        "\n".join(_values(found)),
         _list("where the nominal model fails", found.located),
         _list("where the final model still fails", found.findings),
         "\n".join([f"{title}:", *(f"  {line}" for line in lines)]) if lines else "",
@@ -73,6 +76,15 @@ def _gap(found: Discovery) -> list[str]:
 
     out = ["error on unseen data:", line("before", before, found.before)]
     return [*out, line("after", after, found.after)] if found.named else out
+
+
+def _values(found: Discovery) -> list[str]:
+    """The parameters, each as the model had it, and as it was fitted: value ± std and unit."""
+    found_table = parameters_section(found).table
+    if found_table is None or not found_table.rows:
+        return []
+    rows = [[str(cell) for cell in row] for row in found_table.rows]
+    return ["fitted values:", *text_table(found_table.columns, rows)]
 
 
 def _detectable(found: Discovery) -> list[str]:

@@ -107,7 +107,8 @@ def _named(found: Discovery, named: NamedEffect) -> str:
         )
     return (
         f"{first}: {describe_effect(named.candidate)}, {describe_sizes(named)}"
-        f"; confidence {100 * named.confidence:.0f} % among the known effects."
+        f"; confidence {100 * named.confidence:.0f} % among the known effects"
+        + ("." if named.rivals else ", none of which was near enough to be refitted in its place.")
     )
 
 

@@ -25,6 +25,9 @@ def records_fit_to_json(found: RecordsFit) -> dict[str, Any]:
         "noise_floor": found.noise_rms,
         "seconds": found.seconds,
         "horizon": found.horizon,
+        "worse": None if found.worse is None else {
+            "rise": (found.unseen_rms[1] / found.unseen_rms[0]) ** 2 - 1, "t": found.worse.t,
+        },
         "records": [
             {"file": e.name, "role": e.role, "before": e.before, "after": e.after,
              **_own(found, e.name, e.role)}

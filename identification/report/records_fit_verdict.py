@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from identification.estimation.identifiability import in_words
 from identification.prediction.records_fit import RecordsFit
 from identification.report.fit_verdict import WEAK
@@ -10,12 +12,16 @@ MUCH = 3.0  # times the noise floor, beyond which a fit is told to lack somethin
 
 
 def records_fit_verdict(found: RecordsFit) -> list[str]:
-    """Did it converge, what the windows cannot tell, what they leave, and whether it is worse."""
+    """Is it worse than its start, did it converge, what is not told, and what is left.
+
+    That it is worse comes first, because nothing else matters then.
+    """
     fit = found.model.fit
-    said = ["The search converged." if fit.converged else "The search ran out of iterations."]
+    said = _worse(found)
+    said.append("The search converged." if fit.converged else "The search ran out of iterations.")
     if bound := [n for n, at in zip(found.values, found.at_bound, strict=True) if at]:
         said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
-    said += _blind(found) + _weak(found)
+    said += _blind(found) + _weak(found) + _unknown_std(found)
     windows = sum(len(part.cut.starts) for part in fit.problem.parts)
     floor, rms = found.noise_rms, found.rms
     ratio = f", {rms / floor:.2f} of the noise floor {floor:.3g}" if floor > 0 else ""
@@ -27,7 +33,7 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
             "That is far more than the sensors make: the model lacks something, or a column is not"
             " what the model takes it for; discover looks for what is missing."
         )
-    return said + _worse(found)
+    return said
 
 
 def _blind(found: RecordsFit) -> list[str]:
@@ -60,6 +66,19 @@ def _weak(found: RecordsFit) -> list[str]:
     return [
         f"Too weakly for these windows: {', '.join(weak)}, their std exceeds half the value. Fix"
         " one of them, or record a motion that tells more of them."
+    ]
+
+
+def _unknown_std(found: RecordsFit) -> list[str]:
+    """Values whose std too few windows tell."""
+    few = [n for n, std in zip(found.values, found.std, strict=True) if np.isnan(std)]
+    if not few:
+        return []
+    count = sum(len(part.cut.starts) for part in found.model.fit.problem.parts)
+    told = "the only window tells" if count == 1 else f"too few of {count} windows tell"
+    return [
+        f"The std of {', '.join(few)} cannot be known: {told} of"
+        f" {'it' if len(few) == 1 else 'them'}. Record longer, or give more logs."
     ]
 
 

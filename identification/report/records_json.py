@@ -36,6 +36,7 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
             {"file": e.name, "role": e.role, "before": e.before, "after": e.after}
             for e in found.errors
         ],
+        "repeats": list(found.repeats),
         "horizon": found.horizon,
         "input_error": found.input_error,
         "located": [describe_finding(finding) for finding in found.findings],
@@ -50,7 +51,7 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
 
 def _values_to_json(model: WindowModel) -> dict[str, Any]:
     """Fitted values, those of one record as `name [record]`, and what effects hold fixed."""
-    values, std = {**model.values, **model.fit.values}, model.std
+    values, std = {**model.values, **model.fit.values}, model.told_std
     return {name: {"value": value, "std": std.get(name)} for name, value in values.items()}
 
 
@@ -86,6 +87,7 @@ def _named_to_json(named: NamedByPrediction) -> dict[str, Any]:
         "rivals": [
             {**_called(r.candidate), "confidence": r.confidence} for r in named.rivals
         ],
+        "compared": named.compared,
         "one_of": named.one_of,
         "agrees": list(named.agrees),
         "disagrees": list(named.disagrees),

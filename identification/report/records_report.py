@@ -12,6 +12,7 @@ from identification.report.discovery_figures import gains_figure
 from identification.report.effect_words import describe_effect
 from identification.report.page import Section, Table, save_figures, write_report
 from identification.report.records_text import describe_refitted, records_verdict
+from identification.report.records_values import value_table
 
 BEST = 10  # candidates shown
 
@@ -66,15 +67,10 @@ def _candidates(found: RecordsDiscovery) -> Section:
 
 
 def _values(found: RecordsDiscovery) -> Section:
-    parameters = found.final.fit.problem.parts[0].predictor.plant.parameters
-    std = found.final.std
-    before = found.nominal.values
-    rows = tuple(
-        (name, before.get(name), value, std.get(name), parameters[name].unit)
-        for name, value in found.final.values.items()
-    )
+    head, rows = value_table(found)
     return Section(
         "Parameters",
-        "Std by blocks of windows, whose errors need not be white.",
-        table=Table(("parameter", "nominal model", "final model", "std", "unit"), rows),
+        "Std by blocks of windows, whose errors need not be white; unknown where too few windows"
+        " tell of a value.",
+        table=Table(head, tuple(rows)),
     )

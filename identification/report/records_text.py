@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
-from identification.quantities import alike, quantity
+from identification.quantities import alike
 from identification.report.effect_words import describe_effect
 from identification.report.finding_words import describe_finding, sentence
+from identification.report.records_values import text_table, value_table, value_with_std
 
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
 SHOWN = 6  # candidates with the best scores that are listed
@@ -33,6 +34,7 @@ def records_verdict(found: RecordsDiscovery) -> list[str]:
 def records_text(found: RecordsDiscovery) -> str:
     """All of it, in paragraphs."""
     parts = ["\n".join(records_verdict(found)), "\n".join(_records(found))]
+    parts.append("\n".join(["fitted values:", *text_table(*value_table(found))]))
     if found.rejected:
         lines = [f"  {describe_refitted(r)}" for r in found.rejected]
         parts.append("\n".join(["tried, and not proven on unseen data:", *lines]))
@@ -60,7 +62,7 @@ def describe_refitted(effect: RefittedEffect) -> str:
 
 def _sizes(effect: RefittedEffect) -> str:
     return ", ".join(
-        f"{name} = {quantity(v, std, unit)}" if np.isfinite(std) else f"{name} not felt"
+        f"{name} not felt" if np.isinf(std) else f"{name} = {value_with_std(v, std, unit)}"
         for name, (v, std, unit) in effect.parameters.items()
     )
 
@@ -78,7 +80,7 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
         first += ", in no catalogue and drawn from the data"
     said = (
         f"{first}: {describe_effect(named.effect.candidate)}, {_sizes(named.effect)}; confidence"
-        f" {100 * named.effect.confidence:.0f} % among the effects that were tried."
+        f" {100 * named.effect.confidence:.0f} %{_compared(named)}."
     )
     if named.rivals:
         each = ", ".join(
@@ -87,10 +89,32 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
         said += (
             f" {'These records cannot tell it from' if named.one_of else 'Less likely:'} {each}."
         )
-    confirm = [r.log.name for r in found.records if r.role == "confirm"]
-    said += f" It lowers the error on {len(named.agrees)} of {len(confirm)} unseen records."
+    said += _agreement(found, named)
     if named.disagrees:
         said += f" It raises the error on {', '.join(named.disagrees)}, beyond chance."
+    return said
+
+
+def _compared(named: NamedByPrediction) -> str:
+    """What a confidence rests on."""
+    if not named.compared:
+        return ", the highest that is ever said, because no rival was near enough to be refitted"
+    rivals = "1 rival that was" if named.compared == 1 else f"{named.compared} rivals that were"
+    return f" beside {rivals} refitted in its place"
+
+
+def _agreement(found: RecordsDiscovery, named: NamedByPrediction) -> str:
+    """On how many unseen records it helps, those left out that only repeat others."""
+    confirm = [r.log.name for r in found.records if r.role == "confirm"]
+    distinct = [name for name in confirm if name not in found.repeats]
+    helped = sum(name in named.agrees for name in distinct)
+    if not distinct:
+        return " All unseen records repeat what was fitted, so that they hardly confirm it."
+    said = f" It lowers the error on {helped} of {len(distinct)} unseen records."
+    if found.repeats:
+        one = len(found.repeats) == 1
+        said += f" {', '.join(found.repeats)} {'repeats' if one else 'repeat'} the motion of others"
+        said += " and does not count." if one else " and do not count."
     return said
 
 

@@ -43,12 +43,28 @@ class Smooth:
     u: np.ndarray
 
 
-def unbalanced_share(model: mujoco.MjModel, log: Log) -> np.ndarray | None:
+@dataclass(frozen=True)
+class Freedom:
+    """What a model may lack more, and how smooth its motion is taken.
+
+    Attributes:
+        has_springs: whether each joint may have a spring that the model lacks.
+        wider: times as long a ψ, for motion that is rougher than its noise says.
+    """
+
+    has_springs: bool = False
+    wider: int = 1
+
+
+def unbalanced_share(
+    model: mujoco.MjModel, log: Log, freedom: Freedom | None = None
+) -> np.ndarray | None:
     """η of the joint of each output, shape (ny,), without unit.
 
     Args:
         model: with the log's actuators and sensors.
         log: as it is read.
+        freedom: what it may lack more; nothing when None.
 
     Returns:
         None where it cannot be had: a joint is not measured, is neither hinge nor slide, drives
@@ -59,11 +75,12 @@ def unbalanced_share(model: mujoco.MjModel, log: Log) -> np.ndarray | None:
     plain = np.isin(model.jnt_type, SCALAR).all() and not (model.neq or model.na or model.ntendon)
     if not plain or sorted(at) != [*range(model.nq)]:
         return None
-    motion = _smooth(log.outputs[:, [at[i] for i in range(model.nq)]], log)
+    freedom = freedom or Freedom()
+    motion = _smooth(log.outputs[:, [at[i] for i in range(model.nq)]], log, freedom.wider)
     if motion is None:
         return None
     force = _drive_forces(model, motion)
-    A, low, high = _columns(model, motion)
+    A, low, high = _columns(model, motion, freedom)
     size = force.std(axis=0)
     own = A[:, :, : int(np.sum(low > 0))].sum(axis=2)  # of the model's own masses
     size = np.where(size > 0, size, np.sqrt(np.mean(own**2, axis=0)))  # joints without a drive
@@ -82,25 +99,29 @@ def unbalanced_share(model: mujoco.MjModel, log: Log) -> np.ndarray | None:
     return np.asarray(eta[joint])
 
 
-def _smooth(q: np.ndarray, log: Log) -> Smooth | None:
+def _smooth(q: np.ndarray, log: Log, wider: int = 1) -> Smooth | None:
     """The motion through the shortest ψ whose acceleration is not that of noise."""
     h, noise = log.sampling_time, noise_floor(q)
     u = log.inputs
     held = (np.vstack([u[:1], u[:-1]]) + u) / 2 if log.hold == "zoh" else u
     for w in WIDTHS:
-        if 8 * w > len(q):
+        _, _, bend = _kernels(w, h)
+        if 8 * w * wider > len(q):
             return None
-        x = np.arange(-w + 1, w) / w
-        psi = np.pad((1 - x**2) ** 3, 2)
-        psi /= psi.sum()
-        bend = np.diff(psi, 2) / h**2
-        slope = (psi[:-2] - psi[2:]) / (2 * h)
-        a = _filtered(q, bend)
-        if (noise * np.linalg.norm(bend) <= NOISE * a.std(axis=0)).all():
-            every = max(1, len(a) // ROWS)
-            parts = (_filtered(q, psi[1:-1]), _filtered(q, slope), a, _filtered(held, psi[1:-1]))
-            return Smooth(*(part[::every] for part in parts))
+        if (noise * np.linalg.norm(bend) <= NOISE * _filtered(q, bend).std(axis=0)).all():
+            psi, slope, bend = _kernels(w * wider, h)
+            parts = [_filtered(q, kernel) for kernel in (psi, slope, bend)]
+            every = max(1, len(parts[0]) // ROWS)
+            return Smooth(*(part[::every] for part in (*parts, _filtered(held, psi))))
     return None
+
+
+def _kernels(w: int, h: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """ψ of half the length w, and those of the first and the second derivative."""
+    x = np.arange(-w + 1, w) / w
+    psi = np.pad((1 - x**2) ** 3, 2)
+    psi /= psi.sum()
+    return psi[1:-1], (psi[:-2] - psi[2:]) / (2 * h), np.diff(psi, 2) / h**2
 
 
 def _filtered(signals: np.ndarray, kernel: np.ndarray) -> np.ndarray:
@@ -118,7 +139,9 @@ def _drive_forces(model: mujoco.MjModel, motion: Smooth) -> np.ndarray:
     return force
 
 
-def _columns(model: mujoco.MjModel, motion: Smooth) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _columns(
+    model: mujoco.MjModel, motion: Smooth, freedom: Freedom
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """What may explain the forces, shape (n, nv, columns), and the bounds of the sizes."""
     moving = [b for b in range(1, model.nbody) if model.body_weldid[b] and model.body_mass[b] > 0]
     outer = [b for b in moving if not any(model.body_parentid[c] == b for c in moving)]
@@ -135,12 +158,13 @@ def _columns(model: mujoco.MjModel, motion: Smooth) -> tuple[np.ndarray, np.ndar
     near = [np.zeros(3), *(reach * np.eye(3))]
     weight = [w for b in moving for p in near for w in _weights(model, motion, b, p)]
     each = [np.where(np.arange(nv) == j, x, 0.0)
-            for j in range(nv) for x in (motion.v, np.sign(motion.v))]  # fmt: skip
+            for j in range(nv) for x in (motion.v, np.sign(motion.v),
+                                         *([motion.q] if freedom.has_springs else []))]  # fmt: skip
     level = [np.broadcast_to(np.arange(nv) == j, (n, nv)).astype(float) for j in range(nv)]
-    most = PAYLOAD * float(model.body_mass[moving].sum())
+    most = max(PAYLOAD * float(model.body_mass[moving].sum()), least)
     low, high = [], []
     for found, (a, b) in (
-        (own + rotors + stiff, (1 / FACTOR, FACTOR)), (payload, (0.0, max(most, least))),
+        (own + rotors + stiff, (1 / FACTOR, FACTOR)), (payload, (0.0, most)),
         (each, (0.0, np.inf)), (weight + level, (-np.inf, np.inf)),
     ):  # fmt: skip
         low += [a] * len(found)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from identification.discovery.final_values import collect_final_values
 from identification.discovery.result import Discovery
 from identification.errors import InputError, refuse_kind
@@ -12,7 +14,13 @@ from identification.prediction.records_fit import RecordsFit
 from identification.prediction.result import RecordsDiscovery
 from identification.prediction.unseen import predict
 from identification.robot.fitting import RobotFit
-from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, compare_values
+from identification.robot.record_error import (
+    AS_WRITTEN,
+    FITTED,
+    Confirmation,
+    compare_unseen,
+    compare_values,
+)
 from identification.robot.robot import Robot
 
 WITHOUT = "without what is named", "with it"
@@ -21,7 +29,9 @@ WITHOUT = "without what is named", "with it"
 def confirm(
     robot: Robot, found: RobotFit | Discovery | RecordsDiscovery
 ) -> tuple[Confirmation, ...]:
-    """Compare two models on every record of a robot to which nothing was fitted.
+    """Compare two models on all that a robot was measured at and to which nothing was fitted.
+
+    These are the records that confirm, or, where there are none, the unseen part of each log.
 
     For a fit the two models have the values of the robot's file and the fitted values. For a
     discovery that names something they are the fitted model without the named effects and the one
@@ -29,11 +39,11 @@ def confirm(
     discovery over a horizon has compared the records already.
 
     Args:
-        robot: the result of `read_robot`, with the records.
+        robot: the result of `read_robot`, with the records that confirm, if there are any.
         found: the result of `fit` or of `discover`.
 
     Returns:
-        One comparison for each record: the rms errors over the robot's horizon, or of a free run.
+        One comparison for each of them: the rms errors over the robot's horizon, or of a free run.
 
     Raises:
         InputError: windows of the robot's horizon do not fit a record, or a discovery over a
@@ -47,20 +57,31 @@ def confirm(
     if isinstance(found, RobotFit):
         if isinstance(found.found, RecordsFit):
             return _over_windows(robot, found, found.found)
-        return tuple(compare_values(robot, log, {}, found.values) for log in robot.records)
+        return _over_free_run(robot, {}, found.values)
     if isinstance(found, RecordsDiscovery):
         return _of_discovery(robot, found)
     after = collect_final_values(found)
     if not found.named:
-        return tuple(compare_values(robot, log, {}, after) for log in robot.records)
-    before = found.nominal.point.values
-    return tuple(compare_values(robot, log, before, after, WITHOUT) for log in robot.records)
+        return _over_free_run(robot, {}, after)
+    return _over_free_run(robot, found.nominal.point.values, after, WITHOUT)
+
+
+def _over_free_run(
+    robot: Robot,
+    before: Mapping[str, float],
+    after: Mapping[str, float],
+    models: tuple[str, str] = (AS_WRITTEN, FITTED),
+) -> tuple[Confirmation, ...]:
+    """Two sets of values on the records, or on the unseen part of the only log."""
+    if not robot.records:
+        return (compare_unseen(robot, before, after, models),)
+    return tuple(compare_values(robot, log, before, after, models) for log in robot.records)
 
 
 def _over_windows(robot: Robot, fit: RobotFit, found: RecordsFit) -> tuple[Confirmation, ...]:
     """The comparison that the fit has made already, or that of other records."""
     if not robot.records:
-        return ()
+        return fit.unseen
     if [*map(id, robot.records)] == [*map(id, fit.robot.records)]:
         return fit.unseen
     model, plant = found.model, robot.plant
@@ -84,5 +105,5 @@ def _of_discovery(robot: Robot, found: RecordsDiscovery) -> tuple[Confirmation, 
                 f"the discovery did not see record {log.name!r}, known: {', '.join(errors)}; give"
                 " it to read_robot as one that confirms, and discover again"
             )
-    each = (errors[log.name] for log in robot.records)
+    each = [errors[log.name] for log in robot.records] or [*errors.values()]
     return tuple(Confirmation(e.name, e.before, e.after, found.unit, WITHOUT) for e in each)

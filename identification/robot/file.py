@@ -18,11 +18,14 @@ drive = "vir"
 [parameters.M]                       # of a free parameter; every key may be left out
 path = "body/carriage.mass"          # into the model; the name itself if not given
 value = 95.11                        # where the search begins; the model's own if not given
-known = 0.3                          # std: relative where it must be positive, else in its unit
+prior = 95.11                        # what is believed before the log speaks; value if not given
+known = 0.3                          # its std: relative where it must be positive, else in its unit
 unit = "kg"
 lower = 0.0
 upper = 500.0
 scale = 1.0                          # a magnitude that matters, where it may be zero
+[own_values.log_1]                   # where the search begins in one log, of what is under own
+"coulomb_friction.f_c@slide" = 20.4
 [effects]
 joints = ["slide"]                   # where they may act; the measured joints if not given
 turns = [1, 7, 14]                   # periods of a turn to try, where a motor's are known
@@ -36,17 +39,24 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
-from identification.errors import InputError, unknown_name
+from identification.errors import InputError
 from identification.files import read_bytes
 from identification.logs.names import quoted
+from identification.robot.file_checks import (
+    Kinds,
+    check_table,
+    numbers,
+    read_own,
+    read_own_values,
+    texts,
+)
 from identification.robot.trust import trusted
 
 _LARGEST = 2**20  # [bytes]; it is written by hand
-_KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
+_KINDS: Kinds = {
     "model": (str, "a path in quotes"),
     "outputs": (list, "a list of sensors"),
     "free": (list, "a list of parameters"),
@@ -59,17 +69,19 @@ _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
     "columns": (dict, "a table"),
     "fixed": (dict, "a table of numbers"),
     "parameters": (dict, "a table of tables"),
+    "own_values": (dict, "a table of tables, one for each log"),
     "effects": (dict, "a table"),
 }
-_RECORD: dict[str, tuple[type | tuple[type, ...], str]] = {
+_RECORD: Kinds = {
     **dict.fromkeys(("path", "unit", "about"), (str, "text in quotes")),
-    **dict.fromkeys(("value", "known", "lower", "upper", "scale"), ((int, float), "a number")),
+    **dict.fromkeys(
+        ("value", "prior", "known", "lower", "upper", "scale"), ((int, float), "a number")
+    ),
 }
-_EFFECTS: dict[str, tuple[type | tuple[type, ...], str]] = {
+_EFFECTS: Kinds = {
     **dict.fromkeys(("joints", "only"), (list, "a list of names")),
     "turns": (list, "a list of numbers above zero"),
 }
-_POSITIVE = ("every", "known", "scale")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,6 +102,7 @@ class RobotFile:
         columns: column of the log by actuator or sensor.
         fixed: values of effects' parameters that are not free.
         records: what is known of free parameters, by name.
+        own_values: by log and by name, where the search of a log's own values begins.
         joints: where effects may act; empty for the measured ones.
         only: candidates by name; empty for all.
         turns: periods of a turn to try; empty for the catalogue's.
@@ -108,6 +121,7 @@ class RobotFile:
     columns: Mapping[str, str] = field(default_factory=dict)
     fixed: Mapping[str, float] = field(default_factory=dict)
     records: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    own_values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     joints: tuple[str, ...] = ()
     only: tuple[str, ...] = ()
     turns: tuple[float, ...] = ()
@@ -126,7 +140,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{path} is not TOML ({quoted(str(error), 120)}); correct it") from error
-    _check(content, _KINDS, str(path))
+    check_table(content, _KINDS, str(path))
     for key in ("model", "free"):
         if not content.get(key):
             raise InputError(f"{path} does not say {key!r}; give {_KINDS[key][1]}")
@@ -134,77 +148,37 @@ def read_robot_file(path: str | Path) -> RobotFile:
     for name, record in records.items():
         if not isinstance(record, dict):
             raise InputError(f"parameters.{name} in {path} must be a table")
-        _check(record, _RECORD, f"parameters.{name} in {path}")
+        check_table(record, _RECORD, f"parameters.{name} in {path}")
         if name not in content["free"]:
             raise InputError(f"{path} tells of parameter {name!r}, which is not among its `free`")
     columns, fixed = content.get("columns", {}), content.get("fixed", {})
     start = content.get("start", {})
     for key, table in (("fixed", fixed), ("start", start)):
-        _check(table, dict.fromkeys(table, ((int, float), "a number")), f"{key} in {path}")
+        check_table(table, dict.fromkeys(table, ((int, float), "a number")), f"{key} in {path}")
     twice = [name for name in start if name in content["free"]]
     if twice:
         raise InputError(f"{path} gives {twice[0]} under [start] and frees it; keep one of both")
     effects = content.get("effects", {})
-    _check(effects, _EFFECTS, f"effects in {path}")
+    check_table(effects, _EFFECTS, f"effects in {path}")
     model = path.parent / content["model"]
     if not model.is_file():
         raise InputError(f"{path} names the model {model}, which is no file; correct it there")
     return RobotFile(
         path=path,
         model=model,
-        free=_texts(content["free"], "free", path),
-        own=_own(content, path),
-        outputs=_texts(content.get("outputs", []), "outputs", path),
+        free=texts(content["free"], "free", path),
+        own=read_own(content, path),
+        outputs=texts(content.get("outputs", []), "outputs", path),
         horizon=content.get("horizon"),
         every=content.get("every", 1),
         trust=trusted(content.get("trust", []), str(path)),
         start={name: float(value) for name, value in start.items()},
         log=content.get("log", {}),
-        columns=dict(zip(columns, _texts([*columns.values()], "columns", path), strict=True)),
+        columns=dict(zip(columns, texts([*columns.values()], "columns", path), strict=True)),
         fixed={name: float(value) for name, value in fixed.items()},
         records=records,
-        joints=_texts(effects.get("joints", []), "effects.joints", path),
-        only=_texts(effects.get("only", []), "effects.only", path),
-        turns=_numbers(effects.get("turns", []), "effects.turns", path),
+        own_values=read_own_values(content, path),
+        joints=texts(effects.get("joints", []), "effects.joints", path),
+        only=texts(effects.get("only", []), "effects.only", path),
+        turns=numbers(effects.get("turns", []), "effects.turns", path),
     )
-
-
-def _check(
-    table: Mapping[str, Any], kinds: Mapping[str, tuple[type | tuple[type, ...], str]], where: str
-) -> None:
-    for key, value in table.items():
-        if key not in kinds:
-            raise unknown_name(f"key in {where}:", key, kinds)
-        kind, words = kinds[key]
-        number = isinstance(value, int | float) and not isinstance(value, bool)
-        good = isinstance(value, kind) and not isinstance(value, bool)
-        if good and number:
-            good = isfinite(value) and (key not in _POSITIVE or value > 0)
-        if not good:
-            raise InputError(f"{key} in {where} must be {words}; correct it there")
-
-
-def _own(content: Mapping[str, Any], path: Path) -> tuple[str, ...]:
-    own = _texts(content.get("own", []), "own", path)
-    for name in own:
-        if name not in content["free"]:
-            raise unknown_name(f"free parameter under own in {path}:", name, content["free"])
-    if own and "horizon" not in content:
-        raise InputError(
-            f"own in {path} is for records that are predicted over a horizon; write horizon = 0.2"
-            " (in seconds) into it"
-        )
-    return own
-
-
-def _texts(values: list[Any], key: str, path: Path) -> tuple[str, ...]:
-    if not all(isinstance(v, str) for v in values) or len(set(values)) < len(values):
-        raise InputError(f"{key} in {path} must be names in quotes, each once")
-    return tuple(values)
-
-
-def _numbers(values: list[Any], key: str, path: Path) -> tuple[float, ...]:
-    for v in values:
-        if isinstance(v, bool) or not isinstance(v, int | float) or not 0 < v < inf:
-            raise InputError(f"{key} in {path} must be numbers above zero")
-    return tuple(map(float, values))

@@ -9,6 +9,7 @@ from identification.estimation.fit import Fit
 from identification.report.fit_json import fit_to_json
 from identification.report.records_fit_json import records_fit_to_json
 from identification.robot.fitting import RobotFit
+from identification.robot.free_inertias import impossible_sentence
 from identification.robot.record_error import Confirmation
 from identification.robot.repetition import find_repetitions
 
@@ -24,12 +25,16 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     """
     found = result.found
     if isinstance(found, Fit):
-        record = {**fit_to_json(found), "horizon": None}
+        record = {**fit_to_json(found), "horizon": None, "worse": None}
     else:
         record = records_fit_to_json(found)
     repeated = find_repetitions(result.robot)
     said = (*(confirmed or result.unseen), *repeated)
-    verdict = [*_far(record["parameters"]), *record["verdict"], *map(str, said)]
+    far = _far(record["parameters"])
+    first = int(result.is_worse)  # then nothing else of the verdict matters as much
+    if no_body := impossible_sentence(result.robot, result.shared):
+        far.append(no_body)
+    verdict = [*record["verdict"][:first], *far, *record["verdict"][first:], *map(str, said)]
     return {
         **record, "confirm": [vars(c) for c in confirmed], "verdict": verdict,
         "findings": [r.finding for r in repeated],

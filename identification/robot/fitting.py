@@ -45,6 +45,11 @@ class RobotFit:
         return self.values if isinstance(self.found, Fit) else self.found.shared
 
     @property
+    def own_values(self) -> dict[str, dict[str, float]]:
+        """By record and by name, the values that each record has for itself, in their units."""
+        return {} if isinstance(self.found, Fit) else self.found.model.own_values
+
+    @property
     def std(self) -> dict[str, float]:
         """Their std by name, in the same units; inf where a free run does not determine them."""
         return dict(zip(self.values, self.found.std.tolist(), strict=True))
@@ -66,6 +71,14 @@ class RobotFit:
         if isinstance(self.found, Fit):
             return self.found.estimate.status == "converged"
         return self.found.model.fit.converged
+
+    @property
+    def is_worse(self) -> bool:
+        """Whether it predicts unseen records worse than the values with which it began.
+
+        Such values are not to be used. Only a fit over a horizon is compared in this way.
+        """
+        return isinstance(self.found, RecordsFit) and self.found.worse is not None
 
     @property
     def unseen(self) -> tuple[Confirmation, ...]:

@@ -55,7 +55,7 @@ def value_parameters(
             if name in numbers or name in found:
                 continue
             try:
-                found[name] = free_parameter(file, name, model, effects, log)[0]
+                found[name] = free_parameter(file, name, model, effects, log).parameter
             except InputError as error:
                 raise InputError(f"{where}: {error}") from error
     return [*found.values()]

@@ -7,7 +7,7 @@ it is the first measured sample.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Any
 
@@ -37,19 +37,54 @@ UNITS = {  # unit for a slide, unit for a hinge
 }  # fmt: skip
 
 
+@dataclass(frozen=True)
+class Free:
+    """A free parameter, and what is known of it before the log speaks.
+
+    Attributes:
+        parameter: its value is where the search begins.
+        mean: of the prior, in the parameter's unit.
+        std: of the prior in the coordinates of the search, without unit.
+    """
+
+    parameter: Parameter
+    mean: float
+    std: float
+
+    @property
+    def known(self) -> float:
+        """The std as a robot's file says it: relative where positive, else in the unit."""
+        return self.std if self.is_relative else self.std * self.parameter.scale
+
+    @property
+    def is_relative(self) -> bool:
+        """Whether the parameter stays positive, so that its prior is one of its logarithm."""
+        return _is_positive(self.parameter, self.mean)
+
+
+def _is_positive(record: Parameter, mean: float) -> bool:
+    return record.lower >= 0 and record.value > 0 and mean > 0
+
+
+def effect_sizes(effects: Sequence[Effect]) -> dict[str, tuple[Parameter, float]]:
+    """The sizes of effects by name, each with the largest that is plausible, in its unit."""
+    return {p.name: (p, s.largest) for e in effects for s in e.sizes
+            for p in effect_parameters(e) if p.symbol == s.name}  # fmt: skip
+
+
 def free_parameter(
     file: RobotFile, name: str, model: mujoco.MjModel, effects: Sequence[Effect], log: Log
-) -> tuple[Parameter, float]:
-    """A free parameter, and the std of its prior in the coordinates of the search.
+) -> Free:
+    """A free parameter of a robot's file.
 
     Raises:
-        InputError: it is neither a path nor the size of an effect, or its value is missing.
+        InputError: it is neither a path nor the size of an effect, its value is missing, or its
+            prior lies outside its bounds.
     """
     said = file.records.get(name, {})
     given: dict[str, Any] = {k: said[k] for k in ("unit", "about") if k in said}
     given |= {k: float(said[k]) for k in ("value", "lower", "upper", "scale") if k in said}
-    sizes = {p.name: (p, s.largest) for e in effects for s in e.sizes
-             for p in effect_parameters(e) if p.symbol == s.name}  # fmt: skip
+    sizes = effect_sizes(effects)
     if name in sizes:
         own, largest = sizes[name]
         if "value" not in given:
@@ -71,9 +106,15 @@ def free_parameter(
         every = (str(file.records.get(n, {}).get("path", n)) for n in file.free)
         alone = sum(p.startswith(f"{body}.inertia") for p in every) == 1
         record, guess = _in_model(path, name, model, log, given, alone)
-    if record.lower >= 0 and record.value > 0:
-        return record, float(said.get("known", KNOWN))
-    return record, float(said.get("known", guess)) / record.scale
+    mean = float(said.get("prior", record.value))
+    if not record.lower <= mean <= record.upper:
+        raise InputError(
+            f"the prior of {name} in {file.path} is {mean:g}, outside its range [{record.lower:g},"
+            f" {record.upper:g}]; correct it, or leave it out"
+        )
+    if _is_positive(record, mean):
+        return Free(record, mean, float(said.get("known", KNOWN)))
+    return Free(record, mean, float(said.get("known", guess)) / record.scale)
 
 
 def measured_start(model: mujoco.MjModel, path: str, log: Log, own: float) -> float:

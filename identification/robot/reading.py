@@ -10,6 +10,7 @@ from identification.effects.axes import axes
 from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.robot.file import RobotFile, read_robot_file
+from identification.robot.free_inertias import inertias_sentence
 from identification.robot.robot import Robot, read_robot_log, robot_of
 from identification.robot.start import start_sentence
 from identification.robot.step_error import refuse_coarse_steps
@@ -77,8 +78,9 @@ def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
     file, own = robot.file, robot.plant.model
     # Over a horizon each window begins where it was measured.
     begun = (start_sentence(file, own, log) for log in logs if file.horizon is None)
+    inertias = inertias_sentence(file)
     resampled = (remark for log in logs for remark in log.remarks)
-    return (*robot.remarks, *resampled, *(sentence for sentence in begun if sentence))
+    return tuple(filter(None, (*robot.remarks, inertias, *resampled, *begun)))
 
 
 def _log(file: RobotFile, log: str | Path | Log) -> Log:

@@ -68,24 +68,30 @@ def compare_values(
 
 
 def compare_unseen(
-    robot: Robot, before: Mapping[str, float], after: Mapping[str, float]
+    robot: Robot,
+    before: Mapping[str, float],
+    after: Mapping[str, float],
+    models: tuple[str, str] = (AS_WRITTEN, FITTED),
 ) -> Confirmation:
-    """Compare two sets of values on the unseen part of the robot's own log.
+    """Compare two sets of values on the unseen part of the robot's own log, in a free run of all.
+
+    Args:
+        robot: the robot, without a horizon.
+        before: values of the first model that are not the plant's own.
+        after: values of the second model that are not the plant's own.
+        models: what the two models are, in words.
 
     Raises:
-        InputError: the windows do not fit that part.
         DivergenceError: one of the models cannot be simulated.
     """
     log = robot.log
     part = log.part("validation")
-    if robot.file.horizon is not None:
-        return compare_values(robot, part, before, after)
     rows, own = np.isin(log.time, part.time), robot.values_of(log)
     a, b = (
         float(np.sqrt(np.mean(_free_run(robot, log, {**v, **own})[rows] ** 2)))
         for v in (before, after)
     )
-    return Confirmation(part.name, a, b, part.output_unit, (AS_WRITTEN, FITTED))
+    return Confirmation(part.name, a, b, part.output_unit, models)
 
 
 def _rms(robot: Robot, log: Log, values: Mapping[str, float]) -> float:

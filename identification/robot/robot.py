@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import mujoco
@@ -44,10 +44,11 @@ class Robot:
         log: what was measured; every n-th sample of it, where the file says so.
         plant: its model with the effects.
         std: std of the priors of its free parameters, shape (p,): relative where a parameter must
-            be positive, else in its unit.
+            be positive, else in units of the parameter's scale.
         records: logs to which nothing is fitted; models are confirmed on them.
         others: further logs that are fitted together with `log`.
         remarks: what was taken for granted when its files were read, a sentence each.
+        mean: means of these priors by name, in the parameters' units.
     """
 
     file: RobotFile
@@ -57,6 +58,7 @@ class Robot:
     records: tuple[Log, ...] = ()
     others: tuple[Log, ...] = ()
     remarks: tuple[str, ...] = ()
+    mean: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def nominal_model(self) -> NominalModel:
@@ -67,7 +69,9 @@ class Robot:
         file, plant = self.file, self.plant
         if file.horizon is None:
             plant = plant.with_values(self.log.values)
-        return NominalModel(plant, file.free, self.std, file.horizon, file.own)
+        return NominalModel(
+            plant, file.free, self.std, file.horizon, file.own, self.mean, file.own_values
+        )
 
     @property
     def candidates(self) -> tuple[Effect, ...]:
@@ -166,7 +170,7 @@ def robot_of(
     logs = (log, *others, *records)
     valued = value_parameters(file, model, effects, logs)
     plant = joint_plant(
-        spec, [*(r for r, _ in priors), *valued], log, joints=known, effects=effects,
+        spec, [*(p.parameter for p in priors), *valued], log, joints=known, effects=effects,
         start=start_of(file, model, log),
     )  # fmt: skip
     for name in file.fixed:
@@ -178,7 +182,8 @@ def robot_of(
                 f" into {file.model}, or name it under free"
             )
     refuse_impossible(plant, logs)
-    std = np.array([std for _, std in priors])
+    std = np.array([p.std for p in priors])
+    mean = dict(zip(file.free, (p.mean for p in priors), strict=True))
     return Robot(
-        file, log, plant.with_values(file.fixed), std, tuple(records), tuple(others), said
+        file, log, plant.with_values(file.fixed), std, tuple(records), tuple(others), said, mean
     )  # fmt: skip

@@ -6,11 +6,13 @@ times too small, explains a right log badly too, and may explain a wrong reading
 one that makes the motion larger makes every error of the model smaller beside it. So a log is
 refused only where the balance of forces says the same (`identification.robot.balance`): no payload,
 gravity, friction or mass lets the log be explained as it is read nearly as well as otherwise. Where
-that balance cannot be had, the other reading must explain nearly all.
+that balance cannot be had, the other reading must explain nearly all. A motion that is too
+large for the forces of the drives is refused without any simulation (`identification.robot.scale`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import chain
@@ -34,10 +36,11 @@ from identification.logs.readings import (
 from identification.logs.sampling import MIN_ROWS
 from identification.robot.balance import unbalanced_share
 from identification.robot.robot import Robot
+from identification.robot.same_units import different_units
+from identification.robot.scale import rescaled, wanted_units
 from identification.windows.window_error import first_error
 from identification.windows.windows import spread, windows
 
-READINGS = {"units": (unit_readings,), "wiring": (output_readings, input_readings)}
 MOST_WINDOWS = 60  # of a log that are simulated; a wrong reading is wrong everywhere
 LENGTHS = (0.1, 1.0)  # of windows, shares of a log, where the robot has no horizon of its own
 
@@ -53,23 +56,43 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
         InputError: there is such a reading.
     """
     file, plant = robot.file, robot.plant_of(log)
-    read = [r for word, kind in READINGS.items() if word not in file.trust for r in kind]
+    wanted = wanted_units(plant.model, log)
+    units = partial(unit_readings, wanted=wanted)
+    kinds: dict[str, tuple[Callable[..., Iterable[Reading]], ...]] = {
+        "units": (units,), "wiring": (output_readings, input_readings)
+    }  # fmt: skip
+    read = [r for word, kind in kinds.items() if word not in file.trust for r in kind]
     column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
     lengths = [s * log.duration for s in LENGTHS] if file.horizon is None else [file.horizon]
     balance = _Balance(plant.model, log)
+    if "units" not in file.trust and (cure := different_units(plant.model, log, column)):
+        raise InputError(f'log {log.name!r}: {cure}, or write trust = ["units"] into {file.path}')
+    is_explained = False
     for length in lengths:
         own = _unexplained(plant, length, log)
-        if own is None or not (own > UNEXPLAINED).any():
+        if own is None:
+            continue
+        if not (own > UNEXPLAINED).any():
+            is_explained = True
             continue
         bad = own > UNEXPLAINED
         readings = chain(*(r(log, bad, column) for r in read))
         found = misread(log, own, readings, partial(_unexplained, plant, length), balance.confirms)
         if found is not None:
-            reading, said = found
-            raise InputError(
-                f"log {log.name!r}: the model of {file.model} {said}, or give values nearer to the"
-                f' robot\'s, or write trust = ["{reading.kind}"] into {file.path}'
-            )
+            raise _refusal(robot, log, *found)
+    # The gain of a drive that wants a position is a guess, and its force with it.
+    if not (is_explained or wanted or "units" in file.trust):
+        found = rescaled(plant.model, log, column)
+        if found is not None:
+            raise _refusal(robot, log, *found)
+
+
+def _refusal(robot: Robot, log: Log, reading: Reading, said: str) -> InputError:
+    file = robot.file
+    return InputError(
+        f"log {log.name!r}: the model of {file.model} {said}, or give values nearer to the"
+        f' robot\'s, or write trust = ["{reading.kind}"] into {file.path}'
+    )
 
 
 @dataclass(frozen=True)

@@ -4,32 +4,50 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from identification.files import write_text
+from identification.robot.parameters import KNOWN, Free, effect_sizes
 from identification.robot.robot import Robot
 
 
-def write_robot(robot: Robot, values: Mapping[str, float], path: Path, place: Path) -> Path:
+def write_robot(
+    robot: Robot,
+    values: Mapping[str, float],
+    path: Path,
+    place: Path,
+    remark: str = "",
+    own_values: Mapping[str, Mapping[str, float]] | None = None,
+) -> Path:
     """Write a robot with new values; sizes of named effects become free parameters.
+
+    What was known of a parameter before the fit stays as it was: a fit of the same log would else
+    count that log twice.
 
     Args:
         robot: the robot that was fitted.
         values: values of its free parameters and of the effects that it now has, by name.
         path: path of the file to write.
         place: the folder from which the file will be read.
+        remark: one line about the values that stands above them as a comment.
+        own_values: by record and by name, what each record has for itself.
     """
     file, at = robot.file, robot.plant.parameters
+    own_values = own_values or {}
+    own = [*dict.fromkeys([*file.own, *(n for each in own_values.values() for n in each)])]
+    values = {**_means([n for n in own if n not in file.own], own_values), **values}
     shapes = {f"{e.name}.{s.name}" for e in robot.plant.effects for s in e.shapes}
     fixed = {**file.fixed, **{n: v for n, v in values.items() if n in shapes}}
     names = [*file.free, *(n for n in values if n not in (*file.free, *shapes))]
-    lines = [
+    lines = [f"# {remark}"] if remark else []
+    lines += [
         f"model = {_text(os.path.relpath(file.model, place))}",
         f"outputs = {_list(robot.log.output_names)}",
         f"free = {_list(names)}",
     ]
-    lines += [f"own = {_list(file.own)}"] if file.own else []
+    lines += [f"own = {_list(own)}"] if own else []
     lines += [] if file.horizon is None else [f"horizon = {file.horizon!r}"]
     lines += [f"every = {file.every}"] if file.every > 1 else []
     lines += [f"trust = {_list(file.trust)}"] if file.trust else []
@@ -39,9 +57,10 @@ def write_robot(robot: Robot, values: Mapping[str, float], path: Path, place: Pa
     }  # fmt: skip
     for name in names:
         said = {**file.records.get(name, {}), "unit": at[name].unit}
-        tables[f"parameters.{_text(name)}"] = {
-            **said, "value": float(values.get(name, at[name].value))
-        }  # fmt: skip
+        value = float(values.get(name, at[name].value))
+        tables[f"parameters.{_text(name)}"] = {**said, "value": value, **_known(robot, name, value)}
+    for record, each in own_values.items():
+        tables[f"own_values.{_text(record)}"] = {n: float(v) for n, v in each.items()}
     tables["effects"] = {
         key: list(given)
         for key, given in (("joints", file.joints), ("only", file.only), ("turns", file.turns))
@@ -51,6 +70,34 @@ def write_robot(robot: Robot, values: Mapping[str, float], path: Path, place: Pa
         if table:
             lines += ["", f"[{title}]", *(f"{_text(k)} = {_value(v)}" for k, v in table.items())]
     return write_text(path, "\n".join(lines) + "\n")
+
+
+def _known(robot: Robot, name: str, value: float) -> dict[str, object]:
+    """Mean and std of the prior of a parameter that is written with a new value.
+
+    Of the size of an effect that was named nothing was known but what is plausible.
+    """
+    record = robot.plant.parameters[name]
+    if name in robot.file.free:
+        if name in robot.starts:  # it is told by the log, and differs from log to log
+            return {}
+        k = robot.file.free.index(name)
+        known = Free(record, robot.mean[name], float(robot.std[k])).known
+        return {"prior": robot.mean[name], **_unless(robot, name, known)}
+    found = Free(replace(record, value=value), value, 1.0)
+    width = KNOWN * effect_sizes(robot.plant.effects)[name][1]
+    return {"known": max(KNOWN, width / value) if found.is_relative else width}
+
+
+def _unless(robot: Robot, name: str, known: float) -> dict[str, object]:
+    """The std, where the robot's file did not say it to the last digit."""
+    return {} if "known" in robot.file.records.get(name, {}) else {"known": known}
+
+
+def _means(names: Sequence[str], own_values: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
+    """The mean over records of what each has for itself, by name."""
+    each = {n: [own[n] for own in own_values.values() if n in own] for n in names}
+    return {n: sum(values) / len(values) for n, values in each.items()}
 
 
 def _text(text: str) -> str:

@@ -16,9 +16,11 @@ horizon = 0.2
 [parameters.J]
 path = "joint/hinge.armature"
 value = 1.5e-3
+unit = "kg m^2"
 [parameters.d]
 path = "joint/hinge.damping"
 value = 0.03
+unit = "N m s/rad"
 """
 OWN = TOML.replace('"d"]', f'"d", "{OFFSET}"]\nown = ["{OFFSET}"]') + (
     f'[parameters."{OFFSET}"]\nvalue = 0.0\n'

@@ -4,13 +4,14 @@ import json
 from dataclasses import replace
 
 import pytest
-from records_cases import MJCF, nominal_model, pendulum, records
+from pendulum_robot import TOML, make_folder, written
+from records_cases import nominal_model, pendulum, records
 
-from identification import write_log
 from identification.__main__ import main
 from identification.effects.joint_plant import candidates
 from identification.prediction.discovery import discover_records
 from identification.report.finding_words import describe_finding
+from identification.report.records_json import records_to_json
 from identification.report.records_text import records_text
 
 MU = "transmitted_load_friction.mu@hinge"
@@ -34,7 +35,32 @@ def test_friction_under_the_transmitted_load_is_named_with_its_size():
     assert len(named.agrees) == 2
     assert named.disagrees == ()
     assert answer.share > 0.9
-    assert "grows with the transmitted load" in records_text(answer)
+    said = records_text(answer)
+    assert "grows with the transmitted load" in said
+    assert "It lowers the error on 2 of 2 unseen records." in said
+    assert answer.repeats == ()
+    head, *rows = said[said.index("fitted values:") :].splitlines()[1:5]
+    assert head.split("  ")[1] == "parameter"
+    assert head.endswith("fitted without effects  fitted with what is named")
+    assert [row.split()[0] for row in rows] == ["J", "d", MU]
+    assert all("±" in row for row in rows)
+    assert "g m^2" in rows[0]
+
+
+def test_a_record_that_repeats_another_is_no_further_witness():
+    first, second, third = records(3, {MU: 0.15})
+    again = replace(third, name="again", outputs=third.outputs + 1e-5)
+    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name == FEW[0]]
+    answer = discover_records(nominal_model(), [first, second], [third, again], effects)
+    assert answer.repeats == ("again",)
+    assert records_to_json(answer)["repeats"] == ["again"]
+    said = records_text(answer)
+    assert "on 1 of 1 unseen records. again repeats the motion of others and does not" in said
+    (named,) = answer.named
+    assert named.compared == 0
+    assert "the highest that is ever said, because no rival was near enough" in said
+    beside = replace(answer, named=(replace(named, compared=2),))
+    assert "beside 2 rivals that were refitted in its place" in records_text(beside)
 
 
 def test_records_without_an_effect_get_no_name():
@@ -59,29 +85,14 @@ def test_a_horizon_is_needed(refusal):
     assert "horizon" in refusal(discover_records, base, logs[:1], logs[1:], [])
 
 
-TOML = """
-model = "pendulum.xml"
-free = ["J", "d"]
-horizon = 0.2
-[parameters.J]
-path = "joint/hinge.armature"
-value = 1.5e-3
-unit = "kg m^2"
-[parameters.d]
-path = "joint/hinge.damping"
-value = 0.03
-unit = "N m s/rad"
-[effects]
-only = ["transmitted_load_friction", "offset"]
-"""
+ONLY = '[effects]\nonly = ["transmitted_load_friction", "offset"]\n'
 
 
 @pytest.fixture
 def folder(tmp_path):
-    (tmp_path / "pendulum.xml").write_text(MJCF)
-    (tmp_path / "robot.toml").write_text(TOML)
-    for k, log in enumerate(records(4, {MU: 0.15})):
-        write_log(log, tmp_path / f"log_{k}.csv")
+    make_folder(tmp_path)
+    (tmp_path / "robot.toml").write_text(TOML + ONLY)
+    written(tmp_path, *records(4, {MU: 0.15}))
     return tmp_path
 
 

@@ -22,6 +22,8 @@ def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
         " (height of the peak), v_s = 1.88 ± 0.10 rad/s (its half width);"
         " confidence 97 % among the known effects."
     )
+    alone = replace(found(), named=tuple(replace(n, rivals=()) for n in found().named))
+    assert "none of which was near enough to be refitted" in discovery_verdict(alone)[0]
     assert "On data that the fit has not seen, the error falls from" in said[1]
     assert said[1].count("mrad") == 3
     assert len(said) == 2
@@ -103,6 +105,8 @@ def test_text_begins_with_the_verdict_and_holds_no_nan(verdict: str) -> None:
     text = discovery_text(outcome)
     assert text.startswith(discovery_verdict(outcome)[0])
     assert "nan" not in text
+    (b_v,) = [line for line in text.splitlines() if line.startswith("  b_v ")]
+    assert "240 ± 5 µN m s/rad" in b_v
     assert ("+ friction: Stribeck peak" in text) == (verdict == "named")
 
 

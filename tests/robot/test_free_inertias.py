@@ -6,10 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from joint_cases import SLIDER, run, slider_log, steps
+from records_cases import MJCF, pendulum, record
 
 from identification import fit, joint_plant, read_robot, write_log
 from identification.estimation.identifiability import identifiability
 from identification.report.fit_verdict import _weak
+from identification.robot.free_inertias import impossible_sentence
 
 
 def test_a_free_spread_is_fitted_and_a_single_inertia_keeps_within_what_a_body_can_have(tmp_path):
@@ -40,3 +42,18 @@ def test_values_that_noise_drowns_are_named_with_what_they_trade_off_along():
     assert said.startswith("Too weakly for this noise: m1, m2, their std exceeds half the value.")
     assert "(m1 +0.71, m2 -0.71)" in said or "(m1 -0.71, m2 +0.71)" in said
     assert _weak(SimpleNamespace(**{**vars(result), "std": np.full(3, 0.1)})) == []
+
+
+def test_inertias_that_are_free_together_are_told_before_and_where_no_body_has_them(tmp_path):
+    (tmp_path / "arm.xml").write_text(MJCF)
+    path, both = tmp_path / "robot.toml", ("body/arm.inertia[0]", "body/arm.inertia[2]")
+    path.write_text(f'model = "arm.xml"\nfree = ["{both[0]}", "{both[1]}", "body/arm.mass"]\n')
+    log = record(seed=1, samples=100, plant=pendulum())
+    robot = read_robot(path, log)
+    (said,) = [s for s in robot.remarks if "no body has" in s]
+    assert f"frees {both[0]}, {both[1]}: together" in said
+    assert "free body/arm.spread[0] to [2] instead" in said
+    assert impossible_sentence(robot, {both[0]: 1e-3, both[1]: 2e-3}) == ""  # flat
+    assert "body/arm: one is larger" in impossible_sentence(robot, {both[0]: 1e-3, both[1]: 3e-3})
+    path.write_text(f'model = "arm.xml"\nfree = ["{both[0]}", "body/arm.mass"]\n')
+    assert read_robot(path, log).remarks == ()

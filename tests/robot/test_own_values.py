@@ -60,8 +60,48 @@ def test_records_with_offsets_of_their_own_recover_each(folder):
     said = json.loads(json.dumps(robot_fit_to_json(found, confirm(robot, found))))
     assert said["parameters"][f"{OFFSET} [log_0]"]["unit"] == "N m"
     assert said["records"][2]["own"][OFFSET]["value"] == pytest.approx(truth[2], rel=0.05)
-    path = write_robot(robot, found.shared, folder / "again.toml", folder)
-    assert read_robot_file(path).own == (OFFSET,)
+    path = folder / "again.toml"
+    write_robot(robot, found.shared, path, folder, own_values=found.own_values)
+    again = read_robot(path, paths[:2], confirm=paths[2:])
+    assert again.file.own == (OFFSET,)
+    for k in range(3):
+        assert again.file.own_values[f"log_{k}"][OFFSET] == pytest.approx(truth[k], rel=0.1)
+    begun = again.nominal_model
+    refit = fit(again)
+    assert refit.start == pytest.approx(found.values)  # a record begins where it ended
+    assert refit.values == pytest.approx(found.values, rel=1e-3)
+    assert begun.mean == robot.nominal_model.mean
+    assert begun.std == pytest.approx(robot.nominal_model.std)
+
+
+def test_a_named_effect_that_each_record_has_for_itself_is_written_with_its_values(folder):
+    shift = "time_shift.tau@drive"
+    robot = read_robot(folder / "own.toml", written(folder, measured(1), measured(2)))
+    each = {"log_0": {OFFSET: 0.01, shift: 0.02}, "log_1": {OFFSET: 0.03, shift: 0.04}}
+    path = folder / "again.toml"
+    write_robot(robot, {"J": 2e-3, "d": 0.02}, path, folder, own_values=each)
+    again = read_robot(path, [robot.log, *robot.others])
+    assert again.file.own == (OFFSET, shift)
+    assert again.file.own_values == each
+    assert again.plant.parameters[shift].value == pytest.approx(0.03)
+
+
+def test_what_was_known_stays_known_where_the_fitted_robot_is_fitted_again(folder):
+    known = TOML.replace("value = 0.03", "value = 0.03\nknown = 0.05")
+    known = known.replace('"d"]', f'"d", "{OFFSET}"]') + f'[parameters."{OFFSET}"]\nvalue = 0.01\n'
+    (folder / "robot.toml").write_text(known)
+    logs = written(folder, measured(1))
+    robot = read_robot(folder / "robot.toml", logs)
+    first = fit(robot)
+    path = write_robot(robot, first.shared, folder / "again.toml", folder)
+    again = read_robot(path, logs)
+    assert again.mean == {"J": 1.5e-3, "d": 0.03, OFFSET: 0.01}
+    assert again.std == pytest.approx(robot.std)
+    second = fit(again)
+    assert second.start == pytest.approx(first.values)
+    assert second.values == pytest.approx(first.values, rel=2e-3)
+    third = read_robot(write_robot(again, second.shared, folder / "third.toml", folder), logs)
+    assert (third.mean, third.std.tolist()) == (again.mean, again.std.tolist())
 
 
 def test_a_discovery_has_own_parameters_and_values_of_logs_too(folder):
@@ -116,6 +156,8 @@ def test_values_of_a_log_are_checked(folder, capsys, values, said):
     [
         ((f'own = ["{OFFSET}"]', 'own = ["offset"]'), "known: J, d, offset.f_0@hinge"),
         ((f'own = ["{OFFSET}"]', "own = 3"), "own in"),
+        (("[parameters.J]", "[own_values]\nlog_0 = 3\n[parameters.J]"), "must be a table"),
+        (("[parameters.J]", "[own_values.log_0]\nJ = 3.0\n[parameters.J]"), "known: offset"),
         (("horizon = 0.2\n", ""), "write horizon = 0.2"),
     ],
 )

@@ -1,7 +1,10 @@
 """The words of a user for a discovery over a horizon: text, JSON and confirmation take it."""
 
+from dataclasses import replace
+
 import pytest
-from records_cases import MJCF, records
+from pendulum_robot import TOML, make_folder
+from records_cases import records
 
 from identification import (
     RecordsDiscovery,
@@ -13,23 +16,13 @@ from identification import (
 )
 
 MU = "transmitted_load_friction.mu@hinge"
-TOML = """
-model = "pendulum.xml"
-free = ["joint/hinge.armature", "joint/hinge.damping"]
-horizon = 0.2
-[parameters."joint/hinge.armature"]
-value = 1.5e-3
-[parameters."joint/hinge.damping"]
-value = 0.03
-[effects]
-only = ["transmitted_load_friction"]
-"""
+ONLY = '[effects]\nonly = ["transmitted_load_friction"]\n'
 
 
 @pytest.fixture
 def path(tmp_path):
-    (tmp_path / "pendulum.xml").write_text(MJCF)
-    (tmp_path / "robot.toml").write_text(TOML)
+    make_folder(tmp_path)
+    (tmp_path / "robot.toml").write_text(TOML + ONLY)
     return tmp_path / "robot.toml"
 
 
@@ -44,6 +37,7 @@ def test_text_json_and_confirmation_take_what_records_say(path, mu):
     assert discovery_to_json(found)["verdict"] == ("named" if mu else "nothing missing")
     (compared,) = confirm(robot, found)
     assert compared.log == third.name
+    assert confirm(replace(robot, records=()), found) == (compared,)
     assert compared.unit == "rad"
     (error,) = (e for e in found.errors if e.role == "confirm")
     assert compared.after == pytest.approx(error.after, rel=0.01)

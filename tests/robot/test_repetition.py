@@ -10,7 +10,7 @@ from robot_cases import TOML
 from robot_cases import run as command
 
 from identification import write_log
-from identification.robot.repetition import REPLAYED, replayed_share
+from identification.logs.replay import REPLAYED, replayed_share
 
 NOISE = np.random.default_rng(2)
 

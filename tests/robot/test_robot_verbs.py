@@ -31,6 +31,20 @@ def test_fit_and_confirm_say_what_the_command_says(folder, capsys, horizon):
     assert {n: s if np.isfinite(s) else None for n, s in found.std.items()} == std
 
 
+@pytest.mark.parametrize("horizon", ["", "horizon = 0.5\n"])
+def test_without_records_the_part_that_was_not_fitted_confirms(folder, horizon):
+    path = folder / f"unseen{len(horizon)}.toml"
+    path.write_text(horizon + TOML)
+    robot = read_robot(path, folder / "plain.csv")
+    found = fit(robot)
+    (there,) = confirm(robot, found)
+    assert there.log == "plain [validation]"
+    assert 4e-4 < there.after < 8e-4  # the noise is 5e-4, and a free run drifts a little
+    assert there.before > 2 * there.after
+    if not horizon:
+        assert there.after == pytest.approx(found.found.validation_rms, rel=1e-6)
+
+
 def test_a_log_that_is_read_already_is_the_same_robot(folder):
     path = folder / "robot.toml"
     from_file = read_robot(path, folder / "plain.csv")

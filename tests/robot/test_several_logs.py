@@ -1,10 +1,13 @@
 """A fit of several logs is one fit: finer, confirmed on others, and honest where it fails."""
 
+import json
+
 import pytest
 from pendulum_robot import TOML, assert_true, make_folder, measured, written
 from robot_cases import refused, run
 
 from identification import confirm, fit, read_robot
+from identification.__main__ import main
 from identification.robot.file import read_robot_file
 from identification.robot.fit_json import robot_fit_to_json
 
@@ -35,7 +38,7 @@ def test_the_command_fits_several_logs_and_confirms_them_on_another(folder, caps
 
 
 def test_more_logs_make_estimates_finer(folder):
-    logs = written(folder, *map(measured, range(1, 4)))
+    logs = written(folder, *(measured(k, samples=480) for k in range(1, 4)))
     one, several = (fit(read_robot(folder / "robot.toml", paths)) for paths in (logs[0], logs))
     assert several.std["d"] < one.std["d"]
     assert_true(several, "d", 0.02)
@@ -78,6 +81,32 @@ def test_a_fit_that_predicts_unseen_records_worse_says_so(folder):
     logs = written(folder, measured(1), measured(2, begun))
     robot = read_robot(folder / "robot.toml", logs[0], confirm=logs[1:])
     found = fit(robot)
-    assert any("worse than" in s for s in robot_fit_to_json(found)["verdict"])
+    assert "worse than" in robot_fit_to_json(found)["verdict"][0]
+    assert found.is_worse
     good = fit(read_robot(folder / "robot.toml", logs[0]))
     assert not any("worse than" in s for s in robot_fit_to_json(good)["verdict"])
+
+
+def test_the_command_keeps_a_fit_that_is_worse_and_says_so_everywhere(folder, capsys):
+    logs = written(folder, measured(1), measured(2, {"J": 1.5e-3, "d": 0.03}))
+    out, robot = folder / "out", folder / "robot.toml"
+    call = ["fit", str(robot), str(logs[0]), "--confirm", str(logs[1]), "--out", str(out)]
+    assert main(call) == 1
+    text, error = capsys.readouterr()
+    assert "do not use them" in text.splitlines()[0]
+    assert "are not to be used (exit code 1)" in error
+    kept = json.loads((out / "result.json").read_text())
+    assert kept["worse"]["rise"] > 0
+    assert "do not use them" in kept["verdict"][0]
+    assert (out / "robot.toml").read_text().startswith("# The fitted values predict")
+    again = read_robot_file(out / "robot.toml").records
+    assert again["d"]["value"] == kept["parameters"]["d"]["value"]
+
+
+@pytest.mark.parametrize(("samples", "told"), [(40, "the only window"), (80, "too few of 2")])
+def test_a_std_that_one_or_two_windows_cannot_tell_is_called_unknown(folder, capsys, samples, told):
+    logs = written(folder, measured(1, samples=samples))
+    said = run(capsys, "fit", folder / "robot.toml", *logs)
+    assert all(p["std"] is None for p in said["parameters"].values())
+    (sentence,) = [s for s in said["verdict"] if "cannot be known" in s]
+    assert sentence.startswith(f"The std of J, d cannot be known: {told}")

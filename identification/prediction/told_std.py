@@ -1,0 +1,50 @@
+"""Can the std of a value be told from the windows of a fit, or are they too few?
+
+    ν_j = ((Σ_b h_bj + w_j)/Σ_b h_bj)² ((Σ_b h_bj)²/Σ_b h_bj² - 1)
+    h_bj = a_jᵀ H_b a_j,   w_j = a_jᵀ W² a_j,   a_j = H⁻¹ e_j,   H = Σ_b H_b + W²
+
+The variance of a value is a sum over blocks b of windows and a share w of its prior. A variance of
+ν degrees of freedom (Satterthwaite 1946, for clusters Bell and McCaffrey 2002) is too small by a
+factor of up to ν/χ²(ν, 2.5 %): of one window it is nothing, whatever number comes out of it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from identification.prediction.fit import BLOCKS, WindowFit, projected
+
+FEWEST = 3.0  # degrees of freedom: the std is right within a factor 4 in 19 cases of 20
+
+
+def told_std(found: WindowFit) -> np.ndarray:
+    """Std of each value by blocks of windows, in its unit, shape (p,).
+
+    It is inf where no window feels the parameter, and NaN where too few windows tell of it for
+    their scatter to be known.
+
+    Args:
+        found: a fit.
+    """
+    std = found.std
+    few = np.isfinite(std) & (degrees_of_freedom(found) < FEWEST)
+    return np.where(few, np.nan, std)
+
+
+def degrees_of_freedom(found: WindowFit) -> np.ndarray:
+    """ν of the std of each value, shape (p,), without unit.
+
+    Args:
+        found: a fit.
+    """
+    S = np.concatenate([projected(t)[0] for t in found.tangents])
+    blocks = np.array_split(S, min(BLOCKS, len(S)))
+    each = np.array([np.einsum("wmp,wmq->pq", b, b) for b in blocks])
+    W2 = np.diag(found.problem.prior.weight**2)
+    a = np.linalg.pinv(each.sum(axis=0) + W2, rcond=1e-14, hermitian=True)
+    h = np.einsum("pj,bpq,qj->bj", a, each, a)
+    w = np.einsum("pj,pq,qj->j", a, W2, a)
+    total = h.sum(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        told = ((total + w) / total) ** 2 * (total**2 / np.sum(h**2, axis=0) - 1)
+    return np.where(total > 0, told, np.inf)

@@ -1,0 +1,57 @@
+"""The fitted values of a discovery on several records: name, value ± std and unit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from identification.prediction.model import WindowModel
+from identification.prediction.result import RecordsDiscovery
+from identification.quantities import quantity
+
+NOT_TOLD = "± unknown"  # too few windows tell of a value for its std to be known
+
+
+def value_with_std(value: float, std: float, unit: str) -> str:
+    """A value with its std, and said so where the std cannot be known.
+
+    Args:
+        value: in `unit`.
+        std: in `unit`; NaN where too few windows tell of it, inf where none feels it.
+        unit: SI unit.
+    """
+    if np.isinf(std):
+        return f"{quantity(value, unit=unit)}, not felt"
+    said = quantity(value, std, unit)
+    return f"{said} {NOT_TOLD}" if np.isnan(std) else said
+
+
+def value_table(found: RecordsDiscovery) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Head and rows: each fitted value, of the nominal model and of the one with what is named."""
+    models = [found.nominal, found.final] if found.named else [found.nominal]
+    columns = [_values(model) for model in models]
+    names = [*dict.fromkeys(name for column in columns for name in column)]
+    head = ("parameter", "fitted without effects", "fitted with what is named")
+    rows = [(name, *(column.get(name, "–") for column in columns)) for name in names]
+    return head[: 1 + len(models)], rows
+
+
+def text_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """The lines of a table for a terminal, its cells to the left."""
+    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
+    return [
+        "  " + "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip()
+        for row in (head, *rows)
+    ]
+
+
+def _values(model: WindowModel) -> dict[str, str]:
+    """What was fitted, and what effects hold fixed, in words by name."""
+    std, parameters = model.told_std, model.plant.parameters
+    out = {}
+    for name, value in {**model.fit.values, **model.values}.items():
+        unit = parameters[name.partition(" [")[0]].unit
+        known = name in std
+        out[name] = value_with_std(value, std[name], unit) if known else quantity(value, unit=unit)
+    return out

@@ -1,0 +1,112 @@
+"""Are the values of a robot's TOML of the kinds that its keys take?"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import inf, isfinite
+from pathlib import Path
+from typing import Any
+
+from identification.errors import InputError, unknown_name
+
+Kinds = Mapping[str, tuple[type | tuple[type, ...], str]]  # by key: the types, and what they are
+POSITIVE = ("every", "known", "scale")
+
+
+def check_table(table: Mapping[str, Any], kinds: Kinds, where: str) -> None:
+    """Refuse a table with an unknown key or a value of a wrong kind.
+
+    Args:
+        table: of the TOML.
+        kinds: of its keys.
+        where: it stands, for messages.
+
+    Raises:
+        InputError: there is one.
+    """
+    for key, value in table.items():
+        if key not in kinds:
+            raise unknown_name(f"key in {where}:", key, kinds)
+        kind, words = kinds[key]
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        good = isinstance(value, kind) and not isinstance(value, bool)
+        if good and number:
+            good = isfinite(value) and (key not in POSITIVE or value > 0)
+        if not good:
+            raise InputError(f"{key} in {where} must be {words}; correct it there")
+
+
+def read_own(content: Mapping[str, Any], path: Path) -> tuple[str, ...]:
+    """Names of the free parameters of which each log has a value of its own.
+
+    Args:
+        content: of the TOML.
+        path: of it.
+
+    Raises:
+        InputError: one is not free, or there is no horizon.
+    """
+    own = texts(content.get("own", []), "own", path)
+    for name in own:
+        if name not in content["free"]:
+            raise unknown_name(f"free parameter under own in {path}:", name, content["free"])
+    if own and "horizon" not in content:
+        raise InputError(
+            f"own in {path} is for records that are predicted over a horizon; write horizon = 0.2"
+            " (in seconds) into it"
+        )
+    return own
+
+
+def read_own_values(content: Mapping[str, Any], path: Path) -> dict[str, dict[str, float]]:
+    """By log, where the search of its own values begins.
+
+    Args:
+        content: of the TOML.
+        path: of it.
+
+    Raises:
+        InputError: a name is not under `own`, or a value is no number.
+    """
+    found = content.get("own_values", {})
+    for log, values in found.items():
+        where = f"own_values.{log} in {path}"
+        if not isinstance(values, dict):
+            raise InputError(f"{where} must be a table of numbers")
+        check_table(
+            values, dict.fromkeys(content.get("own", []), ((int, float), "a number")), where
+        )
+    return {log: {n: float(v) for n, v in values.items()} for log, values in found.items()}
+
+
+def texts(values: list[Any], key: str, path: Path) -> tuple[str, ...]:
+    """Names, each once.
+
+    Args:
+        values: of the key.
+        key: it.
+        path: of the TOML.
+
+    Raises:
+        InputError: one is no text, or stands there twice.
+    """
+    if not all(isinstance(v, str) for v in values) or len(set(values)) < len(values):
+        raise InputError(f"{key} in {path} must be names in quotes, each once")
+    return tuple(values)
+
+
+def numbers(values: list[Any], key: str, path: Path) -> tuple[float, ...]:
+    """Numbers above zero.
+
+    Args:
+        values: of the key.
+        key: it.
+        path: of the TOML.
+
+    Raises:
+        InputError: one is not.
+    """
+    for v in values:
+        if isinstance(v, bool) or not isinstance(v, int | float) or not 0 < v < inf:
+            raise InputError(f"{key} in {path} must be numbers above zero")
+    return tuple(map(float, values))

@@ -1,0 +1,108 @@
+"""Have columns of one joint one unit: its position, its rate, and what its drive wants of it?
+
+    q(t_k+1) - q(t_k) = b ∫ v dt + c        over equal pieces of the log; v is measured or wanted
+    q(t) = b u/g + c                        u is the wanted position, g the gear
+
+b and c are least squares, and c is an offset. No model is asked: whatever the robot is, b of a
+measured rate is 1, and a joint that goes with a wanted motion goes neither ten times as far nor a
+tenth. Degrees in one of the two columns make b 57 or 1/57, revolutions 6.3, rpm 1/9.5.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from scipy.integrate import cumulative_trapezoid
+
+from identification.logs.log import Log
+from identification.logs.units import UNITS
+from identification.model.predictor import output_columns
+from identification.robot.scale import wanted_units
+
+PIECES = 20  # of a log
+CERTAIN = 0.95  # share of the variance that the line explains
+NEAR = 1.25  # factor from 1 that b may be once the unit is right; rpm is 1.5 from 1/2π
+WANTED = 10.0  # factor from 1 that b may be of a drive that is weak, or of a joint that resounds
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two columns of one joint.
+
+    Attributes:
+        q: output that is the position.
+        other: output or input that is a rate or a wanted motion.
+        unit: SI unit of the other one.
+        slope: b, without unit; NaN where the line does not explain the position.
+        free: factor from 1 that b may be.
+    """
+
+    q: str
+    other: str
+    unit: str
+    slope: float
+    free: float
+
+
+def different_units(model: mujoco.MjModel, log: Log, column: Mapping[str, str]) -> str | None:
+    """Which column has another unit than it says, and the cure; None where none has.
+
+    Args:
+        model: with the log's actuators and sensors.
+        log: as it is read.
+        column: what an output or input is called in the log's file.
+    """
+    for pair in _pairs(model, log):
+        b = pair.slope
+        if np.isnan(b) or 1 / pair.free < b < pair.free:
+            continue
+        of_q = log.units.get(pair.q, "")
+        for name, unit, power in ((pair.other, pair.unit, -1), (pair.q, of_q, 1)):
+            for word, (of, factor) in UNITS.items():
+                if of == unit and 1 / NEAR < b * factor**power < NEAR:
+                    return (
+                        f"{column[pair.q]} moves {b:.3g} times as far as {column[pair.other]}"
+                        f' says; write {column[name]} = "{word}" under [units] of the log\'s TOML'
+                    )
+    return None
+
+
+def _pairs(model: mujoco.MjModel, log: Log) -> Iterator[Pair]:
+    """Positions with the measured rates, and with what drives want, of hinges and slides."""
+    places = dict(zip(output_columns(model, log.output_names), log.output_names, strict=True))
+    scalar = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
+    wanted = wanted_units(model, log)
+    for joint in range(model.njnt):
+        q = places.get(("qpos", int(model.jnt_qposadr[joint])))
+        if q is None or model.jnt_type[joint] not in scalar:
+            continue
+        y = log.outputs[:, log.output_names.index(q)]
+        v = places.get(("qvel", int(model.jnt_dofadr[joint])))
+        if v is not None:
+            rate = log.outputs[:, log.output_names.index(v)]
+            yield Pair(q, v, log.units.get(v, ""), _of_rate(log, y, rate), NEAR)
+        for i, name in enumerate(log.input_names):
+            if name in wanted and model.actuator_trnid[i, 0] == joint:
+                u = log.inputs[:, i] / (model.actuator_gear[i, 0] or 1.0)
+                is_rate = wanted[name].endswith("/s")
+                slope = _of_rate(log, y, u) if is_rate else _slope(u, y)
+                yield Pair(q, name, wanted[name], slope, WANTED)
+
+
+def _of_rate(log: Log, y: np.ndarray, v: np.ndarray) -> float:
+    """b of a position and a rate, shape (n,) each."""
+    edges = np.linspace(0, len(y) - 1, min(PIECES, len(y) // 2) + 1).round().astype(int)
+    summed = cumulative_trapezoid(v, dx=log.sampling_time, initial=0.0)
+    return _slope(np.diff(summed[edges]), np.diff(y[edges]))
+
+
+def _slope(x: np.ndarray, y: np.ndarray) -> float:
+    """b of y = b x + c; NaN where the line does not explain y."""
+    if len(x) < 3 or x.std() == 0 or y.std() == 0:
+        return np.nan
+    correlation = float(np.corrcoef(x, y)[0, 1])
+    is_certain = correlation > 0 and correlation**2 > CERTAIN
+    return correlation * float(y.std() / x.std()) if is_certain else np.nan

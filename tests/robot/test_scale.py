@@ -1,0 +1,128 @@
+"""Angles in degrees are told also where a payload is missing; a right log is not blamed."""
+
+from dataclasses import replace
+from functools import cache
+
+import mujoco
+import numpy as np
+import pytest
+from test_right_logs import (
+    ARM,
+    MOTION,
+    PENDULUM,
+    friction,
+    heavy,
+    no_gravity,
+    nothing,
+    payload,
+    robot,
+    tracked,
+)
+
+from identification import InputError, Log
+from identification.robot.same_units import different_units
+from identification.robot.scale import rescaled
+from identification.robot.wiring import refuse_miswired
+
+DEG = 180 / np.pi
+HOLDING = PENDULUM.replace(
+    '<motor name="u1" joint="q1"/>', '<position name="u1" joint="q1" kp="40" kv="4"/>'
+)
+BOTH = PENDULUM.replace("</sensor>", '<jointvel name="v1" joint="q1"/></sensor>')
+
+
+@cache
+def log_of(xml, world):
+    model = mujoco.MjModel.from_xml_string(xml)
+    world(model)
+    return tracked(model, MOTION[xml])
+
+
+def scaled(log, factor):
+    return replace(log, outputs=log.outputs * factor)
+
+
+@pytest.mark.parametrize("xml", [PENDULUM, ARM], ids=["pendulum", "arm"])
+@pytest.mark.parametrize("world", [payload, no_gravity, friction, heavy], ids=lambda f: f.__name__)
+@pytest.mark.parametrize(("factor", "unit"), [(DEG, "deg"), (1e3, "mrad")])
+def test_degrees_are_told_whatever_the_model_lacks(tmp_path, xml, world, factor, unit):
+    wrong = scaled(log_of(xml, world), factor)
+    own, read = robot(tmp_path, xml, wrong, "horizon = 0.2")
+    with pytest.raises(InputError, match=f'q1 = "{unit}"') as refused:
+        refuse_miswired(own, read)
+    assert 'or write trust = ["units"] into' in str(refused.value)
+    refuse_miswired(replace(own, file=replace(own.file, trust=("units", "wiring"))), read)
+
+
+@pytest.mark.parametrize("step", [0.0, 1.5e-3, 2e-2])
+@pytest.mark.parametrize("late", [-3, 0, 6])
+@pytest.mark.parametrize("world", [nothing, payload, friction], ids=lambda f: f.__name__)
+def test_a_right_log_of_a_coarse_encoder_or_a_late_torque_passes(world, late, step):
+    log = log_of(ARM, world)
+    y = step * np.round(log.outputs / step) if step else log.outputs
+    u = np.roll(log.inputs, late, axis=0)
+    read = replace(log, outputs=y, inputs=u, units=dict.fromkeys(log.output_names, "rad"))
+    same = {n: n for n in (*log.input_names, *log.output_names)}
+    assert rescaled(mujoco.MjModel.from_xml_string(ARM), read, same) is None
+
+
+def moved(samples=400, step=0.01, seed=0):
+    """Position and rate of a joint under random forces."""
+    rng = np.random.default_rng(seed)
+    a = np.repeat(rng.uniform(-4, 4, samples // 20), 20)
+    v = np.cumsum(a) * step
+    v -= np.linspace(0, 1, samples) * v[-1]
+    return np.cumsum(v) * step, v, a
+
+
+def read_as(q, other, name, of):
+    """A log with a position and one column more, an output or an input."""
+    u = other if of == "input" else np.zeros(len(q))
+    outputs = np.stack([q, other], axis=1) if of == "output" else q[:, None]
+    names = ("q1", name) if of == "output" else ("q1",)
+    return Log(time=0.01 * np.arange(len(q)), inputs=u[:, None], outputs=outputs,
+               input_names=("u1",), output_names=names,
+               units=dict(zip(names, ("rad", "rad/s"), strict=False)))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("of_q", "of_v", "cure"),
+    [(1, 1, None), (1, DEG, 'v1 = "deg/s"'), (1, 30 / np.pi, 'v1 = "rpm"'),
+     (DEG, 1, 'q1 = "deg"'), (1 / (2 * np.pi), 1, 'q1 = "rev"'), (1, 1.2, None)],
+)  # fmt: skip
+def test_a_rate_in_another_unit_than_its_position_is_told(of_q, of_v, cure):
+    model = mujoco.MjModel.from_xml_string(BOTH)
+    q, v, _ = moved()
+    log = read_as(of_q * q, of_v * v + 0.3, "v1", "output")
+    said = different_units(model, log, {n: n for n in ("u1", "q1", "v1")})
+    assert said is None if cure is None else cure in said
+
+
+@pytest.mark.parametrize(
+    ("of_q", "of_u", "cure"),
+    [(1, 1, None), (1, DEG, 'u1 = "deg"'), (DEG, 1, 'q1 = "deg"'), (0.2, 1, None), (5, 1, None),
+     (DEG, DEG, None)],
+)  # fmt: skip
+def test_a_wanted_position_in_another_unit_than_the_measured_one_is_told(of_q, of_u, cure):
+    model = mujoco.MjModel.from_xml_string(HOLDING)
+    q, *_ = moved()
+    late = np.concatenate([q[:1].repeat(5), q[:-5]])
+    log = read_as(of_q * (late + 0.1), of_u * q, "u1", "input")
+    said = different_units(model, log, {n: n for n in ("u1", "q1")})
+    assert said is None if cure is None else cure in said
+
+
+def test_a_wanted_position_in_degrees_is_refused_by_the_robot(tmp_path):
+    model = mujoco.MjModel.from_xml_string(HOLDING)
+    data, q, _ = mujoco.MjData(model), *moved()[:2]
+    y = np.zeros((len(q), 1))
+    for k in range(len(q)):
+        y[k] = data.qpos
+        data.ctrl[0] = q[k]
+        mujoco.mj_step(model, data, 4)
+    log = Log(time=0.01 * np.arange(len(q)), inputs=q[:, None], outputs=y,
+              input_names=("u1",), output_names=("q1",))  # fmt: skip
+    own, read = robot(tmp_path, HOLDING, log, "horizon = 0.2")
+    refuse_miswired(own, read)
+    with pytest.raises(InputError, match='write u1 = "deg" under'):
+        refuse_miswired(own, replace(read, inputs=DEG * read.inputs))
