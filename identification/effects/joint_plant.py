@@ -34,7 +34,7 @@ from identification.model.paths import Slot, write
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
-from identification.native.joint_callback import FIRST
+from identification.native.joint_callback import FIRST, GENTLE, STOP
 
 
 @dataclass(frozen=True)
@@ -86,6 +86,15 @@ class JointPlant:
         for slot, values in numbers:
             write(model, slot, float(values[0]))
         mujoco.mj_setConst(model, mujoco.MjData(model))
+        return model
+
+    @cached_property
+    def smooth(self) -> mujoco.MjModel:
+        """The model whose friction stops its joints more gently: its outputs have slopes."""
+        model = copy.copy(self.model)
+        column = int(model.nuser_jnt) - self.layout.entries + STOP
+        for joint in self.joints:
+            model.jnt_user[int(model.joint(joint).id), column] *= GENTLE
         return model
 
     def with_values(self, values: Mapping[str, float]) -> JointPlant:

@@ -43,6 +43,7 @@ STOP, REACH, FIRST, LAST = 0, 1, 6, 2  # columns of T, of what is reached, of th
 # entries behind the last
 DRIVE, LOW, HIGH, STOPPING, FRICTION, ROWS = range(6)  # rows of the room for joints held together
 STEPS = 1.0  # T over the step, where joints are held together
+GENTLE = 3.0  # times T, for slopes: at once, friction has none that tell what a finite step does
 STEPS_ALONE = 3.0  # where each is held by itself, although the inertia of one is less than M then
 
 # What an effect sees of a hinge or slide joint.

@@ -19,6 +19,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.estimation.levenberg_marquardt import Cost
+from identification.model.coordinates import Coordinates
 from identification.prediction.problem import Problem
 from identification.windows.shooting import Tangent
 
@@ -69,8 +70,7 @@ class AtPoint:
     def step(self, μ: Cost) -> Step:
         """Where the step with damping μ ends."""
         dq, dd = step_of(self.problem, self.q, self.tangents, float(μ))
-        space = self.problem.prior.space
-        q = np.clip(self.q + dq, space.lower, space.upper)
+        q = self.q + dq
         promised = self._promised(q, dd)
         moves = tuple(d + more for d, more in zip(self.moves, dd, strict=True))
         try:
@@ -122,7 +122,7 @@ def projected(t: Tangent) -> tuple[np.ndarray, np.ndarray]:
 def step_of(
     problem: Problem, q: np.ndarray, tangents: Sequence[Tangent], damping: float
 ) -> tuple[np.ndarray, Moves]:
-    """The damped step of the parameters and of the windows' states."""
+    """The damped step of the parameters, within their bounds, and of the windows' states."""
     H, g = np.diag(problem.prior.weight**2), problem.prior.weight * problem.against(q)
     for t in tangents:
         against, left, share = _states(t, damping)
@@ -132,13 +132,30 @@ def step_of(
     size = np.sqrt(np.maximum(np.diag(H), 0.0))
     size = np.where(size > 0, size, 1.0)
     scaled = H / np.outer(size, size) + damping * np.eye(len(g))
-    dq = np.linalg.lstsq(scaled, g / size, rcond=1e-14)[0] / size
+    dq = _within(scaled, g / size, problem.prior.space, q, size)
     moves = []
     for t in tangents:
         against, left, _ = _states(t, damping)
         along = t.s / (t.s**2 + damping) * (left - against @ dq)
         moves.append(np.einsum("wkx,wk->wx", t.Vt, along) / t.size)
     return dq, tuple(moves)
+
+
+def _within(
+    H: np.ndarray, g: np.ndarray, space: Coordinates, q: np.ndarray, size: np.ndarray
+) -> np.ndarray:
+    """Δq = x/size of H x = g, those that would leave their bounds held there."""
+    x, free = np.zeros(len(g)), np.ones(len(g), bool)
+    low, high = (space.lower - q) * size, (space.upper - q) * size
+    while free.any():
+        F = np.ix_(free, free)
+        x[free] = np.linalg.lstsq(H[F], g[free] - H[free][:, ~free] @ x[~free], rcond=1e-14)[0]
+        beyond = free & ((x < low) | (x > high))
+        if not beyond.any():
+            break
+        x[beyond] = np.clip(x, low, high)[beyond]
+        free &= ~beyond
+    return np.asarray(x / size)
 
 
 def _states(t: Tangent, damping: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -8,11 +8,11 @@
 
 Each Δd_w is eliminated separately, so that one more window costs only its simulations (condensing;
 Bock 1983). A tangent takes 1 + nx + p simulations of the log, all in one batch; a trial step takes
-one. Where the model is integrated by RK4, the simulations whose differences make the slopes may
-take one evaluation of the dynamics a step instead of four: slopes then err by a few per cent, which
-they may, because the residual that the steps make small is exact (inexact Gauss-Newton; Dembo,
-Eisenstat, Steihaug 1982). The information on q is that of S_w after the initial states are
-projected out.
+one. The simulations whose differences make the slopes may be those of a smooth model (see
+`JointPlant.smooth`) that takes one evaluation of the dynamics a step where RK4 takes four: slopes
+then err by a few per cent, which they may, because the residual that the steps make small is exact
+(inexact Gauss-Newton; Dembo, Eisenstat, Steihaug 1982). The information on q is that of S_w after
+the initial states are projected out.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ import mujoco
 import numpy as np
 
 from identification.model.coordinates import Coordinates
-from identification.model.predictor import Predictor
+from identification.model.predictor import Plant, Predictor
 from identification.model.rollout import State, hold, rollout, substeps
 from identification.model.sensitivity import FORWARD_STEP
 from identification.windows.windows import FirstStates, Windows, moved
@@ -45,8 +45,8 @@ class Shooting:
         cut: the windows.
         first: the prior of their initial states.
         whitener: C, shape (ny, ny).
-        has_rough_slopes: whether simulations whose differences make slopes take one evaluation of
-            the dynamics a step.
+        has_rough_slopes: whether simulations whose differences make slopes are those of a smooth
+            model, with one evaluation of the dynamics a step.
     """
 
     predictor: Predictor
@@ -97,10 +97,11 @@ class Shooting:
         Args:
             q: the points.
             moves: d of each, shape (W, nx).
-            is_rough: with one evaluation of the dynamics a step, where only differences matter.
+            is_rough: for slopes, where only differences matter.
         """
         predictor, W = self.predictor, len(self.cut.starts)
-        model = rough(predictor.plant.model) if is_rough else predictor.plant.model
+        plant = predictor.plant
+        model = rough(plant) if is_rough else plant.model
         _, numbers = predictor.settings(self.space.decode(q))
         starts = [self.states(d) for d in moves]
         rows = (np.concatenate([getattr(s, f) for s in starts]) for f in ("qpos", "qvel", "act"))
@@ -134,8 +135,9 @@ class Shooting:
         return made[:, rows].reshape(-1, len(steps), held.shape[1]), every, "zoh"
 
 
-def rough(model: mujoco.MjModel) -> mujoco.MjModel:
-    """The model with one evaluation of the dynamics a step, where it takes more."""
+def rough(plant: Plant) -> mujoco.MjModel:
+    """The model for slopes: a smooth one where the plant has it, one evaluation of it a step."""
+    model: mujoco.MjModel = getattr(plant, "smooth", plant.model)
     if model.opt.integrator != RK4:
         return model
     model = copy.copy(model)
@@ -213,7 +215,7 @@ def tangent(
     """
     p, nx = len(q), d.shape[1]
     h = step
-    is_rough = shooting.has_rough_slopes and shooting.predictor.plant.model.opt.integrator == RK4
+    is_rough = shooting.has_rough_slopes
     points = np.concatenate([np.tile(q, (1 + nx, 1)), q + h * np.eye(p)])
     moves = [d, *(d + h * e for e in np.eye(nx)), *[d] * p]
     y = shooting.outputs(points, moves, is_rough)
