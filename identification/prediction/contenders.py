@@ -93,3 +93,22 @@ def list_simpler(
 def count_numbers(c: Candidate) -> int:
     """How many numbers of an effect are estimated."""
     return len(c.free) + sum(shape.free for shape in c.effect.shapes)
+
+
+def list_starts(score: WindowScore, scores: Sequence[WindowScore]) -> list[WindowScore]:
+    """Another start of a law with free shapes: its best score with sizes of the other sign.
+
+    Such a law often has two minima: a peak of friction at rest, and a lack of it at speed.
+
+    Args:
+        score: where a refit begins.
+        scores: of all candidates, the best first.
+    """
+    if not any(shape.free for shape in score.candidate.effect.shapes):
+        return []
+    sign = np.sign(score.size[0])
+    others = (
+        s for s in scores
+        if s.candidate.key == score.candidate.key and np.sign(s.size[0]) == -sign
+    )  # fmt: skip
+    return [s for s, _ in zip(others, range(1), strict=False)]

@@ -6,7 +6,8 @@ the states that then are best. Size zero is the parent, so that a child never ex
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -36,20 +37,60 @@ SHAPE_STD = 1.0  # prior of a shape's coordinate about the value that scored bes
 SMALL = 1e-3  # of a probe: where the search for a size begins that must not be zero
 
 
+@dataclass(frozen=True)
+class _Begun:
+    """An effect fitted to some of the windows.
+
+    Attributes:
+        cost: V there.
+        candidate: the effect.
+        fixed: values that it holds fixed.
+        task: all windows.
+        q: the estimate, shape (p,).
+    """
+
+    cost: float
+    candidate: Candidate
+    fixed: Mapping[str, float]
+    task: Problem
+    q: np.ndarray
+
+
 def with_effect(
-    parent: WindowModel, score: WindowScore, horizon: float, confirm: Sequence[Record]
+    parent: WindowModel,
+    scores: Sequence[WindowScore],
+    horizon: float,
+    confirm: Sequence[Record],
 ) -> WindowModel | None:
     """The model with one effect more, refitted; None where it explains no more than its parent.
 
     Args:
         parent: the model without it.
-        score: of the effect on the parent: where its size begins.
+        scores: of the effect on the parent, one for each start: where shapes and sizes begin.
         horizon: [s].
         confirm: records that no fit may see.
 
     Raises:
-        InputError: its start cannot be simulated, whatever the size.
+        InputError: it cannot be simulated from any start, whatever the size.
     """
+    fit, plant = parent.fit, parent.plant
+    begun = [b for b in (_begun(parent, score) for score in scores) if b is not None]
+    if not begun:
+        c = scores[0].candidate
+        raise InputError(f"{c.effect.name}, {c.where} cannot be simulated at any size")
+    best = min(begun, key=lambda b: b.cost)
+    moves = best.task.settled(best.q, fit.moves)
+    found = solve(best.task, best.q, moves, tolerance=FINE, most=MOST_REFIT)
+    if found.cost >= fit.cost:
+        return None
+    values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}
+    fixed = {**values, **best.fixed}
+    seen = predict_fitted(plant, confirm, horizon, parent.scale, found, fixed, parent.unseen)
+    return WindowModel((*parent.candidates, best.candidate), found, seen, parent.scale)
+
+
+def _begun(parent: WindowModel, score: WindowScore) -> _Begun | None:
+    """The fit of some windows; None where it cannot be simulated at any size."""
     c, fit, plant = score.candidate, parent.fit, parent.plant
     old = fit.problem.unknowns
     sizes = _free(plant, c, [n for n in c.free if n not in old.local.names])
@@ -59,41 +100,24 @@ def with_effect(
     free = (*shared.names, *own.names)
     fixed = {n: v for n, v in (*c.fixed.items(), *c.whole.items()) if n not in free}
     task = with_unknowns(fit.problem, shared, own, fixed)
-    q = _first(task, parent, score)
-    found = solve(task, q, task.settled(q, fit.moves), tolerance=FINE, most=MOST_REFIT)
-    if found.cost >= fit.cost:
-        return None
-    values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}
-    seen = predict_fitted(
-        plant, confirm, horizon, parent.scale, found, {**values, **fixed}, parent.unseen
-    )
-    return WindowModel((*parent.candidates, c), found, seen, parent.scale)
-
-
-def _first(task: Problem, parent: WindowModel, score: WindowScore) -> np.ndarray:
-    """Where the fit of all windows begins: at the fit of some of them.
-
-    Raises:
-        InputError: its start cannot be simulated, whatever the size.
-    """
-    c, fit = score.candidate, parent.fit
-    few, old = thinned(task, THIN), thinned_moves(fit.moves, THIN)
-    least = thinned(fit.problem, THIN).cost(fit.q, old)
-    begun = []
+    few, begun = thinned(task, THIN), thinned_moves(fit.moves, THIN)
+    least = thinned(fit.problem, THIN).cost(fit.q, begun)
+    tried = []
     for share in SHARES:
         q = _begin(task, parent, score, share)
         try:  # the states have made up for what was missing
-            moves = few.settled(q, old)
+            moves = few.settled(q, begun)
             cost = few.cost(q, moves)
         except InputError:
             continue
-        begun.append((cost, q, moves))
+        tried.append((cost, q, moves))
         if cost < least or not c.free:
             break
-    if not begun:
-        raise InputError(f"{c.effect.name}, {c.where} cannot be simulated at any size")
-    _, q, moves = min(begun, key=lambda b: b[0])
-    return solve(few, q, moves, tolerance=FINE).q
+    if not tried:
+        return None
+    _, q, moves = min(tried, key=lambda t: t[0])
+    found = solve(few, q, moves, tolerance=FINE)
+    return _Begun(found.cost, c, fixed, task, found.q)
 
 
 def refitted(

@@ -20,6 +20,7 @@ from identification.prediction.contenders import (
     count_numbers,
     list_contenders,
     list_simpler,
+    list_starts,
 )
 from identification.prediction.evidence import count_windows, evidence, fitted_gains
 from identification.prediction.extension import with_effect
@@ -76,7 +77,8 @@ def refit_contenders(
     refits = len(chosen)
 
     def refit(s: WindowScore) -> list[Contender]:
-        c = _refit(model, s, horizon, confirm, options, refits, progress)
+        starts = [s, *list_starts(s, scores)]
+        c = _refit(model, starts, horizon, confirm, options, refits, progress)
         return [] if c is None else [c]
 
     out = [c for s in chosen for c in refit(s)]
@@ -91,12 +93,13 @@ def refit_contenders(
 
 
 def _refit(
-    model: WindowModel, s: WindowScore, horizon: float, confirm: Sequence[Record],
+    model: WindowModel, starts: Sequence[WindowScore], horizon: float, confirm: Sequence[Record],
     options: DiscoveryOptions, refits: int, progress: Progress,
 ) -> Contender | None:  # fmt: skip
-    label = f"{s.candidate.effect.name}, {s.candidate.where}"
+    c = starts[0].candidate
+    label = f"{c.effect.name}, {c.where}"
     try:
-        new = with_effect(model, s, horizon, confirm)
+        new = with_effect(model, starts, horizon, confirm)
     except InputError as error:
         progress(f"{label}: left out, {error}")
         return None
@@ -105,7 +108,7 @@ def _refit(
         return None
     found = compare(model.unseen, new.unseen)
     gains = np.concatenate([fitted_gains(model, new), found.blocks])
-    c, records = s.candidate, len(model.unseen.at_horizon) + len(model.fit.problem.parts)
+    records = len(model.unseen.at_horizon) + len(model.fit.problem.parts)
     numbers = count_numbers(c) * (records if c.effect.own else 1)
     windows, outputs = count_windows(model), len(model.scale)
     gain = float(evidence([gains], [numbers], windows, outputs)[0, 0])
