@@ -149,7 +149,10 @@ def test_what_repeats_on_a_slide_is_seen_to_repeat():
 
 
 def test_a_window_is_explained_as_well_among_others_where_the_joint_sticks_as_by_itself():
-    """Stiff friction forgets the first rate at once; an undamped step from there goes anywhere."""
+    """Stiff friction forgets the first rate at once; an undamped step from there goes anywhere.
+
+    What is less than half of the noise's own square does not matter.
+    """
     u = np.where(np.arange(400)[:, None] % 100 < 50, steps(400, hold=10), 0.3)
     clean = run(slider(), slider_log(u), **{"coulomb_friction.f_c@slide": 4.0})
     log = slider_log(u, clean + 1e-4 * np.random.default_rng(5).standard_normal(clean.shape))
@@ -158,7 +161,7 @@ def test_a_window_is_explained_as_well_among_others_where_the_joint_sticks_as_by
     for k, error in enumerate(among):
         rows = slice(20 * k, 20 * k + 20)
         alone = window_error(slider(), slider_log(u[rows], log.outputs[rows]), 0.2, more)
-        assert np.sum(error**2) < 1.05 * np.sum(alone**2), k
+        assert np.sum(error**2) < 1.05 * np.sum(alone**2) + 0.5 * error.size * 1e-4**2, k
 
 
 def test_a_friction_that_the_data_do_not_want_goes_to_nothing_and_no_search_fails():
