@@ -50,6 +50,7 @@ class Axis:
         heavy: whether gravity acts on it anywhere.
         duration: of the record [s]; 0 where it is not known.
         middle: of the way that it moves [rad or m].
+        share: of its inertia that its model gives to the motor, as armature; 0 where there is none.
 
     Raises:
         InputError: a magnitude is not positive.
@@ -64,6 +65,7 @@ class Axis:
     heavy: bool = False
     duration: float = 0.0
     middle: float = 0.0
+    share: float = 0.0
 
     def __post_init__(self) -> None:
         for word in MAGNITUDES:
@@ -147,12 +149,14 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
     drives = drives_of(model, j)
     force = sum(abs(_at_full(model, i)) * float(np.abs(log.inputs[:, _control(model, i)]).max())
                 for i in drives)  # fmt: skip
+    dof = int(model.jnt_dofadr[j])
     if not force and travel > 0:
-        force = float(model.dof_M0[model.jnt_dofadr[j]]) * speed**2 / travel
+        force = float(model.dof_M0[dof]) * speed**2 / travel
     name = model.joint(j).name
     return Axis(name, _KINDS[int(model.jnt_type[j])], force, speed, travel,
                 all(_plain(model, i) for i in drives), _heavy(model, j),
-                log.begun + log.duration, float(way.min() + way.max()) / 2)  # fmt: skip
+                log.begun + log.duration, float(way.min() + way.max()) / 2,
+                float(model.dof_armature[dof] * model.dof_invweight0[dof]))  # fmt: skip
 
 
 def _heavy(model: mujoco.MjModel, j: int) -> bool:

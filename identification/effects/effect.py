@@ -20,6 +20,7 @@ from identification.errors import InputError
 
 Sign = Literal[-1, 0, 1]
 FARTHEST = 5.0  # of the largest plausible size
+STATES = {"series": "motor", "slip": "grip"}  # hook -> the state of a joint that it needs
 CURVE = "curve"  # names of effects that begin so are curves drawn from the data
 
 
@@ -133,6 +134,11 @@ class Effect:
     def is_curve(self) -> bool:
         """Whether it is no law but a curve drawn from the data."""
         return self.name.startswith(CURVE)
+
+    @property
+    def state(self) -> str:
+        """Which state of a joint it needs: "motor", "grip" or, most often, none of them, ""."""
+        return next((kind for hook, kind in STATES.items() if hook in self.hooks), "")
 
     @property
     def names(self) -> tuple[str, ...]:
