@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import mujoco
 import numpy as np
@@ -79,6 +79,53 @@ class Plant(Protocol):
         """
 
 
+@runtime_checkable
+class WithStates(Protocol):
+    """A plant that may have states which no model file has, such as a motor behind a gear.
+
+    Windows know these states, the last activations, as deviations that stay small; MuJoCo
+    integrates them as they are. A plant without such states gives back what it is given.
+    """
+
+    def without_states(self) -> Plant:
+        """The same plant without them, and without the effects that need them."""
+
+    def begun(self, names: Sequence[str], values: np.ndarray, known: State) -> State:
+        """States as MuJoCo integrates them.
+
+        Args:
+            names: parameters that differ from the plant's own.
+            values: their values, shape (n, p).
+            known: as windows know them, m rows; each value set has m/n neighbouring ones.
+        """
+
+    def shown(
+        self, names: Sequence[str], values: np.ndarray, run: Mapping[str, np.ndarray]
+    ) -> Mapping[str, np.ndarray]:
+        """Positions and rates as sensors see them, of m simulations with qpos, qvel and act."""
+
+    def first_loads(
+        self, names: Sequence[str], values: np.ndarray, known: State, inputs: np.ndarray,
+        sampling_time: float,
+    ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+        """The states where windows begin, shape (W, na), and how far they may be, shape (na,).
+
+        Args:
+            names: as above.
+            values: one value set, shape (1, p).
+            known: the other states there, W rows.
+            inputs: there, shape (W, nu).
+            sampling_time: [s].
+        """
+
+
+def with_states(plant: Plant) -> WithStates | None:
+    """The plant, where it has states which no model file has."""
+    if isinstance(plant, WithStates) and plant.without_states() is not plant:
+        return plant
+    return None
+
+
 @dataclass(frozen=True)
 class Predictor:
     """Predicts a log's outputs from its inputs.
@@ -112,6 +159,29 @@ class Predictor:
         timestep = self.plant.model.opt.timestep
         return lambda held: self.plant.inputs(names, every, held, timestep, self.log.begun)
 
+    def begun(self, values: np.ndarray, known: State) -> State:
+        """States as MuJoCo integrates them, of n value sets (n, p); see `WithStates`."""
+        plant = with_states(self.plant)
+        return known if plant is None else plant.begun(*self._every(values), known)
+
+    def first_loads(
+        self, values: np.ndarray, known: State, inputs: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """States of the plant that no model file has, where windows begin; see `WithStates`.
+
+        Raises:
+            InputError: the plant has none.
+        """
+        plant = with_states(self.plant)
+        if plant is None:
+            raise InputError("the plant has no states beside those of its model")
+        return plant.first_loads(*self._every(values), known, inputs, self.log.sampling_time)
+
+    @property
+    def recorded(self) -> tuple[str, ...]:
+        """The fields of the state that outputs are made of."""
+        return ("qpos", "qvel") if with_states(self.plant) is None else ("qpos", "qvel", "act")
+
     def predict(self, values: np.ndarray, samples: int | None = None) -> np.ndarray:
         """Outputs of n value sets over the first samples of the log.
 
@@ -129,11 +199,11 @@ class Predictor:
         start, numbers = self.settings(values)
         states = rollout(
             self.plant.model,
-            start,
+            self.begun(values, start),
             log.inputs[:samples],
             log.sampling_time,
             numbers=numbers,
-            record=("qpos", "qvel"),
+            record=self.recorded,
             hold_kind=log.hold,
             before=self.inputs(values),
             time=log.begun,
@@ -145,13 +215,16 @@ class Predictor:
 
         Args:
             values: shape (n, p), in the parameters' units.
-            states: qpos and qvel of m simulations, shape (m, samples, size); each value set has
-                m/n neighbouring ones.
+            states: what `recorded` names, of m simulations, shape (m, samples, size); each value
+                set has m/n neighbouring ones.
 
         Returns:
             Shape (m, samples, ny).
         """
         model, sensors = self.plant.model, self.log.output_names
+        plant = with_states(self.plant)
+        if plant is not None:
+            states = plant.shown(*self._every(values), states)
         columns = output_columns(model, sensors)
         joints = [int(model.sensor(name).objid[0]) for name in sensors]
         y = [states[field][:, :, i] for field, i in columns]
