@@ -17,7 +17,7 @@ from identification.native.element import Function
 FLEXES, GAPS, GIVES = 0.05, 0.02, 0.1
 SHARES = (0.15, 0.5)  # of the inertia, of a motor of which the model says nothing
 LEAST, MOST = 0.02, 0.9  # share of the inertia that a motor may have
-FINE, COARSE = 1.0, 20.0  # of a probe: small against what moves, and as large as a log shows it
+PROBES = (1.0, 5.0, 10.0, 20.0, 35.0, 50.0, 70.0)  # of a probe: small against what moves, and as large as a log shows it
 SIDE = Shape("side", "", (1.0, 0.0), 0.0, 1.0, free=False, usual=1.0,
              about="1: the encoder sits on the motor's side, 0: on the link's")  # fmt: skip
 
@@ -52,5 +52,5 @@ def _effect(
 ) -> Effect:  # fmt: skip
     return Effect(
         g.prefix + law.__name__, said, (size,), shapes, phrase=phrase, reference=reference,
-        places=where, probes=(FINE, COARSE), hooks={hook: law},
+        places=where, probes=PROBES, hooks={hook: law},
     )  # fmt: skip

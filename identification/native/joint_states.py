@@ -60,8 +60,8 @@ GEARS = 8  # numbers of a row behind the parameters:
 MOTOR, GRIP = 0, 1  # where θ and p stand among the activations, -1 where there is none
 SIDE = 2  # 1: the drive's own feedback sees θ, 0: it sees q
 COMPLIANCE, GAP, INERTIA, RATIO, SLIP = 3, 4, 5, 6, 7  # c, ε, J, ζ, and the friction's c
-RESOLVED = 0.7  # X: RK4 then damps a free swing by 8e-4 a step; Euler is stable up to 2
-DAMPED = 1.5  # largest D h/m, of 2 at which an explicit step is unstable
+RESOLVED = 1.0  # X: RK4 then damps a swing by 7e-3 a step; semi-implicit Euler is stable up to 2
+DAMPED = 1.2  # largest D h/m: with X such a step is stable up to 1.5
 
 # What an effect with states sees of a joint: its inertia as its drive feels it [kg m² or kg]
 Gear: Any = namedtuple("Gear", "inertia")

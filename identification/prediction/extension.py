@@ -17,6 +17,7 @@ from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
 from identification.model.predictor import Plant
 from identification.prediction.fit import solve
+from identification.prediction.joint_states import model_for
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.problem import (
     Problem,
@@ -47,7 +48,9 @@ def with_effect(
     Raises:
         InputError: its start cannot be simulated, whatever the size.
     """
-    c, fit, plant = score.candidate, parent.fit, parent.plant
+    c = score.candidate
+    parent = model_for(parent, c)
+    fit, plant = parent.fit, parent.plant
     old = fit.problem.unknowns
     sizes = _free(plant, c, [n for n in c.free if n not in old.local.names])
     shapes = _free(plant, c, [n for n in _shapes(c) if n not in old.local.names])

@@ -137,7 +137,9 @@ def extended(
         cut: the windows.
         first: of some or none of these states.
     """
-    known, more = predictor.first_loads(values, first.states, cut.inputs[:, 0])
+    log = predictor.log
+    before = np.maximum(cut.starts - (log.hold == "zoh"), 0)  # what has acted until then
+    known, more = predictor.first_loads(values, first.states, log.inputs[before])
     have = first.states.act.shape[1] + known.shape[1] - predictor.plant.model.na
     act = np.hstack([first.states.act, known[:, have:]])
     states = State(first.states.qpos, first.states.qvel, act)
