@@ -51,6 +51,8 @@ class Axis:
         duration: of the record [s]; 0 where it is not known.
         middle: of the way that it moves [rad or m].
         share: of its inertia that its model gives to the motor, as armature; 0 where there is none.
+        give: compliance on which its inertia swings once in 2π steps of the simulation: a stiffer
+            one is not resolved [rad/(N m) or m/N].
 
     Raises:
         InputError: a magnitude is not positive.
@@ -66,6 +68,7 @@ class Axis:
     duration: float = 0.0
     middle: float = 0.0
     share: float = 0.0
+    give: float = 0.0
 
     def __post_init__(self) -> None:
         for word in MAGNITUDES:
@@ -156,7 +159,8 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
     return Axis(name, _KINDS[int(model.jnt_type[j])], force, speed, travel,
                 all(_plain(model, i) for i in drives), _heavy(model, j),
                 log.begun + log.duration, float(way.min() + way.max()) / 2,
-                float(model.dof_armature[dof] * model.dof_invweight0[dof]))  # fmt: skip
+                float(model.dof_armature[dof] * model.dof_invweight0[dof]),
+                float(model.opt.timestep**2 * model.dof_invweight0[dof]))  # fmt: skip
 
 
 def _heavy(model: mujoco.MjModel, j: int) -> bool:

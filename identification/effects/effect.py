@@ -35,6 +35,8 @@ class Size:
         probe: the magnitude at which its sensitivity is taken [unit].
         sign: 1 or -1 where physics admits only that sign, else 0.
         about: what it is, in words.
+        smallest: below this magnitude it is no more than an error of the simulation's steps, and
+            no refit proves it [unit].
         present: the value it has when the effect is there, where it can have but one: then its
             shapes are what is estimated.
     """
@@ -46,6 +48,7 @@ class Size:
     sign: Sign = 0
     about: str = ""
     present: float | None = None
+    smallest: float = 0.0
 
     @property
     def farthest(self) -> float:

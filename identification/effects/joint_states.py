@@ -26,7 +26,7 @@ from identification.native.joint_callback import TAG
 from identification.native.joint_states import Gear
 
 WIDTH = {"motor": 2, "grip": 1}  # activations
-CERTAIN = 0.1  # s_0, of the largest force of the drives: with more, teeth are sure to touch
+CERTAIN = 0.02  # s_0, of the largest force of the drives: with more, teeth are sure to touch
 POSES = 8  # random ones, in which the inertia that a drive feels is compared
 
 
@@ -132,7 +132,7 @@ def gear_numbers(
 
 def deflected(g: GearNumbers, s: np.ndarray, axis: Axis) -> np.ndarray:
     """δ of a gear that passes on s."""
-    return g.c * s + g.gap * np.clip(s / (CERTAIN * axis.force), -1.0, 1.0)
+    return g.c * s + g.gap * s / (abs(s) + CERTAIN * axis.force)
 
 
 def begun(
@@ -153,7 +153,8 @@ def begun(
         if state.kind != "motor":
             continue
         g, (q, v) = gears[state.joint], _columns(model, state.joint)
-        delta, rate = deflected(g, act[:, at], axes[state.joint]), g.c * act[:, at + 1]
+        delta = deflected(g, act[:, at], axes[state.joint])
+        rate = (g.c + g.gap / (abs(act[:, at]) + axes[state.joint].force)) * act[:, at + 1]
         qpos[:, q] -= g.side * delta
         qvel[:, v] -= g.side * rate
         act[:, at], act[:, at + 1] = qpos[:, q] + delta, qvel[:, v] + rate

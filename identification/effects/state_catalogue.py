@@ -10,6 +10,7 @@ from identification.effects import state_laws as laws
 from identification.effects.effect import Effect, Shape, Size
 from identification.effects.joint_group import PROBE, Group
 from identification.native.element import Function
+from identification.native.joint_callback import STEPS
 
 # Largest plausible sizes, as shares of half the travel: under the drive's full force a gear gives
 # by less (harmonic drives by a tenth of that), its gap is smaller (good gears have less than a
@@ -17,7 +18,11 @@ from identification.native.element import Function
 FLEXES, GAPS, GIVES = 0.05, 0.02, 0.1
 SHARES = (0.15, 0.5)  # of the inertia, of a motor of which the model says nothing
 LEAST, MOST = 0.02, 0.9  # share of the inertia that a motor may have
-PROBES = (1.0, 5.0, 10.0, 20.0, 35.0, 50.0, 70.0)  # of a probe: small against what moves, and as large as a log shows it
+# Probes: what swings shows itself only near its own frequency, what gives does so at any size.
+SWINGS, OPENS, SLIPS = (5.0, 10.0, 20.0, 35.0, 60.0), (5.0, 30.0), (5.0, 50.0)
+# A friction on which the inertia swings faster than friction stops it (`STEPS` of the simulation)
+# is one that holds: in units of the compliance on which it swings once in 2π steps.
+LEAST_GIVE = STEPS**2
 SIDE = Shape("side", "", (1.0, 0.0), 0.0, 1.0, free=False, usual=1.0,
              about="1: the encoder sits on the motor's side, 0: on the link's")  # fmt: skip
 
@@ -29,13 +34,15 @@ def state_effects(g: Group) -> list[Effect]:
     return [
         _effect(g, "series", laws.joint_elasticity, "τ = δ/c + 2 ζ √(J/c) dδ/dt, δ = θ - q",
                 Size("c", give, FLEXES * g.A / g.F, PROBE * FLEXES * g.A / g.F, 1, "compliance"),
-                (_share(g), zeta, SIDE), "gear: gives elastically", "Spong 1987", g.plain),
+                (_share(g), zeta, SIDE), SWINGS, "gear: gives elastically", "Spong 1987",
+                g.plain),
         _effect(g, "series", laws.gear_backlash, "τ = 0 while |θ - q| < ε",
                 Size("eps", g.x, GAPS * g.A, PROBE * GAPS * g.A, 1, "half the gap"),
-                (_share(g), SIDE), "gear: has a gap", "Nordin, Gutman 2002", g.plain),
+                (_share(g), SIDE), OPENS, "gear: has a gap", "Nordin, Gutman 2002", g.plain),
         _effect(g, "slip", laws.presliding, "c dp/dt = v - |v| p/b, p the friction, b its largest",
-                Size("c", give, GIVES * g.A / g.F, PROBE * GIVES * g.A / g.F, 1, "compliance"),
-                (), "friction: gives before it slips", "Dahl 1968", g.at),
+                Size("c", give, GIVES * g.A / g.F, PROBE * GIVES * g.A / g.F, 1, "compliance",
+                     smallest=LEAST_GIVE * max(a.give for a in g.axes)),
+                (), SLIPS, "friction: gives before it slips", "Dahl 1968", g.at),
     ]  # fmt: skip
 
 
@@ -48,9 +55,9 @@ def _share(g: Group) -> Shape:
 
 def _effect(
     g: Group, hook: str, law: Function, said: str, size: Size, shapes: tuple[Shape, ...],
-    phrase: str, reference: str, where: Mapping[str, str],
+    probes: tuple[float, ...], phrase: str, reference: str, where: Mapping[str, str],
 ) -> Effect:  # fmt: skip
     return Effect(
         g.prefix + law.__name__, said, (size,), shapes, phrase=phrase, reference=reference,
-        places=where, probes=PROBES, hooks={hook: law},
+        places=where, probes=probes, hooks={hook: law},
     )  # fmt: skip

@@ -12,7 +12,8 @@ and friction that gives before it slips (Dahl 1968), whose force is p:
     c dp/dt = v - |v| p/b                            b: the largest friction
 
 A step h resolves springs up to κ = m (X/h)² only, m being the inertia that swings on them. A stiffer
-one follows its load T at once: with r = min(1, κ c), which is 1 where it is resolved,
+one is replaced by one that settles within some steps, and carries its load T beside: with r = κ c,
+which is 1 where it is resolved,
 
     τ = (1 - r) T + κ (δ ∓ ε) + D dδ/dt,   T = m (f_m/J - a),   1/m = 1/J + 1/M_jj
     friction = min(max((1 - r) (M v/T_s + load) + r p, -b), b)
@@ -61,7 +62,10 @@ MOTOR, GRIP = 0, 1  # where θ and p stand among the activations, -1 where there
 SIDE = 2  # 1: the drive's own feedback sees θ, 0: it sees q
 COMPLIANCE, GAP, INERTIA, RATIO, SLIP = 3, 4, 5, 6, 7  # c, ε, J, ζ, and the friction's c
 RESOLVED = 1.0  # X: RK4 then damps a swing by 7e-3 a step; semi-implicit Euler is stable up to 2
-DAMPED = 1.2  # largest D h/m: with X such a step is stable up to 1.5
+# κ h²/m and D h/m of what is far too stiff: each step halves what is left of δ and its rate, so that
+# teeth that meet do not rebound ((1 - z)² and 1 - z² for two real roots z = 1/2 of such a step).
+SETTLED, DAMPED = 0.25, 0.75
+MOST_DAMPED = 1.2  # largest D h/m; with X such a step is stable up to 1.5
 
 # What an effect with states sees of a joint: its inertia as its drive feels it [kg m² or kg]
 Gear: Any = namedtuple("Gear", "inertia")
@@ -109,27 +113,30 @@ def _spring(gears, mobility, h):  # type: ignore[no-untyped-def]
     """m, κ, r and D of a gear; mobility: 1/M_jj."""
     c, J = load_constant(gears + 8 * COMPLIANCE), load_constant(gears + 8 * INERTIA)
     swinging = 1.0 / (1.0 / J + mobility)
-    kappa = swinging * (RESOLVED / h) ** 2
-    if c * kappa > 1.0:
+    stiff = swinging / h**2
+    x2 = stiff * c  # 1/(ω h)², ω of the swing
+    kappa = stiff * (SETTLED + (1.0 - SETTLED) * x2)
+    if x2 > 1.0:
         kappa = 1.0 / c
     r = kappa * c
     damping = 2.0 * load_constant(gears + 8 * RATIO) * sqrt(J * kappa)
-    damping += 2.0 * (1.0 - r) * sqrt(swinging * kappa)
-    return swinging, kappa, r, min(damping, DAMPED * swinging / h)
+    damping += max(0.0, 1.0 - x2) * DAMPED * swinging / h
+    return swinging, kappa, r, min(damping, MOST_DAMPED * swinging / h)
 
 
 @inlined
-def transmitted(load, delta, rate, gap, kappa, r, damping):  # type: ignore[no-untyped-def]
-    """τ: what a gear passes on of a load, deflected by δ; each flank of the teeth only pushes."""
+def transmitted(load, delta, rate, gap, kappa, r, damping, h):  # type: ignore[no-untyped-def]
+    """τ: what a gear passes on of a load, deflected by δ; each flank of the teeth only pushes.
+
+    A flank is damped by no more than what stops it within a step, so that τ has no jumps.
+    """
     rest = (1.0 - r) * load + kappa * delta
     if gap == 0.0:
         return rest + damping * rate
-    ahead, behind, f = rest - kappa * gap, rest + kappa * gap, 0.0
-    if ahead > 0.0:
-        f += max(0.0, ahead + damping * rate)
-    if behind < 0.0:
-        f += min(0.0, behind + damping * rate)
-    return f
+    most = damping / (kappa * h)
+    ahead, behind = max(0.0, rest - kappa * gap), min(0.0, rest + kappa * gap)
+    f = max(0.0, ahead + min(max(damping * rate, -most * ahead), most * ahead))
+    return f + min(0.0, behind + min(max(damping * rate, most * behind), -most * behind))
 
 
 @inlined
@@ -156,7 +163,7 @@ def _felt(m, d, j, row, gears, h):  # type: ignore[no-untyped-def]
     f_m, theta, omega = _motor_force(m, d, j, gears)
     swinging, kappa, r, damping = _spring(gears, 1.0 / M_jj, h)
     gap = load_constant(gears + 8 * GAP)
-    f = transmitted(f_m, theta - s.q, omega - s.v, gap, kappa, r, damping)
+    f = transmitted(f_m, theta - s.q, omega - s.v, gap, kappa, r, damping, h)
     M_jj += (1.0 - r) * load_constant(gears + 8 * INERTIA)
     return _with_drive(s, (f,)), M_jj
 
@@ -216,7 +223,7 @@ def _through(m, d, j, gears, key, h):  # type: ignore[no-untyped-def]
     q = double(d, JOINT_D.qpos, integer(m, JOINT_M.jnt_qposadr, j))
     v = double(d, JOINT_D.qvel, dof)
     gap = load_constant(gears + 8 * GAP)
-    return transmitted(load, theta - q, omega - v, gap, kappa, r, damping), f_m
+    return transmitted(load, theta - q, omega - v, gap, kappa, r, damping, h), f_m
 
 
 def width(terms: Sequence[Term]) -> int:

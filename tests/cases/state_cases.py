@@ -100,7 +100,8 @@ def pendulum(f_c: float = F_C, step: float = 0.005, weight: bool = True):
     text = MJCF.replace('timestep="0.005"', f'timestep="{step}"')
     text = text if weight else text.replace('integrator="RK4"', 'integrator="RK4" gravity="0 0 0"')
     given = (*PARAMETERS, replace(COULOMB, value=f_c))
-    return joint_plant(text, given, record(samples=50), joints=(AXIS,))
+    axis = replace(AXIS, give=step**2 / FILE)
+    return joint_plant(text, given, record(samples=50), joints=(axis,))
 
 
 def share(J: float) -> float:
