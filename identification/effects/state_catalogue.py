@@ -16,7 +16,7 @@ from identification.native.joint_callback import STEPS
 # by less (harmonic drives by a tenth of that), its gap is smaller (good gears have less than a
 # degree), and a joint slips before a friction as large as the force has let it go so far.
 FLEXES, GAPS, GIVES = 0.05, 0.02, 0.1
-SHARES = (0.15, 0.5)  # of the inertia, of a motor of which the model says nothing
+SHARES = (0.12, 0.3, 0.6)  # of the inertia, of a motor of which the model says nothing
 LEAST, MOST = 0.02, 0.9  # share of the inertia that a motor may have
 # Probes: what swings shows itself only near its own frequency, what gives does so at any size.
 SWINGS, OPENS, SLIPS = (5.0, 10.0, 20.0, 35.0, 60.0), (5.0, 30.0), (5.0, 50.0)

@@ -7,10 +7,12 @@ the states that then are best. Size zero is the parent, so that a child never ex
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from identification.discovery.nominal_model import NominalModel
+from identification.discovery.scoring.sensitivities import iterate_shapes
 from identification.effects.effect import Candidate
 from identification.errors import InputError
 from identification.model.coordinates import coordinates
@@ -48,17 +50,12 @@ def with_effect(
     Raises:
         InputError: its start cannot be simulated, whatever the size.
     """
+    if score.candidate.effect.state:
+        score = _best_shaped(parent, score)
     c = score.candidate
     parent = model_for(parent, c)
     fit, plant = parent.fit, parent.plant
-    old = fit.problem.unknowns
-    sizes = _free(plant, c, [n for n in c.free if n not in old.local.names])
-    shapes = _free(plant, c, [n for n in _shapes(c) if n not in old.local.names])
-    shared, own = old.shared.plus(shapes), old.own
-    shared, own = (shared, own.plus(sizes)) if c.effect.own else (shared.plus(sizes), own)
-    free = (*shared.names, *own.names)
-    fixed = {n: v for n, v in (*c.fixed.items(), *c.whole.items()) if n not in free}
-    task = with_unknowns(fit.problem, shared, own, fixed)
+    task, fixed = _task(parent, c)
     begun = []
     for share in SHARES:
         q = _begin(task, parent, score, share)
@@ -81,6 +78,42 @@ def with_effect(
         plant, confirm, horizon, parent.scale, found, {**values, **fixed}, parent.unseen
     )
     return WindowModel((*parent.candidates, c), found, seen, parent.scale)
+
+
+def _task(parent: WindowModel, c: Candidate) -> tuple[Problem, dict[str, float]]:
+    """The windows with the parameters of one effect more, and the values of what is not free."""
+    plant, old = parent.plant, parent.fit.problem.unknowns
+    sizes = _free(plant, c, [n for n in c.free if n not in old.local.names])
+    shapes = _free(plant, c, [n for n in _shapes(c) if n not in old.local.names])
+    shared, own = old.shared.plus(shapes), old.own
+    shared, own = (shared, own.plus(sizes)) if c.effect.own else (shared.plus(sizes), own)
+    free = (*shared.names, *own.names)
+    fixed = {n: v for n, v in (*c.fixed.items(), *c.whole.items()) if n not in free}
+    return with_unknowns(parent.fit.problem, shared, own, fixed), fixed
+
+
+def _best_shaped(parent: WindowModel, score: WindowScore) -> WindowScore:
+    """The score with the shapes of its effect's grid from which the refit begins best.
+
+    What joints with states do is far from linear in their sizes, so that a score tells the size
+    and hardly the shapes.
+    """
+    c, best, out = score.candidate, np.inf, score
+    fixed = {s.name: c.shape[s.name] for s in c.effect.shapes if not s.free}
+    for shape in iterate_shapes(c.effect):
+        if any(shape[name] != value for name, value in fixed.items()):
+            continue
+        tried = replace(score, candidate=replace(c, shape=shape))
+        model = model_for(parent, tried.candidate)
+        task, _ = _task(model, tried.candidate)
+        q = _begin(task, model, tried, 1.0)
+        try:
+            cost = task.cost(q, task.settled(q, model.fit.moves))
+        except InputError:
+            continue
+        if cost < best:
+            best, out = cost, tried
+    return out
 
 
 def refitted(
