@@ -1,7 +1,7 @@
 """The states of a plant's joints, and the numbers of their gears in its model.
 
-    row of a joint = (…, where θ and p stand, side, c, ε, J, ζ, c of friction, key, TAG)
-    armature - J                     the motor's inertia is moved from the joint, not added to it
+row of a joint = (…, where θ and p stand, side, c, ε, J, ζ, c of friction, key, TAG)
+armature - J                     the motor's inertia is moved from the joint, not added to it
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ from identification.logs.names import listed
 from identification.model.paths import Slot
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
+from identification.native.gear import GEARS, GRIP, MOTOR, SIDE
 from identification.native.joint_callback import LAST
-from identification.native.joint_states import GEARS, GRIP, MOTOR, SIDE
 
 _WHERE = {"motor": MOTOR, "grip": GRIP}
 

@@ -14,12 +14,12 @@ from identification.effects.body import BODY
 from identification.effects.effect import Effect
 from identification.effects.layout import key_of, refuse_misplaced, terms_of
 from identification.native.element import Term
+from identification.native.gear import FIELDS as STATE_FIELDS
+from identification.native.gear_element import GEAR
 from identification.native.hook_checks import refuse_unfit_functions
 from identification.native.input_filter import INPUT
 from identification.native.installer import Law, install
 from identification.native.joint_callback import FIELDS, JOINT, callbacks, width
-from identification.native.joint_states import FIELDS as STATE_FIELDS
-from identification.native.joint_states import GEAR
 from identification.native.joint_states import callbacks as state_callbacks
 from identification.native.joint_states import width as state_width
 from identification.native.reading import SENSOR

@@ -22,8 +22,8 @@ from identification.effects.axes import Axis
 from identification.effects.effect import Effect
 from identification.effects.values import Values, numbers_at
 from identification.model.rollout import UNLOGGED, State
+from identification.native.gear_element import Gear
 from identification.native.joint_callback import TAG
-from identification.native.joint_states import Gear
 
 WIDTH = {"motor": 2, "grip": 1}  # activations
 CERTAIN = 0.02  # s_0, of the largest force of the drives: with more, teeth are sure to touch
@@ -78,7 +78,8 @@ def with_actuators(spec: mujoco.MjSpec, states: Sequence[JointState]) -> mujoco.
             name=f"{UNLOGGED}{state.kind} {state.joint}", target=state.joint,
             trntype=mujoco.mjtTrn.mjTRN_JOINT, dyntype=mujoco.mjtDyn.mjDYN_USER,
             actdim=WIDTH[state.kind], gaintype=mujoco.mjtGain.mjGAIN_FIXED, gainprm=[0.0] * 10,
-            biastype=mujoco.mjtBias.mjBIAS_USER, biasprm=[TAG, *[0.0] * 9], gear=[1.0, 0, 0, 0, 0, 0],
+            biastype=mujoco.mjtBias.mjBIAS_USER, biasprm=[TAG, *[0.0] * 9],
+            gear=[1.0, 0, 0, 0, 0, 0],
         )  # fmt: skip
     return spec
 

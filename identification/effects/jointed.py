@@ -29,13 +29,12 @@ from identification.effects.gears import Gears, fitting, needed_states
 from identification.effects.joint_layout import JointLayout
 from identification.effects.joint_states import JointState, with_actuators
 from identification.effects.moving_bodies import MovingBody, moving_bodies
-from identification.effects.rows import with_rows
+from identification.effects.rows import changed_rows, with_rows
 from identification.model.parameter import ParameterSet
-from identification.model.paths import Slot, write
+from identification.model.paths import write
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
-from identification.native.joint_callback import FIRST
 
 
 @dataclass(frozen=True)
@@ -133,8 +132,8 @@ class JointPlant:
         return {self.states: self}
 
     def _bare(self, states: tuple[JointState, ...]) -> ModelPlant:
-        spec = with_actuators(self.spec, states) if states else self.spec
-        model = with_rows(spec, self.axes, JointLayout(self.effects, bool(states)))
+        layout = JointLayout(self.effects, bool(states))
+        model = with_rows(with_actuators(self.spec, states), self.axes, layout)
         return ModelPlant(model, self.bare.parameters, fitting(self.bare.start, model))
 
     @cached_property
@@ -185,17 +184,8 @@ class JointPlant:
 
     def _rows(self, names: Sequence[str], values: np.ndarray) -> Numbers:
         """Entries of the joints' rows that some parameters of effects change."""
-        every = self._every(names, values)
-        model = self.bare.model
-        first = int(model.nuser_jnt) - self.layout.entries + FIRST
-        changed = [
-            (Slot("jnt_user", (int(model.joint(joint).id),), first + column),
-             np.broadcast_to(numbers, len(values)))
-            for joint in self.joints
-            for column, numbers in effect_values.changed_columns(
-                self.effects, self.layout.on_joints, joint, names, every
-            )
-        ]  # fmt: skip
+        every, model = self._every(names, values), self.bare.model
+        changed = changed_rows(model, self.layout, self.joints, names, every, len(values))
         return [*changed, *self.gears.rows(names, every, len(values))]
 
     def inputs(

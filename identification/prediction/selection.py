@@ -183,8 +183,7 @@ def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
     least = {n: s.smallest for n, s in zip(c.sizes, c.effect.sizes, strict=True)}
     own = [n for n in model.fit.problem.names if n.partition(" [")[0] in c.free]
     return not own or any(
-        abs(values[n]) > max(options.min_proof_t * std[n], least[n.partition(" [")[0]])
-        for n in own
+        abs(values[n]) > max(options.min_proof_t * std[n], least[n.partition(" [")[0]]) for n in own
     )
 
 
