@@ -23,8 +23,8 @@ SWINGS, OPENS, SLIPS = (5.0, 10.0, 20.0, 35.0, 60.0), (5.0, 30.0), (5.0, 50.0)
 # A friction on which the inertia swings faster than friction stops it (`STEPS` of the simulation)
 # is one that holds: in units of the compliance on which it swings once in 2π steps.
 LEAST_GIVE = STEPS**2
-SIDE = Shape("side", "", (1.0, 0.0), 0.0, 1.0, free=False, usual=1.0,
-             about="1: the encoder sits on the motor's side, 0: on the link's")  # fmt: skip
+LINK = Shape("link", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
+             about="0: the encoder sits on the motor's side, 1: on the link's")  # fmt: skip
 
 
 def state_effects(g: Group) -> list[Effect]:
@@ -34,11 +34,11 @@ def state_effects(g: Group) -> list[Effect]:
     return [
         _effect(g, "series", laws.joint_elasticity, "τ = δ/c + 2 ζ √(J/c) dδ/dt, δ = θ - q",
                 Size("c", give, FLEXES * g.A / g.F, PROBE * FLEXES * g.A / g.F, 1, "compliance"),
-                (_share(g), zeta, SIDE), SWINGS, "gear: gives elastically", "Spong 1987",
+                (_share(g), zeta, LINK), SWINGS, "gear: gives elastically", "Spong 1987",
                 g.plain),
         _effect(g, "series", laws.gear_backlash, "τ = 0 while |θ - q| < ε",
                 Size("eps", g.x, GAPS * g.A, PROBE * GAPS * g.A, 1, "half the gap"),
-                (_share(g), SIDE), OPENS, "gear: has a gap", "Nordin, Gutman 2002", g.plain),
+                (_share(g), LINK), OPENS, "gear: has a gap", "Nordin, Gutman 2002", g.plain),
         _effect(g, "slip", laws.presliding, "c dp/dt = v - |v| p/b, p the friction, b its largest",
                 Size("c", give, GIVES * g.A / g.F, PROBE * GIVES * g.A / g.F, 1, "compliance",
                      smallest=LEAST_GIVE * max(a.give for a in g.axes)),

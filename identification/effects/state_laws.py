@@ -17,15 +17,15 @@ from numba import njit
 @njit
 def joint_elasticity(s, p):  # type: ignore[no-untyped-def]
     """c, with the motor's share ρ, its damping ratio and its encoder."""
-    c, rho, zeta, side = p
-    return c, 0.0, rho * s.inertia, zeta, side
+    c, rho, zeta, link = p
+    return c, 0.0, rho * s.inertia, zeta, 1.0 - link
 
 
 @njit
 def gear_backlash(s, p):  # type: ignore[no-untyped-def]
-    """ε, with the motor's share ρ and its encoder; the teeth are stiff and do not rebound."""
-    eps, rho, side = p
-    return 0.0, eps, rho * s.inertia, 0.0, side
+    """ε, with the motor's share ρ and its encoder; the teeth are stiff and hardly rebound."""
+    eps, rho, link = p
+    return 0.0, eps, rho * s.inertia, 0.0, 1.0 - link
 
 
 @njit

@@ -45,8 +45,8 @@ MOTOR, GRIP = 0, 1  # where θ and p stand among the activations, -1 where there
 SIDE = 2  # 1: the drive's own feedback sees θ, 0: it sees q
 COMPLIANCE, GAP, INERTIA, RATIO, SLIP = 3, 4, 5, 6, 7  # c, ε, J, ζ, and the friction's c
 RESOLVED = 1.0  # X: RK4 then damps a swing by 7e-3 a step; semi-implicit Euler is stable up to 2
-# κ h²/m and D h/m of what is far too stiff: each step halves what is left of δ and its rate, so
-# that teeth that meet do not rebound ((1 - z)² and 1 - z² for a double root z = 1/2 of a step).
+# κ h²/m and D h/m of what is far too stiff: a semi-implicit step halves what is left of δ and its
+# rate ((1 - z)² and 1 - z² for a double root z = 1/2), and teeth rebound by a quarter at most.
 SETTLED, DAMPED = 0.25, 0.75
 MOST_DAMPED = 1.2  # largest D h/m; with X such a step is stable up to 1.5
 

@@ -109,7 +109,17 @@ def share(J: float) -> float:
     return J / FILE
 
 
-def elastic(c: float, J: float = 2e-3, zeta: float = 0.05, side: float = 1.0) -> dict[str, float]:
+def elastic(c: float, J: float = 2e-3, zeta: float = 0.05, link: float = 0.0) -> dict[str, float]:
     """Values of an elastic gear."""
     return {ELASTIC: c, "joint_elasticity.rho": share(J), "joint_elasticity.zeta": zeta,
-            "joint_elasticity.side": side}  # fmt: skip
+            "joint_elasticity.link": link}  # fmt: skip
+
+
+def gap(eps: float, J: float = 2e-3) -> dict[str, float]:
+    """Values of a gap in a stiff gear."""
+    return {BACKLASH: eps, "gear_backlash.rho": share(J), "gear_backlash.link": 0.0}
+
+
+def with_values(values: dict[str, float], f_c: float = 0.0, step: float = 0.001, weight=True):
+    """The pendulum in a plant with the states that some values need."""
+    return pendulum(f_c, step, weight).with_states_of(values)
