@@ -7,6 +7,7 @@ import pytest
 from state_cases import BACKLASH, COULOMB, ELASTIC, F_C, PRESLIDING, Truth, measured, pendulum
 
 from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
 from identification.effects.joint_states import JointState
@@ -19,7 +20,7 @@ from identification.report.records_json import records_to_json
 from identification.report.records_text import records_text
 
 FREE = ("J", "d", COULOMB.name)
-OTHERS = ("delay", "lag", "stribeck_friction", "sublinear_friction", "stiffness", "cogging")
+OTHERS = ("delay", "lag", "stribeck_friction", "stiffness")
 NAMES = ("joint_elasticity", "gear_backlash", "presliding")
 CASES = {
     ELASTIC: (Truth(c=0.05, f_c=F_C), 0.05),
@@ -39,7 +40,8 @@ def found(name):
     logs = [measured(truth, k, samples=300) for k in range(4)]
     model = nominal()
     effects = [e for e in candidates(model.plant, FREE) if e.name in (*OTHERS, *NAMES)]
-    return discover_records(model, logs[:2], logs[2:], effects)
+    options = DiscoveryOptions(max_effects=1)
+    return discover_records(model, logs[:2], logs[2:], effects, options=options)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -65,7 +67,7 @@ def test_a_record_of_the_nominal_robot_stays_silent():
 
 def test_an_answer_with_states_can_be_told_and_written():
     answer = found(PRESLIDING)
-    assert "presliding" in records_text(answer)
+    assert "friction: gives before it slips" in records_text(answer)
     assert "presliding" in str(records_to_json(answer))
 
 
@@ -89,6 +91,5 @@ def test_windows_in_a_plant_with_states_are_those_without_while_sizes_are_zero(n
         np.testing.assert_array_equal(
             before.outputs(old.fit.q[None], [d])[0], after.outputs(new.fit.q[None], [e])[0]
         )
-    assert new.fit.problem.cost(new.fit.q, new.fit.moves) == old.fit.problem.cost(
-        old.fit.q, old.fit.moves
-    )
+    costs = [m.fit.problem.cost(m.fit.q, m.fit.moves) for m in (old, new)]
+    assert costs[0] == pytest.approx(costs[1], rel=1e-14)  # a sum with more zeros
