@@ -157,14 +157,14 @@ def test_presliding_has_the_slope_and_the_break_away_force_of_dahl():
     """Under a force that grows by little, v is slow: p = b (1 - exp(-q/(c b)))."""
     c, values = 0.2, {PRESLIDING: 0.2}
     plant = with_values(values, F_C, 0.001, weight=False)
-    _, numbers = plant.settings((PRESLIDING,), np.array([[c]]))
+    _, numbers = plant.settings((PRESLIDING, "d"), np.array([[c, 0.1]]))
     u = np.concatenate([np.linspace(0, 0.9, 400), np.linspace(0.9, 0.0, 400)]) * F_C
     made = rollout(plant.model, State(np.zeros(1), np.zeros(1), np.zeros(1)), u[:, None], STEP,
                    numbers=numbers, record=("qpos", "act"))  # fmt: skip
     q, p = made["qpos"][0, :, 0], made["act"][0, :, 0]
     up = slice(1, 400)
     np.testing.assert_allclose(p[up], F_C * -np.expm1(-q[up] / (c * F_C)), rtol=1e-3, atol=1e-5)
-    np.testing.assert_allclose(p[up], u[:399], atol=0.02 * F_C)
+    np.testing.assert_allclose(p[up], u[:399], atol=0.05 * F_C)
     slope = (p[5] - p[1]) / (q[5] - q[1])
     assert slope == pytest.approx(1 / c, rel=0.03)
     assert q[-1] > 0.1 * q.max()  # what slipped does not come back
