@@ -10,13 +10,14 @@ there; there is no creep, and no sign of the velocity. The largest frictions by 
 
     b± = max(0, f_c ± f_a + f_s exp(-(|v|/v_s)^p) + μ |τ + g| + a cos nq + b sin nq)
 
-Where friction gives (GIVE, c), its contact is Dahl's instead: z = c p, and over a way x, of which s is
-the sign and b that of its direction,
+with the drive's force τ and what gravity asks for, g (M q̈ + c + g = τ): the two ends of the gears
+are loaded with τ and -g.
+Where friction gives (GIVE, c), its contact is Dahl's instead: z = c p, and over a way x, of which s
+is the sign and b that of its direction,
 
     p = s b + (p_0 - s b) exp(-|x|/(c b))              f = p
 
-with the drive's force τ and what gravity asks for, g (M q̈ + c + g = τ): the two ends of the gears
-are loaded with τ and -g. Other forces on the joint:
+Other forces on the joint:
 
     -d v - d_a |v| - e v |v| - d_p sgn(v) |v|^p - k_3 q³ + f_0 + a cos nq + b sin nq
 """

@@ -14,12 +14,12 @@ from identification.native.joint_callback import STEPS
 
 # Largest plausible sizes, as shares of half the travel: under the drive's full force a gear gives
 # by less (harmonic drives by a tenth of that), its gap is smaller (good gears have less than a
-# degree), and a joint slips before a friction as large as the force has let it go so far.
-FLEXES, GAPS, GIVES = 0.05, 0.02, 0.1
+# degree), and a friction of a tenth of that force slips before it has let the joint go by a tenth.
+FLEXES, GAPS, GIVES = 0.05, 0.02, 1.0
 SHARES = (0.12, 0.3, 0.6)  # of the inertia, of a motor of which the model says nothing
 LEAST, MOST = 0.02, 0.9  # share of the inertia that a motor may have
 # Probes: what swings shows itself only near its own frequency, what gives does so at any size.
-SWINGS, OPENS, SLIPS = (5.0, 10.0, 20.0, 35.0, 60.0), (5.0, 30.0), (5.0, 50.0)
+SWINGS, OPENS, SLIPS = (5.0, 10.0, 20.0, 35.0, 60.0), (5.0, 30.0), (5.0, 60.0)
 # A friction on which the inertia swings faster than friction stops it (`STEPS` of the simulation)
 # is one that holds: in units of the compliance on which it swings once in 2π steps.
 LEAST_GIVE = STEPS**2

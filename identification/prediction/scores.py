@@ -23,6 +23,7 @@ from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
 from identification.prediction.fit import BLOCKS, WindowFit, projected
 from identification.prediction.joint_states import rows_for
+from identification.prediction.settled_scores import settled_score
 
 NEW = 0.01  # of a column that free parameters cannot imitate; with less it is one of them again
 SMALL = 1e-4  # of a probe, by which a size is moved to see whether free parameters imitate it
@@ -113,6 +114,8 @@ class _Base:
         return np.asarray(columns - self.Q @ (self.Q.T @ columns))
 
     def scores(self, group: Sequence[Candidate]) -> list[WindowScore]:
+        if group[0].effect.state == "grip":
+            return [self._settled(c) for c in group]
         columns = self._columns(group)
         ends = np.cumsum([len(c.sizes) for c in group])
         out = []
@@ -122,6 +125,10 @@ class _Base:
             below = np.zeros((len(self.fit.q), S.shape[1]))
             out.append(self._score(c, self._without_base(np.vstack([S, below]))))
         return out
+
+    def _settled(self, candidate: Candidate) -> WindowScore:
+        size, std, fall, p = settled_score(self.fit, candidate)
+        return WindowScore(candidate=candidate, size=size, std=std, fall=fall, p_value=p)
 
     def is_imitated(self, candidate: Candidate) -> bool:
         """Whether free parameters of the model imitate all columns, whatever priors say.
