@@ -19,7 +19,7 @@ FLEXES, GAPS, GIVES = 0.05, 0.02, 1.0
 SHARES = (0.12, 0.3, 0.6)  # of the inertia, of a motor of which the model says nothing
 LEAST, MOST = 0.02, 0.9  # share of the inertia that a motor may have
 # Probes: what swings shows itself only near its own frequency, what gives does so at any size.
-SWINGS, OPENS, SLIPS = (5.0, 10.0, 20.0, 35.0, 60.0), (5.0, 30.0), (5.0, 60.0)
+SWINGS, OPENS, SLIPS = (5.0, 10.0, 20.0, 35.0, 60.0), (5.0, 30.0), (0.5, 5.0, 60.0)
 # A friction on which the inertia swings faster than friction stops it (`STEPS` of the simulation)
 # is one that holds: in units of the compliance on which it swings once in 2π steps.
 LEAST_GIVE = STEPS**2

@@ -114,8 +114,6 @@ class _Base:
         return np.asarray(columns - self.Q @ (self.Q.T @ columns))
 
     def scores(self, group: Sequence[Candidate]) -> list[WindowScore]:
-        if group[0].effect.state == "grip":
-            return [self._settled(c) for c in group]
         columns = self._columns(group)
         ends = np.cumsum([len(c.sizes) for c in group])
         out = []
@@ -124,11 +122,18 @@ class _Base:
             S = block_diag(*own) if c.effect.own else np.vstack(own)
             below = np.zeros((len(self.fit.q), S.shape[1]))
             out.append(self._score(c, self._without_base(np.vstack([S, below]))))
+            if c.effect.state == "grip" and c.probe == max(c.effect.probes):
+                out[-1] = self._settled(out[-1])
         return out
 
-    def _settled(self, candidate: Candidate) -> WindowScore:
-        size, std, fall, p = settled_score(self.fit, candidate)
-        return WindowScore(candidate=candidate, size=size, std=std, fall=fall, p_value=p)
+    def _settled(self, linear: WindowScore) -> WindowScore:
+        """The score of windows that are searched with the effect, where it says more."""
+        size, std, fall, p = settled_score(self.fit, linear.candidate)
+        if fall < linear.fall:
+            return linear
+        return WindowScore(
+            candidate=linear.candidate, size=size, std=std, fall=fall, p_value=p
+        )  # fmt: skip
 
     def is_imitated(self, candidate: Candidate) -> bool:
         """Whether free parameters of the model imitate all columns, whatever priors say.
