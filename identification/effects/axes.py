@@ -22,6 +22,7 @@ from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.logs.noise import noise_floor
 from identification.model.predictor import output_columns
+from identification.model.rollout import UNLOGGED, logged_inputs
 
 Kind = Literal["hinge", "slide"]
 HUGE = 1e50  # of any unit
@@ -96,7 +97,7 @@ def axes(model: mujoco.MjModel, log: Log, trust: Sequence[str] = ()) -> tuple[Ax
         at = model.jnt_qposadr if field == "qpos" else model.jnt_dofadr
         seen.setdefault(int(np.flatnonzero(at == i)[0]), {})[field] = k
     for j, own in seen.items():
-        inputs = [_control(model, i) for i in drives_of(model, j)] or [*range(model.nu)]
+        inputs = [_control(model, i) for i in drives_of(model, j)] or [*range(logged_inputs(model))]
         for k in own.values():
             others = [i for i in own.values() if i != k]
             if "sensors" not in trust:
@@ -189,7 +190,8 @@ def drives_of(model: mujoco.MjModel, j: int) -> list[int]:
     """Actuators that act on joint j."""
     at = int(mujoco.mjtTrn.mjTRN_JOINT)
     return [i for i in range(len(model.actuator_trntype))
-            if model.actuator_trntype[i] == at and model.actuator_trnid[i, 0] == j]  # fmt: skip
+            if model.actuator_trntype[i] == at and model.actuator_trnid[i, 0] == j
+            and not model.actuator(i).name.startswith(UNLOGGED)]  # fmt: skip
 
 
 def _control(model: mujoco.MjModel, i: int) -> int:

@@ -100,15 +100,14 @@ class Gears:
                 out.append((slot, np.broadcast_to(np.asarray(value, float), n)))
         return out
 
-    def armatures(self, names: Sequence[str], values: Values, own: Numbers) -> Numbers:
+    def armatures(self, values: Values, n: int, own: Numbers) -> Numbers:
         """Armatures without the motors that move by themselves.
 
         Args:
-            names: the parameters that differ from the plant's own.
             values: of all parameters, one or n of each.
+            n: how many value sets.
             own: entries of the model that other parameters change.
         """
-        n = max([len(v) for v in values.values() if isinstance(v, np.ndarray)], default=1)
         out: list[tuple[Slot, np.ndarray]] = []
         for joint in self.joints:
             g = self.of(joint, values, n)

@@ -168,7 +168,8 @@ class JointPlant:
         bodies = self._bodies(names, values, numbers)
         rows = self._rows([names[k] for k in others], values[:, others])
         numbers = [*numbers, *bodies, *rows]
-        return start, [*numbers, *self.gears.armatures(names, self._every(names, values), numbers)]
+        every = self._every(names, values)
+        return start, [*numbers, *self.gears.armatures(every, len(values), numbers)]
 
     def _every(self, names: Sequence[str], values: np.ndarray) -> effect_values.Values:
         return effect_values.merged(self.parameters.values(), names, values)
