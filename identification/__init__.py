@@ -34,7 +34,7 @@ _PUBLIC = {
     "Parameter": "model.parameter",
     "ParameterSet": "model.parameter",
     "ModelPlant": "model.plant",
-    "Plant": "model.predictor",
+    "Plant": "model.protocol",
     "Predictor": "model.predictor",
     "State": "model.rollout",
     "Coordinates": "model.coordinates",
@@ -50,7 +50,7 @@ _PUBLIC = {
     "joint_effects": "effects.joint_catalogue",
     "drives": "effects.input_effects",
     "input_effects": "effects.input_effects",
-    "JointPlant": "effects.joint_plant",
+    "JointPlant": "effects.jointed",
     "joint_plant": "effects.joint_plant",
     "candidates": "effects.joint_plant",
     "read_model": "effects.rows",
@@ -121,9 +121,9 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.effects.input_effects import drives as drives
     from identification.effects.input_effects import input_effects as input_effects
     from identification.effects.joint_catalogue import joint_effects as joint_effects
-    from identification.effects.joint_plant import JointPlant as JointPlant
     from identification.effects.joint_plant import candidates as candidates
     from identification.effects.joint_plant import joint_plant as joint_plant
+    from identification.effects.jointed import JointPlant as JointPlant
     from identification.effects.places import places as places
     from identification.effects.rows import read_model as read_model
     from identification.errors import DivergenceError as DivergenceError
@@ -161,8 +161,8 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.model.parameter import Parameter as Parameter
     from identification.model.parameter import ParameterSet as ParameterSet
     from identification.model.plant import ModelPlant as ModelPlant
-    from identification.model.predictor import Plant as Plant
     from identification.model.predictor import Predictor as Predictor
+    from identification.model.protocol import Plant as Plant
     from identification.model.rollout import State as State
     from identification.model.sensitivity import sensitivity as sensitivity
     from identification.prediction.result import RecordsDiscovery as RecordsDiscovery

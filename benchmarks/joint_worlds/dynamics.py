@@ -7,7 +7,7 @@ from numba import njit
 
 from joint_worlds.arm import ARM, arm
 from joint_worlds.cart import CART, cart
-from joint_worlds.laws import force, held, largest, stretched
+from joint_worlds.laws import GIVE, dahl, force, held, largest, stretched
 from joint_worlds.pendulum import PENDULUM, pendulum
 from joint_worlds.robot import JointRobot
 from joint_worlds.two_link import TWO_LINK, two_link
@@ -56,7 +56,9 @@ def accelerations(code, p, joints, q, v, q0, z, tau, M, c, g, a):  # type: ignor
         low = largest(joints[i], q[i], v[i], tau[i], g[i], -1.0)
         high = largest(joints[i], q[i], v[i], tau[i], g[i], 1.0)
         a[i] = tau[i] - c[i] - g[i] + force(joints[i], q[i], v[i])
-        if low > 0.0 or high > 0.0:
+        if joints[i, GIVE] > 0.0:
+            a[i] -= dahl(joints[i], z[i], q[i] - q0[i], low, high)
+        elif low > 0.0 or high > 0.0:
             a[i] -= held(joints[i], z[i] + q[i] - q0[i], v[i], low, high)
     solve(M, a)
 
@@ -67,7 +69,9 @@ def slip(joints, q, v, q0, z, tau, g):  # type: ignore[no-untyped-def]
     for i in range(q.size):
         low = largest(joints[i], q[i], v[i], tau[i], g[i], -1.0)
         high = largest(joints[i], q[i], v[i], tau[i], g[i], 1.0)
-        if low > 0.0 or high > 0.0:
+        if joints[i, GIVE] > 0.0:
+            z[i] = joints[i, GIVE] * dahl(joints[i], z[i], q[i] - q0[i], low, high)
+        elif low > 0.0 or high > 0.0:
             z[i] = stretched(joints[i], z[i] + q[i] - q0[i], low, high)
         else:
             z[i] = 0.0

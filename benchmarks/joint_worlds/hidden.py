@@ -178,6 +178,7 @@ HIDDEN: dict[str, Hidden] = {h.name: h for h in (
     Hidden(name="saturation", largest=lambda h: 1.5, put=_limit,
            shape=lambda h, rng: {"full": h.force, "often": h.often}),
     Hidden(name="gain_drift", largest=lambda h: 0.01, put=_set(at.SAG)),
+    Hidden(name="presliding", largest=lambda h: 0.02 * h.travel / h.coulomb, put=_set(at.GIVE)),
     Hidden(name="payload", largest=lambda h: 0.5, body="payload", known=("mass",)),
     Hidden(name="mass_mismatch", largest=lambda h: 0.5, body="link", known=("mass",),
            kinds=("hinge",)),

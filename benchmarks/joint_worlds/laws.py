@@ -11,7 +11,13 @@ there; there is no creep, and no sign of the velocity. The largest frictions by 
     b± = max(0, f_c ± f_a + f_s exp(-(|v|/v_s)^p) + μ |τ + g| + a cos nq + b sin nq)
 
 with the drive's force τ and what gravity asks for, g (M q̈ + c + g = τ): the two ends of the gears
-are loaded with τ and -g. Other forces on the joint:
+are loaded with τ and -g.
+Where friction gives (GIVE, c), its contact is Dahl's instead: z = c p, and over a way x, of which s
+is the sign and b that of its direction,
+
+    p = s b + (p_0 - s b) exp(-|x|/(c b))              f = p
+
+Other forces on the joint:
 
     -d v - d_a |v| - e v |v| - d_p sgn(v) |v|^p - k_3 q³ + f_0 + a cos nq + b sin nq
 """
@@ -27,6 +33,7 @@ COULOMB, UNEVEN, PEAK, PEAK_SPEED = at.COULOMB, at.UNEVEN, at.PEAK, at.PEAK_SPEE
 PEAK_POWER, LOAD = at.PEAK_POWER, at.LOAD
 GRIP_COS, GRIP_SIN, GRIP_WAVES = at.GRIP_COS, at.GRIP_SIN, at.GRIP_WAVES
 STIFF, DAMP, VISCOUS, UNEVEN_VISCOUS = at.STIFF, at.DAMP, at.VISCOUS, at.UNEVEN_VISCOUS
+GIVE = at.GIVE
 SQUARE, ROOT, ROOT_POWER, CUBE, PUSH = at.SQUARE, at.ROOT, at.ROOT_POWER, at.CUBE, at.PUSH
 COG_COS, COG_SIN, COG_WAVES = at.COG_COS, at.COG_SIN, at.COG_WAVES
 
@@ -48,6 +55,15 @@ def largest(joint, q, v, tau, g, side):  # type: ignore[no-untyped-def]
 def stretched(joint, z, low, high):  # type: ignore[no-untyped-def]
     """The spring of the contact after it has slipped."""
     return min(max(z, -low / joint[STIFF]), high / joint[STIFF])
+
+
+@njit(error_model="numpy")
+def dahl(joint, z, x, low, high):  # type: ignore[no-untyped-def]
+    """Dahl's friction after a way x from a stretch z."""
+    p, end = z / joint[GIVE], high if x > 0.0 else -low
+    if end == 0.0:
+        return 0.0
+    return end + (p - end) * np.exp(-abs(x) / (joint[GIVE] * abs(end)))
 
 
 @njit(error_model="numpy")

@@ -19,7 +19,8 @@ DELAY, LAG, LIMIT, SAG = 21, 22, 23, 24
 # the angle on its way into the log
 SHIFT, SCALE, OFF_COS, OFF_SIN = 25, 26, 27, 28
 WEAK, ZERO = 29, 30  # a drive that weakens with its force; an offset of the angle
-SLOTS = 31
+GIVE = 31  # compliance of friction that gives before it slips
+SLOTS = 32
 
 
 def plain_joints(n: int) -> np.ndarray:

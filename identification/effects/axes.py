@@ -22,6 +22,7 @@ from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.logs.noise import noise_floor
 from identification.model.predictor import output_columns
+from identification.model.rollout import UNLOGGED, logged_inputs
 
 Kind = Literal["hinge", "slide"]
 HUGE = 1e50  # of any unit
@@ -50,6 +51,9 @@ class Axis:
         heavy: whether gravity acts on it anywhere.
         duration: of the record [s]; 0 where it is not known.
         middle: of the way that it moves [rad or m].
+        share: of its inertia that its model gives to the motor, as armature; 0 where there is none.
+        give: compliance on which its inertia swings once in 2π steps of the simulation: a stiffer
+            one is not resolved [rad/(N m) or m/N].
 
     Raises:
         InputError: a magnitude is not positive.
@@ -64,6 +68,8 @@ class Axis:
     heavy: bool = False
     duration: float = 0.0
     middle: float = 0.0
+    share: float = 0.0
+    give: float = 0.0
 
     def __post_init__(self) -> None:
         for word in MAGNITUDES:
@@ -91,7 +97,7 @@ def axes(model: mujoco.MjModel, log: Log, trust: Sequence[str] = ()) -> tuple[Ax
         at = model.jnt_qposadr if field == "qpos" else model.jnt_dofadr
         seen.setdefault(int(np.flatnonzero(at == i)[0]), {})[field] = k
     for j, own in seen.items():
-        inputs = [_control(model, i) for i in drives_of(model, j)] or [*range(model.nu)]
+        inputs = [_control(model, i) for i in drives_of(model, j)] or [*range(logged_inputs(model))]
         for k in own.values():
             others = [i for i in own.values() if i != k]
             if "sensors" not in trust:
@@ -147,12 +153,15 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
     drives = drives_of(model, j)
     force = sum(abs(_at_full(model, i)) * float(np.abs(log.inputs[:, _control(model, i)]).max())
                 for i in drives)  # fmt: skip
+    dof = int(model.jnt_dofadr[j])
     if not force and travel > 0:
-        force = float(model.dof_M0[model.jnt_dofadr[j]]) * speed**2 / travel
+        force = float(model.dof_M0[dof]) * speed**2 / travel
     name = model.joint(j).name
     return Axis(name, _KINDS[int(model.jnt_type[j])], force, speed, travel,
                 all(_plain(model, i) for i in drives), _heavy(model, j),
-                log.begun + log.duration, float(way.min() + way.max()) / 2)  # fmt: skip
+                log.begun + log.duration, float(way.min() + way.max()) / 2,
+                float(model.dof_armature[dof] * model.dof_invweight0[dof]),
+                float(model.opt.timestep**2 * model.dof_invweight0[dof]))  # fmt: skip
 
 
 def _heavy(model: mujoco.MjModel, j: int) -> bool:
@@ -181,7 +190,8 @@ def drives_of(model: mujoco.MjModel, j: int) -> list[int]:
     """Actuators that act on joint j."""
     at = int(mujoco.mjtTrn.mjTRN_JOINT)
     return [i for i in range(len(model.actuator_trntype))
-            if model.actuator_trntype[i] == at and model.actuator_trnid[i, 0] == j]  # fmt: skip
+            if model.actuator_trntype[i] == at and model.actuator_trnid[i, 0] == j
+            and not model.actuator(i).name.startswith(UNLOGGED)]  # fmt: skip
 
 
 def _control(model: mujoco.MjModel, i: int) -> int:

@@ -20,6 +20,10 @@ def all_effects(
 ) -> tuple[Effect, ...]:
     """Every candidate of a robot.
 
+    What has a state of its own (`state_catalogue`) is a candidate of robots with one degree of
+    freedom: joints that pull at each other hold together (`native.holding`), and such states do not
+    know of that yet.
+
     Args:
         spec: of the robot, which is not changed.
         axes: its joints whose effects are sought.
@@ -29,9 +33,10 @@ def all_effects(
     Raises:
         InputError: no input moves.
     """
+    own = spec.copy().compile()
     return (
-        *joint_effects(axes, turns),
+        *(e for e in joint_effects(axes, turns) if own.nv == 1 or not e.state),
         *body_effects(spec),
         *input_effects(drives(log)),
-        *sensor_effects(spec.copy().compile(), log.output_names, axes),
+        *sensor_effects(own, log.output_names, axes),
     )

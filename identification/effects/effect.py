@@ -20,6 +20,7 @@ from identification.errors import InputError
 
 Sign = Literal[-1, 0, 1]
 FARTHEST = 5.0  # of the largest plausible size
+STATES = {"series": "motor", "slip": "grip"}  # hook, and the state of a joint that it needs
 CURVE = "curve"  # names of effects that begin so are curves drawn from the data
 
 
@@ -34,6 +35,7 @@ class Size:
         probe: the magnitude at which its sensitivity is taken [unit].
         sign: 1 or -1 where physics admits only that sign, else 0.
         about: what it is, in words.
+        smallest: below, it is no more than an error of the simulation's steps: no proof [unit].
         present: the value it has when the effect is there, where it can have but one: then its
             shapes are what is estimated.
     """
@@ -45,6 +47,7 @@ class Size:
     sign: Sign = 0
     about: str = ""
     present: float | None = None
+    smallest: float = 0.0
 
     @property
     def farthest(self) -> float:
@@ -77,16 +80,9 @@ class Shape:
     usual: float | None = None
 
 
-BEFORE = Shape(  # of an input that comes late: none of it, or its first value, before the log
-    "before",
-    "",
-    (0.0, 1.0),
-    0.0,
-    1.0,
-    free=False,
-    about="1: it was there before the log",
-    usual=0.0,
-)
+# of an input that comes late: none of it, or its first value, before the log
+BEFORE = Shape("before", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
+               about="1: it was there before the log")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -133,6 +129,11 @@ class Effect:
     def is_curve(self) -> bool:
         """Whether it is no law but a curve drawn from the data."""
         return self.name.startswith(CURVE)
+
+    @property
+    def state(self) -> str:
+        """Which state of a joint it needs: "motor", "grip" or, most often, none of them, ""."""
+        return next((kind for hook, kind in STATES.items() if hook in self.hooks), "")
 
     @property
     def names(self) -> tuple[str, ...]:

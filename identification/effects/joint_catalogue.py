@@ -10,6 +10,7 @@ from identification.effects.effect import Effect
 from identification.effects.force_catalogue import force_effects
 from identification.effects.friction_catalogue import friction_effects
 from identification.effects.joint_group import Group
+from identification.effects.state_catalogue import state_effects
 from identification.effects.time_catalogue import time_effects
 
 TURNS = (*map(float, range(1, 13)), 14.0, 16.0, 18.0, 20.0, 24.0, 28.0)  # harmonics of a turn
@@ -42,4 +43,5 @@ def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple
 
 
 def _listed(g: Group) -> list[Effect]:
-    return [*friction_effects(g), *force_effects(g), *time_effects(g), *curve_effects(g)]
+    listed = (friction_effects, force_effects, time_effects, curve_effects, state_effects)
+    return [effect for make in listed for effect in make(g)]

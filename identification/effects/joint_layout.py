@@ -14,10 +14,14 @@ from identification.effects.body import BODY
 from identification.effects.effect import Effect
 from identification.effects.layout import key_of, refuse_misplaced, terms_of
 from identification.native.element import Term
+from identification.native.gear import FIELDS as STATE_FIELDS
+from identification.native.gear_element import GEAR
 from identification.native.hook_checks import refuse_unfit_functions
 from identification.native.input_filter import INPUT
 from identification.native.installer import Law, install
 from identification.native.joint_callback import FIELDS, JOINT, callbacks, width
+from identification.native.joint_states import callbacks as state_callbacks
+from identification.native.joint_states import width as state_width
 from identification.native.reading import SENSOR
 
 
@@ -27,6 +31,7 @@ class JointLayout:
 
     Attributes:
         effects: the set, in order.
+        has_states: whether joints have states of their own, whose numbers stand behind.
 
     Raises:
         InputError: two effects have one name, or one has a hook that is none of a joint, an input,
@@ -34,9 +39,10 @@ class JointLayout:
     """
 
     effects: tuple[Effect, ...]
+    has_states: bool = False
 
     def __post_init__(self) -> None:
-        refuse_misplaced(self.effects, (JOINT, INPUT, BODY, SENSOR))
+        refuse_misplaced(self.effects, (JOINT, INPUT, BODY, SENSOR, GEAR))
 
     @cached_property
     def on_joints(self) -> tuple[Term, ...]:
@@ -47,12 +53,13 @@ class JointLayout:
     def key(self) -> float:
         """Tells this set of joint effects from others."""
         names = {term.effect for term in self.on_joints}
-        return key_of([e for e in self.effects if e.name in names], "joints")
+        of = "joints with states" if self.has_states else "joints"
+        return key_of([e for e in self.effects if e.name in names], of)
 
     @property
     def entries(self) -> int:
         """Entries of a joint's row."""
-        return width(self.on_joints)
+        return (state_width if self.has_states else width)(self.on_joints)
 
     @property
     def has_bodies(self) -> bool:
@@ -68,15 +75,15 @@ class JointLayout:
                 what its hook takes.
             RuntimeError: MuJoCo's structs are not laid out as declared.
         """
-        install(_law(self.key, self.on_joints))
+        install(_law(self.key, self.on_joints, self.has_states))
 
 
 @cache
-def _law(key: float, terms: tuple[Term, ...]) -> Law:
+def _law(key: float, terms: tuple[Term, ...], has_states: bool) -> Law:
     return Law(
         name="joints",
         key=key,
-        functions=callbacks(terms, key),
-        fields=FIELDS,
+        functions=(state_callbacks if has_states else callbacks)(terms, key),
+        fields=STATE_FIELDS if has_states else FIELDS,
         check=lambda: refuse_unfit_functions(JOINT, terms),
     )

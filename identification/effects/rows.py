@@ -17,8 +17,10 @@ import numpy as np
 from identification.effects.axes import Axis
 from identification.effects.joint_layout import JointLayout
 from identification.effects.moving_bodies import movable
+from identification.effects.values import Values, changed_columns
 from identification.errors import InputError, unknown_name
 from identification.logs.names import quoted
+from identification.model.paths import Slot
 from identification.native.joint_callback import FIRST, REACH, STOP, TAG, stopping_steps
 
 _LONGEST = 200  # of MuJoCo's words in a message
@@ -72,6 +74,31 @@ def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis], layout: JointLayout) ->
         joints[axis.joint].userdata = np.concatenate([given, row])
     spec.nuser_jnt = own.nuser_jnt + layout.entries
     return movable(spec) if layout.has_bodies else spec.compile()
+
+
+def changed_rows(
+    model: mujoco.MjModel, layout: JointLayout, joints: Sequence[str], names: Sequence[str],
+    values: Values, n: int,
+) -> list[tuple[Slot, np.ndarray]]:  # fmt: skip
+    """Entries of some joints' rows that some parameters of effects change, in n value sets.
+
+    Args:
+        model: of `with_rows`.
+        layout: of its effects.
+        joints: names of the joints.
+        names: the parameters.
+        values: of all parameters, one or n of each.
+        n: how many value sets.
+    """
+    first = int(model.nuser_jnt) - layout.entries + FIRST
+    return [
+        (Slot("jnt_user", (int(model.joint(joint).id),), first + column),
+         np.broadcast_to(numbers, n))
+        for joint in joints
+        for column, numbers in changed_columns(
+            layout.effects, layout.on_joints, joint, names, values
+        )
+    ]  # fmt: skip
 
 
 def reached(axis: Axis) -> tuple[float, float, float, float, float]:

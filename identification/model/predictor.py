@@ -11,72 +11,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import mujoco
 import numpy as np
 
 from identification.errors import InputError, unknown_name
 from identification.logs.log import Log
-from identification.model.parameter import ParameterSet
-from identification.model.paths import Slot
+from identification.model.protocol import Numbers as Numbers
+from identification.model.protocol import Plant as Plant
+from identification.model.protocol import with_states as with_states
 from identification.model.rollout import State, rollout
-
-Numbers = Sequence[tuple[Slot, np.ndarray]]
-
-
-class Plant(Protocol):
-    """A model whose parameters can be moved."""
-
-    @property
-    def model(self) -> mujoco.MjModel:
-        """The compiled model."""
-
-    @property
-    def parameters(self) -> ParameterSet:
-        """Every parameter, with its nominal value."""
-
-    def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:
-        """Initial states (n rows) and model numbers of n value sets.
-
-        Args:
-            names: parameters that differ from the plant's own.
-            values: their values, shape (n, p).
-        """
-
-    def inputs(
-        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
-        begun: float = 0.0,
-    ) -> np.ndarray:  # fmt: skip
-        """The inputs that reach the model, step by step, computed from the logged inputs.
-
-        Args:
-            names: as above.
-            values: as above.
-            held: logged inputs at the steps of the simulation, shape (steps, nu).
-            timestep: of the simulation [s].
-            begun: time of the first step in the record [s].
-
-        Returns:
-            Shape (steps, nu) for all, or (n, steps, nu).
-        """
-
-    def outputs(
-        self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str],
-        readings: np.ndarray,
-    ) -> np.ndarray:  # fmt: skip
-        """What the sensors say, computed from what perfect ones would say.
-
-        Args:
-            names: as above.
-            values: as above.
-            sensors: names of the ny sensors.
-            readings: what a perfect sensor would say, and position and rate of its joint, shape
-                (3, m, samples, ny); each value set has m/n neighbouring rows.
-
-        Returns:
-            Shape (m, samples, ny).
-        """
 
 
 @dataclass(frozen=True)
@@ -112,6 +56,29 @@ class Predictor:
         timestep = self.plant.model.opt.timestep
         return lambda held: self.plant.inputs(names, every, held, timestep, self.log.begun)
 
+    def begun(self, values: np.ndarray, known: State) -> State:
+        """States as MuJoCo integrates them, of n value sets (n, p); see `WithStates`."""
+        plant = with_states(self.plant)
+        return known if plant is None else plant.begun(*self._every(values), known)
+
+    def first_loads(
+        self, values: np.ndarray, known: State, inputs: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """States of the plant that no model file has, where windows begin; see `WithStates`.
+
+        Raises:
+            InputError: the plant has none.
+        """
+        plant = with_states(self.plant)
+        if plant is None:
+            raise InputError("the plant has no states beside those of its model")
+        return plant.first_loads(*self._every(values), known, inputs, self.log.sampling_time)
+
+    @property
+    def recorded(self) -> tuple[str, ...]:
+        """The fields of the state that outputs are made of."""
+        return ("qpos", "qvel") if with_states(self.plant) is None else ("qpos", "qvel", "act")
+
     def predict(self, values: np.ndarray, samples: int | None = None) -> np.ndarray:
         """Outputs of n value sets over the first samples of the log.
 
@@ -129,11 +96,11 @@ class Predictor:
         start, numbers = self.settings(values)
         states = rollout(
             self.plant.model,
-            start,
+            self.begun(values, start),
             log.inputs[:samples],
             log.sampling_time,
             numbers=numbers,
-            record=("qpos", "qvel"),
+            record=self.recorded,
             hold_kind=log.hold,
             before=self.inputs(values),
             time=log.begun,
@@ -145,13 +112,16 @@ class Predictor:
 
         Args:
             values: shape (n, p), in the parameters' units.
-            states: qpos and qvel of m simulations, shape (m, samples, size); each value set has
-                m/n neighbouring ones.
+            states: what `recorded` names, of m simulations, shape (m, samples, size); each value
+                set has m/n neighbouring ones.
 
         Returns:
             Shape (m, samples, ny).
         """
         model, sensors = self.plant.model, self.log.output_names
+        plant = with_states(self.plant)
+        if plant is not None:
+            states = plant.shown(*self._every(values), states)
         columns = output_columns(model, sensors)
         joints = [int(model.sensor(name).objid[0]) for name in sensors]
         y = [states[field][:, :, i] for field, i in columns]

@@ -33,6 +33,7 @@ UNDERIVED = {
     "jnt_stiffness",
     "jnt_user",
 }
+UNLOGGED = "state of "  # actuators called so carry states alone: they have no input
 
 
 @dataclass(frozen=True)
@@ -70,6 +71,12 @@ def substeps(sampling_time: float, timestep: float) -> int:
     return n
 
 
+def logged_inputs(model: mujoco.MjModel) -> int:
+    """How many inputs a log of a model has: actuators that only carry states have none."""
+    own = (model.actuator(i).name.startswith(UNLOGGED) for i in range(len(model.actuator_trntype)))
+    return int(model.nu) - sum(own)
+
+
 def hold(inputs: np.ndarray, n: int, kind: str = "zoh") -> np.ndarray:
     """Controls of the simulation steps between the samples: (..., N, nu) -> (..., (N-1) n, nu)."""
     if kind == "zoh":
@@ -101,7 +108,7 @@ def rollout(
         model: the model; its timestep divides `sampling_time`.
         start: initial states; n is the number of their rows, or of the values in `numbers`.
         inputs: shape (N, nu), the same for all, or (n, N, nu), one for each, in the units of the
-            model's controls.
+            model's controls, but for those of actuators that have none (see `UNLOGGED`).
         sampling_time: time between samples [s].
         numbers: model entries that differ between simulations: slot and its values, shape (n,).
         record: MjData fields of the state to return (qpos, qvel, act).
@@ -119,8 +126,9 @@ def rollout(
         DivergenceError: a simulation left the finite numbers.
     """
     inputs = np.asarray(inputs, float)
-    if inputs.ndim not in (2, 3) or inputs.shape[-1] != model.nu:
-        raise InputError(f"inputs have shape {inputs.shape}; the model takes (N, {model.nu})")
+    nu = logged_inputs(model)
+    if inputs.ndim not in (2, 3) or inputs.shape[-1] != nu:
+        raise InputError(f"inputs have shape {inputs.shape}; the model takes (N, {nu})")
     rows = [np.atleast_2d(x) for x in (start.qpos, start.qvel, start.act)]
     n = max([len(r) for r in rows] + [len(values) for _, values in numbers])
     every = substeps(sampling_time, model.opt.timestep)
@@ -143,6 +151,8 @@ def rollout(
     batch.bind("time")[:] = begun.reshape(batch.bind("time").shape)
     first = {field: np.array(batch.bind(field)) for field in record}
     shared = np.broadcast_to(controls, (n, *controls.shape[1:]))
+    if nu < model.nu:
+        shared = np.concatenate([shared, np.zeros((*shared.shape[:2], model.nu - nu))], axis=2)
     with _quiet():
         steps = batch.rollout(shared.shape[1], shared, record=tuple(record))
     _check_finished(batch, begun, shared.shape[1], model.opt.timestep)

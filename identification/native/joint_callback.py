@@ -38,7 +38,7 @@ from identification.native.memory import load_byte, load_constant, load_double, 
 from identification.native.table import is_compiled
 from identification.native.tuples import replacer
 
-TAG = 7351.0609  # last entry of a row of ours
+TAG = 7351.0609  # last entry of a row of ours, first of the bias of an actuator of ours
 STOP, REACH, FIRST, LAST = 0, 1, 6, 2  # columns of T, of what is reached, of the first parameter;
 # entries behind the last
 DRIVE, LOW, HIGH, STOPPING, FRICTION, ROWS = range(6)  # rows of the room for joints held together
@@ -85,6 +85,7 @@ _SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 _NO_DYNAMICS = int(mujoco.mjtDyn.mjDYN_NONE)
 _FIXED = int(mujoco.mjtGain.mjGAIN_FIXED)
 _NO_BIAS, _AFFINE = int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtBias.mjBIAS_AFFINE)
+_USER_BIAS = int(mujoco.mjtBias.mjBIAS_USER)
 _GAINS, _BIASES, _GEARS = mujoco.mjNGAIN, mujoco.mjNBIAS, 6
 
 
@@ -110,6 +111,8 @@ def _clipped(m, limited, range_, i, x):  # type: ignore[no-untyped-def]
 def _actuator_force(m, d, i, q, v):  # type: ignore[no-untyped-def]
     """Force of actuator i on its joint, gain·u + bias [N or N m]; NaN where it is another law."""
     bias = integer(m, M.actuator_biastype, i)
+    if bias == _USER_BIAS and double(m, M.actuator_biasprm, _BIASES * i) == TAG:
+        return 0.0  # it carries a state of the joint (`identification.native.joint_states`)
     if (
         integer(m, M.actuator_dyntype, i) != _NO_DYNAMICS
         or integer(m, M.actuator_gaintype, i) != _FIXED

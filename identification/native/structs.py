@@ -16,6 +16,7 @@ from mujoco.introspect import ast_nodes, structs
 
 # A model whose live objects show every field that a callback may touch.
 _PROBE = """<mujoco>
+  <option integrator="RK4"/>
   <size nuser_jnt="1" nuser_actuator="1" nuser_tendon="1" nuser_sensor="1" nuser_body="1"/>
   <worldbody><site name="a"/><body pos="1 0 0"><joint name="j"/><geom size="1"/><site name="b"/>
   </body></worldbody>
@@ -83,12 +84,17 @@ def word(struct: str, field: str) -> int:
 
 def inner_word(struct: str, field: str, inner: str) -> int:
     """Offset of a field of a struct inside a struct, e.g. mjModel's opt.gravity, in words."""
-    declared = next(f for f in structs.STRUCTS[struct].fields if f.name == field).type
-    offset = getattr(layout(struct), field).offset
-    offset += getattr(_c_type(declared), inner).offset
+    offset = inner_byte(struct, field, inner)
     if offset % 8:
         raise NotImplementedError(f"{struct}.{field}.{inner} is at byte {offset}, not on a word")
-    return int(offset // 8)
+    return offset // 8
+
+
+def inner_byte(struct: str, field: str, inner: str) -> int:
+    """Offset of a field of a struct inside a struct, e.g. mjModel's opt.integrator, in bytes."""
+    declared = next(f for f in structs.STRUCTS[struct].fields if f.name == field).type
+    inside = getattr(_c_type(declared), inner).offset
+    return int(getattr(layout(struct), field).offset + inside)
 
 
 def check(model: mujoco.MjModel, data: mujoco.MjData) -> set[str]:
@@ -126,6 +132,16 @@ def check(model: mujoco.MjModel, data: mujoco.MjData) -> set[str]:
         "mjModel", "opt", "gravity"
     ):
         agreed.add("opt.gravity")
+    integrator = model._address + inner_byte("mjModel", "opt", "integrator")
+    if ctypes.c_int.from_address(integrator).value == model.opt.integrator != 0:
+        agreed.add("opt.integrator")
+    if (
+        model.opt.timestep
+        == ctypes.c_double.from_address(
+            model._address + 8 * inner_word("mjModel", "opt", "timestep")
+        ).value
+    ):
+        agreed.add("opt.timestep")
     return agreed
 
 

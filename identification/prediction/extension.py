@@ -7,17 +7,19 @@ the states that then are best. Size zero is the parent, so that a child never ex
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from identification.discovery.nominal_model import NominalModel
+from identification.discovery.scoring.sensitivities import iterate_shapes
 from identification.effects.effect import Candidate
 from identification.errors import InputError
 from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
 from identification.model.predictor import Plant
 from identification.prediction.fit import solve
+from identification.prediction.joint_states import model_for
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.problem import (
     THIN,
@@ -44,6 +46,7 @@ class _Begun:
     Attributes:
         cost: V there.
         candidate: the effect.
+        parent: the model without it, its plant with the states that the effect needs.
         fixed: values that it holds fixed.
         task: all windows.
         q: the estimate, shape (p,).
@@ -51,6 +54,7 @@ class _Begun:
 
     cost: float
     candidate: Candidate
+    parent: WindowModel
     fixed: Mapping[str, float]
     task: Problem
     q: np.ndarray
@@ -73,35 +77,30 @@ def with_effect(
     Raises:
         InputError: it cannot be simulated from any start, whatever the size.
     """
-    fit, plant = parent.fit, parent.plant
-    begun = [b for b in (_begun(parent, score) for score in scores) if b is not None]
+    fit = parent.fit
+    starts = [s for one in scores for s in (_shaped(one) if one.candidate.effect.state else [one])]
+    begun = [b for b in (_begun(parent, score) for score in starts) if b is not None]
     if not begun:
         c = scores[0].candidate
         raise InputError(f"{c.effect.name}, {c.where} cannot be simulated at any size")
     best = min(begun, key=lambda b: b.cost)
-    moves = best.task.settled(best.q, fit.moves)
+    moves = best.task.settled(best.q, best.parent.fit.moves)
     found = solve(best.task, best.q, moves, tolerance=FINE, most=MOST_REFIT)
     if found.cost >= fit.cost:
         return None
     values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}
-    fixed = {**values, **best.fixed}
+    fixed, plant = {**values, **best.fixed}, best.parent.plant
     seen = predict_fitted(plant, confirm, horizon, parent.scale, found, fixed, parent.unseen)
     return WindowModel((*parent.candidates, best.candidate), found, seen, parent.scale)
 
 
 def _begun(parent: WindowModel, score: WindowScore) -> _Begun | None:
     """The fit of some windows; None where it cannot be simulated at any size."""
-    c, fit, plant = score.candidate, parent.fit, parent.plant
-    old = fit.problem.unknowns
-    sizes = _free(plant, c, [n for n in c.free if n not in old.local.names])
-    shapes = _free(plant, c, [n for n in _shapes(c) if n not in old.local.names])
-    shared, own = old.shared.plus(shapes), old.own
-    shared, own = (shared, own.plus(sizes)) if c.effect.own else (shared.plus(sizes), own)
-    free = (*shared.names, *own.names)
-    fixed = {n: v for n, v in (*c.fixed.items(), *c.whole.items()) if n not in free}
-    task = with_unknowns(fit.problem, shared, own, fixed)
-    few, begun = thinned(task, THIN), thinned_moves(fit.moves, THIN)
-    least = thinned(fit.problem, THIN).cost(fit.q, begun)
+    c = score.candidate
+    parent = model_for(parent, c)
+    task, fixed = _task(parent, c)
+    few, begun = thinned(task, THIN), thinned_moves(parent.fit.moves, THIN)
+    least = thinned(parent.fit.problem, THIN).cost(parent.fit.q, begun)
     tried = []
     for share in SHARES:
         q = _begin(task, parent, score, share)
@@ -117,7 +116,34 @@ def _begun(parent: WindowModel, score: WindowScore) -> _Begun | None:
         return None
     _, q, moves = min(tried, key=lambda t: t[0])
     found = solve(few, q, moves, tolerance=FINE)
-    return _Begun(found.cost, c, fixed, task, found.q)
+    return _Begun(found.cost, c, parent, fixed, task, found.q)
+
+
+def _task(parent: WindowModel, c: Candidate) -> tuple[Problem, dict[str, float]]:
+    """The windows with the parameters of one effect more, and the values of what is not free."""
+    plant, old = parent.plant, parent.fit.problem.unknowns
+    sizes = _free(plant, c, [n for n in c.free if n not in old.local.names])
+    shapes = _free(plant, c, [n for n in _shapes(c) if n not in old.local.names])
+    shared, own = old.shared.plus(shapes), old.own
+    shared, own = (shared, own.plus(sizes)) if c.effect.own else (shared.plus(sizes), own)
+    free = (*shared.names, *own.names)
+    fixed = {n: v for n, v in (*c.fixed.items(), *c.whole.items()) if n not in free}
+    return with_unknowns(parent.fit.problem, shared, own, fixed), fixed
+
+
+def _shaped(score: WindowScore) -> list[WindowScore]:
+    """The score with all shapes of its effect's grid that are free.
+
+    What joints with states do is far from linear in their sizes, so that a score tells the size
+    and hardly the shapes.
+    """
+    c = score.candidate
+    fixed = {s.name: c.shape[s.name] for s in c.effect.shapes if not s.free}
+    return [
+        replace(score, candidate=replace(c, shape=shape))
+        for shape in iterate_shapes(c.effect)
+        if all(shape[name] == value for name, value in fixed.items())
+    ]
 
 
 def refitted(

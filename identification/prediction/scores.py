@@ -23,6 +23,7 @@ from identification.errors import InputError
 from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
 from identification.prediction.fit import BLOCKS, WindowFit
+from identification.prediction.joint_states import rows_for
 from identification.prediction.point import projected
 
 NEW = 0.01  # of a column that free parameters cannot imitate; with less it is one of them again
@@ -87,7 +88,8 @@ def find_imitated(fit: WindowFit, scores: Sequence[WindowScore]) -> set[tuple[st
 def _groups(candidates: Sequence[Candidate]) -> Iterator[list[Candidate]]:
     group: list[Candidate] = []
     for candidate in candidates:
-        if group and sum(len(c.sizes) for c in (*group, candidate)) > BATCH:
+        others = group and group[-1].effect.state != candidate.effect.state  # in another plant
+        if others or (group and sum(len(c.sizes) for c in (*group, candidate)) > BATCH):
             yield group
             group = []
         group.append(candidate)
@@ -165,10 +167,11 @@ class _Base:
             space = coordinates(
                 plant.parameters, names, inside(plant.parameters, names, values[0]), linear=names
             )
+            there, moves = rows_for(part, d, group, fit.of_record(k))
             rest = {n: v for n, v in part.predictor.fixed.items() if n not in names}
-            predictor = replace(part.predictor, names=tuple(names), fixed=rest)
-            moved = replace(part, space=space, predictor=predictor)
-            y = moved.outputs(space.encode(values), [d] * len(values), is_rough=True)
+            predictor = replace(there.predictor, names=tuple(names), fixed=rest)
+            moved = replace(there, space=space, predictor=predictor)
+            y = moved.outputs(space.encode(values), moves, is_rough=True)
             r = np.stack([part.joined(one, d) for one in y], axis=-1)  # (W, m, 1 + k)
             S = (r[..., :1] - r[..., 1:]) / np.array(probes)
             U = t.U * (t.s > 0)[:, None]

@@ -151,7 +151,13 @@ def is_proven(found: Prediction, refits: int, options: DiscoveryOptions) -> bool
 
 
 def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
-    """Whether a free size of the last effect is beyond its own std, where it has one."""
-    std, values, free = model.std, model.fit.values, model.candidates[-1].free
-    own = [n for n in model.fit.problem.names if n.partition(" [")[0] in free]
-    return not own or any(abs(values[n]) > options.min_proof_t * std[n] for n in own)
+    """Whether a free size of the last effect is beyond its own std, where it has one.
+
+    It must be beyond what steps of the simulation err by too.
+    """
+    std, values, c = model.std, model.fit.values, model.candidates[-1]
+    least = {n: s.smallest for n, s in zip(c.sizes, c.effect.sizes, strict=True)}
+    own = [n for n in model.fit.problem.names if n.partition(" [")[0] in c.free]
+    return not own or any(
+        abs(values[n]) > max(options.min_proof_t * std[n], least[n.partition(" [")[0]]) for n in own
+    )

@@ -191,7 +191,9 @@ def _errors(
 ) -> tuple[np.ndarray, np.ndarray]:
     """States at the starts of windows and errors, with each half's own values."""
     model = plant.model
-    moves = np.zeros((len(cut.starts), 2 * model.nv + model.na)) if begun is None else begun
+    moves = np.zeros((len(cut.starts), 2 * model.nv + model.na))
+    if begun is not None:  # of a model nearby, which may lack the last states
+        moves[:, : begun.shape[1]] = begun
     is_late = cut.starts >= len(record.log) // 2
     if not own[0]:
         is_late = np.zeros(len(cut.starts), bool)

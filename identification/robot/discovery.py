@@ -68,7 +68,7 @@ def discover(
             raise InputError("a robot has its own log and candidates; leave log and effects out")
         if model.file.horizon is None and not model.others:
             return search.discover(
-                model.nominal_model, model.log, model.candidates, progress, options
+                model.nominal_model, model.log, without_states(model.candidates), progress, options
             )
         fitted = (model.log, *model.others)
         for each in (*fitted, *model.records):
@@ -82,5 +82,13 @@ def discover(
     for effect in effects:
         refuse_kind(effect, Effect, "discover takes effects (candidates(plant, free), or your own)")
     if model.horizon is None:
-        return search.discover(model, log, effects, progress, options)
+        return search.discover(model, log, without_states(effects), progress, options)
     return discover_records(model, [log], [], effects, progress, options)
+
+
+def without_states(effects: Sequence[Effect]) -> tuple[Effect, ...]:
+    """The effects that need no states of joints: those are sought over a horizon alone.
+
+    A Kalman filter along a free run would have to know how uncertain these states are.
+    """
+    return tuple(effect for effect in effects if not effect.state)

@@ -105,11 +105,12 @@ class Shooting:
         _, numbers = predictor.settings(self.space.decode(q))
         starts = [self.states(d) for d in moves]
         rows = (np.concatenate([getattr(s, f) for s in starts]) for f in ("qpos", "qvel", "act"))
+        begun = predictor.begun(self.space.decode(q), State(*rows))
         inputs, every, hold_kind = self._inputs(self.space.decode(q))
         run = rollout(
-            model, State(*rows), inputs, predictor.log.sampling_time / every,
+            model, begun, inputs, predictor.log.sampling_time / every,
             numbers=[(slot, np.repeat(column, W)) for slot, column in numbers],
-            record=("qpos", "qvel"), hold_kind=hold_kind, time=np.tile(self.times, len(q)),
+            record=predictor.recorded, hold_kind=hold_kind, time=np.tile(self.times, len(q)),
         )  # fmt: skip
         run = {field: states[:, ::every] for field, states in run.items()}
         y = predictor.outputs(self.space.decode(q), run)

@@ -16,14 +16,14 @@ then stay near the free run and do not follow the noise.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
 
 from identification.errors import DivergenceError, InputError
 from identification.logs.log import Log
-from identification.model.predictor import Predictor, output_columns
+from identification.model.predictor import Predictor, output_columns, with_states
 from identification.model.rollout import State, rollout
 
 LEAST = 1e-3  # smallest s_j, as a share of the largest motion in its field
@@ -101,7 +101,10 @@ def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> Firs
         cut: the windows.
     """
     plant, log = predictor.plant, predictor.log
-    model = plant.model
+    model, known = plant.model, with_states(plant)
+    if known is not None:
+        plain = replace(predictor, plant=known.without_states())
+        return extended(predictor, values, cut, first_states(plain, values, cut))
     measured = _measured(model, log)
     if measured is not None:
         at = cut.starts
@@ -121,6 +124,26 @@ def first_states(predictor: Predictor, values: np.ndarray, cut: Windows) -> Firs
         weight = np.zeros(2 * model.nv + model.na)
     _put_measured(model, log, rows, cut.starts)
     return FirstStates(State(**rows), weight)
+
+
+def extended(
+    predictor: Predictor, values: np.ndarray, cut: Windows, first: FirstStates
+) -> FirstStates:
+    """First states with those that a plant has beside its model's, at their end.
+
+    Args:
+        predictor: the plant and the log.
+        values: values of its free parameters, shape (p,).
+        cut: the windows.
+        first: of some or none of these states.
+    """
+    log = predictor.log
+    before = np.maximum(cut.starts - (log.hold == "zoh"), 0)  # what has acted until then
+    known, more = predictor.first_loads(values, first.states, log.inputs[before])
+    have = first.states.act.shape[1] + known.shape[1] - predictor.plant.model.na
+    act = np.hstack([first.states.act, known[:, have:]])
+    states = State(first.states.qpos, first.states.qvel, act)
+    return FirstStates(states, np.concatenate([first.weight, 1 / more[have:]]))
 
 
 def _measured(model: mujoco.MjModel, log: Log) -> State | None:

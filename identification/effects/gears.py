@@ -1,0 +1,200 @@
+"""The states of a plant's joints, and the numbers of their gears in its model.
+
+row of a joint = (…, where θ and p stand, side, c, ε, J, ζ, c of friction, key, TAG)
+armature - J                     the motor's inertia is moved from the joint, not added to it
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import mujoco
+import numpy as np
+
+from identification.effects.axes import Axis
+from identification.effects.effect import Effect
+from identification.effects.first_loads import first_states_of
+from identification.effects.joint_states import (
+    WIDTH,
+    GearNumbers,
+    JointState,
+    begun,
+    driven_inertia,
+    gear_numbers,
+    places_of,
+    shown,
+)
+from identification.effects.values import Values
+from identification.errors import InputError
+from identification.logs.names import listed
+from identification.model.paths import Slot
+from identification.model.predictor import Numbers
+from identification.model.rollout import State
+from identification.native.gear import GEARS, GRIP, MOTOR, SIDE
+from identification.native.joint_callback import LAST
+
+_WHERE = {"motor": MOTOR, "grip": GRIP}
+
+
+@dataclass(frozen=True, eq=False)
+class Gears:
+    """The states of a plant's joints.
+
+    Attributes:
+        effects: all of the plant.
+        axes: the joints that may have effects.
+        states: of joints.
+        model: with actuators for the states.
+        spec: the model as its file has it, on which shares of inertia are counted.
+    """
+
+    effects: tuple[Effect, ...]
+    axes: tuple[Axis, ...]
+    states: tuple[JointState, ...]
+    model: mujoco.MjModel
+    spec: mujoco.MjSpec
+
+    @cached_property
+    def joints(self) -> dict[str, Axis]:
+        """The joints that have states."""
+        named = {state.joint for state in self.states}
+        return {axis.joint: axis for axis in self.axes if axis.joint in named}
+
+    @cached_property
+    def inertia(self) -> dict[str, float]:
+        """I of each of these joints, that its drive feels [kg m² or kg]."""
+        model = self.spec.copy().compile() if self.joints else self.model
+        return {joint: driven_inertia(model, joint) for joint in self.joints}
+
+    @cached_property
+    def numbers(self) -> frozenset[str]:
+        """The plant's parameters that effects with states have."""
+        return frozenset(
+            name
+            for effect in self.effects if effect.state
+            for joint in self.joints
+            for parts in effect.parameters_at(joint)
+            for name in parts
+        )  # fmt: skip
+
+    def of(self, joint: str, values: Values, n: int) -> GearNumbers:
+        """What effects make of a joint's gear in n value sets."""
+        return gear_numbers(self.effects, joint, self.inertia[joint], values, n)
+
+    def rows(self, names: Sequence[str], values: Values, n: int) -> Numbers:
+        """Entries of the joints' rows that some parameters change."""
+        if not self.numbers & {*names}:
+            return []
+        last = int(self.model.nuser_jnt) - LAST - GEARS
+        out = []
+        for joint in self.joints:
+            columns = dict(enumerate(self.of(joint, values, n).columns, SIDE))
+            where = dict.fromkeys(_WHERE.values(), -1)
+            for state, at in zip(self.states, places_of(self.model, self.states), strict=True):
+                if state.joint == joint:
+                    where[_WHERE[state.kind]] = at
+            for column, value in {**where, **columns}.items():
+                slot = Slot("jnt_user", (int(self.model.joint(joint).id),), last + column)
+                out.append((slot, np.broadcast_to(np.asarray(value, float), n)))
+        return out
+
+    def armatures(self, values: Values, n: int, own: Numbers) -> Numbers:
+        """Armatures without the motors that move by themselves.
+
+        Args:
+            values: of all parameters, one or n of each.
+            n: how many value sets.
+            own: entries of the model that other parameters change.
+        """
+        out: list[tuple[Slot, np.ndarray]] = []
+        for joint in self.joints:
+            g = self.of(joint, values, n)
+            if not g.is_geared.any():
+                continue
+            dof = int(self.model.joint(joint).dofadr[0])
+            whole = np.full(n, float(self.model.dof_armature[dof]))
+            for slot, column in own:
+                if slot.field == "dof_armature" and dof in slot.rows:
+                    whole = np.broadcast_to(column, n)
+            out.append((Slot("dof_armature", (dof,), None), whole - np.where(g.is_geared, g.J, 0)))
+        return out
+
+    def refuse_stateless(
+        self, needed: Mapping[str, Sequence[JointState]], names: Sequence[str], values: np.ndarray
+    ) -> None:
+        """Refuse sizes of effects whose states the plant does not have.
+
+        Raises:
+            InputError: there is one that is not zero.
+        """
+        lacking = [
+            name for k, name in enumerate(names)
+            if not {*needed.get(name, ())} <= {*self.states} and np.any(values[:, k])
+        ]  # fmt: skip
+        if lacking:
+            raise InputError(
+                f"{listed(lacking)} need{'s' * (len(lacking) == 1)} states of its own, which this"
+                " plant does not have; take plant.with_states_of(names)"
+            )
+
+    def begun(self, values: Values, n: int, known: State) -> State:
+        """States as MuJoCo integrates them; see `identification.effects.joint_states`."""
+        if not self.states:
+            return known
+        return begun(self.model, self.states, self._repeated(values, n, len(known.qpos)),
+                     self.joints, known)  # fmt: skip
+
+    def shown(
+        self, values: Values, n: int, run: Mapping[str, np.ndarray]
+    ) -> Mapping[str, np.ndarray]:
+        """Positions and rates as encoders see them."""
+        if not self.states:
+            return run
+        each = self._repeated(values, n, len(run["qpos"]))
+        return shown(self.model, self.states, each, run)
+
+    def first_states(
+        self, values: Values, loads: tuple[np.ndarray, np.ndarray, np.ndarray], sampling_time: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The states where windows begin, and how far they may be from it."""
+        gears = {joint: self.of(joint, values, 1) for joint in self.joints}
+        forces = {joint: axis.force for joint, axis in self.joints.items()}
+        return first_states_of(self.states, self.model, gears, forces, loads, sampling_time)
+
+    def _repeated(self, values: Values, n: int, m: int) -> dict[str, GearNumbers]:
+        """Of each joint, with a number for each of m simulations, m/n of each value set."""
+        out = {}
+        for joint in self.joints:
+            g = self.of(joint, values, n)
+            each = {name: np.repeat(x, m // n) for name, x in vars(g).items()}
+            out[joint] = GearNumbers(**each)
+        return out
+
+
+def fitting(start: State | None, model: mujoco.MjModel) -> State | None:
+    """A start with as many activations as a model has: the last ones are left out, or zero."""
+    if start is None:
+        return None
+    act = np.zeros(model.na)
+    given = np.ravel(start.act)[: model.na]
+    act[: len(given)] = given
+    return State(start.qpos, start.qvel, act)
+
+
+def needed_states(effects: Sequence[Effect]) -> dict[str, tuple[JointState, ...]]:
+    """The states that each size of an effect needs, by its name."""
+    out: dict[str, tuple[JointState, ...]] = {}
+    for effect in effects:
+        kind = effect.state
+        if kind not in WIDTH:
+            continue
+        single = [suffix[1:] for suffix in effect.places.values() if suffix]
+        for where, suffix in effect.places.items():
+            at = [suffix[1:]] if suffix else single
+            for size in effect.sizes:
+                out[effect.parameter(size.name, where)] = tuple(
+                    JointState("motor" if kind == "motor" else "grip", joint) for joint in at
+                )
+    return out

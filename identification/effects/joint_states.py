@@ -1,0 +1,189 @@
+"""Joints with states of their own: where the states stand, and what effects make of them.
+
+As a window knows them (s and w stay small where a gear becomes stiff):
+
+    motor   s, w       δ = c s + ε clip(s/s_0, -1, 1),  dδ/dt = c w        [N m, N m/s or N, N/s]
+    grip    p          the force of the friction                                     [N m or N]
+
+As MuJoCo integrates them: θ = q + δ, ω = v + dδ/dt, and p. Where the encoder sits on the motor's
+side, what is measured is θ, so that q = θ - δ. Sizes of zero leave q and v as they are, to the bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import mujoco
+import numpy as np
+
+from identification.effects.axes import Axis
+from identification.effects.effect import Effect
+from identification.effects.values import Values, numbers_at
+from identification.model.rollout import UNLOGGED, State
+from identification.native.gear_element import Gear
+from identification.native.joint_callback import TAG
+
+WIDTH = {"motor": 2, "grip": 1}  # activations
+CERTAIN = 0.02  # s_0, of the largest force of the drives: with more, teeth are sure to touch
+POSES = 8  # random ones, in which the inertia that a drive feels is compared
+
+
+@dataclass(frozen=True)
+class JointState:
+    """A state of a joint.
+
+    Attributes:
+        kind: "motor", θ and ω behind a gear; or "grip", p of a friction that gives.
+        joint: its name.
+    """
+
+    kind: Literal["motor", "grip"]
+    joint: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearNumbers:
+    """What effects make of a joint's gear, in n value sets, shape (n,) each; see `state_laws`."""
+
+    c: np.ndarray
+    gap: np.ndarray
+    J: np.ndarray
+    zeta: np.ndarray
+    side: np.ndarray
+    slip: np.ndarray
+
+    @property
+    def columns(self) -> tuple[np.ndarray, ...]:
+        """In the order of a joint's row, from `SIDE` on."""
+        return self.side, self.c, self.gap, self.J, self.zeta, self.slip
+
+    @property
+    def is_geared(self) -> np.ndarray:
+        """Whether the motor moves by itself, shape (n,)."""
+        return (self.c != 0) | (self.gap != 0)
+
+
+def with_actuators(spec: mujoco.MjSpec, states: Sequence[JointState]) -> mujoco.MjSpec:
+    """The model with an actuator for each state; it has no gain, and its control stays zero.
+
+    Args:
+        spec: the model, which is not changed.
+        states: which.
+    """
+    spec = spec.copy()
+    for state in states:
+        spec.add_actuator(
+            name=f"{UNLOGGED}{state.kind} {state.joint}", target=state.joint,
+            trntype=mujoco.mjtTrn.mjTRN_JOINT, dyntype=mujoco.mjtDyn.mjDYN_USER,
+            actdim=WIDTH[state.kind], gaintype=mujoco.mjtGain.mjGAIN_FIXED, gainprm=[0.0] * 10,
+            biastype=mujoco.mjtBias.mjBIAS_USER, biasprm=[TAG, *[0.0] * 9],
+            gear=[1.0, 0, 0, 0, 0, 0],
+        )  # fmt: skip
+    return spec
+
+
+def places_of(model: mujoco.MjModel, states: Sequence[JointState]) -> list[int]:
+    """Where each state's first activation stands."""
+    return [int(model.actuator(f"{UNLOGGED}{s.kind} {s.joint}").actadr[0]) for s in states]
+
+
+def driven_inertia(model: mujoco.MjModel, joint: str) -> float:
+    """The least inertia that the drive of a joint feels in several poses [kg m² or kg]."""
+    data, rng = mujoco.MjData(model), np.random.default_rng(0)
+    dof = int(model.joint(joint).dofadr[0])
+    unit, out = np.zeros((1, model.nv)), np.zeros((1, model.nv))
+    unit[0, dof], least = 1.0, np.inf
+    for _ in range(POSES):
+        mujoco.mj_forward(model, data)
+        mujoco.mj_solveM(model, data, out, unit)
+        least = min(least, 1 / float(out[0, dof]))
+        mujoco.mj_integratePos(model, data.qpos, rng.normal(0, 1, model.nv), 1.0)
+    return least
+
+
+def gear_numbers(
+    effects: Sequence[Effect], joint: str, inertia: float, values: Values, n: int
+) -> GearNumbers:
+    """What effects make of a joint's gear; of two effects that tell J, ζ and side the larger ones.
+
+    Args:
+        effects: a set; those without states are passed over.
+        joint: its name.
+        inertia: I, that its drive feels.
+        values: of all parameters, one or n of each.
+        n: how many value sets.
+    """
+    series, slip = np.zeros((5, n)), np.zeros(n)
+    for effect in (e for e in effects if e.state):
+        numbers = [np.broadcast_to(x, n) for x in numbers_at(effect, joint, values)]
+        (law,) = effect.hooks.values()
+        told = law.py_func(Gear(inertia), tuple(numbers))  # type: ignore[attr-defined]
+        if effect.state == "grip":
+            slip = slip + told
+            continue
+        here, told = numbers[0] != 0, np.array([np.broadcast_to(x, n) for x in told])
+        series[:2] += told[:2]
+        for k in (2, 3, 4):
+            series[k] = np.maximum(series[k], np.where(here, told[k], 0.0))
+    c, gap, J, zeta, side = series
+    return GearNumbers(c=c, gap=gap, J=J, zeta=zeta, side=side, slip=slip)
+
+
+def deflected(g: GearNumbers, s: np.ndarray, axis: Axis) -> np.ndarray:
+    """δ of a gear that passes on s."""
+    return g.c * s + g.gap * s / (abs(s) + CERTAIN * axis.force)
+
+
+def begun(
+    model: mujoco.MjModel, states: Sequence[JointState], gears: Mapping[str, GearNumbers],
+    axes: Mapping[str, Axis], known: State,
+) -> State:  # fmt: skip
+    """States as MuJoCo integrates them, from states as windows know them.
+
+    Args:
+        model: with the states.
+        states: of its joints.
+        gears: of their joints, a number for each row of the states.
+        axes: their joints.
+        known: m rows.
+    """
+    qpos, qvel, act = np.array(known.qpos), np.array(known.qvel), np.array(known.act)
+    for state, at in zip(states, places_of(model, states), strict=True):
+        if state.kind != "motor":
+            continue
+        g, (q, v) = gears[state.joint], _columns(model, state.joint)
+        delta = deflected(g, act[:, at], axes[state.joint])
+        rate = (g.c + g.gap / (abs(act[:, at]) + axes[state.joint].force)) * act[:, at + 1]
+        qpos[:, q] -= g.side * delta
+        qvel[:, v] -= g.side * rate
+        act[:, at], act[:, at + 1] = qpos[:, q] + delta, qvel[:, v] + rate
+    return State(qpos, qvel, act)
+
+
+def shown(
+    model: mujoco.MjModel, states: Sequence[JointState], gears: Mapping[str, GearNumbers],
+    run: Mapping[str, np.ndarray],
+) -> Mapping[str, np.ndarray]:  # fmt: skip
+    """Positions and rates as encoders see them: those of the motor where they sit there.
+
+    Args:
+        model: with the states.
+        states: of its joints.
+        gears: of their joints, a number for each simulation.
+        run: qpos, qvel and act of m simulations, shape (m, samples, size).
+    """
+    qpos, qvel = np.array(run["qpos"]), np.array(run["qvel"])
+    for state, at in zip(states, places_of(model, states), strict=True):
+        if state.kind != "motor":
+            continue
+        g, (q, v) = gears[state.joint], _columns(model, state.joint)
+        rows = np.flatnonzero(g.is_geared & (g.side > 0))
+        qpos[rows, :, q], qvel[rows, :, v] = run["act"][rows, :, at], run["act"][rows, :, at + 1]
+    return {**run, "qpos": qpos, "qvel": qvel}
+
+
+def _columns(model: mujoco.MjModel, joint: str) -> tuple[int, int]:
+    j = model.joint(joint)
+    return int(j.qposadr[0]), int(j.dofadr[0])

@@ -1,0 +1,116 @@
+"""What a plant is: a model whose parameters can be moved, perhaps with more states."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol, runtime_checkable
+
+import mujoco
+import numpy as np
+
+from identification.model.parameter import ParameterSet
+from identification.model.paths import Slot
+from identification.model.rollout import State
+
+Numbers = Sequence[tuple[Slot, np.ndarray]]
+
+
+class Plant(Protocol):
+    """A model whose parameters can be moved."""
+
+    @property
+    def model(self) -> mujoco.MjModel:
+        """The compiled model."""
+
+    @property
+    def parameters(self) -> ParameterSet:
+        """Every parameter, with its nominal value."""
+
+    def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:
+        """Initial states (n rows) and model numbers of n value sets.
+
+        Args:
+            names: parameters that differ from the plant's own.
+            values: their values, shape (n, p).
+        """
+
+    def inputs(
+        self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
+        begun: float = 0.0,
+    ) -> np.ndarray:  # fmt: skip
+        """The inputs that reach the model, step by step, computed from the logged inputs.
+
+        Args:
+            names: as above.
+            values: as above.
+            held: logged inputs at the steps of the simulation, shape (steps, nu).
+            timestep: of the simulation [s].
+            begun: time of the first step in the record [s].
+
+        Returns:
+            Shape (steps, nu) for all, or (n, steps, nu).
+        """
+
+    def outputs(
+        self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str],
+        readings: np.ndarray,
+    ) -> np.ndarray:  # fmt: skip
+        """What the sensors say, computed from what perfect ones would say.
+
+        Args:
+            names: as above.
+            values: as above.
+            sensors: names of the ny sensors.
+            readings: what a perfect sensor would say, and position and rate of its joint, shape
+                (3, m, samples, ny); each value set has m/n neighbouring rows.
+
+        Returns:
+            Shape (m, samples, ny).
+        """
+
+
+@runtime_checkable
+class WithStates(Protocol):
+    """A plant that may have states which no model file has, such as a motor behind a gear.
+
+    Windows know these states, the last activations, as deviations that stay small; MuJoCo
+    integrates them as they are. A plant without such states gives back what it is given.
+    """
+
+    def without_states(self) -> Plant:
+        """The same plant without them, and without the effects that need them."""
+
+    def begun(self, names: Sequence[str], values: np.ndarray, known: State) -> State:
+        """States as MuJoCo integrates them.
+
+        Args:
+            names: parameters that differ from the plant's own.
+            values: their values, shape (n, p).
+            known: as windows know them, m rows; each value set has m/n neighbouring ones.
+        """
+
+    def shown(
+        self, names: Sequence[str], values: np.ndarray, run: Mapping[str, np.ndarray]
+    ) -> Mapping[str, np.ndarray]:
+        """Positions and rates as sensors see them, of m simulations with qpos, qvel and act."""
+
+    def first_loads(
+        self, names: Sequence[str], values: np.ndarray, known: State, inputs: np.ndarray,
+        sampling_time: float,
+    ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+        """The states where windows begin, shape (W, na), and how far they may be, shape (na,).
+
+        Args:
+            names: as above.
+            values: one value set, shape (1, p).
+            known: the other states there, W rows.
+            inputs: there, shape (W, nu).
+            sampling_time: [s].
+        """
+
+
+def with_states(plant: Plant) -> WithStates | None:
+    """The plant, where it has states which no model file has."""
+    if isinstance(plant, WithStates) and plant.without_states() is not plant:
+        return plant
+    return None

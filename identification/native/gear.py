@@ -1,0 +1,191 @@
+"""A motor behind its gear, and friction that gives: what they put on a joint.
+
+A motor behind the gear of a joint, at θ with the rate ω and the inertia J:
+
+    J dω/dt = f_m - τ,    dθ/dt = ω                 f_m: force of the joint's own drives
+    the joint feels τ in place of its drives         δ = θ - q,  dδ/dt = ω - v
+    τ = (δ - dz(δ))/c + d dδ/dt                      dz: dead zone of half width ε
+    d = 2 ζ √(J/c)
+
+and friction that gives before it slips (Dahl 1968), whose force is p:
+
+    c dp/dt = v - |v| p/b                            b: the largest friction
+
+A step h resolves springs up to κ = m (X/h)² only, m being the inertia that swings on them. One
+that is stiffer is replaced by one that settles within some steps, and carries its load T beside:
+with r = κ c, which is 1 where it is resolved,
+
+    τ = (1 - r) T + κ (δ ∓ ε) + D dδ/dt,   T = m (f_m/J - a),   1/m = 1/J + 1/M_jj
+    friction = min(max((1 - r) (M v/T_s + load) + r p, -b), b)
+
+so that c = 0 is a rigid gear, and friction that holds as in `identification.native.joint_callback`.
+a: acceleration of the joint without τ. Behind the parameters of the other effects a joint's row has
+`GEARS` numbers more. The states are activations: θ and ω of one actuator, p of another.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import mujoco
+import numpy as np
+
+from identification.native import structs
+from identification.native.access import double, integer, offsets, word
+from identification.native.decorators import inlined
+from identification.native.joint_callback import FIELDS as JOINT_FIELDS
+from identification.native.joint_callback import LAST, TAG, Joint, drive_force, inertia, joint
+from identification.native.joint_callback import D as JOINT_D
+from identification.native.joint_callback import M as JOINT_M
+from identification.native.memory import load_constant, load_double, store_double
+from identification.native.tuples import replacer
+
+GEARS = 8  # numbers of a row behind the parameters:
+MOTOR, GRIP = 0, 1  # where θ and p stand among the activations, -1 where there is none
+SIDE = 2  # 1: the drive's own feedback sees θ, 0: it sees q
+COMPLIANCE, GAP, INERTIA, RATIO, SLIP = 3, 4, 5, 6, 7  # c, ε, J, ζ, and the friction's c
+RESOLVED = 1.0  # X: RK4 then damps a swing by 7e-3 a step; semi-implicit Euler is stable up to 2
+# κ h²/m and D h/m of what is far too stiff: a semi-implicit step halves what is left of δ and its
+# rate ((1 - z)² and 1 - z² for a double root z = 1/2), and teeth rebound by a quarter at most.
+SETTLED, DAMPED = 0.25, 0.75
+MOST_DAMPED = 1.2  # largest D h/m; with X such a step is stable up to 1.5
+
+M = offsets("mjModel", "nv actuator_actadr actuator_trntype actuator_trnid jnt_user M_colind")
+D = offsets("mjData", "act act_dot qfrc_bias qLD qLDiagInv qfrc_smooth")
+INTEGRATOR = structs.inner_byte("mjModel", "opt", "integrator")
+TIMESTEP = 8 * structs.inner_word("mjModel", "opt", "timestep")
+FIELDS = JOINT_FIELDS | {*M._fields, *D._fields, "opt.integrator", "opt.timestep"}
+RK4, IS_JOINT = int(mujoco.mjtIntegrator.mjINT_RK4), int(mujoco.mjtTrn.mjTRN_JOINT)
+_with_drive = replacer(Joint, "f_u")
+with_sign = replacer(Joint, "sign")
+
+
+@inlined
+def gears_of(m, j):  # type: ignore[no-untyped-def]
+    """Address of the numbers of joint j, behind those of the other effects."""
+    columns = word(m, JOINT_M.nuser_jnt)
+    return word(m, M.jnt_user) + 8 * (columns * (j + 1) - LAST - GEARS)
+
+
+@inlined
+def is_geared(gears):  # type: ignore[no-untyped-def]
+    """Whether the motor of a joint moves by itself."""
+    return load_constant(gears + 8 * COMPLIANCE) != 0.0 or load_constant(gears + 8 * GAP) != 0.0
+
+
+@inlined
+def _spring(gears, mobility, h):  # type: ignore[no-untyped-def]
+    """m, κ, r and D of a gear; mobility: 1/M_jj."""
+    c, J = load_constant(gears + 8 * COMPLIANCE), load_constant(gears + 8 * INERTIA)
+    swinging = 1.0 / (1.0 / J + mobility)
+    stiff = swinging / h**2
+    x2 = RESOLVED**2 * stiff * c  # (X/(ω h))², ω of the swing
+    kappa = stiff * (SETTLED + (RESOLVED**2 - SETTLED) * x2)
+    if x2 > 1.0:
+        kappa = 1.0 / c
+    r = kappa * c
+    damping = 2.0 * load_constant(gears + 8 * RATIO) * sqrt(J * kappa)
+    damping += max(0.0, 1.0 - x2) * DAMPED * swinging / h
+    return swinging, kappa, r, min(damping, MOST_DAMPED * swinging / h)
+
+
+@inlined
+def transmitted(load, delta, rate, gap, kappa, r, damping, h):  # type: ignore[no-untyped-def]
+    """τ: what a gear passes on of a load, deflected by δ; each flank of the teeth only pushes.
+
+    A flank is damped by no more than what stops it within a step, so that τ has no jumps.
+    """
+    rest = (1.0 - r) * load + kappa * delta
+    if gap == 0.0:
+        return rest + damping * rate
+    most = damping / (kappa * h)
+    ahead, behind = max(0.0, rest - kappa * gap), min(0.0, rest + kappa * gap)
+    f = max(0.0, ahead + min(max(damping * rate, -most * ahead), most * ahead))
+    return f + min(0.0, behind + min(max(damping * rate, most * behind), -most * behind))
+
+
+@inlined
+def _motor_force(m, d, j, gears):  # type: ignore[no-untyped-def]
+    """f_m, the force of the drives on the motor of joint j, and the motor's θ and ω."""
+    at = word(d, D.act) + 8 * np.int64(load_constant(gears + 8 * MOTOR))
+    theta, omega = load_constant(at), load_constant(at + 8)
+    if load_constant(gears + 8 * SIDE) != 0.0:
+        return drive_force(m, d, j, theta, omega), theta, omega
+    q = double(d, JOINT_D.qpos, integer(m, JOINT_M.jnt_qposadr, j))
+    v = double(d, JOINT_D.qvel, integer(m, JOINT_M.jnt_dofadr, j))
+    return drive_force(m, d, j, q, v), theta, omega
+
+
+@inlined
+def felt(m, d, j, row, gears, h):  # type: ignore[no-untyped-def]
+    """The state of a joint with f_u as the joint feels it, and the inertia that friction stops.
+
+    The load of a gear that is not resolved is taken for f_m here, as of a motor that rests.
+    """
+    s, M_jj = joint(m, d, j, row), inertia(m, d, integer(m, JOINT_M.jnt_dofadr, j))
+    if not is_geared(gears):
+        return s, M_jj
+    f_m, theta, omega = _motor_force(m, d, j, gears)
+    _, kappa, r, damping = _spring(gears, 1.0 / M_jj, h)
+    gap = load_constant(gears + 8 * GAP)
+    f = transmitted(f_m, theta - s.q, omega - s.v, gap, kappa, r, damping, h)
+    M_jj += (1.0 - r) * load_constant(gears + 8 * INERTIA)
+    return _with_drive(s, (f,)), M_jj
+
+
+@inlined
+def solve(m, d, x):  # type: ignore[no-untyped-def]
+    """M⁻¹ x in place, x an address; M = Lᵀ D L as MuJoCo has it factorised."""
+    n, L = word(m, M.nv), word(d, D.qLD)
+    for i in range(n - 1, -1, -1):
+        first, count = integer(m, JOINT_M.M_rowadr, i), integer(m, JOINT_M.M_rownnz, i)
+        for k in range(first, first + count - 1):
+            at = x + 8 * integer(m, M.M_colind, k)
+            store_double(at, load_double(at) - load_double(L + 8 * k) * load_double(x + 8 * i))
+    for i in range(n):
+        store_double(x + 8 * i, load_double(x + 8 * i) * double(d, D.qLDiagInv, i))
+    for i in range(n):
+        first, count = integer(m, JOINT_M.M_rowadr, i), integer(m, JOINT_M.M_rownnz, i)
+        for k in range(first, first + count - 1):
+            less = load_double(L + 8 * k) * load_double(x + 8 * integer(m, M.M_colind, k))
+            store_double(x + 8 * i, load_double(x + 8 * i) - less)
+
+
+@inlined
+def through(m, d, j, gears, key, h):  # type: ignore[no-untyped-def]
+    """τ and f_m of joint j, behind MuJoCo's velocity stage; qfrc_smooth is used as room."""
+    f_m, theta, omega = _motor_force(m, d, j, gears)
+    dof, x = integer(m, JOINT_M.jnt_dofadr, j), word(d, D.qfrc_smooth)
+    for i in range(word(m, M.nv)):
+        store_double(x + 8 * i, 0.0)
+    store_double(x + 8 * dof, 1.0)
+    solve(m, d, x)
+    swinging, kappa, r, damping = _spring(gears, load_double(x + 8 * dof), h)
+    load = 0.0
+    if r < 1.0:  # else it is not needed
+        passive = word(d, JOINT_D.qfrc_passive)
+        for i in range(word(m, M.nv)):
+            f = load_double(passive + 8 * i) - double(d, D.qfrc_bias, i)
+            store_double(x + 8 * i, f)
+        for k in range(word(m, JOINT_M.njnt)):
+            if k == j:
+                continue
+            f, own = 0.0, gears_of(m, k)
+            at = x + 8 * integer(m, JOINT_M.jnt_dofadr, k)
+            tagged = own + 8 * (GEARS + LAST - 1)
+            if load_constant(tagged) == TAG and load_constant(tagged - 8) == key:
+                s, _ = felt(m, d, k, own, own, h)
+                f = s.f_u
+            else:
+                q = double(d, JOINT_D.qpos, integer(m, JOINT_M.jnt_qposadr, k))
+                v = double(d, JOINT_D.qvel, integer(m, JOINT_M.jnt_dofadr, k))
+                f = drive_force(m, d, k, q, v)
+            if f == f:  # where it is known
+                store_double(at, load_double(at) + f)
+        solve(m, d, x)
+        J = load_constant(gears + 8 * INERTIA)
+        load = swinging * (f_m / J - load_double(x + 8 * dof))
+    q = double(d, JOINT_D.qpos, integer(m, JOINT_M.jnt_qposadr, j))
+    v = double(d, JOINT_D.qvel, dof)
+    gap = load_constant(gears + 8 * GAP)
+    return transmitted(load, theta - q, omega - v, gap, kappa, r, damping, h), f_m
