@@ -24,7 +24,9 @@ from identification.prediction.contenders import (
 )
 from identification.prediction.evidence import count_windows, evidence, fitted_gains
 from identification.prediction.extension import with_effect
+from identification.prediction.first_fit import Begun, begin
 from identification.prediction.model import WindowModel
+from identification.prediction.problem import THIN, thinned
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction, compare
@@ -76,30 +78,66 @@ def refit_contenders(
     chosen = list_contenders(scores, options, windows * len(model.scale))
     refits = len(chosen)
 
-    def refit(s: WindowScore) -> list[Contender]:
-        starts = [s, *list_starts(s, scores)]
-        c = _refit(model, starts, horizon, confirm, options, refits, progress)
-        return [] if c is None else [c]
+    def refit(each: Sequence[Begun]) -> list[Contender]:
+        found = (_refit(model, b, horizon, confirm, options, refits, progress) for b in each)
+        return [c for c in found if c is not None]
 
-    out = [c for s in chosen for c in refit(s)]
+    out = refit(_near_best(_begun(model, chosen, scores, progress), options))
     proven = [c for c in out if c.is_proven]
     if proven:
         best = max(proven, key=lambda c: c.criterion)
         tried = {c.candidate.key for c in out}
-        for s in list_simpler(best.candidate, scores, options):
-            if s.candidate.key not in tried:
-                out += refit(s)
+        simpler = list_simpler(best.candidate, scores, options)
+        rest = [s for s in simpler if s.candidate.key not in tried]
+        out += refit(_begun(model, rest, scores, progress))
     return _ranked(out, options)
 
 
+def _begun(
+    model: WindowModel, chosen: Sequence[WindowScore], scores: Sequence[WindowScore],
+    progress: Progress,
+) -> list[Begun]:  # fmt: skip
+    """Effects fitted to some of the windows; those that cannot be simulated are told."""
+    out = []
+    for s in chosen:
+        try:
+            out.append(begin(model, [s, *list_starts(s, scores)]))
+        except InputError as error:
+            progress(f"{_label(s.candidate)}: left out, {error}")
+    return out
+
+
+def _near_best(begun: Sequence[Begun], options: DiscoveryOptions) -> list[Begun]:
+    """The few best on some of the windows, and those that are not far behind the best of them."""
+    each = [(_evidence_of_some(b), b) for b in begun]
+    each.sort(key=lambda pair: -pair[0])
+    return [
+        b for k, (e, b) in enumerate(each)
+        if k < options.max_refits or each[0][0] - e < options.strong_bic
+    ]  # fmt: skip
+
+
+def _evidence_of_some(begun: Begun) -> float:
+    """E of an effect that is fitted to some windows, but for what all of them have alike."""
+    some = thinned(begun.task, THIN)
+    windows = sum(len(p.cut.starts) for p in some.parts)
+    outputs = some.parts[0].cut.outputs.shape[-1]
+    price = len(begun.q) * np.log(max(2, windows))
+    return float(-windows * outputs * np.log(begun.cost) - price)
+
+
+def _label(c: Candidate) -> str:
+    return f"{c.effect.name}, {c.where}"
+
+
 def _refit(
-    model: WindowModel, starts: Sequence[WindowScore], horizon: float, confirm: Sequence[Record],
+    model: WindowModel, begun: Begun, horizon: float, confirm: Sequence[Record],
     options: DiscoveryOptions, refits: int, progress: Progress,
 ) -> Contender | None:  # fmt: skip
-    c = starts[0].candidate
-    label = f"{c.effect.name}, {c.where}"
+    c = begun.candidate
+    label = _label(c)
     try:
-        new = with_effect(model, starts, horizon, confirm)
+        new = with_effect(model, begun, horizon, confirm)
     except InputError as error:
         progress(f"{label}: left out, {error}")
         return None

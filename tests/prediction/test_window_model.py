@@ -10,6 +10,7 @@ from records_cases import FREE, HORIZON, nominal_model, pendulum, record, record
 from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
 from identification.prediction.extension import with_effect
+from identification.prediction.first_fit import begin
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.scores import find_imitated, window_scores
@@ -108,7 +109,7 @@ def test_the_hidden_law_explains_most():
 def test_a_child_never_explains_less_than_its_parent(name):
     parent, logs = rubbed(), records(4, LOAD)
     (score, *_) = scored(parent, name)
-    child = with_effect(parent, [score], HORIZON, as_records(logs[:2], logs[2:])[2:])
+    child = with_effect(parent, begin(parent, [score]), HORIZON, as_records(logs[:2], logs[2:])[2:])
     assert child is None or child.fit.cost < parent.fit.cost
 
 

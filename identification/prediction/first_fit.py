@@ -1,0 +1,171 @@
+"""An effect fitted to some of the windows: where its fit to all of them begins.
+
+It begins at the parent, moved by what the score gives or by the part of it that is best, with the
+states that then are best; the parent's parameters make room for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from identification.discovery.scoring.sensitivities import iterate_shapes
+from identification.effects.effect import Candidate
+from identification.errors import InputError
+from identification.model.coordinates import coordinates
+from identification.model.parameter import ParameterSet
+from identification.model.predictor import Plant
+from identification.prediction.fit import solve
+from identification.prediction.joint_states import model_for
+from identification.prediction.model import WindowModel
+from identification.prediction.problem import (
+    THIN,
+    Problem,
+    thinned,
+    thinned_moves,
+    with_unknowns,
+)
+from identification.prediction.scores import WindowScore, inside
+from identification.prediction.unknowns import Prior
+
+SHARES = (1.0, 0.3, 0.05, 0.01)  # of the size that a score gives, to begin with
+FINE = 1e-3  # relative fall of the criterion at which the refit of an effect ends
+SHAPE_STD = 1.0  # prior of a shape's coordinate about the value that scored best
+SMALL = 1e-3  # of a probe: where the search for a size begins that must not be zero
+
+
+@dataclass(frozen=True)
+class Begun:
+    """An effect fitted to some of the windows.
+
+    Attributes:
+        cost: V there.
+        candidate: the effect.
+        parent: the model without it, its plant with the states that the effect needs.
+        fixed: values that it holds fixed.
+        task: all windows.
+        q: the estimate, shape (p,).
+    """
+
+    cost: float
+    candidate: Candidate
+    parent: WindowModel
+    fixed: Mapping[str, float]
+    task: Problem
+    q: np.ndarray
+
+
+def begin(parent: WindowModel, scores: Sequence[WindowScore]) -> Begun:
+    """An effect fitted to some of the windows, from the best of several starts.
+
+    Args:
+        parent: the model without it.
+        scores: of the effect on the parent, one for each start: where shapes and sizes begin.
+
+    Raises:
+        InputError: it cannot be simulated from any start, whatever the size.
+    """
+    starts = [s for one in scores for s in (_shaped(one) if one.candidate.effect.state else [one])]
+    begun = [b for b in (_begun(parent, score) for score in starts) if b is not None]
+    if not begun:
+        c = scores[0].candidate
+        raise InputError(f"{c.effect.name}, {c.where} cannot be simulated at any size")
+    return min(begun, key=lambda b: b.cost)
+
+
+def _begun(parent: WindowModel, score: WindowScore) -> Begun | None:
+    """The fit of some windows; None where it cannot be simulated at any size."""
+    c = score.candidate
+    parent = model_for(parent, c)
+    task, fixed = _task(parent, c)
+    few, begun = thinned(task, THIN), thinned_moves(parent.fit.moves, THIN)
+    least = thinned(parent.fit.problem, THIN).cost(parent.fit.q, begun)
+    tried = []
+    for share in SHARES:
+        q = _begin(task, parent, score, share)
+        try:  # the states have made up for what was missing
+            moves = few.settled(q, begun)
+            cost = few.cost(q, moves)
+        except InputError:
+            continue
+        tried.append((cost, q, moves))
+        if cost < least or not c.free:
+            break
+    if not tried:
+        return None
+    _, q, moves = min(tried, key=lambda t: t[0])
+    found = solve(few, q, moves, tolerance=FINE)
+    return Begun(found.cost, c, parent, fixed, task, found.q)
+
+
+def _task(parent: WindowModel, c: Candidate) -> tuple[Problem, dict[str, float]]:
+    """The windows with the parameters of one effect more, and the values of what is not free."""
+    plant, old = parent.plant, parent.fit.problem.unknowns
+    sizes = _free(plant, c, [n for n in c.free if n not in old.local.names])
+    shapes = _free(plant, c, [n for n in shapes_of(c) if n not in old.local.names])
+    shared, own = old.shared.plus(shapes), old.own
+    shared, own = (shared, own.plus(sizes)) if c.effect.own else (shared.plus(sizes), own)
+    free = (*shared.names, *own.names)
+    fixed = {n: v for n, v in (*c.fixed.items(), *c.whole.items()) if n not in free}
+    return with_unknowns(parent.fit.problem, shared, own, fixed), fixed
+
+
+def _shaped(score: WindowScore) -> list[WindowScore]:
+    """The score with all shapes of its effect's grid that are free.
+
+    What joints with states do is far from linear in their sizes, so that a score tells the size
+    and hardly the shapes.
+    """
+    c = score.candidate
+    fixed = {s.name: c.shape[s.name] for s in c.effect.shapes if not s.free}
+    return [
+        replace(score, candidate=replace(c, shape=shape))
+        for shape in iterate_shapes(c.effect)
+        if all(shape[name] == value for name, value in fixed.items())
+    ]
+
+
+def _free(plant: Plant, c: Candidate, names: Sequence[str]) -> Prior:
+    """Parameters of an effect: of sizes nothing is known, shapes are near the grid's value."""
+    if not names:
+        return Prior()
+    values = {**plant.parameters.values(), **c.fixed}
+    start = [_away(plant.parameters, n, 0.0) if n in c.sizes else values[n] for n in names]
+    first = inside(plant.parameters, names, np.array(start))
+    space = coordinates(plant.parameters, names, first, linear=c.sizes)
+    weight = np.array([0.0 if n in c.sizes else 1 / SHAPE_STD for n in names])
+    return Prior(space, space.encode(first), weight)
+
+
+def _begin(task: Problem, parent: WindowModel, score: WindowScore, share: float) -> np.ndarray:
+    """Where a child's q begins: at its parent, moved by a share of what the score gives.
+
+    The parent's parameters make room for the effect: what they imitated of it goes back.
+    """
+    c, unknowns = score.candidate, task.unknowns
+    q = np.array(task.prior.mean)
+    old = dict(zip(parent.fit.problem.names, parent.fit.q + share * score.along, strict=True))
+    sizes = score.size.reshape(-1, len(c.sizes)) * np.ones((len(unknowns.records), 1))
+    parameters = parent.plant.parameters
+    for k in range(len(unknowns.records)):
+        for name, value in zip(c.sizes, sizes[k], strict=True):
+            if name in unknowns.local.names:
+                at = unknowns.columns(k)[unknowns.local.names.index(name)]
+                q[at] = _away(parameters, name, share * value) / task.prior.space.scale[at]
+    for k, name in enumerate(task.names):
+        q[k] = old.get(name, q[k])
+    return np.asarray(task.prior.space.inside(q))
+
+
+def shapes_of(c: Candidate) -> list[str]:
+    """The plant's parameters of an effect's free shapes."""
+    return [c.effect.parameter(s.name, c.where) for s in c.effect.shapes if s.free]
+
+
+def _away(parameters: ParameterSet, name: str, value: float) -> float:
+    """A size that is not zero."""
+    record = parameters[name]
+    least = SMALL * record.scale
+    return value if abs(value) > least else least * (1 if record.upper > 0 else -1)
