@@ -1,4 +1,4 @@
-"""Which candidates are refitted: the few best scores that are beyond chance, and simpler ones."""
+"""Which candidates are fitted: the few best scores that are beyond chance, and simpler ones."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.prediction.scores import WindowScore
 
+BEGUN = 2  # times `max_refits` effects are fitted to some windows
 SIMPLER = 2  # laws with fewer numbers that are refitted beside a winner
 
 
@@ -18,8 +19,8 @@ def list_contenders(
 ) -> list[WindowScore]:
     """The few best scores that are beyond chance, the best shape of each effect at each place.
 
-    All that explain about as much as the best one are refitted, up to twice the usual number: a
-    score is linear, and what is right may be one of them. The best curve of the data is among them
+    They are fitted to some windows, and the best of them to all: a score is linear, and what is
+    right need not have the best one. The best curve of the data is among them
     only where its criterion promises to be better than that of every law: a curve can imitate any
     law of what it depends on.
 
@@ -53,8 +54,7 @@ def _best_few(
         if s.fall > max(least, own):
             out.append(s)
             best.setdefault(s.candidate.effect.name, s.fall)
-    near = sum(s.fall > options.equal_share * out[0].fall for s in out) if out else 0
-    return out[: max(options.max_refits, min(near, 2 * options.max_refits))]
+    return out[: BEGUN * options.max_refits]
 
 
 def is_significant(s: WindowScore, count: int, options: DiscoveryOptions) -> bool:

@@ -137,7 +137,7 @@ def solve(
             break
         before = at.cost
         if not trial.taken:
-            converged = before - trial.step.promised < tolerance * before
+            converged = not before - trial.step.promised > tolerance * before
             continue
         at, steps = trial.criterion, steps + 1
         converged = bool(before - at.cost < tolerance * before)

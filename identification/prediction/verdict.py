@@ -141,9 +141,11 @@ def _refitted(model: WindowModel, contender: Contender, confidence: float) -> Re
     plant, unknowns = model.plant, model.fit.problem.unknowns
     values, std = {**model.values, **model.fit.values}, model.told_std
     parameters = {}
+    symbols = [plant.parameters[n].symbol for n in (*c.sizes, *c.fixed)]
     for name in (*c.sizes, *c.fixed):
         record = plant.parameters[name]
-        said = record.symbol or record.name
+        is_one = record.symbol and symbols.count(record.symbol) == 1
+        said = record.symbol if is_one else record.name.partition(".")[2] or record.name
         if name in unknowns.own.names:
             each = {f"{said} [{r}]": f"{name} [{r}]" for r in unknowns.records}
         else:
