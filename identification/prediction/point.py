@@ -23,6 +23,7 @@ from identification.model.coordinates import Coordinates
 from identification.prediction.problem import Problem
 from identification.windows.shooting import Tangent
 
+FAR = 4.0  # times V, from where no states bring a step back: it is too long
 Moves = tuple[np.ndarray, ...]  # of the windows' states, one array (W, nx) a record
 
 
@@ -75,7 +76,8 @@ class AtPoint:
         moves = tuple(d + more for d, more in zip(self.moves, dd, strict=True))
         try:
             moves, cost = self.problem.best(q, (moves, self.moves))
-            if cost >= self.cost and self.cost - promised > self.tolerance * self.cost:
+            is_near = self.cost <= cost < FAR * self.cost
+            if is_near and self.cost - promised > self.tolerance * self.cost:
                 moves = self.problem.settled(q, moves)
                 cost = self.problem.cost(q, moves)
         except InputError:  # it diverged, or has no start: the search must go elsewhere
