@@ -1,11 +1,13 @@
 """What speaks for a law against others in its place: all windows, fitted and unseen.
 
-    E_c = n_y W mean_b g_cb - k_c ln W          g_cb: mean gain of block b over the model without c
+    g_cb = ln(mean square without c + ε²) - ln(mean square with c + ε²)           of each block b
+    E_c = n_y W mean_b g_cb - k_c ln W
     P_c = share of resamples of the blocks in which E_c is largest
 
-W windows of n_y outputs, k_c numbers that c adds. g is the logarithm of an error's mean square, so
-that E is twice the gain of a log likelihood with the penalty of BIC (Schwarz 1978), robust because
-no block decides alone. Blocks are drawn with replacement (bootstrap; Efron 1979).
+W windows of n_y outputs, k_c numbers that c adds, ε the sensors' noise. Within a block windows count
+by their squares, so that those in which nothing happens do not decide; blocks count by logarithms,
+so that no record decides alone. E is twice the gain of a log likelihood with the penalty of BIC
+(Schwarz 1978). Blocks are drawn with replacement (bootstrap; Efron 1979).
 """
 
 from __future__ import annotations
@@ -16,16 +18,24 @@ import numpy as np
 
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import scaled_squares
-from identification.prediction.unseen import block_gains
+from identification.prediction.unseen import PER_RECORD
 
 RESAMPLES = 2000
 SEED = 0  # of the resampling, so that a verdict repeats
 
 
-def fitted_gains(without: WindowModel, with_it: WindowModel) -> np.ndarray:
-    """Mean gain of each block of the fitted windows, shape (B,)."""
-    before, after = (scaled_squares(m.fit.errors, without.scale) for m in (without, with_it))
-    return np.concatenate(block_gains(before, after, without.unseen.floor))
+def block_gains(without: WindowModel, with_it: WindowModel) -> np.ndarray:
+    """g of the blocks of all fitted windows, then of all unseen ones, shape (B,)."""
+    before, after = (
+        [*scaled_squares(m.fit.errors, without.scale), *m.unseen.at_horizon]
+        for m in (without, with_it)
+    )
+    floor, out = without.unseen.floor, []
+    for a, b in zip(before, after, strict=True):
+        blocks = min(PER_RECORD, max(1, len(a) // 2))
+        for x, y in zip(np.array_split(a, blocks), np.array_split(b, blocks), strict=True):
+            out.append(np.log(x.mean() + floor) - np.log(y.mean() + floor))
+    return np.array(out)
 
 
 def count_windows(model: WindowModel) -> int:

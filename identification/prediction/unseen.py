@@ -153,7 +153,9 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
         falls.append(1 - float(np.concatenate(b).mean() / np.concatenate(a).mean()))
         gains.append([window_gains(x, y, floor) for x, y in zip(a, b, strict=True)])
     here = gains[without.lengths.index(1.0)]
-    blocks = np.concatenate(block_gains(without.at_horizon, with_it.at_horizon, floor))
+    blocks = np.concatenate([
+        [b.mean() for b in np.array_split(g, min(PER_RECORD, max(1, len(g) // 2)))] for g in here
+    ])  # fmt: skip
     t, chance = 0.0, 1.0
     if len(blocks) > 2 and blocks.std() > 0:
         test = ttest_1samp(blocks, 0.0, alternative="greater")
@@ -167,17 +169,6 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
 def window_gains(without: np.ndarray, with_it: np.ndarray, floor: float) -> np.ndarray:
     """g of windows, shape (W,), from their mean squares in units of s², and ε²."""
     return np.asarray(np.log(without + floor) - np.log(with_it + floor))
-
-
-def block_gains(
-    without: Sequence[np.ndarray], with_it: Sequence[np.ndarray], floor: float
-) -> list[np.ndarray]:
-    """Mean g of blocks of neighbouring windows, one array a record."""
-    each = [window_gains(a, b, floor) for a, b in zip(without, with_it, strict=True)]
-    return [
-        np.array([b.mean() for b in np.array_split(g, min(PER_RECORD, max(1, len(g) // 2)))])
-        for g in each
-    ]
 
 
 def _errors(
