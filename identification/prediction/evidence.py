@@ -4,10 +4,10 @@
     E_c = n_y W mean_b g_cb - k_c ln W
     P_c = share of resamples of the blocks in which E_c is largest
 
-W windows of n_y outputs, k_c numbers that c adds, ε the sensors' noise. Within a block windows count
-by their squares, so that those in which nothing happens do not decide; blocks count by logarithms,
-so that no record decides alone. E is twice the gain of a log likelihood with the penalty of BIC
-(Schwarz 1978). Blocks are drawn with replacement (bootstrap; Efron 1979).
+W windows of n_y outputs, k_c numbers that c adds, ε the sensors' noise. Within a block windows
+count by their squares, so that those in which nothing happens do not decide; blocks count by
+logarithms, so that no record decides alone. E is twice the gain of a log likelihood with the penalty
+of BIC (Schwarz 1978). Blocks are drawn with replacement (bootstrap; Efron 1979).
 """
 
 from __future__ import annotations
