@@ -6,8 +6,8 @@
 
 W windows of n_y outputs, k_c numbers that c adds, ε the sensors' noise. Within a block windows
 count by their squares, so that those in which nothing happens do not decide; blocks count by
-logarithms, so that no record decides alone. E is twice the gain of a log likelihood with the penalty
-of BIC (Schwarz 1978). Blocks are drawn with replacement (bootstrap; Efron 1979).
+logarithms, so that no record decides alone. E is twice the gain of a log likelihood with the price
+that BIC puts on numbers (Schwarz 1978). Blocks are drawn with replacement (bootstrap; Efron 1979).
 """
 
 from __future__ import annotations
