@@ -183,9 +183,13 @@ def evidences(contenders: Sequence[Contender]) -> np.ndarray:
 
 
 def is_proven(found: Prediction, refits: int, options: DiscoveryOptions) -> bool:
-    """Whether unseen windows are predicted better: beyond chance, everywhere, by enough."""
+    """Whether unseen windows are predicted better: beyond chance, everywhere, by enough.
+
+    A record that is predicted worse contradicts it: physics is the same in all of them.
+    """
     beyond = found.t > options.min_proof_t and found.chance * refits < options.significance
-    return beyond and found.is_everywhere and min(found.falls) > options.min_fall
+    agree = min(found.record_falls) > -options.min_gap_share
+    return beyond and found.is_everywhere and agree and min(found.falls) > options.min_fall
 
 
 def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:

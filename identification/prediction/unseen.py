@@ -69,6 +69,7 @@ class Prediction:
         gains: mean gain by length.
         falls: relative fall of the mean square over all records, by length.
         records: mean gain by record, at the horizon.
+        record_falls: relative fall of the mean square by record, at the horizon.
         blocks: mean gain by block, at the horizon, over all records.
     """
 
@@ -77,6 +78,7 @@ class Prediction:
     gains: tuple[float, ...]
     falls: tuple[float, ...]
     records: tuple[float, ...]
+    record_falls: tuple[float, ...]
     blocks: np.ndarray
 
     @property
@@ -160,8 +162,10 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
     if len(blocks) > 2 and blocks.std() > 0:
         test = ttest_1samp(blocks, 0.0, alternative="greater")
         t, chance = float(test.statistic), float(test.pvalue)
+    each = zip(without.at_horizon, with_it.at_horizon, strict=True)
+    record_falls = tuple(1 - float(b.mean() / a.mean()) for a, b in each)
     return Prediction(
-        t=t, chance=chance, gains=tuple(float(np.concatenate(g).mean()) for g in gains),
+        t=t, chance=chance, record_falls=record_falls, gains=tuple(float(np.concatenate(g).mean()) for g in gains),
         falls=tuple(falls), records=tuple(float(g.mean()) for g in here), blocks=blocks,
     )  # fmt: skip
 
