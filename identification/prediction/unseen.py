@@ -165,7 +165,8 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
     each = zip(without.at_horizon, with_it.at_horizon, strict=True)
     record_falls = tuple(1 - float(b.mean() / a.mean()) for a, b in each)
     return Prediction(
-        t=t, chance=chance, record_falls=record_falls, gains=tuple(float(np.concatenate(g).mean()) for g in gains),
+        t=t, chance=chance, record_falls=record_falls,
+        gains=tuple(float(np.concatenate(g).mean()) for g in gains),
         falls=tuple(falls), records=tuple(float(g.mean()) for g in here), blocks=blocks,
     )  # fmt: skip
 
