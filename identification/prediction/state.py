@@ -149,7 +149,7 @@ def _rivals(
     state: RecordsState, best: Contender, others: Sequence[Contender],
     scores: Sequence[WindowScore],
 ) -> tuple[Contender, ...]:  # fmt: skip
-    """Those of other contenders that explain less than half as much once the best is there.
+    """Those of other proven contenders that explain less than half as much once the best is there.
 
     What still explains as much is no rival of the best one: it is missing too.
     """
@@ -159,7 +159,8 @@ def _rivals(
     )
     return tuple(
         o for o in others
-        if after.get(o.candidate.key, 0.0) < RIVAL * before.get(o.candidate.key, 0.0)
+        if o.is_proven
+        and after.get(o.candidate.key, 0.0) < RIVAL * before.get(o.candidate.key, 0.0)
     )  # fmt: skip
 
 
