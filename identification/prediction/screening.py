@@ -1,8 +1,9 @@
 """Scores of all that a model lacks: everything on some windows, what is promising on all of them.
 
 A score of one place is worth as much as one of all places, and a shape that is best for all places
-together may be wrong for each of them. So every shape is scored at every place, on one window of
-`THIN`. What then explains a share of the best is scored again on all windows.
+together may be wrong for each of them. So every shape is scored at every place. Where that is
+`MANY`, it is scored on one window of `THIN`, and what then explains a share of the best is scored
+again on all windows; some windows miss what happens seldom, such as a limit that is reached.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from identification.prediction.problem import THIN, kept, thinned, thinned_moves
 from identification.prediction.scores import WindowScore, find_imitated, window_scores
 from identification.prediction.several_places import several_scores
 
+MANY = 300  # candidates, which robots of several joints have
 SHAPES = 2  # of an effect at a place that are scored on all windows
 
 
@@ -34,15 +36,17 @@ def score_all(
         options: what is beyond chance, and what is promising.
     """
     listed = _listed(model, effects)
-    few = window_scores(some_windows(model.fit), listed)
+    is_many = len(listed) > MANY
+    few = window_scores(some_windows(model.fit) if is_many else model.fit, listed)
     promising = _promising(few, options)
     again = {id(c) for c in promising}
     rest = [s for s in few if id(s.candidate) not in again]
-    found = sorted([*window_scores(model.fit, promising), *rest], key=lambda s: -s.fall)
+    best = [*window_scores(model.fit, promising), *rest] if is_many else few
+    found = sorted(best, key=lambda s: -s.fall)
     beyond = [
         s for s in found if is_significant(s, len(found), options) and is_plausible(s, options)
     ]
-    known = find_imitated(model.fit, [s for s in beyond if id(s.candidate) in again])
+    known = find_imitated(model.fit, [s for s in beyond if id(s.candidate) in again or not is_many])
     found, beyond = ([s for s in each if s.candidate.key not in known] for each in (found, beyond))
     several = several_scores(model.fit, beyond, options)
     return tuple(sorted((*found, *several), key=lambda s: -s.fall))
