@@ -89,6 +89,16 @@ def hold(inputs: np.ndarray, n: int, kind: str = "zoh") -> np.ndarray:
     return np.asarray(held.reshape(*inputs.shape[:-2], -1, inputs.shape[-1]))
 
 
+def without_sensors(model: mujoco.MjModel) -> mujoco.MjModel:
+    """The model whose steps leave its sensors out; itself where they are left out."""
+    out = int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+    if model.opt.disableflags & out:
+        return model
+    model = copy.copy(model)
+    model.opt.disableflags |= out
+    return model
+
+
 def rollout(
     model: mujoco.MjModel,
     start: State,
@@ -101,6 +111,7 @@ def rollout(
     nthread: int | None = None,
     before: Callable[[np.ndarray], np.ndarray] | None = None,
     time: float | np.ndarray = 0.0,
+    keeps_diverged: bool = False,
 ) -> Mapping[str, np.ndarray]:
     """Simulate n copies of a model under one input sequence.
 
@@ -117,6 +128,7 @@ def rollout(
         before: changes the held inputs before they reach the model:
             (steps, nu) -> (steps, nu) for all or (n, steps, nu).
         time: at the start, one for all or one for each, shape (n,) [s]; laws may depend on it.
+        keeps_diverged: whether simulations that leave the finite numbers are NaN, and no error.
 
     Returns:
         For each recorded field an array (n, N, size); sample 0 is the start.
@@ -140,8 +152,7 @@ def rollout(
     if len(own) not in (1, n):
         raise InputError(f"{len(own)} input sequences for {n} simulations; give one, or one each")
 
-    model = copy.copy(model)
-    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR  # they are not read
+    model = without_sensors(model)
     batch = Batch(model, n, nthread or min(threads(), n))
     _expand(batch, numbers)
     for field, row in zip(("qpos", "qvel", "act"), rows, strict=True):
@@ -155,7 +166,11 @@ def rollout(
         shared = np.concatenate([shared, np.zeros((*shared.shape[:2], model.nu - nu))], axis=2)
     with _quiet():
         steps = batch.rollout(shared.shape[1], shared, record=tuple(record))
-    _check_finished(batch, begun, shared.shape[1], model.opt.timestep)
+    late = _unfinished(batch, begun, shared.shape[1], model.opt.timestep)
+    if late.any() and not keeps_diverged:
+        raise _diverged(batch, late)
+    for states in steps.values() if late.any() else ():
+        states[late] = np.nan
     return {
         field: np.concatenate([first[field][:, None], steps[field][:, every - 1 :: every]], axis=1)
         for field in record
@@ -186,13 +201,16 @@ def _quiet() -> Iterator[None]:
         mujoco.set_mju_user_warning(before)
 
 
-def _check_finished(batch: Batch, begun: np.ndarray, steps: int, timestep: float) -> None:
-    """Find simulations that stopped early: a non-finite state stops a simulation and its clock."""
+def _unfinished(batch: Batch, begun: np.ndarray, steps: int, timestep: float) -> np.ndarray:
+    """Which simulations stopped early: a non-finite state stops a simulation and its clock."""
     reached = np.array(batch.bind("time")).ravel()
-    late = np.flatnonzero(~(reached > begun + (steps - 0.5) * timestep))
-    if late.size:
-        raise DivergenceError(
-            f"the simulation diverged at t = {reached[late[0]]:.4g} s"
-            + (f" (value set {late[0] + 1} of {len(reached)})" if len(reached) > 1 else "")
-            + "; use a smaller step, or values nearer to the nominal ones"
-        )
+    return np.asarray(~(reached > begun + (steps - 0.5) * timestep))
+
+
+def _diverged(batch: Batch, late: np.ndarray) -> DivergenceError:
+    reached, first = np.array(batch.bind("time")).ravel(), int(np.flatnonzero(late)[0])
+    return DivergenceError(
+        f"the simulation diverged at t = {reached[first]:.4g} s"
+        + (f" (value set {first + 1} of {len(reached)})" if len(reached) > 1 else "")
+        + "; use a smaller step, or values nearer to the nominal ones"
+    )

@@ -35,7 +35,8 @@ def with_effect(
     Raises:
         InputError: it cannot be simulated on all windows.
     """
-    moves = begun.task.settled(begun.q, begun.parent.fit.moves)
+    fit = begun.parent.fit
+    moves = begun.task.settled(begun.q, fit.moves, fit.tangents)
     found = solve(begun.task, begun.q, moves, tolerance=FINE, most=MOST_REFIT)
     if found.cost >= parent.fit.cost:
         return None

@@ -25,6 +25,7 @@ from identification.prediction.problem import (
     Problem,
     thinned,
     thinned_moves,
+    thinned_tangents,
     with_unknowns,
 )
 from identification.prediction.scores import WindowScore, inside
@@ -81,12 +82,13 @@ def _begun(parent: WindowModel, score: WindowScore) -> Begun | None:
     parent = model_for(parent, c)
     task, fixed = _task(parent, c)
     few, begun = thinned(task, THIN), thinned_moves(parent.fit.moves, THIN)
+    near = thinned_tangents(parent.fit.tangents, THIN)
     least = thinned(parent.fit.problem, THIN).cost(parent.fit.q, begun)
     tried = []
     for share in SHARES:
         q = _begin(task, parent, score, share)
         try:  # the states have made up for what was missing
-            moves = few.settled(q, begun)
+            moves = few.settled(q, begun, near)
             cost = few.cost(q, moves)
         except InputError:
             continue

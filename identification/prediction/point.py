@@ -21,7 +21,7 @@ from identification.errors import InputError
 from identification.estimation.levenberg_marquardt import Cost
 from identification.model.coordinates import Coordinates
 from identification.prediction.problem import Problem
-from identification.windows.shooting import Tangent
+from identification.windows.shooting import Tangent, along_states
 
 FAR = 4.0  # times V, from where no states bring a step back: it is too long
 Moves = tuple[np.ndarray, ...]  # of the windows' states, one array (W, nx) a record
@@ -78,7 +78,7 @@ class AtPoint:
             moves, cost = self.problem.best(q, (moves, self.moves))
             is_near = self.cost <= cost < FAR * self.cost
             if is_near and self.cost - promised > self.tolerance * self.cost:
-                moves = self.problem.settled(q, moves)
+                moves = self.problem.settled(q, moves, self.tangents)
                 cost = self.problem.cost(q, moves)
         except InputError:  # it diverged, or has no start: the search must go elsewhere
             return Step(q, moves, np.inf, promised)
@@ -99,7 +99,7 @@ class AtPoint:
         """V at q, the states moved by dd, by the linearisation."""
         dq = q - self.q
         left = sum(
-            float(np.sum((t.r - t.S @ dq - _along_states(t, d)) ** 2))
+            float(np.sum((t.r - t.S @ dq - along_states(t, d)) ** 2))
             for t, d in zip(self.tangents, dd, strict=True)
         )
         return left + float(np.sum(self.problem.against(q) ** 2))
@@ -164,9 +164,3 @@ def _states(t: Tangent, damping: float) -> tuple[np.ndarray, np.ndarray, np.ndar
     against = np.swapaxes(t.U, 1, 2) @ t.S  # Uᵀ S, (W, nx, p)
     left = np.einsum("wmk,wm->wk", t.U, t.r)
     return against, left, t.s**2 / (t.s**2 + damping)
-
-
-def _along_states(t: Tangent, moves: np.ndarray) -> np.ndarray:
-    """X Δd of each window, shape (W, m)."""
-    along = t.s * np.einsum("wkx,wx->wk", t.Vt, moves * t.size)
-    return np.einsum("wmk,wk->wm", t.U, along)

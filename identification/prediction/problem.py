@@ -15,12 +15,12 @@ from functools import cached_property
 
 import numpy as np
 
-from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
 from identification.prediction.records import Record
 from identification.prediction.unknowns import Prior, Unknowns
+from identification.windows.held import at_values
+from identification.windows.settling import settle
 from identification.windows.shooting import Shooting, Tangent, tangent
-from identification.windows.window_search import search_states
 from identification.windows.windows import first_states, spread, windows
 
 # Steps of a simulation of all windows. More windows only make estimates finer than what is missing
@@ -104,25 +104,27 @@ class Problem:
         S[..., self.unknowns.columns(record)] = t.S
         return replace(t, S=S)
 
-    def settled(self, q: np.ndarray, d: Sequence[np.ndarray]) -> tuple[np.ndarray, ...]:
-        """The moves of the states that are best at q, each window for itself, from d on."""
-        return tuple(
-            search_states(at_values(part, own), moves).d for part, own, moves in self._each(q, d)
-        )
+    def settled(
+        self, q: np.ndarray, d: Sequence[np.ndarray], near: Sequence[Tangent] | None = None
+    ) -> tuple[np.ndarray, ...]:
+        """The moves of the states that are best at q, each window for itself, from d on.
+
+        Args:
+            q: shape (p,).
+            d: moves of the windows' states, one array (W, nx) a record.
+            near: the windows linearised nearby, one a record; it saves simulations.
+
+        Raises:
+            DivergenceError: a window left the finite numbers at q and d.
+        """
+        held = [at_values(part, own) for part, own, _ in self._each(q, d)]
+        return tuple(s.d for s in settle(held, d, near))
 
     def _each(
         self, q: np.ndarray, d: Sequence[np.ndarray]
     ) -> Iterator[tuple[Shooting, np.ndarray, np.ndarray]]:
         for k, (part, moves) in enumerate(zip(self.parts, d, strict=True)):
             yield part, q[self.unknowns.columns(k)], moves
-
-
-def at_values(part: Shooting, q: np.ndarray) -> Shooting:
-    """The windows of a record with all parameters held at q (p,), in coordinates."""
-    names = part.predictor.names
-    values = dict(zip(names, part.space.decode(q).tolist(), strict=True))
-    predictor = replace(part.predictor, names=(), fixed={**part.predictor.fixed, **values})
-    return replace(part, predictor=predictor, space=NOTHING)
 
 
 def problem(
@@ -203,6 +205,11 @@ def thinned(problem_: Problem, every: int) -> Problem:
 def thinned_moves(moves: Sequence[np.ndarray], every: int) -> tuple[np.ndarray, ...]:
     """The moves of the states of the windows that `thinned` keeps."""
     return tuple(d[kept(len(d), every)] for d in moves)
+
+
+def thinned_tangents(tangents: Sequence[Tangent], every: int) -> tuple[Tangent, ...]:
+    """The tangents of the windows that `thinned` keeps."""
+    return tuple(t.rows(kept(len(t.r), every)) for t in tangents)
 
 
 def kept(count: int, every: int) -> np.ndarray:

@@ -23,7 +23,7 @@ from identification.prediction.fit import WindowFit
 from identification.prediction.model import Progress, WindowModel
 from identification.prediction.nominal_fit import begin, fit_nominal
 from identification.prediction.point import projected
-from identification.prediction.problem import at_values, no_moves
+from identification.prediction.problem import no_moves
 from identification.prediction.record_errors import (
     RecordError,
     error_unit,
@@ -35,7 +35,8 @@ from identification.prediction.selection import is_proven
 from identification.prediction.starts import without_starts
 from identification.prediction.told_std import told_std
 from identification.prediction.unseen import Prediction, Unseen, compare, predict
-from identification.windows.window_search import search_states
+from identification.windows.held import at_values
+from identification.windows.settling import settle
 
 NO_HORIZON = (
     "records are judged by predictions over a horizon, and none is given; write horizon = 0.2 (in"
@@ -190,8 +191,7 @@ def fit_records(
 
 def _begun_errors(fit: WindowFit, q: np.ndarray) -> list[np.ndarray]:
     """y - ŷ of the fitted windows at q (p,), where the fit began, (W, L, ny) a record."""
-    problem, out = fit.problem, []
-    for k, (part, still) in enumerate(zip(problem.parts, no_moves(problem), strict=True)):
-        held = at_values(part, q[problem.unknowns.columns(k)])
-        out.append(held.error(search_states(held, still).tangent.r))
-    return out
+    problem = fit.problem
+    each = enumerate(problem.parts)
+    held = [at_values(part, q[problem.unknowns.columns(k)]) for k, part in each]
+    return [s.error for s in settle(held, no_moves(problem))]

@@ -17,7 +17,7 @@ from identification.effects.effect import Candidate, Effect
 from identification.prediction.contenders import is_plausible, is_significant
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel
-from identification.prediction.problem import THIN, kept, thinned, thinned_moves
+from identification.prediction.problem import THIN, thinned, thinned_moves, thinned_tangents
 from identification.prediction.scores import WindowScore, find_imitated, window_scores
 from identification.prediction.several_places import several_scores
 
@@ -54,7 +54,7 @@ def score_all(
 
 def some_windows(fit: WindowFit) -> WindowFit:
     """A fit seen through one window of `THIN`; its values are those of all windows."""
-    tangents = tuple(t.rows(kept(len(t.r), THIN)) for t in fit.tangents)
+    tangents = thinned_tangents(fit.tangents, THIN)
     moves = thinned_moves(fit.moves, THIN)
     return replace(fit, problem=thinned(fit.problem, THIN), moves=moves, tangents=tangents)
 

@@ -24,8 +24,8 @@ from identification.model.predictor import Plant, Predictor
 from identification.prediction.own_values import Own, of_halves, own_values
 from identification.prediction.problem import MOST_STEPS, most_windows
 from identification.prediction.records import Record
+from identification.windows.settling import settle
 from identification.windows.shooting import Shooting
-from identification.windows.window_search import search_states
 from identification.windows.windows import Windows, first_states, spread, windows
 
 LENGTHS = (0.5, 1.0, 2.0)  # of the horizon
@@ -128,11 +128,7 @@ def predict(
                 raise
             continue  # fewer than 3 samples, or longer than a record
         begun = None if near is None else near.moves[near.lengths.index(factor)]
-        each = [
-            _errors(plant, r, cut, scale, {**values, **r.values}, halves[k],
-                    None if begun is None else begun[k])
-            for k, (r, cut) in enumerate(zip(records, cuts, strict=True))
-        ]  # fmt: skip
+        each = _settled(plant, records, cuts, scale, values, halves, begun)
         if factor == 1.0:
             measured = np.concatenate([c.outputs.reshape(-1, len(scale)) for c in cuts])
             errors = np.concatenate([e.reshape(-1, len(scale)) for _, e in each])
@@ -176,31 +172,32 @@ def window_gains(without: np.ndarray, with_it: np.ndarray, floor: float) -> np.n
     return np.asarray(np.log(without + floor) - np.log(with_it + floor))
 
 
-def _errors(
-    plant: Plant,
-    record: Record,
-    cut: Windows,
-    scale: np.ndarray,
-    values: Mapping[str, float],
-    own: tuple[Mapping[str, float], Mapping[str, float]],
-    begun: np.ndarray | None,
-) -> tuple[np.ndarray, np.ndarray]:
-    """States at the starts of windows and errors, with each half's own values."""
+def _settled(
+    plant: Plant, records: Sequence[Record], cuts: Sequence[Windows], scale: np.ndarray,
+    values: Mapping[str, float], halves: Sequence[tuple[Mapping[str, float], Mapping[str, float]]],
+    near: Sequence[np.ndarray] | None,
+) -> list[tuple[np.ndarray, np.ndarray]]:  # fmt: skip
+    """States at the starts of windows and errors by record, with each half's own values."""
     model = plant.model
-    moves = np.zeros((len(cut.starts), 2 * model.nv + model.na))
-    if begun is not None:  # of a model nearby, which may lack the last states
-        moves[:, : begun.shape[1]] = begun
-    is_late = cut.starts >= len(record.log) // 2
-    if not own[0]:
-        is_late = np.zeros(len(cut.starts), bool)
-    d, errors = np.array(moves), np.zeros(cut.outputs.shape)
-    for half, mine in zip((~is_late, is_late), own, strict=True):
-        if not half.any():
-            continue
-        predictor = Predictor(plant, record.log, (), {**values, **mine})
-        part = cut.rows(half)
-        first = first_states(predictor, np.zeros(0), part)
-        shooting = Shooting(predictor, NOTHING, part, first, np.diag(1 / scale), True)
-        at = search_states(shooting, moves[half])
-        d[half], errors[half] = at.d, shooting.error(at.tangent.r)
-    return d, errors
+    out, parts, begun, places = [], [], [], []
+    for k, (record, cut, own) in enumerate(zip(records, cuts, halves, strict=True)):
+        moves = np.zeros((len(cut.starts), 2 * model.nv + model.na))
+        if near is not None:  # of a model nearby, which may lack the last states
+            moves[:, : near[k].shape[1]] = near[k]
+        out.append((moves, np.zeros(cut.outputs.shape)))
+        is_late = cut.starts >= len(record.log) // 2
+        if not own[0]:
+            is_late = np.zeros(len(cut.starts), bool)
+        for half, mine in zip((~is_late, is_late), own, strict=True):
+            if not half.any():
+                continue
+            predictor = Predictor(plant, record.log, (), {**values, **record.values, **mine})
+            part = cut.rows(half)
+            first = first_states(predictor, np.zeros(0), part)
+            parts.append(Shooting(predictor, NOTHING, part, first, np.diag(1 / scale), True))
+            begun.append(moves[half])
+            places.append((k, half))
+    for (k, half), s in zip(places, settle(parts, begun), strict=True):
+        d, errors = out[k]
+        d[half], errors[half] = s.d, s.error
+    return out

@@ -106,7 +106,7 @@ class Shooting:
         starts = [self.states(d) for d in moves]
         rows = (np.concatenate([getattr(s, f) for s in starts]) for f in ("qpos", "qvel", "act"))
         begun = predictor.begun(self.space.decode(q), State(*rows))
-        inputs, every, hold_kind = self._inputs(self.space.decode(q))
+        inputs, every, hold_kind = self.held_inputs(self.space.decode(q))
         run = rollout(
             model, begun, inputs, predictor.log.sampling_time / every,
             numbers=[(slot, np.repeat(column, W)) for slot, column in numbers],
@@ -116,7 +116,7 @@ class Shooting:
         y = predictor.outputs(self.space.decode(q), run)
         return y.reshape(len(q), W, *y.shape[1:])
 
-    def _inputs(self, values: np.ndarray) -> tuple[np.ndarray, int, str]:
+    def held_inputs(self, values: np.ndarray) -> tuple[np.ndarray, int, str]:
         """Inputs of all windows for k value sets, the number of inputs per sample, and their hold.
 
         The plant changes the inputs of the whole log, because its effects may depend on inputs
@@ -223,9 +223,19 @@ def tangent(
     r = np.stack([shooting.joined(*pair) for pair in zip(y, moves, strict=True)], axis=-1)
     at = shooting.residual(q, d) if is_rough else r[..., 0]
     slopes = (r[..., :1] - r[..., 1:]) / h  # (W, m, nx + p)
-    X, S = slopes[..., :nx], slopes[..., nx:]
+    return decomposed(at, slopes[..., :nx], slopes[..., nx:])
+
+
+def decomposed(r: np.ndarray, X: np.ndarray, S: np.ndarray) -> Tangent:
+    """The tangent of a residual r (W, m) with slopes X (W, m, nx) and S (W, m, p)."""
     size = np.linalg.norm(X, axis=1)
     size = np.where(size > 0, size, 1.0)
     U, s, Vt = np.linalg.svd(X / size[:, None], full_matrices=False)
     s = np.where(s > FELT * s[:, :1], s, 0.0)
-    return Tangent(r=at, S=S, U=U, s=s, Vt=Vt, size=size)
+    return Tangent(r=r, S=S, U=U, s=s, Vt=Vt, size=size)
+
+
+def along_states(t: Tangent, moves: np.ndarray) -> np.ndarray:
+    """X Δd of each window, shape (W, m)."""
+    along = t.s * np.einsum("wkx,wx->wk", t.Vt, moves * t.size)
+    return np.einsum("wmk,wk->wm", t.U, along)

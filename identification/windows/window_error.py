@@ -17,8 +17,8 @@ from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
+from identification.windows.settling import settle
 from identification.windows.shooting import Shooting
-from identification.windows.window_search import search_states
 from identification.windows.windows import first_states, spread, windows
 
 
@@ -41,7 +41,7 @@ def window_error(
         DivergenceError: the model cannot be simulated.
     """
     shooting, d = _fixed(plant, log, length, values)
-    return shooting.error(search_states(shooting, d).tangent.r)
+    return settle([shooting], [d])[0].error
 
 
 def first_error(plant: Plant, log: Log, length: float, most: int) -> np.ndarray:

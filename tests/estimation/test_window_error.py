@@ -5,16 +5,18 @@ import pytest
 from estimation_plants import record, slider
 
 from identification import Log
+from identification.windows.held import held_windows
+from identification.windows.settling import settle
+from identification.windows.shooting import tangent
 from identification.windows.window_error import _fixed as fixed
 from identification.windows.window_error import window_error
-from identification.windows.window_search import search_states
 
 NOISE = 1e-4
 
 
-def noisy(**values):
+def noisy(seed=3, **values):
     log = record(slider(**values), ("position",), n=200)
-    y = log.outputs + NOISE * np.random.default_rng(3).standard_normal(log.outputs.shape)
+    y = log.outputs + NOISE * np.random.default_rng(seed).standard_normal(log.outputs.shape)
     return Log(
         time=log.time,
         inputs=log.inputs,
@@ -55,8 +57,40 @@ def test_the_start_of_a_window_is_the_best_there_is():
 
 def test_a_window_ends_where_it_ends_alone():
     shooting, d = fixed(slider(damping=4.0), noisy(), 0.4, None)
-    together = search_states(shooting, d)
+    (together,) = settle([shooting], [d])
     for k in (0, len(d) // 2, len(d) - 1):
         keep = np.array([k])
-        alone = search_states(shooting.rows(keep), d[keep])
-        assert together.cost[k] == pytest.approx(alone.cost[0], rel=0.02)
+        (alone,) = settle([shooting.rows(keep)], [d[keep]])
+        assert squares(together)[k] == pytest.approx(squares(alone)[0], rel=0.02)
+
+
+def test_records_settled_together_end_where_each_ends_alone():
+    plant = slider(damping=4.0)
+    each = [fixed(plant, noisy(seed), 0.4, None) for seed in (0, 1)]
+    parts, begun = zip(*each, strict=True)
+    for one, part, d in zip(settle(parts, begun), parts, begun, strict=True):
+        (alone,) = settle([part], [d])
+        np.testing.assert_allclose(squares(one), squares(alone), rtol=0.02)
+
+
+def test_slopes_of_another_model_lead_to_the_same_states():
+    """A chord: slopes of a model nearby only say where to look."""
+    shooting, d = fixed(slider(damping=4.0), noisy(), 0.4, None)
+    near, _ = fixed(slider(damping=1.0, mass=2.0), noisy(), 0.4, None)
+    (right,) = settle([shooting], [d])
+    (found,) = settle([shooting], [d], [tangent(near, np.zeros(0), d)])
+    assert squares(found).sum() == pytest.approx(squares(right).sum(), rel=0.02)
+
+
+def test_a_window_that_diverges_does_not_hold_up_the_others():
+    shooting, d = fixed(slider(), noisy(), 0.4, None)
+    lost = np.array(d)
+    lost[1] = np.nan
+    r = held_windows(shooting).residual(lost)
+    assert np.isnan(r[1]).all()
+    rest = np.delete(np.arange(len(d)), 1)
+    np.testing.assert_array_equal(r[rest], held_windows(shooting).residual(d)[rest])
+
+
+def squares(settled):
+    return np.sum(settled.error**2, axis=(1, 2))

@@ -1,0 +1,173 @@
+"""Windows of several records whose parameters are held: only their initial states are free.
+
+    r_w(d_w) = [ C (y_w - ŷ_w(x̄_w ⊕ d_w)) ; -d_w/s ]        as `identification.windows.shooting`
+
+What the parameters make of the model and of the inputs is computed once, and the windows of all
+records are simulated in one batch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import mujoco
+import numpy as np
+
+from identification.errors import DivergenceError
+from identification.model.coordinates import NOTHING
+from identification.model.paths import Slot
+from identification.model.predictor import Predictor, with_states
+from identification.model.rollout import State, rollout, without_sensors
+from identification.model.sensitivity import FORWARD_STEP
+from identification.windows.shooting import Shooting, Tangent, decomposed, rough
+from identification.windows.windows import moved
+
+_NONE = np.zeros((1, 0))  # values of no free parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldWindows:
+    """What does not change while the initial states of windows are sought.
+
+    Attributes:
+        predictors: of each record, all parameters held.
+        model: the plant's.
+        for_slopes: the model whose simulations' differences make slopes.
+        every: inputs per sample.
+        hold_kind: of the inputs.
+        record: which record each window is of, shape (W,).
+        numbers: model entries and their values, shape (W,).
+        times: when each window begins in its record, shape (W,) [s].
+        inputs: shape (W, steps, nu).
+        outputs: what was measured, shape (W, L, ny).
+        first: the states where the windows are believed to begin, W rows.
+        weight: 1/s of each tangent coordinate, shape (W, nx).
+        whitener: C, shape (ny, ny).
+    """
+
+    predictors: tuple[Predictor, ...]
+    model: mujoco.MjModel
+    for_slopes: mujoco.MjModel
+    every: int
+    hold_kind: str
+    record: np.ndarray
+    numbers: tuple[tuple[Slot, np.ndarray], ...]
+    times: np.ndarray
+    inputs: np.ndarray
+    outputs: np.ndarray
+    first: State
+    weight: np.ndarray
+    whitener: np.ndarray
+
+    def rows(self, keep: np.ndarray) -> HeldWindows:
+        """Some of the windows, by mask or by index."""
+        return replace(
+            self, record=self.record[keep], times=self.times[keep], inputs=self.inputs[keep],
+            outputs=self.outputs[keep], weight=self.weight[keep],
+            numbers=tuple((slot, column[keep]) for slot, column in self.numbers),
+            first=State(*(getattr(self.first, f.name)[keep] for f in fields(State))),
+        )  # fmt: skip
+
+    def residual(self, d: np.ndarray) -> np.ndarray:
+        """r of all windows at d (W, nx), shape (W, L ny + nx); NaN where one diverges."""
+        return self._joined(self._simulated(self.model, [d])[0], d)
+
+    def slopes(self, d: np.ndarray, r: np.ndarray) -> Tangent:
+        """All windows linearised at d (W, nx), where their residual is r (W, m), without S.
+
+        Raises:
+            DivergenceError: a window beside them diverges.
+        """
+        h = FORWARD_STEP
+        moves = [d, *(d + h * e for e in np.eye(d.shape[1]))]
+        y = self._simulated(self.for_slopes, moves)
+        each = np.stack([self._joined(*p) for p in zip(y, moves, strict=True)], axis=-1)
+        if not np.isfinite(each).all():
+            raise DivergenceError("the simulation of a window diverged beside its best start")
+        X = (each[..., :1] - each[..., 1:]) / h
+        return decomposed(r, X, np.zeros((*r.shape, 0)))
+
+    def _joined(self, y: np.ndarray, d: np.ndarray) -> np.ndarray:
+        left = (self.outputs - y) @ self.whitener.T
+        return np.hstack([left.reshape(len(d), -1), -d * self.weight])
+
+    def _simulated(self, model: mujoco.MjModel, moves: Sequence[np.ndarray]) -> np.ndarray:
+        """Outputs of k moves of the states, shape (k, W, L, ny)."""
+        W, k = len(self.record), len(moves)
+        starts = [moved(self.model, self.first, d) for d in moves]
+        begun = State(*(np.concatenate([getattr(s, f.name) for s in starts])
+                        for f in fields(State)))  # fmt: skip
+        parts = [(p, np.tile(self.record == i, k)) for i, p in enumerate(self.predictors)]
+        for predictor, own in parts if with_states(self.predictors[0].plant) else ():
+            rows = State(*(getattr(begun, f.name)[own] for f in fields(State)))
+            for f in fields(State):
+                getattr(begun, f.name)[own] = getattr(predictor.begun(_NONE, rows), f.name)
+        log = self.predictors[0].log
+        run = rollout(
+            model, begun, np.tile(self.inputs, (k, 1, 1)), log.sampling_time / self.every,
+            numbers=[(slot, np.tile(column, k)) for slot, column in self.numbers],
+            record=self.predictors[0].recorded, hold_kind=self.hold_kind,
+            time=np.tile(self.times, k), keeps_diverged=True,
+        )  # fmt: skip
+        run = {field: states[:, :: self.every] for field, states in run.items()}
+        y = np.empty((k * W, *self.outputs.shape[1:]))
+        for predictor, own in parts:
+            if own.any():
+                y[own] = predictor.outputs(_NONE, {f: x[own] for f, x in run.items()})
+        return y.reshape(k, W, *y.shape[1:])
+
+
+def at_values(part: Shooting, q: np.ndarray) -> Shooting:
+    """The windows of a record with all parameters held at q (p,), in coordinates."""
+    names = part.predictor.names
+    values = dict(zip(names, part.space.decode(q).tolist(), strict=True))
+    predictor = replace(part.predictor, names=(), fixed={**part.predictor.fixed, **values})
+    return replace(part, predictor=predictor, space=NOTHING)
+
+
+def held_windows(part: Shooting) -> HeldWindows:
+    """The windows of a record that has no free parameter."""
+    predictor, W = part.predictor, len(part.cut.starts)
+    _, numbers = predictor.settings(_NONE)
+    inputs, every, hold_kind = part.held_inputs(_NONE)
+    exact = without_sensors(predictor.plant.model)
+    return HeldWindows(
+        predictors=(predictor,), model=exact, every=every, hold_kind=hold_kind,
+        for_slopes=rough(predictor.plant) if part.has_rough_slopes else exact,
+        record=np.zeros(W, int), times=part.times, inputs=inputs, outputs=part.cut.outputs,
+        numbers=tuple((slot, np.repeat(column, W)) for slot, column in numbers),
+        first=part.first.states, weight=np.tile(part.first.weight, (W, 1)), whitener=part.whitener,
+    )  # fmt: skip
+
+
+def is_alike(one: HeldWindows, other: HeldWindows) -> bool:
+    """Whether the windows of two records can be simulated in one batch."""
+    return (
+        one.predictors[0].plant is other.predictors[0].plant
+        and [slot for slot, _ in one.numbers] == [slot for slot, _ in other.numbers]
+        and one.outputs.shape[1:] == other.outputs.shape[1:]
+        and one.inputs.shape[1:] == other.inputs.shape[1:]
+        and (one.every, one.hold_kind) == (other.every, other.hold_kind)
+        and one.predictors[0].log.sampling_time == other.predictors[0].log.sampling_time
+        and one.predictors[0].log.output_names == other.predictors[0].log.output_names
+        and np.array_equal(one.whitener, other.whitener)
+    )
+
+
+def together(each: Sequence[HeldWindows]) -> HeldWindows:
+    """The windows of several records that are alike, one record after the other."""
+
+    def rows(name: str) -> np.ndarray:
+        return np.concatenate([getattr(h, name) for h in each])
+
+    columns = zip(*([column for _, column in h.numbers] for h in each), strict=True)
+    slots = [slot for slot, _ in each[0].numbers]
+    first = State(*(np.concatenate([getattr(h.first, f.name) for h in each])
+                    for f in fields(State)))  # fmt: skip
+    return replace(
+        each[0], predictors=tuple(h.predictors[0] for h in each), first=first,
+        record=np.repeat(np.arange(len(each)), [len(h.record) for h in each]),
+        numbers=tuple((s, np.concatenate(c)) for s, c in zip(slots, columns, strict=True)),
+        times=rows("times"), inputs=rows("inputs"), outputs=rows("outputs"), weight=rows("weight"),
+    )  # fmt: skip

@@ -1,0 +1,189 @@
+"""The initial states of windows that are best at given parameters, by Levenberg-Marquardt.
+
+The windows are independent, and each has its own damping: where a joint sticks, the outputs hardly
+feel its rate. Slopes cost as many simulations as a window has states, and change little from step
+to step: a window keeps them as long as its steps gain what they promise (chord method; Ortega,
+Rheinboldt 1970, 7.1), and gets new ones when they do not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from identification.errors import DivergenceError
+from identification.estimation.levenberg_marquardt import Cost, Damping, levenberg_marquardt
+from identification.windows.held import HeldWindows, held_windows, is_alike, together
+from identification.windows.shooting import Shooting, Tangent, along_states
+
+# relative to the squared norms of the columns of X
+DAMPING = Damping(first=1e-9, raised=10.0, lowered=10.0, least=1e-9, floor=1e-9)
+MOST_DAMPING = 1e2
+STEPS = 20  # largest number of steps
+ENDED = 1e-3  # relative change of the mean squared error at which a window is finished
+KEPT = 0.5  # of the promised gain; with less, slopes are too old
+
+
+@dataclass(frozen=True)
+class StatesStep:
+    """Where a trial step ends.
+
+    Attributes:
+        d: changes of the initial states there, shape (W, nx).
+        r: residual there, shape (W, m); NaN where a window diverges.
+        promised: sums of squares there by the linearisation, shape (W,).
+    """
+
+    d: np.ndarray
+    r: np.ndarray
+    promised: np.ndarray
+
+
+@dataclass(frozen=True)
+class EachWindow:
+    """The criteria of the initial states, one per window.
+
+    Attributes:
+        windows: what is simulated.
+        d: changes of the initial states, shape (W, nx).
+        tangent: the residual at d, and slopes there or at an earlier d.
+        is_fresh: whether slopes are those at d, shape (W,).
+    """
+
+    windows: HeldWindows
+    d: np.ndarray
+    tangent: Tangent
+    is_fresh: np.ndarray
+
+    @property
+    def cost(self) -> np.ndarray:
+        """Sums of squares, shape (W,)."""
+        return np.asarray(np.sum(self.tangent.r**2, axis=1))
+
+    def step(self, μ: Cost) -> StatesStep:
+        """The damped step of each window."""
+        at = self.tangent
+        damping = np.asarray(μ)[:, None]
+        along = np.einsum("wmk,wm->wk", at.U, at.r) * at.s / (at.s**2 + damping)
+        dd = np.einsum("wkx,wk->wx", at.Vt, along) / at.size
+        promised = np.sum((at.r - along_states(at, dd)) ** 2, axis=1)
+        return StatesStep(self.d + dd, self.windows.residual(self.d + dd), promised)
+
+    def cost_after(self, step: StatesStep) -> np.ndarray:
+        """Sums of squares after a step, shape (W,)."""
+        squares = np.sum(step.r**2, axis=1)
+        return np.where(np.isfinite(squares), squares, np.inf)
+
+    def bend(self, step: StatesStep, after: Cost, μ: Cost) -> None:
+        """The steps are never bent."""
+
+    def moved(self, step: StatesStep, taken: np.ndarray) -> EachWindow:
+        """The criteria after a step of those windows that accept it, with the slopes before it."""
+        d, r = (np.where(taken[:, None], new, old)
+                for new, old in ((step.d, self.d), (step.r, self.tangent.r)))  # fmt: skip
+        return replace(
+            self, d=d, tangent=replace(self.tangent, r=r), is_fresh=self.is_fresh & ~taken
+        )
+
+    def refreshed(self, at: np.ndarray) -> EachWindow:
+        """The same with new slopes of the windows `at`, a mask."""
+        if not at.any():
+            return self
+        slopes = self.windows.rows(at).slopes(self.d[at], self.tangent.r[at])
+        return replace(self, tangent=self.tangent.with_rows(at, slopes),
+                       is_fresh=self.is_fresh | at)  # fmt: skip
+
+    def rows(self, keep: np.ndarray) -> EachWindow:
+        """Some of the windows, by mask or by index."""
+        return EachWindow(
+            self.windows.rows(keep), self.d[keep], self.tangent.rows(keep), self.is_fresh[keep]
+        )
+
+
+@dataclass(frozen=True)
+class Settled:
+    """Windows of a record at their best states.
+
+    Attributes:
+        d: changes of the initial states, shape (W, nx).
+        error: y - ŷ from there, shape (W, L, ny), in the outputs' units.
+    """
+
+    d: np.ndarray
+    error: np.ndarray
+
+
+def settle(
+    parts: Sequence[Shooting],
+    moves: Sequence[np.ndarray],
+    near: Sequence[Tangent] | None = None,
+) -> tuple[Settled, ...]:
+    """Fit the initial state of each window of some records, none of which has a free parameter.
+
+    Args:
+        parts: the windows, one a record.
+        moves: where the search begins, one array (W, nx) a record.
+        near: the windows linearised at parameters nearby, one a record; when None, slopes are
+            computed.
+
+    Raises:
+        DivergenceError: the simulation of a window diverged where the search begins.
+    """
+    each, out = [held_windows(part) for part in parts], {}
+    rest = list(range(len(each)))
+    while rest:
+        alike = [k for k in rest if is_alike(each[rest[0]], each[k])]
+        rest = [k for k in rest if k not in alike]
+        held, d = together([each[k] for k in alike]), np.concatenate([moves[k] for k in alike])
+        at = _begun(held, d, None if near is None else _joined([near[k] for k in alike], d))
+        d, r = _searched(at)
+        for i, k in enumerate(alike):
+            own = held.record == i
+            out[k] = Settled(d[own], parts[k].error(r[own]))
+    return tuple(out[k] for k in range(len(parts)))
+
+
+def _begun(held: HeldWindows, d: np.ndarray, near: Tangent | None) -> EachWindow:
+    r = held.residual(d)
+    if not np.isfinite(r).all():
+        raise DivergenceError(
+            "the simulation of a window diverged; use a smaller step, or values nearer to the"
+            " nominal ones"
+        )
+    if near is None:
+        return EachWindow(held, d, held.slopes(d, r), np.ones(len(d), bool))
+    return EachWindow(held, d, replace(near, r=r), np.zeros(len(d), bool))
+
+
+def _joined(each: Sequence[Tangent], d: np.ndarray) -> Tangent | None:
+    """Slopes of the states of all windows; None where they are of fewer states."""
+    if any(t.s.shape[1] != d.shape[1] for t in each):
+        return None
+    names = ("r", "U", "s", "Vt", "size")
+    parts = {n: np.concatenate([getattr(t, n) for t in each]) for n in names}
+    return Tangent(**parts, S=np.zeros((*parts["r"].shape, 0)))
+
+
+def _searched(at: EachWindow) -> tuple[np.ndarray, np.ndarray]:
+    """The best states and the residuals there; a finished window is no longer simulated."""
+    d, r = np.array(at.d), np.array(at.tangent.r)
+    part, going, μ = at, np.arange(len(d)), None
+    enough = ENDED * float(np.mean(at.cost))
+    for _ in range(STEPS):
+        fresh = part.is_fresh
+        trial = next(levenberg_marquardt(part, EachWindow.moved, DAMPING, μ))
+        part = trial.criterion
+        d[going], r[going] = part.d, part.tangent.r
+        gain = trial.before - np.where(trial.taken, trial.after, trial.before)
+        promised = trial.before - trial.step.promised
+        is_old = ~fresh & (promised > enough) & (gain < KEPT * promised)
+        small = np.abs(trial.after - trial.before) <= enough
+        μ = np.where(is_old, trial.μ, trial.next)
+        keep = is_old | ~(small | (μ > MOST_DAMPING))
+        if not keep.any():
+            break
+        part, going, μ = part.rows(keep), going[keep], μ[keep]
+        part = part.refreshed(is_old[keep])
+    return d, r
