@@ -33,7 +33,7 @@ def list_contenders(
     curves = _best_few([s for s in scores if s.candidate.effect.is_curve], scores, options)[:1]
 
     def promised(s: WindowScore) -> float:
-        return -errors * np.log(max(1e-12, 1 - s.fall)) - len(s.size) * np.log(max(2, errors))
+        return errors * s.gain - len(s.size) * np.log(max(2, errors))
 
     best = max([promised(s) for s in laws], default=0.0)
     return [*laws, *(s for s in curves if promised(s) > best)]
@@ -49,11 +49,11 @@ def _best_few(
     out: list[WindowScore] = []
     best: dict[str, float] = {}
     for s in each.values():
-        least = options.refit_share * max([t.fall for t in out], default=0.0)
+        least = options.refit_share * max([t.gain for t in out], default=0.0)
         own = options.other_place_share * best.get(s.candidate.effect.name, 0.0)
-        if s.fall > max(least, own):
+        if s.gain > max(least, own):
             out.append(s)
-            best.setdefault(s.candidate.effect.name, s.fall)
+            best.setdefault(s.candidate.effect.name, s.gain)
     return out[: BEGUN * options.max_refits]
 
 

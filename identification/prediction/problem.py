@@ -105,7 +105,11 @@ class Problem:
         return replace(t, S=S)
 
     def settled(
-        self, q: np.ndarray, d: Sequence[np.ndarray], near: Sequence[Tangent] | None = None
+        self,
+        q: np.ndarray,
+        d: Sequence[np.ndarray],
+        near: Sequence[Tangent] | None = None,
+        is_thorough: bool = False,
     ) -> tuple[np.ndarray, ...]:
         """The moves of the states that are best at q, each window for itself, from d on.
 
@@ -113,12 +117,13 @@ class Problem:
             q: shape (p,).
             d: moves of the windows' states, one array (W, nx) a record.
             near: the windows linearised nearby, one a record; it saves simulations.
+            is_thorough: whether windows that end far worse than others are sought again.
 
         Raises:
             DivergenceError: a window left the finite numbers at q and d.
         """
         held = [at_values(part, own) for part, own, _ in self._each(q, d)]
-        return tuple(s.d for s in settle(held, d, near))
+        return tuple(s.d for s in settle(held, d, near, is_thorough))
 
     def _each(
         self, q: np.ndarray, d: Sequence[np.ndarray]

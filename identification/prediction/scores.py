@@ -52,6 +52,11 @@ class WindowScore:
     p_value: float
     along: np.ndarray
 
+    @property
+    def gain(self) -> float:
+        """-ln(1 - fall): of two candidates that leave little, one may leave half as much."""
+        return float(-np.log(max(1e-12, 1 - self.fall)))
+
 
 def window_scores(fit: WindowFit, candidates: Sequence[Candidate]) -> tuple[WindowScore, ...]:
     """Score candidates on a fitted model, the best first; one that diverges is left out.

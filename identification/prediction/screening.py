@@ -71,11 +71,11 @@ def _promising(scores: Sequence[WindowScore], options: DiscoveryOptions) -> list
     """Candidates that may be refitted: plausible, with a share of the best one's gain."""
     count: dict[tuple[str, str], int] = {}
     plausible = [s for s in scores if is_plausible(s, options)]
-    least = options.refit_share * max([s.fall for s in plausible], default=0.0)
+    least = options.refit_share * max([s.gain for s in plausible], default=0.0)
     out = []
     for s in plausible:
         key = s.candidate.key
         count[key] = count.get(key, 0) + 1
-        if s.fall >= least and count[key] <= SHAPES:
+        if s.gain >= least and count[key] <= SHAPES:
             out.append(s.candidate)
     return out

@@ -197,7 +197,7 @@ def _settled(
             parts.append(Shooting(predictor, NOTHING, part, first, np.diag(1 / scale), True))
             begun.append(moves[half])
             places.append((k, half))
-    for (k, half), s in zip(places, settle(parts, begun), strict=True):
+    for (k, half), s in zip(places, settle(parts, begun, is_thorough=True), strict=True):
         d, errors = out[k]
         d[half], errors[half] = s.d, s.error
     return out

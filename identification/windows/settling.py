@@ -22,8 +22,10 @@ from identification.windows.shooting import Shooting, Tangent, along_states
 DAMPING = Damping(first=1e-9, raised=10.0, lowered=10.0, least=1e-9, floor=1e-9)
 MOST_DAMPING = 1e2
 STEPS = 20  # largest number of steps
-ENDED = 1e-3  # relative change of the mean squared error at which a window is finished
+ENDED = 1e-3  # of the mean of the sums of squares: a window that changes by less is finished
 KEPT = 0.5  # of the promised gain; with less, slopes are too old
+FAR = 4.0  # times the median of the sums of squares; a window that is left worse is sought again
+AGAIN = (0.0, 0.5)  # of its changes, where it is begun again
 
 
 @dataclass(frozen=True)
@@ -119,6 +121,7 @@ def settle(
     parts: Sequence[Shooting],
     moves: Sequence[np.ndarray],
     near: Sequence[Tangent] | None = None,
+    is_thorough: bool = False,
 ) -> tuple[Settled, ...]:
     """Fit the initial state of each window of some records, none of which has a free parameter.
 
@@ -127,6 +130,7 @@ def settle(
         moves: where the search begins, one array (W, nx) a record.
         near: the windows linearised at parameters nearby, one a record; when None, slopes are
             computed.
+        is_thorough: whether windows that end far worse than the others are sought again.
 
     Raises:
         DivergenceError: the simulation of a window diverged where the search begins.
@@ -139,6 +143,8 @@ def settle(
         held, d = together([each[k] for k in alike]), np.concatenate([moves[k] for k in alike])
         at = _begun(held, d, None if near is None else _joined([near[k] for k in alike], d))
         d, r = _searched(at)
+        if is_thorough:
+            d, r = _sought_again(held, d, r)
         for i, k in enumerate(alike):
             own = held.record == i
             out[k] = Settled(d[own], parts[k].error(r[own]))
@@ -170,8 +176,8 @@ def _searched(at: EachWindow) -> tuple[np.ndarray, np.ndarray]:
     """The best states and the residuals there; a finished window is no longer simulated."""
     d, r = np.array(at.d), np.array(at.tangent.r)
     part, going, μ = at, np.arange(len(d)), None
-    enough = ENDED * float(np.mean(at.cost))
     for _ in range(STEPS):
+        enough = ENDED * float(np.mean(np.sum(r**2, axis=1)))
         fresh = part.is_fresh
         trial = next(levenberg_marquardt(part, EachWindow.moved, DAMPING, μ))
         part = trial.criterion
@@ -186,4 +192,23 @@ def _searched(at: EachWindow) -> tuple[np.ndarray, np.ndarray]:
             break
         part, going, μ = part.rows(keep), going[keep], μ[keep]
         part = part.refreshed(is_old[keep])
+    return d, r
+
+
+def _sought_again(held: HeldWindows, d: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same where windows that ended far worse than the others may end better from elsewhere.
+
+    Where a joint sticks in a window, its criterion has several minima.
+    """
+    squares = np.sum(r**2, axis=1)
+    far = np.flatnonzero(squares > FAR * np.median(squares))
+    begun = np.concatenate([share * d[far] for share in AGAIN])
+    part = held.rows(np.tile(far, len(AGAIN)))
+    first = part.residual(begun) if far.size else np.full(1, np.nan)
+    if not np.isfinite(first).all():
+        return d, r
+    at = EachWindow(part, begun, part.slopes(begun, first), np.ones(len(begun), bool))
+    for other, left in zip(*(np.split(x, len(AGAIN)) for x in _searched(at)), strict=True):
+        better = np.sum(left**2, axis=1) < np.sum(r[far] ** 2, axis=1)
+        d[far[better]], r[far[better]] = other[better], left[better]
     return d, r

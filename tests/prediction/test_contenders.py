@@ -43,9 +43,9 @@ def names(scores):
 
 
 def test_the_few_best_are_fitted_to_some_windows():
-    scores = [score(effect(f"e{k}"), 0.9 - 0.1 * k) for k in range(8)]
+    scores = [score(effect(f"e{k}"), 0.9 - 0.05 * k) for k in range(8)]
     assert names(list_contenders(scores, OPTIONS, 100)) == [f"e{k}" for k in range(6)]
-    far = [score(effect("e0"), 0.5), score(effect("e1"), 0.16), score(effect("e2"), 0.14)]
+    far = [score(effect("e0"), 0.5), score(effect("e1"), 0.2), score(effect("e2"), 0.18)]
     assert names(list_contenders(far, OPTIONS, 100)) == ["e0", "e1"]
 
 
