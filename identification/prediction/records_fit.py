@@ -24,6 +24,7 @@ from identification.prediction.model import Progress, WindowModel
 from identification.prediction.nominal_fit import begin, fit_nominal
 from identification.prediction.point import projected
 from identification.prediction.problem import no_moves
+from identification.prediction.proof import find_doubt
 from identification.prediction.record_errors import (
     RecordError,
     error_unit,
@@ -31,7 +32,6 @@ from identification.prediction.record_errors import (
     scaled_squares,
 )
 from identification.prediction.records import Record, as_records
-from identification.prediction.selection import is_proven
 from identification.prediction.starts import without_starts
 from identification.prediction.told_std import told_std
 from identification.prediction.unseen import Prediction, Unseen, compare, predict
@@ -134,7 +134,7 @@ class RecordsFit:
         None where that is not proven.
         """
         found = compare(self.model.unseen, self.begun)
-        return found if is_proven(found, 1, DiscoveryOptions()) else None
+        return found if find_doubt(found, 1, DiscoveryOptions()) is None else None
 
     @property
     def blind(self) -> np.ndarray:

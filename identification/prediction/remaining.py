@@ -65,4 +65,6 @@ def different_records(state: RecordsState) -> list[DifferentRecord]:
 
 def _unproven(r: RefittedEffect) -> UnprovenEffect:
     c = r.candidate
-    return UnprovenEffect(c.effect.name, c.where, max(r.prediction.falls), r.prediction.t)
+    return UnprovenEffect(
+        c.effect.name, c.where, max(r.prediction.falls), r.prediction.t, r.doubt or "chance"
+    )

@@ -13,6 +13,7 @@ from identification.discovery.findings.finding import Finding
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.prediction.model import WindowModel
+from identification.prediction.proof import Doubt
 from identification.prediction.record_errors import RecordError
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
@@ -31,6 +32,7 @@ class RefittedEffect:
         prediction: of unseen records, over the model without it.
         criterion: by how much it raises the negative BIC on the fitted windows.
         confidence: share of the resampled unseen blocks in which it predicts best, 0 to 1.
+        doubt: why it is not proven; None where it is.
     """
 
     candidate: Candidate
@@ -38,6 +40,7 @@ class RefittedEffect:
     prediction: Prediction
     criterion: float
     confidence: float
+    doubt: Doubt | None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -27,6 +27,7 @@ from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import Begun, begin
 from identification.prediction.model import WindowModel
 from identification.prediction.problem import THIN, thinned
+from identification.prediction.proof import Doubt, find_doubt, has_size
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction, compare
@@ -44,7 +45,7 @@ class Contender:
         gains: by block of the fitted windows, then of the unseen ones, shape (B,).
         numbers: that it adds to the model, those of each record counted.
         criterion: E, what speaks for it against the model without it (`evidence`).
-        is_proven: whether unseen records prove it.
+        doubt: why it is not proven; None where it is.
     """
 
     model: WindowModel
@@ -52,7 +53,12 @@ class Contender:
     gains: np.ndarray
     numbers: int
     criterion: float
-    is_proven: bool
+    doubt: Doubt | None
+
+    @property
+    def is_proven(self) -> bool:
+        """Whether unseen records prove it."""
+        return self.doubt is None
 
     @property
     def candidate(self) -> Candidate:
@@ -150,12 +156,14 @@ def _refit(
     numbers = count_numbers(c) * (records if c.effect.own else 1)
     windows, outputs = count_windows(model), len(model.scale)
     gain = float(evidence([gains], [numbers], windows, outputs)[0, 0])
-    proven = gain > 0 and has_size(new, options) and is_proven(found, refits, options)
+    doubt: Doubt | None = "numbers" if gain <= 0 else find_doubt(found, refits, options)
+    if doubt is None and not has_size(new, options):
+        doubt = "size"
     at = model.unseen.lengths.index(1.0)
     progress(f"{label}: unseen mean square {-100 * found.falls[at]:+.0f} %, t {found.t:.1f}")
     return Contender(
         model=new, prediction=found, gains=gains, numbers=numbers, criterion=gain,
-        is_proven=proven,
+        doubt=doubt,
     )  # fmt: skip
 
 
@@ -180,26 +188,3 @@ def evidences(contenders: Sequence[Contender]) -> np.ndarray:
         [c.gains for c in contenders], [c.numbers for c in contenders], count_windows(model),
         len(model.scale),
     )  # fmt: skip
-
-
-def is_proven(found: Prediction, refits: int, options: DiscoveryOptions) -> bool:
-    """Whether unseen windows are predicted better: beyond chance, everywhere, by enough.
-
-    A record that is predicted worse contradicts it: physics is the same in all of them.
-    """
-    beyond = found.t > options.min_proof_t and found.chance * refits < options.significance
-    agree = min(found.record_falls) > -options.min_gap_share
-    return beyond and found.is_everywhere and agree and min(found.falls) > options.min_fall
-
-
-def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
-    """Whether a free size of the last effect is beyond its own std, where it has one.
-
-    It must be beyond what steps of the simulation err by too.
-    """
-    std, values, c = model.std, model.fit.values, model.candidates[-1]
-    least = {n: s.smallest for n, s in zip(c.sizes, c.effect.sizes, strict=True)}
-    own = [n for n in model.fit.problem.names if n.partition(" [")[0] in c.free]
-    return not own or any(
-        abs(values[n]) > max(options.min_proof_t * std[n], least[n.partition(" [")[0]]) for n in own
-    )

@@ -17,13 +17,13 @@ from identification.errors import InputError
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.proof import find_doubt
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.screening import score_all
 from identification.prediction.selection import (
     Contender,
     Progress,
-    is_proven,
     refit_contenders,
 )
 from identification.prediction.unseen import Unseen, compare, predict
@@ -172,7 +172,7 @@ def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
         without = refitted(state.model, rest, task.nominal_model, task.confirm)
         if without is None:
             continue
-        if is_proven(compare(without.unseen, state.model.unseen), 1, task.options):
+        if find_doubt(compare(without.unseen, state.model.unseen), 1, task.options) is None:
             continue
         progress(f"{old.candidate.effect.name}, {old.candidate.where}: no longer needed")
         keep = [k for k, a in enumerate(state.accepted) if a is not old]
@@ -186,7 +186,7 @@ def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
 def _refuse_worse(begun: Unseen, fitted: Unseen, options: DiscoveryOptions) -> None:
     """Refuse a fit that predicts unseen records worse than the values with which it began."""
     worse = compare(fitted, begun)
-    if not is_proven(worse, 1, options):
+    if find_doubt(worse, 1, options) is not None:
         return
     percent = 100 * (1 / (1 - worse.falls[fitted.lengths.index(1.0)]) - 1)
     raise InputError(

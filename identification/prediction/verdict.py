@@ -159,6 +159,7 @@ def _refitted(model: WindowModel, contender: Contender, confidence: float) -> Re
     return RefittedEffect(
         candidate=replace(c, shape=shape), parameters=parameters,
         prediction=contender.prediction, criterion=contender.criterion, confidence=confidence,
+        doubt=contender.doubt,
     )  # fmt: skip
 
 

@@ -160,10 +160,20 @@ def _remaining_error(e: records.RemainingError) -> str:
     )
 
 
+DOUBTS = {
+    "numbers": "its gain does not pay for its numbers",
+    "chance": "with as many effects tried, its gain may be luck",
+    "lengths": "windows of some length are predicted worse with it",
+    "record": "a record is predicted worse with it",
+    "little": "it takes away too little to matter over windows of some length",
+    "size": "its size is not known well enough to differ from zero",
+}
+
+
 def _unproven_effect(e: records.UnprovenEffect) -> str:
     return (
         f"{e.name.replace('_', ' ')}, {e.where}, predicts unseen data better on average (mean"
-        f" square {-100 * e.fall:+.0f} %), but is not proven (t = {e.t:.1f})"
+        f" square {-100 * e.fall:+.0f} %, t = {e.t:.1f}), but is not proven: {DOUBTS[e.doubt]}"
     )
 
 

@@ -246,19 +246,21 @@ class DifferentRecord:
 
 @dataclass(frozen=True)
 class UnprovenEffect:
-    """An effect that predicts unseen records better on average, but not beyond chance.
+    """An effect that predicts unseen records better on average, and yet is not proven.
 
     Attributes:
         name: of the effect.
         where: its place.
         fall: relative fall of the unseen mean square, at best.
         t: of its gain over blocks.
+        doubt: what is against it, a word of `identification.prediction.proof.Doubt`.
     """
 
     name: str
     where: str
     fall: float
     t: float
+    doubt: str
 
 
 Evidence = (
