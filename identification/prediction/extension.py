@@ -36,7 +36,7 @@ def with_effect(
         InputError: it cannot be simulated on all windows.
     """
     fit = begun.parent.fit
-    moves = begun.task.settled(begun.q, fit.moves, fit.tangents, is_thorough=True)
+    moves, _ = begun.task.settled(begun.q, fit.moves, fit.tangents, is_thorough=True)
     found = solve(begun.task, begun.q, moves, tolerance=FINE, most=MOST_REFIT)
     if found.cost >= parent.fit.cost:
         return None

@@ -20,15 +20,9 @@ from identification.model.predictor import Plant
 from identification.prediction.fit import solve
 from identification.prediction.joint_states import model_for
 from identification.prediction.model import WindowModel
-from identification.prediction.problem import (
-    THIN,
-    Problem,
-    thinned,
-    thinned_moves,
-    thinned_tangents,
-    with_unknowns,
-)
+from identification.prediction.problem import Problem, with_unknowns
 from identification.prediction.scores import WindowScore, inside
+from identification.prediction.thinning import THIN, thinned, thinned_moves, thinned_tangents
 from identification.prediction.unknowns import Prior
 
 SHARES = (1.0, 0.3, 0.05, 0.01)  # of the size that a score gives, to begin with
@@ -83,13 +77,12 @@ def _begun(parent: WindowModel, score: WindowScore) -> Begun | None:
     task, fixed = _task(parent, c)
     few, begun = thinned(task, THIN), thinned_moves(parent.fit.moves, THIN)
     near = thinned_tangents(parent.fit.tangents, THIN)
-    least = thinned(parent.fit.problem, THIN).cost(parent.fit.q, begun)
+    least = parent.fit.problem.cost_of(parent.fit.q, [t.r for t in near])
     tried = []
     for share in SHARES:
         q = _begin(task, parent, score, share)
         try:  # the states have made up for what was missing
-            moves = few.settled(q, begun, near)
-            cost = few.cost(q, moves)
+            moves, cost = few.settled(q, begun, near)
         except InputError:
             continue
         tried.append((cost, q, moves))

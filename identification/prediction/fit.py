@@ -21,7 +21,7 @@ from identification.estimation.options import Progress
 from identification.model.rollout import State
 from identification.prediction.point import AtPoint, linearised, projected
 from identification.prediction.problem import Problem
-from identification.windows.shooting import Tangent
+from identification.windows.tangents import Tangent
 
 # Of the squared norms of the columns of X and S.
 DAMPING = Damping(first=1e-3, raised=5.0, lowered=10.0, least=1e-9, floor=1e-9)

@@ -16,7 +16,8 @@ import numpy as np
 
 from identification.prediction.fit import WindowFit
 from identification.prediction.point import projected
-from identification.windows.shooting import Shooting, Tangent
+from identification.windows.shooting import Shooting
+from identification.windows.tangents import Tangent
 
 STEP = 1e-3  # of an input's rms, by which it is moved
 

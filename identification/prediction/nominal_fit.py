@@ -64,13 +64,14 @@ def fit_nominal(
             continue
         task = problem(plant, fitted, shared, own, length, values, scale, ROUGH_STEPS)
         q = begin(nominal_model, task.unknowns) if found is None else found.q
-        found = solve(task, q, task.settled(q, no_moves(task)), tolerance=ROUGH, progress=progress)
+        moves, _ = task.settled(q, no_moves(task))
+        found = solve(task, q, moves, tolerance=ROUGH, progress=progress)
         _refuse_idle(found)
         values, scale = found.shared, _rms(found)
     if found is None:
         raise InputError(f"windows of {horizon:g} s fit no record; choose another horizon")
     task, q = problem(plant, fitted, shared, own, horizon, values, scale), found.q
-    moves = task.settled(q, no_moves(task))
+    moves, _ = task.settled(q, no_moves(task))
     for _ in range(MOST_SCALES):
         task, old = with_scale(task, scale), scale
         found = solve(task, q, moves, progress=progress)

@@ -20,8 +20,9 @@ import numpy as np
 from identification.errors import InputError
 from identification.estimation.levenberg_marquardt import Cost
 from identification.model.coordinates import Coordinates
-from identification.prediction.problem import Problem
-from identification.windows.shooting import Tangent, along_states
+from identification.prediction.problem import Problem, best_of
+from identification.windows.settling import settle
+from identification.windows.tangents import Tangent, along_states
 
 FAR = 4.0  # times V, from where no states bring a step back: it is too long
 Moves = tuple[np.ndarray, ...]  # of the windows' states, one array (W, nx) a record
@@ -34,12 +35,14 @@ class Step:
     Attributes:
         q: the parameters there, shape (p,).
         moves: of the windows' states there, one array (W, nx) a record.
+        residuals: there, one array (W, m) a record.
         cost: V there; infinite where it cannot be simulated.
         promised: V there by the linearisation.
     """
 
     q: np.ndarray
     moves: Moves
+    residuals: tuple[np.ndarray, ...]
     cost: float
     promised: float
 
@@ -75,14 +78,17 @@ class AtPoint:
         promised = self._promised(q, dd)
         moves = tuple(d + more for d, more in zip(self.moves, dd, strict=True))
         try:
-            moves, cost = self.problem.best(q, (moves, self.moves))
+            held = self.problem.held(q)
+            moves, r = best_of(held, moves, self.moves)
+            cost = self.problem.cost_of(q, r)
             is_near = self.cost <= cost < FAR * self.cost
             if is_near and self.cost - promised > self.tolerance * self.cost:
-                moves = self.problem.settled(q, moves, self.tangents)
-                cost = self.problem.cost(q, moves)
+                settled = settle(held, moves, self.tangents)
+                moves, r = tuple(s.d for s in settled), tuple(s.r for s in settled)
+                cost = self.problem.cost_of(q, r)
         except InputError:  # it diverged, or has no start: the search must go elsewhere
-            return Step(q, moves, np.inf, promised)
-        return Step(q, moves, cost, promised)
+            return Step(q, moves, (), np.inf, promised)
+        return Step(q, moves, r, cost, promised)
 
     def cost_after(self, step: Step) -> float:
         """V after a step."""
@@ -93,7 +99,7 @@ class AtPoint:
 
     def moved(self, step: Step, taken: np.ndarray) -> AtPoint:
         """The criterion after a step."""
-        return linearised(self.problem, step.q, step.moves, self.tolerance)
+        return linearised(self.problem, step.q, step.moves, self.tolerance, step.residuals)
 
     def _promised(self, q: np.ndarray, dd: Sequence[np.ndarray]) -> float:
         """V at q, the states moved by dd, by the linearisation."""
@@ -105,13 +111,16 @@ class AtPoint:
         return left + float(np.sum(self.problem.against(q) ** 2))
 
 
-def linearised(problem: Problem, q: np.ndarray, moves: Moves, tolerance: float) -> AtPoint:
-    """The criterion linearised at q (p,) and at moves of the states.
+def linearised(
+    problem: Problem, q: np.ndarray, moves: Moves, tolerance: float,
+    known: Sequence[np.ndarray] | None = None,
+) -> AtPoint:  # fmt: skip
+    """The criterion linearised at q (p,) and at moves of the states, where residuals are `known`.
 
     Raises:
         DivergenceError: it cannot be simulated there, or beside it.
     """
-    return AtPoint(problem, q, moves, problem.tangents(q, moves), tolerance)
+    return AtPoint(problem, q, moves, problem.tangents(q, moves, known), tolerance)
 
 
 def projected(t: Tangent) -> tuple[np.ndarray, np.ndarray]:

@@ -9,25 +9,27 @@ are eliminated by themselves (`identification.windows.shooting`), so that record
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from identification.errors import DivergenceError
 from identification.model.predictor import Plant, Predictor
 from identification.prediction.records import Record
 from identification.prediction.unknowns import Prior, Unknowns
 from identification.windows.held import at_values
+from identification.windows.held_records import HeldRecords, hold
 from identification.windows.settling import settle
-from identification.windows.shooting import Shooting, Tangent, tangent
+from identification.windows.shooting import Shooting, tangent
+from identification.windows.tangents import Tangent
 from identification.windows.windows import first_states, spread, windows
 
 # Steps of a simulation of all windows. More windows only make estimates finer than what is missing
 # from the model makes them wrong, and each of some hundred simulations takes as much longer.
 MOST_STEPS = 24_000
 FEWEST_WINDOWS = 10  # of a record, so that blocks of them can be compared
-THIN = 3  # one window of so many screens candidates, and finds where a fit of all windows begins
 
 
 @dataclass(frozen=True)
@@ -56,44 +58,45 @@ class Problem:
         """What the priors hold against q, in their std, shape (p,)."""
         return self.prior.weight * (self.prior.mean - q)
 
+    def held(self, q: np.ndarray) -> HeldRecords:
+        """The windows of all records with the parameters q (p,), which are held."""
+        parts = enumerate(self.parts)
+        return hold([at_values(part, q[self.unknowns.columns(k)]) for k, part in parts])
+
     def cost(self, q: np.ndarray, d: Sequence[np.ndarray]) -> float:
         """V at q and at the moves of the windows' states, one array (W, nx) a record.
 
         Raises:
             DivergenceError: a window left the finite numbers.
         """
-        data = sum(
-            float(np.sum(part.residual(own, moves) ** 2)) for part, own, moves in self._each(q, d)
-        )
-        return data + float(np.sum(self.against(q) ** 2))
+        return self.cost_of(q, self.held(q).residuals(d))
 
-    def best(
-        self, q: np.ndarray, choices: Sequence[Sequence[np.ndarray]]
-    ) -> tuple[tuple[np.ndarray, ...], float]:
-        """Of several moves of the states the best, each window for itself, and V there.
-
-        Args:
-            q: shape (p,).
-            choices: moves of the windows' states, each of them one array (W, nx) a record.
+    def cost_of(self, q: np.ndarray, residuals: Sequence[np.ndarray]) -> float:
+        """V at q, of the residuals there, one array (W, m) a record.
 
         Raises:
             DivergenceError: a window left the finite numbers.
         """
-        moves, cost = [], float(np.sum(self.against(q) ** 2))
-        for k, part in enumerate(self.parts):
-            own, each = q[self.unknowns.columns(k)], [c[k] for c in choices]
-            y = part.outputs(np.tile(own, (len(each), 1)), each)
-            squares = np.array([np.sum(part.joined(*pair) ** 2, axis=1)
-                                for pair in zip(y, each, strict=True)])  # fmt: skip
-            cost += float(squares.min(axis=0).sum())
-            moves.append(np.stack(each)[squares.argmin(axis=0), np.arange(len(squares[0]))])
-        return tuple(moves), cost
+        data = sum(float(np.sum(r**2)) for r in residuals)
+        if not np.isfinite(data):
+            raise DivergenceError("the simulation of a window diverged; use a smaller step")
+        return data + float(np.sum(self.against(q) ** 2))
 
-    def tangents(self, q: np.ndarray, d: Sequence[np.ndarray]) -> tuple[Tangent, ...]:
-        """All windows linearised, one tangent a record, its S with a column for each of q."""
+    def tangents(
+        self, q: np.ndarray, d: Sequence[np.ndarray], known: Sequence[np.ndarray] | None = None
+    ) -> tuple[Tangent, ...]:
+        """All windows linearised, one tangent a record, its S with a column for each of q.
+
+        Args:
+            q: shape (p,).
+            d: moves of the windows' states, one array (W, nx) a record.
+            known: residuals there, one array (W, m) a record; they are computed when None.
+        """
+        known = known or self.held(q).residuals(d)
+        self.cost_of(q, known)
         return tuple(
-            self.widened(k, tangent(part, own, moves))
-            for k, (part, own, moves) in enumerate(self._each(q, d))
+            self.widened(k, tangent(part, q[self.unknowns.columns(k)], moves, known=r))
+            for k, (part, moves, r) in enumerate(zip(self.parts, d, known, strict=True))
         )
 
     def widened(self, record: int, t: Tangent) -> Tangent:
@@ -105,31 +108,42 @@ class Problem:
         return replace(t, S=S)
 
     def settled(
-        self,
-        q: np.ndarray,
-        d: Sequence[np.ndarray],
-        near: Sequence[Tangent] | None = None,
+        self, q: np.ndarray, d: Sequence[np.ndarray], near: Sequence[Tangent] | None = None,
         is_thorough: bool = False,
-    ) -> tuple[np.ndarray, ...]:
-        """The moves of the states that are best at q, each window for itself, from d on.
+    ) -> tuple[tuple[np.ndarray, ...], float]:  # fmt: skip
+        """The moves of the states that are best at q, each window for itself, and V there.
 
         Args:
             q: shape (p,).
-            d: moves of the windows' states, one array (W, nx) a record.
+            d: moves where the search begins, one array (W, nx) a record.
             near: the windows linearised nearby, one a record; it saves simulations.
             is_thorough: whether windows that end far worse than others are sought again.
 
         Raises:
             DivergenceError: a window left the finite numbers at q and d.
         """
-        held = [at_values(part, own) for part, own, _ in self._each(q, d)]
-        return tuple(s.d for s in settle(held, d, near, is_thorough))
+        each = settle(self.held(q), d, near, is_thorough)
+        return tuple(s.d for s in each), self.cost_of(q, [s.r for s in each])
 
-    def _each(
-        self, q: np.ndarray, d: Sequence[np.ndarray]
-    ) -> Iterator[tuple[Shooting, np.ndarray, np.ndarray]]:
-        for k, (part, moves) in enumerate(zip(self.parts, d, strict=True)):
-            yield part, q[self.unknowns.columns(k)], moves
+
+def best_of(
+    held: HeldRecords, moves: Sequence[np.ndarray], others: Sequence[np.ndarray]
+) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
+    """Of two moves of the states the better one, each window for itself, and the residuals there.
+
+    Args:
+        held: the windows.
+        moves: one array (W, nx) a record.
+        others: likewise.
+    """
+    d, r = [], []
+    each = zip(moves, others, held.residuals(moves), held.residuals(others), strict=True)
+    for one, other, r_one, r_other in each:
+        squares = np.nan_to_num([np.sum(x**2, axis=1) for x in (r_one, r_other)], nan=np.inf)
+        first = (squares[0] <= squares[1])[:, None]
+        d.append(np.where(first, one, other))
+        r.append(np.where(first, r_one, r_other))
+    return tuple(d), tuple(r)
 
 
 def problem(
@@ -199,27 +213,6 @@ def with_unknowns(
         predictor = replace(part.predictor, names=space.names, fixed=rest)
         parts.append(replace(part, space=space, predictor=predictor))
     return Problem(tuple(parts), Unknowns(shared, own, problem_.unknowns.records))
-
-
-def thinned(problem_: Problem, every: int) -> Problem:
-    """Some of the windows: one of `every`, but no fewer than `FEWEST_WINDOWS` a record."""
-    parts = tuple(p.rows(kept(len(p.cut.starts), every)) for p in problem_.parts)
-    return replace(problem_, parts=parts)
-
-
-def thinned_moves(moves: Sequence[np.ndarray], every: int) -> tuple[np.ndarray, ...]:
-    """The moves of the states of the windows that `thinned` keeps."""
-    return tuple(d[kept(len(d), every)] for d in moves)
-
-
-def thinned_tangents(tangents: Sequence[Tangent], every: int) -> tuple[Tangent, ...]:
-    """The tangents of the windows that `thinned` keeps."""
-    return tuple(t.rows(kept(len(t.r), every)) for t in tangents)
-
-
-def kept(count: int, every: int) -> np.ndarray:
-    """Indices of the windows of a record that `thinned` keeps."""
-    return np.arange(0, count, max(1, min(every, count // FEWEST_WINDOWS)))
 
 
 def with_scale(problem_: Problem, scale: np.ndarray) -> Problem:

@@ -35,7 +35,6 @@ from identification.prediction.records import Record, as_records
 from identification.prediction.starts import without_starts
 from identification.prediction.told_std import told_std
 from identification.prediction.unseen import Prediction, Unseen, compare, predict
-from identification.windows.held import at_values
 from identification.windows.settling import settle
 
 NO_HORIZON = (
@@ -192,6 +191,5 @@ def fit_records(
 def _begun_errors(fit: WindowFit, q: np.ndarray) -> list[np.ndarray]:
     """y - ŷ of the fitted windows at q (p,), where the fit began, (W, L, ny) a record."""
     problem = fit.problem
-    each = enumerate(problem.parts)
-    held = [at_values(part, q[problem.unknowns.columns(k)]) for k, part in each]
-    return [s.error for s in settle(held, no_moves(problem))]
+    settled = settle(problem.held(q), no_moves(problem))
+    return [part.error(s.r) for part, s in zip(problem.parts, settled, strict=True)]

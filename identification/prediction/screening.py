@@ -17,9 +17,9 @@ from identification.effects.effect import Candidate, Effect
 from identification.prediction.contenders import is_plausible, is_significant
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel
-from identification.prediction.problem import THIN, thinned, thinned_moves, thinned_tangents
 from identification.prediction.scores import WindowScore, find_imitated, window_scores
 from identification.prediction.several_places import several_scores
+from identification.prediction.thinning import THIN, thinned, thinned_moves, thinned_tangents
 
 MANY = 300  # candidates, which robots of several joints have
 SHAPES = 2  # of an effect at a place that are scored on all windows

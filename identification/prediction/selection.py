@@ -26,10 +26,10 @@ from identification.prediction.evidence import block_gains, count_windows, evide
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import Begun, begin
 from identification.prediction.model import WindowModel
-from identification.prediction.problem import THIN, thinned
 from identification.prediction.proof import Doubt, find_doubt, has_size
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
+from identification.prediction.thinning import THIN, thinned
 from identification.prediction.unseen import Prediction, compare
 
 Progress = Callable[[str], None]

@@ -24,6 +24,7 @@ from identification.model.predictor import Plant, Predictor
 from identification.prediction.own_values import Own, of_halves, own_values
 from identification.prediction.problem import MOST_STEPS, most_windows
 from identification.prediction.records import Record
+from identification.windows.held_records import hold
 from identification.windows.settling import settle
 from identification.windows.shooting import Shooting
 from identification.windows.windows import Windows, first_states, spread, windows
@@ -192,12 +193,13 @@ def _settled(
             if not half.any():
                 continue
             predictor = Predictor(plant, record.log, (), {**values, **record.values, **mine})
-            part = cut.rows(half)
-            first = first_states(predictor, np.zeros(0), part)
-            parts.append(Shooting(predictor, NOTHING, part, first, np.diag(1 / scale), True))
+            here = cut.rows(half)
+            first = first_states(predictor, np.zeros(0), here)
+            parts.append(Shooting(predictor, NOTHING, here, first, np.diag(1 / scale), True))
             begun.append(moves[half])
             places.append((k, half))
-    for (k, half), s in zip(places, settle(parts, begun, is_thorough=True), strict=True):
+    settled = settle(hold(parts), begun, is_thorough=True)
+    for (k, half), part, s in zip(places, parts, settled, strict=True):
         d, errors = out[k]
-        d[half], errors[half] = s.d, s.error
+        d[half], errors[half] = s.d, part.error(s.r)
     return out

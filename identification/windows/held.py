@@ -1,9 +1,9 @@
-"""Windows of several records whose parameters are held: only their initial states are free.
+"""Windows whose parameters are held: only their initial states are free.
 
     r_w(d_w) = [ C (y_w - ŷ_w(x̄_w ⊕ d_w)) ; -d_w/s ]        as `identification.windows.shooting`
 
-What the parameters make of the model and of the inputs is computed once, and the windows of all
-records are simulated in one batch.
+What the parameters make of the model and of the inputs is computed once, and windows of several
+records may be simulated in one batch (`identification.windows.held_records`).
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from identification.model.paths import Slot
 from identification.model.predictor import Predictor, with_states
 from identification.model.rollout import State, rollout, without_sensors
 from identification.model.sensitivity import FORWARD_STEP
-from identification.windows.shooting import Shooting, Tangent, decomposed, rough
+from identification.windows.shooting import Shooting, rough
+from identification.windows.tangents import Tangent, decomposed
 from identification.windows.windows import moved
 
 _NONE = np.zeros((1, 0))  # values of no free parameter
@@ -138,36 +139,4 @@ def held_windows(part: Shooting) -> HeldWindows:
         record=np.zeros(W, int), times=part.times, inputs=inputs, outputs=part.cut.outputs,
         numbers=tuple((slot, np.repeat(column, W)) for slot, column in numbers),
         first=part.first.states, weight=np.tile(part.first.weight, (W, 1)), whitener=part.whitener,
-    )  # fmt: skip
-
-
-def is_alike(one: HeldWindows, other: HeldWindows) -> bool:
-    """Whether the windows of two records can be simulated in one batch."""
-    return (
-        one.predictors[0].plant is other.predictors[0].plant
-        and [slot for slot, _ in one.numbers] == [slot for slot, _ in other.numbers]
-        and one.outputs.shape[1:] == other.outputs.shape[1:]
-        and one.inputs.shape[1:] == other.inputs.shape[1:]
-        and (one.every, one.hold_kind) == (other.every, other.hold_kind)
-        and one.predictors[0].log.sampling_time == other.predictors[0].log.sampling_time
-        and one.predictors[0].log.output_names == other.predictors[0].log.output_names
-        and np.array_equal(one.whitener, other.whitener)
-    )
-
-
-def together(each: Sequence[HeldWindows]) -> HeldWindows:
-    """The windows of several records that are alike, one record after the other."""
-
-    def rows(name: str) -> np.ndarray:
-        return np.concatenate([getattr(h, name) for h in each])
-
-    columns = zip(*([column for _, column in h.numbers] for h in each), strict=True)
-    slots = [slot for slot, _ in each[0].numbers]
-    first = State(*(np.concatenate([getattr(h.first, f.name) for h in each])
-                    for f in fields(State)))  # fmt: skip
-    return replace(
-        each[0], predictors=tuple(h.predictors[0] for h in each), first=first,
-        record=np.repeat(np.arange(len(each)), [len(h.record) for h in each]),
-        numbers=tuple((s, np.concatenate(c)) for s, c in zip(slots, columns, strict=True)),
-        times=rows("times"), inputs=rows("inputs"), outputs=rows("outputs"), weight=rows("weight"),
     )  # fmt: skip

@@ -15,8 +15,9 @@ import numpy as np
 
 from identification.errors import DivergenceError
 from identification.estimation.levenberg_marquardt import Cost, Damping, levenberg_marquardt
-from identification.windows.held import HeldWindows, held_windows, is_alike, together
-from identification.windows.shooting import Shooting, Tangent, along_states
+from identification.windows.held import HeldWindows
+from identification.windows.held_records import HeldRecords
+from identification.windows.tangents import Tangent, along_states
 
 # relative to the squared norms of the columns of X
 DAMPING = Damping(first=1e-9, raised=10.0, lowered=10.0, least=1e-9, floor=1e-9)
@@ -110,15 +111,15 @@ class Settled:
 
     Attributes:
         d: changes of the initial states, shape (W, nx).
-        error: y - ŷ from there, shape (W, L, ny), in the outputs' units.
+        r: residual there, shape (W, L ny + nx).
     """
 
     d: np.ndarray
-    error: np.ndarray
+    r: np.ndarray
 
 
 def settle(
-    parts: Sequence[Shooting],
+    held: HeldRecords,
     moves: Sequence[np.ndarray],
     near: Sequence[Tangent] | None = None,
     is_thorough: bool = False,
@@ -126,7 +127,7 @@ def settle(
     """Fit the initial state of each window of some records, none of which has a free parameter.
 
     Args:
-        parts: the windows, one a record.
+        held: the windows.
         moves: where the search begins, one array (W, nx) a record.
         near: the windows linearised at parameters nearby, one a record; when None, slopes are
             computed.
@@ -135,20 +136,17 @@ def settle(
     Raises:
         DivergenceError: the simulation of a window diverged where the search begins.
     """
-    each, out = [held_windows(part) for part in parts], {}
-    rest = list(range(len(each)))
-    while rest:
-        alike = [k for k in rest if is_alike(each[rest[0]], each[k])]
-        rest = [k for k in rest if k not in alike]
-        held, d = together([each[k] for k in alike]), np.concatenate([moves[k] for k in alike])
-        at = _begun(held, d, None if near is None else _joined([near[k] for k in alike], d))
-        d, r = _searched(at)
+    out: dict[int, Settled] = {}
+    for records, windows in held.groups:
+        d = np.concatenate([moves[k] for k in records])
+        slopes = None if near is None else _joined([near[k] for k in records], d)
+        d, r = _searched(_begun(windows, d, slopes))
         if is_thorough:
-            d, r = _sought_again(held, d, r)
-        for i, k in enumerate(alike):
-            own = held.record == i
-            out[k] = Settled(d[own], parts[k].error(r[own]))
-    return tuple(out[k] for k in range(len(parts)))
+            d, r = _sought_again(windows, d, r)
+        for i, k in enumerate(records):
+            own = windows.record == i
+            out[k] = Settled(d[own], r[own])
+    return tuple(out[k] for k in range(len(held.parts)))
 
 
 def _begun(held: HeldWindows, d: np.ndarray, near: Tangent | None) -> EachWindow:

@@ -17,6 +17,7 @@ from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
+from identification.windows.held_records import hold
 from identification.windows.settling import settle
 from identification.windows.shooting import Shooting
 from identification.windows.windows import first_states, spread, windows
@@ -41,7 +42,7 @@ def window_error(
         DivergenceError: the model cannot be simulated.
     """
     shooting, d = _fixed(plant, log, length, values)
-    return settle([shooting], [d])[0].error
+    return shooting.error(settle(hold([shooting]), [d])[0].r)
 
 
 def first_error(plant: Plant, log: Log, length: float, most: int) -> np.ndarray:

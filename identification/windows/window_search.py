@@ -13,7 +13,8 @@ import numpy as np
 from identification.errors import InputError
 from identification.estimation.levenberg_marquardt import Cost, Damping, levenberg_marquardt
 from identification.estimation.options import Progress
-from identification.windows.shooting import Shooting, Tangent, tangent
+from identification.windows.shooting import Shooting, tangent
+from identification.windows.tangents import Tangent
 
 # relative to the squared norms of the columns of X and S
 DAMPING = Damping(first=1e-2, raised=5.0, lowered=10.0, least=1e-12, floor=1e-12)

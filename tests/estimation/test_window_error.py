@@ -6,6 +6,7 @@ from estimation_plants import record, slider
 
 from identification import Log
 from identification.windows.held import held_windows
+from identification.windows.held_records import hold
 from identification.windows.settling import settle
 from identification.windows.shooting import tangent
 from identification.windows.window_error import _fixed as fixed
@@ -57,10 +58,10 @@ def test_the_start_of_a_window_is_the_best_there_is():
 
 def test_a_window_ends_where_it_ends_alone():
     shooting, d = fixed(slider(damping=4.0), noisy(), 0.4, None)
-    (together,) = settle([shooting], [d])
+    (together,) = settle(hold([shooting]), [d])
     for k in (0, len(d) // 2, len(d) - 1):
         keep = np.array([k])
-        (alone,) = settle([shooting.rows(keep)], [d[keep]])
+        (alone,) = settle(hold([shooting.rows(keep)]), [d[keep]])
         assert squares(together)[k] == pytest.approx(squares(alone)[0], rel=0.02)
 
 
@@ -68,8 +69,8 @@ def test_records_settled_together_end_where_each_ends_alone():
     plant = slider(damping=4.0)
     each = [fixed(plant, noisy(seed), 0.4, None) for seed in (0, 1)]
     parts, begun = zip(*each, strict=True)
-    for one, part, d in zip(settle(parts, begun), parts, begun, strict=True):
-        (alone,) = settle([part], [d])
+    for one, part, d in zip(settle(hold(parts), begun), parts, begun, strict=True):
+        (alone,) = settle(hold([part]), [d])
         np.testing.assert_allclose(squares(one), squares(alone), rtol=0.02)
 
 
@@ -77,8 +78,8 @@ def test_slopes_of_another_model_lead_to_the_same_states():
     """A chord: slopes of a model nearby only say where to look."""
     shooting, d = fixed(slider(damping=4.0), noisy(), 0.4, None)
     near, _ = fixed(slider(damping=1.0, mass=2.0), noisy(), 0.4, None)
-    (right,) = settle([shooting], [d])
-    (found,) = settle([shooting], [d], [tangent(near, np.zeros(0), d)])
+    (right,) = settle(hold([shooting]), [d])
+    (found,) = settle(hold([shooting]), [d], [tangent(near, np.zeros(0), d)])
     assert squares(found).sum() == pytest.approx(squares(right).sum(), rel=0.02)
 
 
@@ -93,4 +94,4 @@ def test_a_window_that_diverges_does_not_hold_up_the_others():
 
 
 def squares(settled):
-    return np.sum(settled.error**2, axis=(1, 2))
+    return np.sum(settled.r**2, axis=1)
