@@ -30,7 +30,7 @@ def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Dou
         return "lengths"
     if min(found.record_falls) <= -options.min_gap_share:
         return "record"
-    return None if min(found.falls) > options.min_fall else "little"
+    return None if min(found.typical_falls) > options.min_fall else "little"
 
 
 def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:

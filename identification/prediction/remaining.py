@@ -13,6 +13,7 @@ from identification.discovery.findings.evidence import (
     UnprovenEffect,
 )
 from identification.discovery.findings.finding import Finding, FindingKind
+from identification.prediction.clocks import shifted_records
 from identification.prediction.result import (
     RefittedEffect,
 )
@@ -34,6 +35,9 @@ def find_remaining(state: RecordsState, rejected: Sequence[RefittedEffect]) -> t
     if state.accepted and ratio > 1 + state.task.options.min_gap_share:
         out.append(Finding(FindingKind.REMAINING_ERROR, RemainingError(ratio)))
     out += [Finding(FindingKind.DIFFERENT_RECORD, e) for e in different_records(state)]
+    out += [
+        Finding(FindingKind.SHIFTED_RECORD, e) for e in shifted_records(state.task, state.model)
+    ]
     return tuple(out)
 
 

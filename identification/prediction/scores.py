@@ -109,7 +109,10 @@ class _Base:
         self.fit = fit
         each = [projected(t) for t in fit.tangents]
         p = len(fit.q)
-        F = np.vstack([S.reshape(-1, p) for S, _ in each] + [np.diag(fit.problem.prior.weight)])
+        F = np.vstack(
+            [S.reshape(S.shape[0] * S.shape[1], p) for S, _ in each]
+            + [np.diag(fit.problem.prior.weight)]
+        )
         scale = np.linalg.norm(F, axis=0)
         self.scale = np.where(scale > 0, scale, 1.0)
         self.Q, self.R = np.linalg.qr(F / self.scale)

@@ -69,6 +69,8 @@ class Prediction:
         chance: of as much by luck.
         gains: mean gain by length.
         falls: relative fall of the mean square over all records, by length.
+        typical_falls: the same of each record's mean square by itself, in the geometric mean: a
+            record that errs most, whatever the model, does not decide alone.
         records: mean gain by record, at the horizon.
         record_falls: relative fall of the mean square by record, at the horizon.
         blocks: mean gain by block, at the horizon, over all records.
@@ -78,6 +80,7 @@ class Prediction:
     chance: float
     gains: tuple[float, ...]
     falls: tuple[float, ...]
+    typical_falls: tuple[float, ...]
     records: tuple[float, ...]
     record_falls: tuple[float, ...]
     blocks: np.ndarray
@@ -85,7 +88,7 @@ class Prediction:
     @property
     def is_everywhere(self) -> bool:
         """Whether windows of every length are predicted better on average."""
-        return min(self.gains) > 0 and min(self.falls) > 0
+        return min(self.gains) > 0 and min(self.typical_falls) > 0
 
 
 def predict(
@@ -147,9 +150,11 @@ def predict(
 
 def compare(without: Unseen, with_it: Unseen) -> Prediction:
     """What the second of two models predicts better than the first, window by window."""
-    falls, gains, floor = [], [], without.floor
+    falls, typical, gains, floor = [], [], [], without.floor
     for a, b in zip(without.squares, with_it.squares, strict=True):
         falls.append(1 - float(np.concatenate(b).mean() / np.concatenate(a).mean()))
+        each = [np.log(y.mean() / x.mean()) for x, y in zip(a, b, strict=True)]
+        typical.append(1 - float(np.exp(np.mean(each))))
         gains.append([window_gains(x, y, floor) for x, y in zip(a, b, strict=True)])
     here = gains[without.lengths.index(1.0)]
     blocks = np.concatenate([
@@ -164,7 +169,8 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
     return Prediction(
         t=t, chance=chance, record_falls=record_falls,
         gains=tuple(float(np.concatenate(g).mean()) for g in gains),
-        falls=tuple(falls), records=tuple(float(g.mean()) for g in here), blocks=blocks,
+        falls=tuple(falls), typical_falls=tuple(typical),
+        records=tuple(float(g.mean()) for g in here), blocks=blocks,
     )  # fmt: skip
 
 

@@ -52,7 +52,9 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     sure = all(n.effect.confidence >= 0.5 or n.one_of for n in named)
     findings = find_remaining(state, rejected)
     doubtful = any(f.kind is FindingKind.UNPROVEN_EFFECT for f in findings)
-    different = any(f.kind is FindingKind.DIFFERENT_RECORD for f in findings)
+    different = any(
+        f.kind in (FindingKind.DIFFERENT_RECORD, FindingKind.SHIFTED_RECORD) for f in findings
+    )
     needed = needed_input_error(model.fit, model.unseen.floor)
     verdict: Verdict = "nothing missing"
     if named and sure:

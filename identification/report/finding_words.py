@@ -153,6 +153,14 @@ def _different_record(e: records.DifferentRecord) -> str:
     )
 
 
+def _shifted_record(e: records.ShiftedRecord) -> str:
+    which = "later" if e.shift > 0 else "earlier"
+    return (
+        f"in record {e.record} the inputs act {quantity(abs(e.shift), e.std, 's')} {which} than"
+        f" their time stamps say: that explains {100 * e.fall:.0f} % of its error"
+    )
+
+
 def _remaining_error(e: records.RemainingError) -> str:
     return (
         f"an error on unseen data that is {e.noise_ratio:.3g} times the sensors' noise is left, and"
@@ -194,5 +202,6 @@ WORDS: dict[FindingKind, Callable[[Any], str]] = {
     FindingKind.OVERSIZED_EFFECT: _oversized_effect,
     FindingKind.REMAINING_ERROR: _remaining_error,
     FindingKind.DIFFERENT_RECORD: _different_record,
+    FindingKind.SHIFTED_RECORD: _shifted_record,
     FindingKind.UNPROVEN_EFFECT: _unproven_effect,
 }

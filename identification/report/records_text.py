@@ -130,11 +130,13 @@ def _proof(found: RecordsDiscovery) -> str:
 
 def _unknown(found: RecordsDiscovery) -> str:
     before, noise = alike([found.before.rms, found.noise_rms], found.unit)
+    percent = f"{100 * found.input_error:.2g}"
+    needed = f"; inputs would have to err by {percent} % of their rms to make that"
+    needed = needed if found.input_error > 0 else ""  # the fitted windows leave no more than noise
     return (
         "Something is missing that none of the known effects surely explains: the fitted model is"
         f" {before} rms off over {found.horizon:g} s on unseen data, where the sensors make"
-        f" {noise}; inputs would have to err by {100 * found.input_error:.2g} % of their rms"
-        " to make that. It is not named here rather than named wrongly."
+        f" {noise}{needed}. It is not named here rather than named wrongly."
         + "".join(f" {sentence(describe_finding(finding))}" for finding in found.findings)
     )
 

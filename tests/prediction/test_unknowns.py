@@ -8,14 +8,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from records_cases import FREE, nominal_model, pendulum, record, records
 
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
 from identification.model.coordinates import Coordinates
+from identification.prediction.clocks import shifted_records
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.scores import window_scores
+from identification.prediction.state import RecordsTask
 from identification.prediction.unknowns import Prior, Unknowns
 
 SHIFTS = (0.02, -0.015, 0.01)  # of three records' inputs [s]
@@ -61,6 +64,24 @@ def test_records_whose_clocks_differ_have_a_shift_each():
     value, _ = child.unseen.own["record 3"]["time_shift.tau@drive"]
     assert value == pytest.approx(SHIFTS[2], abs=1e-3)
     assert np.mean(child.unseen.at_horizon[0]) < 0.1 * np.mean(parent.unseen.at_horizon[0])
+
+
+def test_a_record_that_is_late_is_told_and_the_others_are_not():
+    """What is asked of each record alone: its clock. The fit has seen none that is late."""
+    base = replace(nominal_model(), horizon=0.26)
+    logs = [shifted(s, k) for k, s in enumerate((0.0, 0.0, 0.0, 0.02), 1)]
+    roles = as_records(logs[:2], logs[2:])
+    effect = next(e for e in candidates(pendulum(), FREE) if e.name == "time_shift")
+    task = RecordsTask(
+        nominal_model=base, horizon=0.26, records=roles, effects=(effect,),
+        options=DiscoveryOptions(),
+    )  # fmt: skip
+    (told,) = shifted_records(task, fit_nominal(base, roles))
+    assert told.record == "record 4"
+    assert told.shift == pytest.approx(0.02, abs=1e-3)
+    assert told.std < 2e-3
+    assert told.fall > 0.5
+    assert shifted_records(replace(task, effects=()), fit_nominal(base, roles)) == []
 
 
 def with_offset(base):

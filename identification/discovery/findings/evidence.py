@@ -263,9 +263,28 @@ class UnprovenEffect:
     doubt: str
 
 
+@dataclass(frozen=True)
+class ShiftedRecord:
+    """A record whose inputs are shifted in time against its outputs.
+
+    Attributes:
+        record: its name.
+        shift: how much later the inputs act than their stamps say [s].
+        std: of the shift, by blocks of windows [s].
+        fall: of the record's mean square with the shift, relative.
+        chance: of as much by luck, in this record.
+    """
+
+    record: str
+    shift: float
+    std: float
+    fall: float
+    chance: float
+
+
 Evidence = (
     WorstOutput | WorstInterval | MedianFrequency | ForceEvidence | InputHold | SpectralLine
     | NoisyOutput | CorrelatedInnovations | ParametersAtLimit | LargeInputError | RobotChange
     | StructuredInputError | DoubtfulEffect | OversizedEffect | RemainingError | UnprovenEffect
-    | DifferentRecord
+    | DifferentRecord | ShiftedRecord
 )  # fmt: skip

@@ -33,6 +33,7 @@ class FindingKind(StrEnum):
     REMAINING_ERROR = "remaining error"
     UNPROVEN_EFFECT = "unproven effect"
     DIFFERENT_RECORD = "different record"
+    SHIFTED_RECORD = "shifted record"
 
 
 EVIDENCE: dict[FindingKind, type[Evidence]] = {
@@ -53,6 +54,7 @@ EVIDENCE: dict[FindingKind, type[Evidence]] = {
     FindingKind.REMAINING_ERROR: records.RemainingError,
     FindingKind.UNPROVEN_EFFECT: records.UnprovenEffect,
     FindingKind.DIFFERENT_RECORD: records.DifferentRecord,
+    FindingKind.SHIFTED_RECORD: records.ShiftedRecord,
 }
 
 
