@@ -7,6 +7,7 @@ errors count in units of their own rms, so that fits are repeated until it is se
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from identification.prediction.problem import (
 )
 from identification.prediction.records import Record
 from identification.prediction.unknowns import Prior, Unknowns
+from identification.prediction.unseen import Unseen
 
 GROWTH = (0.25, 0.5, 1.0)  # of the horizon
 FEWEST = 4  # samples of the shortest windows
@@ -81,6 +83,23 @@ def fit_nominal(
             break
     confirm = [r for r in records if r.role == "confirm"]
     return WindowModel((), found, predict_fitted(plant, confirm, horizon, old, found, {}), old)
+
+
+def as_begun(nominal_model: NominalModel, fitted: WindowModel, unseen: Unseen) -> WindowModel:
+    """The model at the values with which its fit began, on the windows of the fit.
+
+    Args:
+        nominal_model: says these values.
+        fitted: the model after the fit.
+        unseen: errors of these values on the records that confirm.
+    """
+    task = fitted.fit.problem
+    q = begin(nominal_model, task.unknowns)
+    moves, cost = task.settled(q, fitted.fit.moves, is_thorough=True)
+    fit = replace(
+        fitted.fit, q=q, moves=moves, tangents=task.tangents(q, moves), cost=cost, steps=0
+    )
+    return replace(fitted, fit=fit, unseen=unseen)
 
 
 def begin(nominal_model: NominalModel, unknowns: Unknowns) -> np.ndarray:

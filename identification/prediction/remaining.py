@@ -11,13 +11,14 @@ from identification.discovery.findings.evidence import (
     DifferentRecord,
     RemainingError,
     UnprovenEffect,
+    WorseFit,
 )
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.prediction.clocks import shifted_records
 from identification.prediction.result import (
     RefittedEffect,
 )
-from identification.prediction.state import RecordsState
+from identification.prediction.state import RecordsState, rise
 
 DIFFERENT = 2.0  # times worse than others a record is predicted that is told apart
 
@@ -25,6 +26,9 @@ DIFFERENT = 2.0  # times worse than others a record is predicted that is told ap
 def find_remaining(state: RecordsState, rejected: Sequence[RefittedEffect]) -> tuple[Finding, ...]:
     """What the final model leaves: errors above the sensors' noise, and doubtful effects."""
     out = []
+    if state.worse_fit is not None:
+        worse = WorseFit(rise(state.begun, state.worse_fit))
+        out.append(Finding(FindingKind.WORSE_FIT, worse))
     for r in rejected:
         if r.prediction.is_everywhere and r.prediction.t > state.task.options.min_proof_t:
             out.append(Finding(FindingKind.UNPROVEN_EFFECT, _unproven(r)))

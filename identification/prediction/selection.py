@@ -30,7 +30,7 @@ from identification.prediction.proof import Doubt, find_doubt, has_size
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.thinning import THIN, thinned
-from identification.prediction.unseen import Prediction, compare
+from identification.prediction.unseen import Prediction, Unseen, compare
 
 Progress = Callable[[str], None]
 
@@ -73,9 +73,12 @@ def refit_contenders(
     confirm: Sequence[Record],
     options: DiscoveryOptions,
     progress: Progress,
+    worse_fit: Unseen | None = None,
 ) -> tuple[Contender, ...]:
     """Refit the contenders of a round, the best first: proven ones before others, by evidence.
 
+    Where the fit without effects was worse than the values with which it began, an effect must be
+    proven against that fit, and be no worse than these values: it says why the fit went wrong.
     Laws with fewer numbers that act as the best one does are refitted too. A law with fewer numbers
     comes before the best one where resamples cannot tell them apart and the evidence does not
     speak very strongly.
@@ -85,7 +88,9 @@ def refit_contenders(
     refits = len(chosen)
 
     def refit(each: Sequence[Begun]) -> list[Contender]:
-        found = (_refit(model, b, horizon, confirm, options, refits, progress) for b in each)
+        found = (
+            _refit(model, b, horizon, confirm, options, refits, progress, worse_fit) for b in each
+        )
         return [c for c in found if c is not None]
 
     out = refit(_near_best(_begun(model, chosen, scores, progress), options))
@@ -138,7 +143,7 @@ def _label(c: Candidate) -> str:
 
 def _refit(
     model: WindowModel, begun: Begun, horizon: float, confirm: Sequence[Record],
-    options: DiscoveryOptions, refits: int, progress: Progress,
+    options: DiscoveryOptions, refits: int, progress: Progress, worse_fit: Unseen | None,
 ) -> Contender | None:  # fmt: skip
     c = begun.candidate
     label = _label(c)
@@ -150,13 +155,15 @@ def _refit(
     if new is None:
         progress(f"{label}: explains no more than without it")
         return None
-    found = compare(model.unseen, new.unseen)
+    found = compare(worse_fit or model.unseen, new.unseen)
     gains = block_gains(model, new)
     records = len(model.unseen.at_horizon) + len(model.fit.problem.parts)
     numbers = count_numbers(c) * (records if c.effect.own else 1)
     windows, outputs = count_windows(model), len(model.scale)
     gain = float(evidence([gains], [numbers], windows, outputs)[0, 0])
     doubt: Doubt | None = "numbers" if gain <= 0 else find_doubt(found, refits, options)
+    if doubt is None and worse_fit and _is_worse(new.unseen, model.unseen, options):
+        doubt = "record"
     if doubt is None and not has_size(new, options):
         doubt = "size"
     at = model.unseen.lengths.index(1.0)
@@ -165,6 +172,11 @@ def _refit(
         model=new, prediction=found, gains=gains, numbers=numbers, criterion=gain,
         doubt=doubt,
     )  # fmt: skip
+
+
+def _is_worse(new: Unseen, old: Unseen, options: DiscoveryOptions) -> bool:
+    """Whether unseen records prove that a model predicts worse than another."""
+    return find_doubt(compare(new, old), 1, options) is None
 
 
 def _ranked(found: Sequence[Contender], options: DiscoveryOptions) -> tuple[Contender, ...]:

@@ -10,13 +10,14 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
-from identification.errors import InputError
 from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
-from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.nominal_fit import as_begun, fit_nominal
 from identification.prediction.proof import find_doubt
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
@@ -71,6 +72,9 @@ class RecordsState:
         scores: of the candidates that the model lacks, the best first.
         rejected: what the last round refitted and did not accept, the best first.
         seconds: wall time by kind of work [s].
+        worse_fit: errors of the fitted values on the records that confirm, where they are worse
+            than those of the values with which the fit began: the search then begins with the
+            latter. None where they are not.
     """
 
     task: RecordsTask
@@ -84,6 +88,7 @@ class RecordsState:
     scores: tuple[WindowScore, ...]
     rejected: tuple[Contender, ...]
     seconds: Mapping[str, float]
+    worse_fit: Unseen | None = None
 
 
 def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
@@ -94,15 +99,22 @@ def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
         progress: is told a line per step.
 
     Raises:
-        InputError: windows do not fit a record, or the fitted model predicts the records that
-            confirm worse than the values with which the fit began.
+        InputError: windows do not fit a record.
         DivergenceError: the nominal model cannot be simulated.
     """
     watch = Watch()
     base = task.nominal_model
     nominal = fit_nominal(base, task.records, progress)
     begun = predict(base.plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen)
-    _refuse_worse(begun, nominal.unseen, task.options)
+    worse = None
+    if find_doubt(compare(nominal.unseen, begun), 1, task.options) is None:
+        worse = nominal.unseen
+        progress(
+            "the fitted values predict unseen records worse (mean square"
+            f" {100 * rise(begun, worse):+.0f} %) than those with which the fit began: these are"
+            " kept"
+        )
+        nominal = as_begun(base, nominal, begun)
     watch.stop("nominal fit")
     scores = score_all(nominal, task.effects, task.options)
     watch.stop("scores")
@@ -111,7 +123,7 @@ def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
     return RecordsState(
         task=task, is_finished=False, begun=begun, nominal=nominal, nominal_scores=scores,
         model=nominal, accepted=(), alternatives=(), scores=scores, rejected=(),
-        seconds=watch.seconds,
+        seconds=watch.seconds, worse_fit=worse,
     )  # fmt: skip
 
 
@@ -126,8 +138,9 @@ def next_state(state: RecordsState, progress: Progress) -> RecordsState:
         return state
     task, watch = state.task, Watch(state.seconds)
     tried = refit_contenders(
-        state.model, state.scores, task.horizon, task.confirm, task.options, progress
-    )
+        state.model, state.scores, task.horizon, task.confirm, task.options, progress,
+        None if state.accepted else state.worse_fit,
+    )  # fmt: skip
     if not tried or not tried[0].is_proven:
         state = _pruned(replace(state, rejected=tried), progress)
         watch.stop("refits")
@@ -183,18 +196,10 @@ def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
     return state
 
 
-def _refuse_worse(begun: Unseen, fitted: Unseen, options: DiscoveryOptions) -> None:
-    """Refuse a fit that predicts unseen records worse than the values with which it began."""
-    worse = compare(fitted, begun)
-    if find_doubt(worse, 1, options) is not None:
-        return
-    percent = 100 * (1 / (1 - worse.falls[fitted.lengths.index(1.0)]) - 1)
-    raise InputError(
-        "the fitted nominal model predicts the records that confirm worse than the values with"
-        f" which the fit began (mean square {percent:+.0f} %), so that nothing can be built on it;"
-        " fit more records, state in the robot's file what is known of the free parameters (known),"
-        " or leave some of them out"
-    )
+def rise(begun: Unseen, fitted: Unseen) -> float:
+    """By how much the mean square at the horizon is larger after a fit than before it, relative."""
+    before, after = (float(np.mean(np.concatenate(u.at_horizon))) for u in (begun, fitted))
+    return after / before - 1
 
 
 class Watch:

@@ -153,8 +153,8 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
     falls, typical, gains, floor = [], [], [], without.floor
     for a, b in zip(without.squares, with_it.squares, strict=True):
         falls.append(1 - float(np.concatenate(b).mean() / np.concatenate(a).mean()))
-        each = [np.log(y.mean() / x.mean()) for x, y in zip(a, b, strict=True)]
-        typical.append(1 - float(np.exp(np.mean(each))))
+        ratios = [np.log(y.mean() / x.mean()) for x, y in zip(a, b, strict=True)]
+        typical.append(1 - float(np.exp(np.mean(ratios))))
         gains.append([window_gains(x, y, floor) for x, y in zip(a, b, strict=True)])
     here = gains[without.lengths.index(1.0)]
     blocks = np.concatenate([

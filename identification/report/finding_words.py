@@ -161,6 +161,13 @@ def _shifted_record(e: records.ShiftedRecord) -> str:
     )
 
 
+def _worse_fit(e: records.WorseFit) -> str:
+    return (
+        "without effects the fitted values predicted unseen data worse than those of the model"
+        f" (mean square {100 * e.rise:+.0f} %), so that the search began with the latter"
+    )
+
+
 def _remaining_error(e: records.RemainingError) -> str:
     return (
         f"an error on unseen data that is {e.noise_ratio:.3g} times the sensors' noise is left, and"
@@ -203,5 +210,6 @@ WORDS: dict[FindingKind, Callable[[Any], str]] = {
     FindingKind.REMAINING_ERROR: _remaining_error,
     FindingKind.DIFFERENT_RECORD: _different_record,
     FindingKind.SHIFTED_RECORD: _shifted_record,
+    FindingKind.WORSE_FIT: _worse_fit,
     FindingKind.UNPROVEN_EFFECT: _unproven_effect,
 }

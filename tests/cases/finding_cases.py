@@ -28,6 +28,7 @@ EVIDENCE_OF = {
     FindingKind.REMAINING_ERROR: records.RemainingError(7.1),
     FindingKind.DIFFERENT_RECORD: records.DifferentRecord("c.csv", 4.2, 1e-6),
     FindingKind.SHIFTED_RECORD: records.ShiftedRecord("c.csv", -0.014, 0.003, 0.3, 1e-5),
+    FindingKind.WORSE_FIT: records.WorseFit(7.96),
     FindingKind.UNPROVEN_EFFECT: records.UnprovenEffect("stiffness", "joint a", 0.2, 1.9, "chance"),
 }  # fmt: skip
 FINDINGS = tuple(Finding(kind, EVIDENCE_OF[kind]) for kind in FindingKind)

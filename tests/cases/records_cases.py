@@ -40,10 +40,10 @@ def pendulum() -> JointPlant:
     return joint_plant(MJCF, PARAMETERS, log, joints=(AXIS,))
 
 
-def record(seed=0, samples=500, values=None, noise=NOISE, plant=None):
+def record(seed=0, samples=500, values=None, noise=NOISE, plant=None, largest=0.7):
     """A record under a random torque that changes every 0.2 s; y is zero without a plant."""
     rng = np.random.default_rng(seed)
-    u = np.repeat(rng.uniform(-0.7, 0.7, samples // 20 + 1), 20)[:samples, None]
+    u = np.repeat(rng.uniform(-largest, largest, samples // 20 + 1), 20)[:samples, None]
     time = np.arange(samples) * STEP
     log = Log(
         time=time, inputs=u, outputs=0.1 * np.sin(time)[:, None], input_names=("drive",),

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 from pendulum_robot import TOML, make_folder, written
-from records_cases import nominal_model, pendulum, records
+from records_cases import nominal_model, pendulum, record, records
 
 from identification.__main__ import main
 from identification.effects.joint_plant import candidates
@@ -73,6 +73,29 @@ def test_records_without_an_effect_get_no_name():
 def test_a_law_that_is_not_in_the_list_is_not_called_by_another_name():
     answer = found({MU: 0.15}, names=("offset",))
     assert answer.named == ()
+
+
+def clipped_and_not(names):
+    """Two records whose torque is clipped and two whose torque is small; the model begins right."""
+    hidden = {"saturation.c@drive": 1.0, "saturation.u_max": 0.4}
+    logs = [record(1, values=hidden, plant=pendulum()), record(2, values=hidden, plant=pendulum())]
+    logs += [record(k, plant=pendulum(), largest=0.35) for k in (3, 4)]
+    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in names]
+    base = replace(nominal_model(), plant=pendulum())
+    return discover_records(base, logs[:2], logs[2:], effects)
+
+
+def test_what_made_a_fit_worse_than_its_start_is_named_and_told():
+    answer = clipped_and_not(("saturation", "offset"))
+    assert [n.effect.candidate.effect.name for n in answer.named] == ["saturation"]
+    assert answer.named[0].effect.parameters["u_max"][0] == pytest.approx(0.4, rel=0.02)
+    said = records_text(answer)
+    assert "the fitted values predicted unseen data worse than those of the model" in said
+
+
+def test_a_fit_that_is_worse_than_its_start_is_refused_where_nothing_explains_it(refusal):
+    said = refusal(clipped_and_not, ("offset",))
+    assert "nothing can be built on it" in said
 
 
 def test_findings_have_words():

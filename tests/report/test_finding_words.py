@@ -35,6 +35,7 @@ SAYS = {
     FindingKind.REMAINING_ERROR: "7.1 times the sensors' noise",
     FindingKind.DIFFERENT_RECORD: "c.csv is predicted 4.2 times worse",
     FindingKind.SHIFTED_RECORD: "in record c.csv the inputs act 14.0 ± 3.0 ms earlier than their",
+    FindingKind.WORSE_FIT: "worse than those of the model (mean square +796 %)",
     FindingKind.UNPROVEN_EFFECT: "mean square -20 %, t = 1.9), but is not proven: with",
 }
 

@@ -282,9 +282,20 @@ class ShiftedRecord:
     chance: float
 
 
+@dataclass(frozen=True)
+class WorseFit:
+    """A fit of the nominal model that made predictions of unseen records worse.
+
+    Attributes:
+        rise: of the mean square on unseen records, relative.
+    """
+
+    rise: float
+
+
 Evidence = (
     WorstOutput | WorstInterval | MedianFrequency | ForceEvidence | InputHold | SpectralLine
     | NoisyOutput | CorrelatedInnovations | ParametersAtLimit | LargeInputError | RobotChange
     | StructuredInputError | DoubtfulEffect | OversizedEffect | RemainingError | UnprovenEffect
-    | DifferentRecord | ShiftedRecord
+    | DifferentRecord | ShiftedRecord | WorseFit
 )  # fmt: skip

@@ -34,6 +34,7 @@ class FindingKind(StrEnum):
     UNPROVEN_EFFECT = "unproven effect"
     DIFFERENT_RECORD = "different record"
     SHIFTED_RECORD = "shifted record"
+    WORSE_FIT = "worse fit"
 
 
 EVIDENCE: dict[FindingKind, type[Evidence]] = {
@@ -55,6 +56,7 @@ EVIDENCE: dict[FindingKind, type[Evidence]] = {
     FindingKind.UNPROVEN_EFFECT: records.UnprovenEffect,
     FindingKind.DIFFERENT_RECORD: records.DifferentRecord,
     FindingKind.SHIFTED_RECORD: records.ShiftedRecord,
+    FindingKind.WORSE_FIT: records.WorseFit,
 }
 
 
