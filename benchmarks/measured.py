@@ -82,6 +82,10 @@ def work(robot: MeasuredRobot, given: argparse.Namespace) -> None:
             slug = re.sub(r"\W+", "_", what)
             again = partial(measure, split.started(values), say)
             keep(given, f"{robot.name}_start_{slug}", again, start=what)
+        for what, names in robot.lacking.items():
+            slug = re.sub(r"\W+", "_", what)
+            poorer = partial(measure, split.poorer(names), say)
+            keep(given, f"{robot.name}_start_{slug}", poorer, start=what)
 
 
 def keep(

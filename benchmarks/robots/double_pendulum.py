@@ -143,5 +143,8 @@ def read(data: Path) -> MeasuredRobot:
         ),
         models=(PublishedModel(name="model 2.0", source=SOURCE,
                                errors=partial(published_errors, identified)),),
+        lacking={"its model without friction": tuple(
+            p.name for p in FREE if p.name.startswith("coulomb_friction")
+        )},
         evidence=lambda _: evidence_of(data),
     )  # fmt: skip

@@ -6,7 +6,7 @@ project. `robots.written` writes one as the files that `python -m identification
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -130,6 +130,8 @@ class MeasuredRobot:
         expected: effects one of which should be named first; empty where nobody knows.
         apart: records of the robot as it was changed.
         starts: other values with which the whole work begins once more, by what they are.
+        lacking: free parameters that a poorer model of it lacks, by what that model is; the whole
+            work is done once more with it.
         published: numbers of others.
         models: models of others.
         evidence: what else the records show, as a JSON object; None where nothing is to be shown.
@@ -149,6 +151,7 @@ class MeasuredRobot:
     expected: tuple[str, ...] = ()
     apart: tuple[Apart, ...] = ()
     starts: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    lacking: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     published: tuple[PublishedSize, ...] = ()
     models: tuple[PublishedModel, ...] = ()
     evidence: Callable[[Outcome], dict[str, Any]] | None = None
@@ -169,3 +172,9 @@ class MeasuredRobot:
         """The robot with other values at which the search begins."""
         free = (replace(p, value=values.get(p.name, p.value)) for p in self.free)
         return replace(self, free=tuple(free))
+
+    def poorer(self, names: Sequence[str]) -> MeasuredRobot:
+        """The robot with a model that lacks some effects, one of which should be named first."""
+        free = tuple(p for p in self.free if p.name not in names)
+        effects = dict.fromkeys(n.partition(".")[0] for n in names)
+        return replace(self, free=free, expected=tuple(effects))

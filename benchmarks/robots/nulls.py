@@ -85,9 +85,10 @@ def null_study(robot: MeasuredRobot, count: int, say: Callable[[str], None]) -> 
         DivergenceError: the nominal model cannot be simulated.
     """
     compiled, found, _ = discovered(robot, say)
+    plant, values = found.final.plant, found.final.values
     best, rows = best_model(robot, compiled.plant, found), []
     for k in range(count):
-        null = null_of(best, compiled.plant, found.final.values, k)
+        null = null_of(best, plant, values, k)
         _, answer, seconds = discovered(null, say)
         named = [n.effect.candidate.effect.name for n in answer.named]
         rows.append({"verdict": answer.verdict, "named": named, "seconds": seconds})

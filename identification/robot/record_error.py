@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from identification.effects.jointed import JointPlant
 from identification.logs.log import Log
-from identification.model.predictor import Predictor
+from identification.model.predictor import Plant, Predictor
 from identification.quantities import alike
 from identification.robot.robot import Robot
 from identification.windows.window_error import window_error
@@ -99,10 +100,18 @@ def _rms(robot: Robot, log: Log, values: Mapping[str, float]) -> float:
     if horizon is None:
         error = _free_run(robot, log, here)
     else:
-        error = window_error(robot.plant_of(log), log, horizon, here)
+        error = window_error(_plant(robot, log, here), log, horizon, here)
     return float(np.sqrt(np.mean(error**2)))
 
 
+def _plant(robot: Robot, log: Log, values: Mapping[str, float]) -> Plant:
+    """The plant of a record, with the states that the effects among some values need."""
+    plant = robot.plant_of(log)
+    if not isinstance(plant, JointPlant):
+        return plant
+    return plant.with_states_of(n for n, v in values.items() if v != 0)
+
+
 def _free_run(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
-    predictor = Predictor(robot.plant_of(log), log, (), dict(values))
+    predictor = Predictor(_plant(robot, log, values), log, (), dict(values))
     return np.asarray(log.outputs - predictor.predict(np.empty((1, 0)))[0])
