@@ -29,26 +29,6 @@ def terms(code, q, v, p, M, c, g):  # type: ignore[no-untyped-def]
 
 
 @njit(error_model="numpy")
-def solve(M, x):  # type: ignore[no-untyped-def]
-    """M^-1 x of a positive matrix, in place: M = L L^T (Cholesky)."""
-    n = x.size
-    for j in range(n):
-        for i in range(j, n):
-            s = M[i, j]
-            for k in range(j):
-                s -= M[i, k] * M[j, k]
-            M[i, j] = np.sqrt(s) if i == j else s / M[j, j]
-    for i in range(n):
-        for k in range(i):
-            x[i] -= M[i, k] * x[k]
-        x[i] /= M[i, i]
-    for i in range(n - 1, -1, -1):
-        for k in range(i + 1, n):
-            x[i] -= M[k, i] * x[k]
-        x[i] /= M[i, i]
-
-
-@njit(error_model="numpy")
 def accelerations(code, p, joints, q, v, q0, z, tau, M, c, g, a):  # type: ignore[no-untyped-def]
     """q̈ into a: of drives' forces tau, in a step that began at q0 with contacts stretched by z."""
     terms(code, q, v, p, M, c, g)
@@ -60,7 +40,7 @@ def accelerations(code, p, joints, q, v, q0, z, tau, M, c, g, a):  # type: ignor
             a[i] -= dahl(joints[i], z[i], q[i] - q0[i], low, high)
         elif low > 0.0 or high > 0.0:
             a[i] -= held(joints[i], z[i] + q[i] - q0[i], v[i], low, high)
-    solve(M, a)
+    a[:] = np.linalg.solve(M, a)
 
 
 @njit(error_model="numpy")
