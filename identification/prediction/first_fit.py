@@ -22,7 +22,7 @@ from identification.prediction.joint_states import model_for
 from identification.prediction.model import WindowModel
 from identification.prediction.problem import Problem, with_unknowns
 from identification.prediction.scores import WindowScore, inside
-from identification.prediction.thinning import THIN, thinned, thinned_moves, thinned_tangents
+from identification.prediction.thinning import picks, thinned, thinned_moves, thinned_tangents
 from identification.prediction.unknowns import Prior
 
 SHARES = (1.0, 0.3, 0.05, 0.01)  # of the size that a score gives, to begin with
@@ -37,6 +37,7 @@ class Begun:
 
     Attributes:
         cost: V there.
+        windows: how many of them.
         candidate: the effect.
         parent: the model without it, its plant with the states that the effect needs.
         fixed: values that it holds fixed.
@@ -45,6 +46,7 @@ class Begun:
     """
 
     cost: float
+    windows: int
     candidate: Candidate
     parent: WindowModel
     fixed: Mapping[str, float]
@@ -75,8 +77,9 @@ def _begun(parent: WindowModel, score: WindowScore) -> Begun | None:
     c = score.candidate
     parent = model_for(parent, c)
     task, fixed = _task(parent, c)
-    few, begun = thinned(task, THIN), thinned_moves(parent.fit.moves, THIN)
-    near = thinned_tangents(parent.fit.tangents, THIN)
+    at = picks(parent.fit.tangents)
+    few, begun = thinned(task, at), thinned_moves(parent.fit.moves, at)
+    near = thinned_tangents(parent.fit.tangents, at)
     least = parent.fit.problem.cost_of(parent.fit.q, [t.r for t in near])
     tried = []
     for share in SHARES:
@@ -92,7 +95,8 @@ def _begun(parent: WindowModel, score: WindowScore) -> Begun | None:
         return None
     _, q, moves = min(tried, key=lambda t: t[0])
     found = solve(few, q, moves, tolerance=FINE)
-    return Begun(found.cost, c, parent, fixed, task, found.q)
+    windows = sum(len(rows) for rows in at)
+    return Begun(found.cost, windows, c, parent, fixed, task, found.q)
 
 
 def _task(parent: WindowModel, c: Candidate) -> tuple[Problem, dict[str, float]]:

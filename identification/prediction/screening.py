@@ -19,7 +19,7 @@ from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel
 from identification.prediction.scores import WindowScore, find_imitated, window_scores
 from identification.prediction.several_places import several_scores
-from identification.prediction.thinning import THIN, thinned, thinned_moves, thinned_tangents
+from identification.prediction.thinning import picks, thinned, thinned_moves, thinned_tangents
 
 MANY = 300  # candidates, which robots of several joints have
 SHAPES = 2  # of an effect at a place that are scored on all windows
@@ -54,9 +54,11 @@ def score_all(
 
 def some_windows(fit: WindowFit) -> WindowFit:
     """A fit seen through one window of `THIN`; its values are those of all windows."""
-    tangents = thinned_tangents(fit.tangents, THIN)
-    moves = thinned_moves(fit.moves, THIN)
-    return replace(fit, problem=thinned(fit.problem, THIN), moves=moves, tangents=tangents)
+    at = picks(fit.tangents)
+    return replace(
+        fit, problem=thinned(fit.problem, at), moves=thinned_moves(fit.moves, at),
+        tangents=thinned_tangents(fit.tangents, at),
+    )  # fmt: skip
 
 
 def _listed(model: WindowModel, effects: Sequence[Effect]) -> list[Candidate]:

@@ -29,7 +29,6 @@ from identification.prediction.model import WindowModel
 from identification.prediction.proof import Doubt, find_doubt, has_size
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
-from identification.prediction.thinning import THIN, thinned
 from identification.prediction.unseen import Prediction, Unseen, compare
 
 Progress = Callable[[str], None]
@@ -130,11 +129,9 @@ def _near_best(begun: Sequence[Begun], options: DiscoveryOptions) -> list[Begun]
 
 def _evidence_of_some(begun: Begun) -> float:
     """E of an effect that is fitted to some windows, but for what all of them have alike."""
-    some = thinned(begun.task, THIN)
-    windows = sum(len(p.cut.starts) for p in some.parts)
-    outputs = some.parts[0].cut.outputs.shape[-1]
-    price = len(begun.q) * np.log(max(2, windows))
-    return float(-windows * outputs * np.log(begun.cost) - price)
+    outputs = begun.task.parts[0].cut.outputs.shape[-1]
+    price = len(begun.q) * np.log(max(2, begun.windows))
+    return float(-begun.windows * outputs * np.log(begun.cost) - price)
 
 
 def _label(c: Candidate) -> str:
