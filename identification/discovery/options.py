@@ -10,18 +10,19 @@ import tomllib
 from dataclasses import dataclass, fields
 from pathlib import Path
 
+from identification.discovery.prediction_options import PredictionOptions
 from identification.effects.effect import FARTHEST
 from identification.errors import InputError, unknown_name
 from identification.files import read_bytes
-from identification.kalman.options import KalmanOptions, option
+from identification.kalman.options import option
 from identification.logs.names import quoted
 
 MAX_FILE = 2**20  # bytes of a file of options
 
 
 @dataclass(frozen=True, kw_only=True)
-class DiscoveryOptions(KalmanOptions):
-    """What a discovery believes; the options of the noise model are among them.
+class DiscoveryOptions(PredictionOptions):
+    """What a discovery believes; the options of the noise model, and of a horizon, are among them.
 
     Every field has its unit, reason and source in its metadata (`dataclasses.fields`).
 
@@ -111,12 +112,6 @@ class DiscoveryOptions(KalmanOptions):
         " taken.",
         "Kass and Raftery 1995: not worth more than a bare mention",
     )  # fmt: skip
-    strong_bic: float = option(
-        10.0, "of BIC",
-        "Over a horizon: a law with fewer numbers is taken instead of one whose criterion is better"
-        " by less, where unseen records cannot tell them apart.",
-        "Kass and Raftery 1995: very strong evidence",
-    )  # fmt: skip
 
     # The proof on unseen samples.
     proof_blocks: int = option(
@@ -146,13 +141,6 @@ class DiscoveryOptions(KalmanOptions):
         0.5, "of the gap on unseen samples",
         "Effects are named although something is left only when they close more than this.",
         "judgement", most=1.0,
-    )  # fmt: skip
-    max_input_error: float = option(
-        0.05, "of the inputs' own rms",
-        "Over a horizon: an error of prediction that inputs make which are off by no more, constant"
-        " over each window, is no reason to say that something is missing; currents and commanded"
-        " torques are seldom better.",
-        "judgement",
     )  # fmt: skip
     max_named_input_error: float = option(
         1.0, "of the inputs' own motion",

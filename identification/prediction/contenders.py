@@ -10,9 +10,6 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.prediction.scores import WindowScore
 
-BEGUN = 2  # times `max_refits` effects are fitted to some windows
-SIMPLER = 2  # laws with fewer numbers that are refitted beside a winner
-
 
 def list_contenders(
     scores: Sequence[WindowScore], options: DiscoveryOptions, errors: int
@@ -54,7 +51,7 @@ def _best_few(
         if s.gain > max(least, own):
             out.append(s)
             best.setdefault(s.candidate.effect.name, s.gain)
-    return out[: BEGUN * options.max_refits]
+    return out[: options.max_begun]
 
 
 def is_significant(s: WindowScore, count: int, options: DiscoveryOptions) -> bool:
@@ -87,7 +84,7 @@ def list_simpler(
             continue
         if is_significant(s, len(scores), options) and is_plausible(s, options):
             each.setdefault(c.effect.name, s)
-    return [*each.values()][:SIMPLER]
+    return [*each.values()][: options.max_simpler]
 
 
 def count_numbers(c: Candidate) -> int:

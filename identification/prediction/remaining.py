@@ -20,8 +20,6 @@ from identification.prediction.result import (
 )
 from identification.prediction.state import RecordsState, rise
 
-DIFFERENT = 2.0  # times worse than others a record is predicted that is told apart
-
 
 def find_remaining(state: RecordsState, rejected: Sequence[RefittedEffect]) -> tuple[Finding, ...]:
     """What the final model leaves: errors above the sensors' noise, and doubtful effects."""
@@ -50,7 +48,7 @@ def different_records(state: RecordsState) -> list[DifferentRecord]:
 
     The sample are logarithms of the windows' mean squares, and the records are paid for.
     """
-    unseen = state.model.unseen
+    unseen, options = state.model.unseen, state.task.options
     errors = {
         r.log.name: np.log(squares + unseen.floor)
         for r, squares in zip(state.task.confirm, unseen.at_horizon, strict=True)
@@ -66,7 +64,7 @@ def different_records(state: RecordsState) -> list[DifferentRecord]:
         rest = np.concatenate([e for n, e in errors.items() if n != name])
         ratio = float(np.exp((mine.mean() - rest.mean()) / 2))
         chance = float(ttest_ind(mine, rest, equal_var=False, alternative="greater").pvalue)
-        if ratio > DIFFERENT and chance * len(errors) < state.task.options.significance:
+        if ratio > options.different_ratio and chance * len(errors) < options.significance:
             out.append(DifferentRecord(name, ratio, chance))
     return out
 

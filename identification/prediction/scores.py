@@ -18,6 +18,7 @@ import numpy as np
 from scipy.linalg import block_diag
 from scipy.stats import f as f_distribution
 
+from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.errors import InputError
 from identification.model.coordinates import coordinates
@@ -26,7 +27,6 @@ from identification.prediction.fit import BLOCKS, WindowFit
 from identification.prediction.joint_states import rows_for
 from identification.prediction.point import projected
 
-NEW = 0.01  # of a column that free parameters cannot imitate; with less it is one of them again
 SMALL = 1e-4  # of a probe, by which a size is moved to see whether free parameters imitate it
 BATCH = 24  # columns at a time: bounds the memory of their trajectories
 
@@ -79,15 +79,22 @@ def window_scores(fit: WindowFit, candidates: Sequence[Candidate]) -> tuple[Wind
     return tuple(sorted(out, key=lambda s: -s.fall))
 
 
-def find_imitated(fit: WindowFit, scores: Sequence[WindowScore]) -> set[tuple[str, str]]:
+def find_imitated(
+    fit: WindowFit, scores: Sequence[WindowScore], options: DiscoveryOptions
+) -> set[tuple[str, str]]:
     """Effects, with their places, that free parameters imitate: the same by another name.
 
     Args:
         fit: the model without them.
         scores: of those that are asked for, the best first.
+        options: of how little they must leave.
     """
     base, asked = _Base(fit), {s.candidate.key: s.candidate for s in reversed(scores)}
-    return {key for key, candidate in asked.items() if base.is_imitated(candidate)}
+    return {
+        key
+        for key, candidate in asked.items()
+        if base.is_imitated(candidate, options.imitated_share)
+    }
 
 
 def _groups(candidates: Sequence[Candidate]) -> Iterator[list[Candidate]]:
@@ -136,7 +143,7 @@ class _Base:
             out.append(self._score(c, np.vstack([S, below])))
         return out
 
-    def is_imitated(self, candidate: Candidate) -> bool:
+    def is_imitated(self, candidate: Candidate, share: float) -> bool:
         """Whether free parameters of the model imitate all columns, whatever priors say.
 
         Its step is as small as that of the free parameters: where joints stick, a large one shows
@@ -145,7 +152,7 @@ class _Base:
         S = np.vstack(self._columns([candidate], SMALL))
         size = np.linalg.norm(S, axis=0)
         left = np.linalg.norm(S - self.free @ (self.free.T @ S), axis=0)
-        return bool(np.all(left < NEW * size))
+        return bool(np.all(left < share * size))
 
     def _columns(self, group: Sequence[Candidate], share: float = 1.0) -> list[np.ndarray]:
         """-∂r/∂η of the sizes of candidates, without the states' part, (rows, k) a record.

@@ -46,7 +46,8 @@ def score_all(
     beyond = [
         s for s in found if is_significant(s, len(found), options) and is_plausible(s, options)
     ]
-    known = find_imitated(model.fit, [s for s in beyond if id(s.candidate) in again or not is_many])
+    asked = [s for s in beyond if id(s.candidate) in again or not is_many]
+    known = find_imitated(model.fit, asked, options)
     found, beyond = ([s for s in each if s.candidate.key not in known] for each in (found, beyond))
     several = several_scores(model.fit, beyond, options)
     return tuple(sorted((*found, *several), key=lambda s: -s.fall))

@@ -29,8 +29,6 @@ from identification.prediction.selection import (
 )
 from identification.prediction.unseen import Unseen, compare, predict
 
-RIVAL = 0.5  # of what an effect explained; one that keeps more beside another is not its rival
-
 
 @dataclass(frozen=True, kw_only=True)
 class RecordsTask:
@@ -166,6 +164,7 @@ def _rivals(
 
     What still explains as much is no rival of the best one: it is missing too.
     """
+    options = state.task.options
     before, after = (
         {s.candidate.key: s.fall * cost for s in reversed(each)}
         for each, cost in ((state.scores, state.model.fit.cost), (scores, best.model.fit.cost))
@@ -173,7 +172,7 @@ def _rivals(
     return tuple(
         o for o in others
         if o.is_proven
-        and after.get(o.candidate.key, 0.0) < RIVAL * before.get(o.candidate.key, 0.0)
+        and after.get(o.candidate.key, 0.0) < options.rival_share * before.get(o.candidate.key, 0.0)
     )  # fmt: skip
 
 

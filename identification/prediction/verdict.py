@@ -34,8 +34,6 @@ from identification.prediction.selection import Contender, evidences
 from identification.prediction.state import RecordsState, rise
 from identification.prediction.unseen import PER_RECORD, Unseen
 
-LIKELY = 0.02  # a rival less likely than this is not listed
-
 
 def conclude(state: RecordsState) -> RecordsDiscovery:
     """The outcome of a finished search.
@@ -132,7 +130,7 @@ def _named(
     rivals = [
         _refitted(o.model, o, float(share))
         for o, share in zip(others, shares[1:], strict=True)
-        if share > LIKELY
+        if share > options.listed_confidence
     ]
     effect = _refitted(
         state.model if is_final else accepted.model, accepted,

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from records_cases import FREE, HORIZON, nominal_model, pendulum, record, records
 
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
 from identification.prediction.extension import with_effect
@@ -139,4 +140,5 @@ def test_a_parameter_without_effect_is_refused(refusal):
 def test_a_free_parameter_by_another_name_is_imitated_and_a_law_is_not():
     """The arm's inertia is free as its armature, so that no other inertia of it is missing."""
     found = scored(rubbed(), "inertia_mismatch", "transmitted_load_friction")
-    assert {name for name, _ in find_imitated(rubbed().fit, found)} == {"inertia_mismatch"}
+    known = find_imitated(rubbed().fit, found, DiscoveryOptions())
+    assert {name for name, _ in known} == {"inertia_mismatch"}

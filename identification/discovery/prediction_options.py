@@ -1,0 +1,67 @@
+"""Judgement constants of a discovery over a horizon, with their units and reasons."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from identification.kalman.options import KalmanOptions, option
+
+
+@dataclass(frozen=True, kw_only=True)
+class PredictionOptions(KalmanOptions):
+    """What is tried and told where predictions of unseen records decide.
+
+    Every field has its unit, reason and source in its metadata (`dataclasses.fields`).
+
+    Raises:
+        InputError: a value is no number, or lies outside the range that makes sense.
+    """
+
+    max_begun: int = option(
+        6, "candidates",
+        "Over a horizon: largest number of candidates that are fitted to some of the windows in a"
+        " round; the best `max_refits` of them, and those near them, are refitted to all.",
+        "judgement", least=1,
+    )  # fmt: skip
+    max_simpler: int = option(
+        2, "candidates",
+        "Over a horizon: largest number of laws with fewer numbers that are refitted beside the"
+        " best one.",
+        "judgement",
+    )  # fmt: skip
+    imitated_share: float = option(
+        0.01, "of an effect's part in the outputs",
+        "Over a horizon: an effect of which the free parameters leave less is one of them by"
+        " another name, and no candidate.",
+        "judgement", most=1.0,
+    )  # fmt: skip
+    strong_bic: float = option(
+        10.0, "of BIC",
+        "Over a horizon: a law with fewer numbers is taken instead of one whose criterion is better"
+        " by less, where unseen records cannot tell them apart.",
+        "Kass and Raftery 1995: very strong evidence",
+    )  # fmt: skip
+    rival_share: float = option(
+        0.5, "of what an effect explained",
+        "Over a horizon: an effect that still explains more beside the named one is missing too,"
+        " and no rival of it.",
+        "judgement", most=1.0,
+    )  # fmt: skip
+    listed_confidence: float = option(
+        0.02, "probability",
+        "Over a horizon: a rival that is less likely is not listed.",
+        "judgement", most=1.0,
+    )  # fmt: skip
+    different_ratio: float = option(
+        2.0, "of the rms error of the other records",
+        "Over a horizon: a record that is predicted worse than this, beyond chance, is told to be"
+        " different.",
+        "judgement", least=1.0,
+    )  # fmt: skip
+    max_input_error: float = option(
+        0.05, "of the inputs' own rms",
+        "Over a horizon: an error of prediction that inputs make which are off by no more, constant"
+        " over each window, is no reason to say that something is missing; currents and commanded"
+        " torques are seldom better.",
+        "judgement",
+    )  # fmt: skip
