@@ -30,7 +30,7 @@ from identification.windows.shooting import Shooting
 from identification.windows.windows import Windows, first_states, spread, windows
 
 LENGTHS = (0.5, 1.0, 2.0)  # of the horizon
-PER_RECORD = 10  # blocks of a record at most
+PER_RECORD = 20  # blocks of a record at most, of two windows at least; as `proof_blocks`
 
 
 @dataclass(frozen=True, kw_only=True)
