@@ -41,8 +41,7 @@ def discover_records(
         values: by the name of a log, values of parameters that hold for it alone.
 
     Raises:
-        InputError: there is no horizon, windows do not fit a log, a name is unknown, or the fitted
-            nominal model predicts worse than the values with which the fit began.
+        InputError: there is no horizon, windows do not fit a log, or a name is unknown.
         DivergenceError: the nominal model cannot be simulated.
     """
     if nominal_model.horizon is None:

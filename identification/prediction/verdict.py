@@ -16,7 +16,6 @@ from scipy.stats import ttest_1samp
 from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
-from identification.errors import InputError
 from identification.logs.replay import REPLAYED, replayed_share
 from identification.prediction.evidence import compute_confidence
 from identification.prediction.input_error import needed_input_error
@@ -40,12 +39,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
 
     Args:
         state: the finished state.
-
-    Raises:
-        InputError: the fit of the nominal model predicted unseen records worse than the values with
-            which it began, and no effect was found that explains why.
     """
-    _refuse_worse(state)
     task, nominal, model = state.task, state.nominal, state.model
     options = task.options
     named = tuple(
@@ -68,6 +62,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
         named
         or doubtful
         or different
+        or _is_worse(state)
         or (_is_off(model, options) and needed > options.max_input_error)
     ):
         verdict = "unknown effect"
@@ -91,18 +86,6 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
         scores=state.nominal_scores, remaining=state.scores if named else state.nominal_scores,
         findings=findings, repeats=_repeats(task.records), seconds=state.seconds,
     )  # fmt: skip
-
-
-def _refuse_worse(state: RecordsState) -> None:
-    if state.worse_fit is None or state.accepted:
-        return
-    percent = f"{100 * rise(state.begun, state.worse_fit):+.0f} %"
-    raise InputError(
-        "the fitted nominal model predicts the records that confirm worse than the values with"
-        f" which the fit began (mean square {percent}), and no known effect explains"
-        " why, so that nothing can be built on it; fit more records, state in the robot's"
-        " file what is known of the free parameters (known), or leave some of them out"
-    )
 
 
 def _repeats(records: Sequence[Record]) -> tuple[str, ...]:
@@ -179,6 +162,13 @@ def _refitted(model: WindowModel, contender: Contender, confidence: float) -> Re
         prediction=contender.prediction, criterion=contender.criterion, confidence=confidence,
         doubt=contender.doubt,
     )  # fmt: skip
+
+
+def _is_worse(state: RecordsState) -> bool:
+    """Whether the fit made predictions worse by enough to matter, and no effect explains why."""
+    if state.worse_fit is None or state.accepted:
+        return False
+    return rise(state.begun, state.worse_fit) > state.task.options.min_gap_share
 
 
 def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:

@@ -21,7 +21,8 @@ def records_verdict(found: RecordsDiscovery) -> list[str]:
         return [
             "Nothing is missing, as far as these records can tell: no candidate lowers the error of"
             f" prediction on unseen data beyond chance. It is {before} rms over"
-            f" {found.horizon:g} s, where the sensors make {noise}." + _rest(found)
+            f" {found.horizon:g} s, where the sensors make {noise}." + _rest(found),
+            *(sentence(describe_finding(finding)) for finding in found.findings),
         ]
     if found.verdict == "unknown effect":
         return [_unknown(found)]

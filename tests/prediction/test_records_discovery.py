@@ -93,9 +93,12 @@ def test_what_made_a_fit_worse_than_its_start_is_named_and_told():
     assert "the fitted values predicted unseen data worse than those of the model" in said
 
 
-def test_a_fit_that_is_worse_than_its_start_is_refused_where_nothing_explains_it(refusal):
-    said = refusal(clipped_and_not, ("offset",))
-    assert "nothing can be built on it" in said
+def test_a_fit_that_is_worse_than_its_start_is_no_start_and_is_told():
+    answer = clipped_and_not(("offset",))
+    assert answer.verdict == "unknown effect"
+    assert answer.named == ()
+    assert answer.nominal.fit.values["J"] == pytest.approx(2e-3, rel=1e-9)
+    assert "the fitted values predicted unseen data worse" in records_text(answer)
 
 
 def test_findings_have_words():
