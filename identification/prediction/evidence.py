@@ -2,12 +2,14 @@
 
     g_cb = ln(mean square without c + ε²) - ln(mean square with c + ε²)           of each block b
     E_c = n_y W mean_b g_cb - k_c ln W
-    P_c = share of resamples of the blocks in which E_c is largest
+    P_c = mean over resamples of the blocks of exp(E_c/2) / Σ_k exp(E_k/2)
 
 W windows of n_y outputs, k_c numbers that c adds, ε the sensors' noise. Within a block windows
 count by their squares, so that those in which nothing happens do not decide; blocks count by
 logarithms, so that no record decides alone. E is twice the gain of a log likelihood with the price
-that BIC puts on numbers (Schwarz 1978). Blocks are drawn with replacement (bootstrap; Efron 1979).
+that BIC puts on numbers (Schwarz 1978), so that exp(E/2) are the odds of a law in one resample
+(Kass, Raftery 1995): two laws that predict alike share them, however surely one is a little better.
+Blocks are drawn with replacement (bootstrap; Efron 1979).
 """
 
 from __future__ import annotations
@@ -64,10 +66,10 @@ def evidence(
 
 
 def compute_confidence(evidences: np.ndarray) -> np.ndarray:
-    """P of each law, shape (k,); of laws that are equal the first one counts.
+    """P of each law, shape (k,).
 
     Args:
         evidences: E, shape (k, R), of `evidence`.
     """
-    best = evidences[:, 1:].argmax(axis=0)
-    return np.bincount(best, minlength=len(evidences)) / best.size
+    odds = np.exp((evidences - evidences.max(axis=0))[:, 1:] / 2)
+    return np.asarray((odds / odds.sum(axis=0)).mean(axis=1))

@@ -31,7 +31,7 @@ class RefittedEffect:
         parameters: its sizes and shapes by name: value, std, unit.
         prediction: of unseen records, over the model without it.
         criterion: by how much it raises the negative BIC on the fitted windows.
-        confidence: share of the resampled unseen blocks in which it predicts best, 0 to 1.
+        confidence: its share of the odds among its rivals, 0 to 1 (`prediction.evidence`).
         doubt: why it is not proven; None where it is.
     """
 

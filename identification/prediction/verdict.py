@@ -1,6 +1,6 @@
 """The verdict of a discovery by prediction.
 
-The confidence of a name is the share of resamples in which most speaks for it
+The confidence of a name is its share of the odds among its rivals, in the mean over resamples
 (`identification.prediction.evidence`). A name below even odds is no name, unless it is told with
 its look-alike: what was tried is then told, and the verdict is "unknown effect".
 """

@@ -119,9 +119,16 @@ def test_what_is_not_proven_comes_last():
     assert ranked(worse, rich) == ["rich", "plain"]
 
 
-def test_a_law_that_adds_nothing_to_another_has_no_share_of_its_confidence():
+def test_a_law_that_adds_a_number_and_nothing_else_pays_for_it():
+    """The odds of two laws whose E differ by ln W are √W: 80 windows of the cases."""
     plain, rich = contender(effect("plain"), 1.0), contender(effect("rich"), 1.0, numbers=2)
-    assert list(compute_confidence(evidences([plain, rich]))) == [1.0, 0.0]
+    shares = compute_confidence(evidences([plain, rich]))
+    assert shares[0] / shares[1] == pytest.approx(np.sqrt(80))
+
+
+def test_laws_that_predict_alike_share_the_confidence_however_surely_one_is_better():
+    a, b = contender(effect("a"), 1.0), contender(effect("b"), 1.0 + 1e-6)
+    np.testing.assert_allclose(compute_confidence(evidences([a, b])), 0.5, atol=1e-3)
 
 
 def test_the_evidence_of_all_blocks_is_twice_the_gain_in_likelihood_less_the_price_of_numbers():
