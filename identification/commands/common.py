@@ -21,11 +21,16 @@ class Output:
     """Folder for the results, result.json among them; made when missing."""
 
 
-def refuse_folder(path: Path | None) -> None:
+def refuse_folder(path: Path | None, robot: Path | None = None) -> None:
     """Refuse a folder that could not be made, before there are results to lose; makes nothing.
 
+    Args:
+        path: of the folder.
+        robot: a robot's file, which results must not replace.
+
     Raises:
-        InputError: it, or what is above it, is a file or cannot be written.
+        InputError: it, or what is above it, is a file or cannot be written, or the robot's file
+            would be replaced.
     """
     from identification.errors import InputError
 
@@ -36,6 +41,11 @@ def refuse_folder(path: Path | None) -> None:
         raise InputError(f"cannot make folder {path}: {there} is a file; choose another")
     if not os.access(there, os.W_OK):
         raise InputError(f"cannot make folder {path}: {there} cannot be written; choose another")
+    if robot is not None and robot.resolve() == (path / "robot.toml").resolve():
+        raise InputError(
+            f"--out {path} would replace the robot's file {robot}, from which the fit begins;"
+            " choose another folder"
+        )
 
 
 def say(text: str) -> None:

@@ -43,7 +43,7 @@ class Discover(OnRobot):
         from identification.robot.repetition import find_repetitions
         from identification.robot.write import write_robot
 
-        refuse_folder(self.output.out)
+        refuse_folder(self.output.out, self.robot)
         options = None if self.options is None else read_options(self.options)
         robot = self.read()
         found = discover(robot, progress=note, options=options)

@@ -26,7 +26,7 @@ class Fit(OnRobot):
         from identification.robot.fitting import fit
         from identification.robot.write import write_robot
 
-        refuse_folder(self.output.out)
+        refuse_folder(self.output.out, self.robot)
         robot = self.read()
         found = fit(robot, note)
         record = robot_fit_to_json(found, confirm(robot, found))

@@ -100,6 +100,8 @@ class Effect:
         reference: table, paper or book of the law.
         probes: multiples of the sizes' probes at which its sensitivity is taken, where the outputs
             follow its size only nearly in proportion; below zero the other way.
+        needs: name of an effect that it changes, and without which it has no meaning: a level of
+            friction that differs by direction needs a level. Searches over a horizon ask for it.
         own: whether its size is each record's own, such as a shift of that record's time stamps;
             one record cannot tell it from what is the same in all.
         hooks: where it adds to the law of a robot, e.g. "force", and the njit function (state,
@@ -118,6 +120,7 @@ class Effect:
     phrase: str = ""
     reference: str = ""
     probes: tuple[float, ...] = (1.0,)
+    needs: str = ""
     own: bool = False
     hooks: Mapping[str, Callable[..., Any]] = field(default_factory=dict, hash=False)
 

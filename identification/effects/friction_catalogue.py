@@ -14,6 +14,9 @@ RATIO = Shape("rho", "", (0.25, 0.5, 2.0, 4.0), 0.02, 50.0, usual=0.5,
 LOAD = "Duclusaud, Passault, Padois, Ly 2024"
 
 
+LEVEL = "coulomb_friction"  # what laws change that say how much more friction there is
+
+
 def friction_effects(g: Group) -> list[Effect]:
     """Frictions of some joints; those without a place are left out by the caller."""
     F, A = g.F, g.A
@@ -24,18 +27,22 @@ def friction_effects(g: Group) -> list[Effect]:
                    (g.size("f_c", 0.3 * F, g.f, "level", 1),), "friction: Coulomb"),
         g.friction(laws.asymmetric_friction, "at most f_a more forward, less backward",
                    (g.size("f_a", 0.1 * F, g.f, "half the difference of the two directions"),),
-                   "friction: Coulomb level differs by direction"),
+                   "friction: Coulomb level differs by direction", needs=LEVEL),
         g.friction(laws.stribeck_friction, "at most f_s exp(-|v/v_s|^n) more",
                    (g.size("f_s", 0.2 * F, g.f, "height of the peak"),), "friction: Stribeck peak",
                    "Armstrong-Hélouvry, Dupont, Canudas de Wit 1994", (v_s, power)),
         *_under_load(g, v_s),
         g.friction(laws.position_dependent_friction, "at most f_q q more",
                    (g.size("f_q", 0.3 * F / A, f"{g.f}/{g.x}", "growth along the way"),),
-                   "friction: Coulomb level changes along the way"),
+                   "friction: Coulomb level changes along the way", needs=LEVEL),
     ]  # fmt: skip
     if (n := waves(g)) is not None:
         said, phrase = "at most a cos nq + b sin nq more", "friction: repeats along the way"
-        out.append(g.friction(laws.periodic_friction, said, wave_sizes(g), phrase, shapes=(n,)))
+        out.append(
+            g.friction(
+                laws.periodic_friction, said, wave_sizes(g), phrase, shapes=(n,), needs=LEVEL
+            )
+        )
     return out
 
 

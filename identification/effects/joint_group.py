@@ -9,7 +9,7 @@ grows with speed, of F/A for what grows along the way, of F/T for what grows wit
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from identification.effects.axes import Axis, Kind
@@ -103,9 +103,11 @@ class Group:
     def friction(
         self, law: Function, said: str, sizes: tuple[Size, ...], phrase: str, reference: str = "",
         shapes: tuple[Shape, ...] = (), where: Mapping[str, str] | None = None,
+        needs: str = "",
     ) -> Effect:  # fmt: skip
         """An effect on the largest friction, named like its law."""
-        return self._effect("friction", law, said, sizes, phrase, reference, shapes, where)
+        found = self._effect("friction", law, said, sizes, phrase, reference, shapes, where)
+        return replace(found, needs=self.prefix + needs) if needs else found
 
     def force(
         self, law: Function, said: str, sizes: tuple[Size, ...], phrase: str, reference: str = "",

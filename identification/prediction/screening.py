@@ -67,7 +67,24 @@ def _listed(model: WindowModel, effects: Sequence[Effect]) -> list[Candidate]:
     has = {c.key for c in model.candidates}
     everywhere = {c.effect.name for c in model.candidates if not c.effect.places[c.where]}
     common = list_common([e for e in effects if e.name not in everywhere])
-    return [c for c in (*common, *list_single(common)) if c.key not in has]
+    every = (c for c in (*common, *list_single(common)) if c.key not in has)
+    return [c for c in every if has_what_it_needs(model, c)]
+
+
+def has_what_it_needs(model: WindowModel, candidate: Candidate) -> bool:
+    """Whether a model has the effect that a candidate changes, at all of the candidate's places."""
+    needs, places = candidate.effect.needs, candidate.effect.places
+    if not needs:
+        return True
+    values = {**model.plant.parameters.values(), **model.values}
+    there = {
+        name.partition("@")[2]
+        for name, value in values.items()
+        if name.startswith(f"{needs}.") and (value != 0 or name in model.fit.problem.names)
+    }
+    own = places[candidate.where].removeprefix("@")
+    asked = {own} if own else {s.removeprefix("@") for s in places.values() if s} or {""}
+    return "" in there or asked <= there
 
 
 def _promising(scores: Sequence[WindowScore], options: DiscoveryOptions) -> list[Candidate]:

@@ -148,16 +148,17 @@ def _oversized_effect(e: records.OversizedEffect) -> str:
 
 def _different_record(e: records.DifferentRecord) -> str:
     return (
-        f"record {e.record} is predicted {e.ratio:.2g} times worse than the others: something is"
-        " different in it"
+        f"record {e.record} is predicted {e.ratio:.2g} times worse than the others (rms of windows,"
+        " geometric means): something is different in it; look at it, or leave it out"
     )
 
 
 def _shifted_record(e: records.ShiftedRecord) -> str:
-    which = "later" if e.shift > 0 else "earlier"
+    which, shift = "later" if e.shift > 0 else "earlier", quantity(abs(e.shift), e.std, "s")
     return (
-        f"in record {e.record} the inputs act {quantity(abs(e.shift), e.std, 's')} {which} than"
-        f" their time stamps say: that explains {100 * e.fall:.0f} % of its error"
+        f"record {e.record} looks as if its inputs acted {shift} {which} than their time stamps"
+        f" say, which takes {100 * e.fall:.0f} % off its mean square; check how it was logged, and"
+        " shift its inputs if that is so"
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from identification.discovery.findings.finding import FindingKind
 from identification.prediction.model import WindowModel
 from identification.prediction.result import RecordsDiscovery
 from identification.quantities import quantity
@@ -32,7 +33,9 @@ def value_table(found: RecordsDiscovery) -> tuple[tuple[str, ...], list[tuple[st
     models = [found.nominal, found.final] if found.named else [found.nominal]
     columns = [_values(model) for model in models]
     names = [*dict.fromkeys(name for column in columns for name in column)]
-    head = ("parameter", "fitted without effects", "fitted with what is named")
+    is_begun = any(f.kind is FindingKind.WORSE_FIT for f in found.findings)
+    without = "as begun, without effects" if is_begun else "fitted without effects"
+    head = ("parameter", without, "fitted with what is named")
     rows = [(name, *(column.get(name, "–") for column in columns)) for name in names]
     return head[: 1 + len(models)], rows
 

@@ -98,7 +98,9 @@ def test_a_fit_that_is_worse_than_its_start_is_no_start_and_is_told():
     assert answer.verdict == "unknown effect"
     assert answer.named == ()
     assert answer.nominal.fit.values["J"] == pytest.approx(2e-3, rel=1e-9)
-    assert "the fitted values predicted unseen data worse" in records_text(answer)
+    said = records_text(answer)
+    assert "the fitted values predicted unseen data worse" in said
+    assert "as begun, without effects" in said
 
 
 def test_findings_have_words():
@@ -112,6 +114,16 @@ def test_a_horizon_is_needed(refusal):
 
 
 ONLY = '[effects]\nonly = ["transmitted_load_friction", "offset"]\n'
+
+
+def test_the_robots_file_is_never_replaced_by_results(folder, capsys):
+    before = (folder / "robot.toml").read_text()
+    logs = [str(folder / f"log_{k}.csv") for k in range(2)]
+    for command in ("fit", "discover"):
+        arguments = [command, str(folder / "robot.toml"), logs[0], "--confirm", logs[1]]
+        assert main([*arguments, "--out", str(folder)]) == 2
+        assert "would replace the robot's file" in capsys.readouterr().err
+    assert (folder / "robot.toml").read_text() == before
 
 
 @pytest.fixture

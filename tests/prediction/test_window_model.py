@@ -15,6 +15,7 @@ from identification.prediction.first_fit import begin
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
 from identification.prediction.scores import find_imitated, window_scores
+from identification.prediction.screening import has_what_it_needs
 from identification.prediction.unseen import compare, predict
 
 LOAD = {"transmitted_load_friction.mu@hinge": 0.15}
@@ -142,3 +143,19 @@ def test_a_free_parameter_by_another_name_is_imitated_and_a_law_is_not():
     found = scored(rubbed(), "inertia_mismatch", "transmitted_load_friction")
     known = find_imitated(rubbed().fit, found, DiscoveryOptions())
     assert {name for name, _ in known} == {"inertia_mismatch"}
+
+
+def test_what_changes_a_level_of_friction_is_no_candidate_where_there_is_no_level():
+    """One-sided friction and a constant force are Coulomb friction by another name."""
+    model = rubbed()
+    effect = next(e for e in candidates(pendulum(), ("J", "d")) if e.name == "asymmetric_friction")
+    (candidate,) = list_common([effect])
+    assert effect.needs == "coulomb_friction"
+    assert not has_what_it_needs(model, candidate)
+    (part,) = model.fit.problem.parts[:1]
+    level = replace(
+        part.predictor, plant=part.predictor.plant.with_values({"coulomb_friction.f_c@hinge": 0.1})
+    )
+    parts = (replace(part, predictor=level), *model.fit.problem.parts[1:])
+    task = replace(model.fit.problem, parts=parts)
+    assert has_what_it_needs(replace(model, fit=replace(model.fit, problem=task)), candidate)

@@ -34,7 +34,7 @@ SAYS = {
     FindingKind.OVERSIZED_EFFECT: "tau = 0.300 s where 0.100 s is thought to be the most",
     FindingKind.REMAINING_ERROR: "7.1 times the sensors' noise",
     FindingKind.DIFFERENT_RECORD: "c.csv is predicted 4.2 times worse",
-    FindingKind.SHIFTED_RECORD: "in record c.csv the inputs act 14.0 ± 3.0 ms earlier than their",
+    FindingKind.SHIFTED_RECORD: "c.csv looks as if its inputs acted 14.0 ± 3.0 ms earlier than",
     FindingKind.WORSE_FIT: "worse than those of the model (mean square +796 %)",
     FindingKind.UNPROVEN_EFFECT: "mean square -20 %, t = 1.9), but is not proven: with",
 }
