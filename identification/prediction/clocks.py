@@ -4,18 +4,21 @@
 
 A controller of one record may have logged its torques late, and that of another not: such a shift
 is no physics of the robot, and what all records together say of it is little. Each record is asked
-by itself, whether it was fitted or not: the shift that is best for one half of its windows must
-predict the other half better, beyond chance among all records and by enough to matter.
+by itself, whether it was fitted or not, by blocks of its windows. A shift counts where both halves
+of the record tell the same, within a factor of three; it is a finding where it is beyond chance
+among all records, and takes away enough to matter.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import ttest_1samp
+from scipy.stats import t as student
 
 from identification.discovery.findings.evidence import ShiftedRecord
+from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.errors import InputError
 from identification.model.coordinates import coordinates
@@ -25,15 +28,14 @@ from identification.prediction.problem import Problem, no_moves, problem
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.state import RecordsTask
-from identification.prediction.told_std import told_std
+from identification.prediction.told_std import degrees_of_freedom, told_std
 from identification.prediction.unknowns import Prior
-from identification.prediction.unseen import window_gains
 
 SHIFT = "time_shift"  # the effect
 
 
-def shifted_records(task: RecordsTask, model: WindowModel) -> list[ShiftedRecord]:
-    """The records whose inputs are shifted, those that differ most first.
+def record_shifts(task: RecordsTask, model: WindowModel) -> tuple[ShiftedRecord, ...]:
+    """The shifts of records whose halves tell the same, beyond two std.
 
     Nothing is asked where the model knows shifts already, or where no candidate is one.
 
@@ -41,10 +43,9 @@ def shifted_records(task: RecordsTask, model: WindowModel) -> list[ShiftedRecord
         task: the records, and the candidates.
         model: fitted.
     """
-    options = task.options
     shifts = [e for e in task.effects if e.name == SHIFT]
     if not shifts or any(c.effect.name == SHIFT for c in model.candidates):
-        return []
+        return ()
     where = next(iter(shifts[0].places))  # all inputs: a record has one clock
     candidates = [Candidate(shifts[0], where, {}, probe) for probe in shifts[0].probes]
     out = []
@@ -53,14 +54,26 @@ def shifted_records(task: RecordsTask, model: WindowModel) -> list[ShiftedRecord
             at = _alone(model, record, task.horizon)
             best = max(window_scores(at, candidates), key=lambda s: s.fall, default=None)
             if best is not None:
-                out.append(_told(at, record, best, model.unseen.floor))
+                out.append(_told(at, record, best))
         except InputError:  # the record is too short, or cannot be simulated: it tells nothing
             continue
+    largest, t = shifts[0].sizes[0].largest, task.options.min_proof_t
+    return tuple(s for s in out if s is not None and t * s.std < abs(s.shift) < largest)
+
+
+def told_shifts(
+    shifts: Sequence[ShiftedRecord], records: int, options: DiscoveryOptions
+) -> list[ShiftedRecord]:
+    """Those that are beyond chance among all records, and large enough to matter, the first most.
+
+    Args:
+        shifts: of `record_shifts`.
+        records: how many records there are.
+        options: what is beyond chance, and what matters.
+    """
     told = (
-        s for s in out
-        if s.chance * len(task.records) < options.significance and s.fall > options.min_fall
-        and abs(s.shift) > options.min_proof_t * s.std and abs(s.shift) < shifts[0].sizes[0].largest
-    )  # fmt: skip
+        s for s in shifts if s.chance * records < options.significance and s.fall > options.min_fall
+    )
     return sorted(told, key=lambda s: -s.fall)
 
 
@@ -72,31 +85,25 @@ def _alone(model: WindowModel, record: Record, horizon: float) -> WindowFit:
     return solve(task, np.zeros(0), moves)
 
 
-def _told(at: WindowFit, record: Record, score: WindowScore, floor: float) -> ShiftedRecord:
-    """The best shift of the record, and what that of each of its halves makes of the other one."""
-    whole = _fitted(at, np.arange(len(at.moves[0])), score)
-    before, after = _squares(at), np.zeros(len(at.moves[0]))
-    halves = np.array_split(np.arange(len(after)), 2)
-    for mine, other in (halves, halves[::-1]):
-        q = _fitted(at, mine, score).q
-        there = _with(at, other, score)
-        moves, _ = there.settled(q, [at.moves[0][other]], is_thorough=True)
-        (r,) = there.held(q).residuals(moves)
-        after[other] = np.mean(r**2, axis=1)
-    gains = window_gains(before, after, floor)
+def _told(at: WindowFit, record: Record, score: WindowScore) -> ShiftedRecord | None:
+    """The best shift of the record; None where its halves do not tell the same."""
+    windows = np.arange(len(at.moves[0]))
+    whole = _fitted(at, windows, score)
+    a, b = (_shift(_fitted(at, half, score)) for half in np.array_split(windows, 2))
     std = float(told_std(whole)[0])
+    if a * b <= 0 or abs(a - b) > (abs(a) + abs(b)) / 2 or not np.isfinite(std):
+        return None
+    t, freedom = abs(_shift(whole)) / std, degrees_of_freedom(whole)[0]
     return ShiftedRecord(
         record=record.log.name + (" (fit)" if record.role == "fit" else ""),
-        shift=float(whole.values[score.candidate.sizes[0]]),
-        std=std if np.isfinite(std) else np.inf,
-        fall=float(1 - after.mean() / before.mean()),
-        chance=float(ttest_1samp(gains, 0.0, alternative="greater").pvalue),
+        shift=_shift(whole), std=std, fall=float(1 - whole.cost / at.cost),
+        chance=float(2 * student.sf(t, freedom)),
     )  # fmt: skip
 
 
-def _squares(at: WindowFit) -> np.ndarray:
-    """Mean squares of the windows of the one record, shape (W,)."""
-    return np.asarray(np.mean(at.tangents[0].r ** 2, axis=1))
+def _shift(found: WindowFit) -> float:
+    (value,) = found.values.values()
+    return value
 
 
 def _fitted(at: WindowFit, rows: np.ndarray, score: WindowScore) -> WindowFit:

@@ -10,19 +10,28 @@ from scipy.stats import ttest_ind
 from identification.discovery.findings.evidence import (
     DifferentRecord,
     RemainingError,
+    ShiftedRecord,
     UnprovenEffect,
     WorseFit,
 )
 from identification.discovery.findings.finding import Finding, FindingKind
-from identification.prediction.clocks import shifted_records
+from identification.prediction.clocks import told_shifts
 from identification.prediction.result import (
     RefittedEffect,
 )
 from identification.prediction.state import RecordsState, rise
 
 
-def find_remaining(state: RecordsState, rejected: Sequence[RefittedEffect]) -> tuple[Finding, ...]:
-    """What the final model leaves: errors above the sensors' noise, and doubtful effects."""
+def find_remaining(
+    state: RecordsState, rejected: Sequence[RefittedEffect], shifts: Sequence[ShiftedRecord]
+) -> tuple[Finding, ...]:
+    """What the final model leaves: errors above the sensors' noise, and doubtful effects.
+
+    Args:
+        state: the finished state.
+        rejected: effects that were refitted and not proven.
+        shifts: of records, of `identification.prediction.clocks`.
+    """
     out = []
     if state.worse_fit is not None:
         worse = WorseFit(rise(state.begun, state.worse_fit))
@@ -37,9 +46,8 @@ def find_remaining(state: RecordsState, rejected: Sequence[RefittedEffect]) -> t
     if state.accepted and ratio > 1 + state.task.options.min_gap_share:
         out.append(Finding(FindingKind.REMAINING_ERROR, RemainingError(ratio)))
     out += [Finding(FindingKind.DIFFERENT_RECORD, e) for e in different_records(state)]
-    out += [
-        Finding(FindingKind.SHIFTED_RECORD, e) for e in shifted_records(state.task, state.model)
-    ]
+    told = told_shifts(shifts, len(state.task.records), state.task.options)
+    out += [Finding(FindingKind.SHIFTED_RECORD, e) for e in told]
     return tuple(out)
 
 

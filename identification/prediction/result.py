@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from identification.discovery.effect_results import Gap
+from identification.discovery.findings.evidence import ShiftedRecord
 from identification.discovery.findings.finding import Finding
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
@@ -91,6 +92,7 @@ class RecordsDiscovery:
         scores: of all candidates on the nominal model, the best first.
         remaining: of the other candidates on the final model, the best first.
         findings: what the final model leaves, and what is doubtful.
+        shifts: of records whose inputs look shifted in time against their outputs, fitted or not.
         repeats: names of the records that confirm, but whose motion is that of a fitted record or
             of one that confirms before them.
         seconds: wall time by kind of work [s].
@@ -115,6 +117,7 @@ class RecordsDiscovery:
     scores: tuple[WindowScore, ...]
     remaining: tuple[WindowScore, ...]
     findings: tuple[Finding, ...]
+    shifts: tuple[ShiftedRecord, ...]
     repeats: tuple[str, ...]
     seconds: Mapping[str, float]
 

@@ -17,6 +17,7 @@ from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.logs.replay import REPLAYED, replayed_share
+from identification.prediction.clocks import record_shifts
 from identification.prediction.evidence import compute_confidence
 from identification.prediction.input_error import needed_input_error
 from identification.prediction.model import WindowModel
@@ -48,7 +49,8 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     )
     rejected = tuple(_refitted(c.model, c, 0.0) for c in state.rejected)
     sure = all(n.effect.confidence >= 0.5 or n.one_of for n in named)
-    findings = find_remaining(state, rejected)
+    shifts = record_shifts(task, model)
+    findings = find_remaining(state, rejected, shifts)
     doubtful = any(f.kind is FindingKind.UNPROVEN_EFFECT for f in findings)
     different = any(
         f.kind in (FindingKind.DIFFERENT_RECORD, FindingKind.SHIFTED_RECORD) for f in findings
@@ -84,7 +86,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
         ),
         nominal=nominal, final=model,
         scores=state.nominal_scores, remaining=state.scores if named else state.nominal_scores,
-        findings=findings, repeats=_repeats(task.records), seconds=state.seconds,
+        findings=findings, shifts=shifts, repeats=_repeats(task.records), seconds=state.seconds,
     )  # fmt: skip
 
 

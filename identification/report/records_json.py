@@ -36,6 +36,7 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
             {"file": e.name, "role": e.role, "before": e.before, "after": e.after}
             for e in found.errors
         ],
+        "shifts": [asdict(s) for s in found.shifts],
         "repeats": list(found.repeats),
         "horizon": found.horizon,
         "input_error": found.input_error,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
-from identification.quantities import alike
+from identification.quantities import alike, quantity
 from identification.report.effect_words import describe_effect
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.records_values import text_table, value_table, value_with_std
@@ -36,6 +36,8 @@ def records_text(found: RecordsDiscovery) -> str:
     """All of it, in paragraphs."""
     parts = ["\n".join(records_verdict(found)), "\n".join(_records(found))]
     parts.append("\n".join(["fitted values:", *text_table(*value_table(found))]))
+    if found.shifts:
+        parts.append("\n".join(_shifts(found)))
     if found.rejected:
         lines = [f"  {describe_refitted(r)}" for r in found.rejected]
         parts.append("\n".join(["tried, and not proven on unseen data:", *lines]))
@@ -117,6 +119,17 @@ def _agreement(found: RecordsDiscovery, named: NamedByPrediction) -> str:
         said += f" {', '.join(found.repeats)} {'repeats' if one else 'repeat'} the motion of others"
         said += " and does not count." if one else " and do not count."
     return said
+
+
+def _shifts(found: RecordsDiscovery) -> list[str]:
+    lines = [
+        "as if the inputs of a record acted later than their time stamps say, where both halves of"
+        " it tell the same:"
+    ]
+    for s in found.shifts:
+        shift = quantity(s.shift, s.std, "s")
+        lines.append(f"  {s.record}: {shift}, {100 * s.fall:.0f} % of its mean square")
+    return lines
 
 
 def _proof(found: RecordsDiscovery) -> str:

@@ -12,7 +12,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
 from identification.model.coordinates import Coordinates
-from identification.prediction.clocks import shifted_records
+from identification.prediction.clocks import record_shifts, told_shifts
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.nominal_fit import fit_nominal
@@ -76,12 +76,13 @@ def test_a_record_that_is_late_is_told_and_the_others_are_not():
         nominal_model=base, horizon=0.26, records=roles, effects=(effect,),
         options=DiscoveryOptions(),
     )  # fmt: skip
-    (told,) = shifted_records(task, fit_nominal(base, roles))
+    shifts = record_shifts(task, fit_nominal(base, roles))
+    (told,) = told_shifts(shifts, len(roles), task.options)
     assert told.record == "record 4"
     assert told.shift == pytest.approx(0.02, abs=1e-3)
     assert told.std < 2e-3
     assert told.fall > 0.5
-    assert shifted_records(replace(task, effects=()), fit_nominal(base, roles)) == []
+    assert record_shifts(replace(task, effects=()), fit_nominal(base, roles)) == ()
 
 
 def with_offset(base):

@@ -271,7 +271,7 @@ class ShiftedRecord:
         record: its name.
         shift: how much later the inputs act than their stamps say [s].
         std: of the shift, by blocks of windows [s].
-        fall: of the mean square of each half of the record with the other half's shift, relative.
+        fall: of the record's mean square with the shift, relative.
         chance: of as much by luck, in this record.
     """
 
