@@ -1,9 +1,7 @@
 """Some of the windows of all records: they screen candidates, and say where a fit of all begins.
 
-    of 2 n neighbouring windows: the first one, and of the others the one with the largest residual
-
-Evenly spread windows show what is always there. What happens seldom, such as a limit that is
-reached, is where the model without it errs most.
+They are spread evenly, so that shares of the error are those of all windows. Windows that were
+chosen by their residual would show rare events, and shares that are not those of the record.
 """
 
 from __future__ import annotations
@@ -26,21 +24,12 @@ def picks(tangents: Sequence[Tangent], every: int = THIN) -> tuple[np.ndarray, .
         tangents: of a fitted model, one a record.
         every: n.
     """
-    return tuple(kept(np.sum(t.r**2, axis=1), every) for t in tangents)
+    return tuple(kept(len(t.r), every) for t in tangents)
 
 
-def kept(squares: np.ndarray, every: int) -> np.ndarray:
-    """Indices of the windows of a record that are kept, by their sums of squares (W,)."""
-    every = max(1, min(every, len(squares) // FEWEST_WINDOWS))
-    if every == 1:
-        return np.arange(len(squares))
-    out = []
-    for first in range(0, len(squares), 2 * every):
-        out.append(first)
-        rest = squares[first + 1 : first + 2 * every]
-        if len(rest) >= every:
-            out.append(first + 1 + int(np.argmax(rest)))
-    return np.array(out)
+def kept(count: int, every: int) -> np.ndarray:
+    """Indices of the windows of a record that are kept, of so many."""
+    return np.arange(0, count, max(1, min(every, count // FEWEST_WINDOWS)))
 
 
 def thinned(problem_: Problem, at: Sequence[np.ndarray]) -> Problem:
