@@ -41,8 +41,9 @@ class Unseen:
         lengths: of windows, in units of the horizon.
         squares: mean square of each window in units of s², shape (W,), by length and record.
         moves: where each window begins, shape (W, nx), by length and record.
-        floor: mean square of the sensors' noise in units of s²: of each output the least that any
-            record shows, for motion that is sampled slowly looks like noise.
+        floor: mean square of the sensors' noise in units of s²: of each output the median over
+            the records; motion that is sampled slowly looks like noise, and an encoder that rests
+            like none.
         fit_percent: over windows of the horizon, of each output, shape (ny,) [%].
         own: by record, the parameters that it has for itself: value and std of each, from the
             values of its two halves.
@@ -141,7 +142,7 @@ def predict(
         lengths.append(factor)
         moves.append(tuple(d for d, _ in each))
         squares.append(tuple(np.mean((e / scale) ** 2, axis=(1, 2)) for _, e in each))
-    noise = np.min([noise_floor(r.log.outputs) for r in records], axis=0)
+    noise = np.median([noise_floor(r.log.outputs) for r in records], axis=0)
     return Unseen(
         lengths=tuple(lengths), squares=tuple(squares), moves=tuple(moves),
         floor=float(np.mean((noise / scale) ** 2)), fit_percent=percent,
