@@ -1,12 +1,13 @@
 """How far the inputs of each record are shifted in time against its outputs.
 
     u(t - τ_r) in record r, all other parameters those of the model
+    |τ_a - τ_b| < t 2 σ        halves a, b of it: each has twice the variance σ² of the whole record
 
 A controller of one record may have logged its torques late, and that of another not: such a shift
 is no physics of the robot, and what all records together say of it is little. Each record is asked
 by itself, whether it was fitted or not, by blocks of its windows. A shift counts where both halves
-of the record tell the same, within a factor of three; it is a finding where it is beyond chance
-among all records, and takes away enough to matter.
+of the record tell the same; it is a finding where it is beyond chance among all records, and takes
+away enough to matter.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ def record_shifts(task: RecordsTask, model: WindowModel) -> tuple[ShiftedRecord,
             at = _alone(model, record, task.horizon)
             best = max(window_scores(at, candidates), key=lambda s: s.fall, default=None)
             if best is not None:
-                out.append(_told(at, record, best))
+                out.append(_told(at, record, best, task.options.min_proof_t))
         except InputError:  # the record is too short, or cannot be simulated: it tells nothing
             continue
     largest, t = shifts[0].sizes[0].largest, task.options.min_proof_t
@@ -85,13 +86,13 @@ def _alone(model: WindowModel, record: Record, horizon: float) -> WindowFit:
     return solve(task, np.zeros(0), moves)
 
 
-def _told(at: WindowFit, record: Record, score: WindowScore) -> ShiftedRecord | None:
-    """The best shift of the record; None where its halves do not tell the same."""
+def _told(at: WindowFit, record: Record, score: WindowScore, most: float) -> ShiftedRecord | None:
+    """The best shift of the record; None where its halves differ by over `most` std."""
     windows = np.arange(len(at.moves[0]))
     whole = _fitted(at, windows, score)
     a, b = (_shift(_fitted(at, half, score)) for half in np.array_split(windows, 2))
     std = float(told_std(whole)[0])
-    if a * b <= 0 or abs(a - b) > (abs(a) + abs(b)) / 2 or not np.isfinite(std):
+    if not np.isfinite(std) or a * b <= 0 or abs(a - b) > most * 2 * std:
         return None
     t, freedom = abs(_shift(whole)) / std, degrees_of_freedom(whole)[0]
     return ShiftedRecord(

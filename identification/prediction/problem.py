@@ -63,14 +63,6 @@ class Problem:
         parts = enumerate(self.parts)
         return hold([at_values(part, q[self.unknowns.columns(k)]) for k, part in parts])
 
-    def cost(self, q: np.ndarray, d: Sequence[np.ndarray]) -> float:
-        """V at q and at the moves of the windows' states, one array (W, nx) a record.
-
-        Raises:
-            DivergenceError: a window left the finite numbers.
-        """
-        return self.cost_of(q, self.held(q).residuals(d))
-
     def cost_of(self, q: np.ndarray, residuals: Sequence[np.ndarray]) -> float:
         """V at q, of the residuals there, one array (W, m) a record.
 

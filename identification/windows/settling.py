@@ -200,10 +200,12 @@ def _sought_again(held: HeldWindows, d: np.ndarray, r: np.ndarray) -> tuple[np.n
     """
     squares = np.sum(r**2, axis=1)
     far = np.flatnonzero(squares > FAR * np.median(squares))
+    if not far.size:
+        return d, r
     begun = np.concatenate([share * d[far] for share in AGAIN])
     part = held.rows(np.tile(far, len(AGAIN)))
-    first = part.residual(begun) if far.size else np.full(1, np.nan)
-    if not np.isfinite(first).all():
+    first = part.residual(begun)
+    if not np.isfinite(first).all():  # elsewhere it diverges: the states found stand
         return d, r
     at = EachWindow(part, begun, part.slopes(begun, first), np.ones(len(begun), bool))
     for other, left in zip(*(np.split(x, len(AGAIN)) for x in _searched(at)), strict=True):
