@@ -25,7 +25,7 @@ from identification.errors import InputError
 from identification.model.coordinates import coordinates
 from identification.prediction.fit import WindowFit, solve
 from identification.prediction.model import WindowModel
-from identification.prediction.problem import Problem, no_moves, problem
+from identification.prediction.problem import MOST_STEPS, Problem, no_moves, problem
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore, window_scores
 from identification.prediction.state import RecordsTask
@@ -33,6 +33,7 @@ from identification.prediction.told_std import degrees_of_freedom, told_std
 from identification.prediction.unknowns import Prior
 
 SHIFT = "time_shift"  # the effect
+SHARE = 4  # a record by itself has this part of the windows' steps: one number needs no more
 
 
 def record_shifts(task: RecordsTask, model: WindowModel) -> tuple[ShiftedRecord, ...]:
@@ -55,11 +56,10 @@ def record_shifts(task: RecordsTask, model: WindowModel) -> tuple[ShiftedRecord,
             at = _alone(model, record, task.horizon)
             best = max(window_scores(at, candidates), key=lambda s: s.fall, default=None)
             if best is not None:
-                out.append(_told(at, record, best, task.options.min_proof_t))
+                out.append(_told(at, record, best, shifts[0].sizes[0].largest, task.options))
         except InputError:  # the record is too short, or cannot be simulated: it tells nothing
             continue
-    largest, t = shifts[0].sizes[0].largest, task.options.min_proof_t
-    return tuple(s for s in out if s is not None and t * s.std < abs(s.shift) < largest)
+    return tuple(s for s in out if s is not None)
 
 
 def told_shifts(
@@ -81,18 +81,24 @@ def told_shifts(
 def _alone(model: WindowModel, record: Record, horizon: float) -> WindowFit:
     """The windows of one record at the model's values, their states settled; nothing is free."""
     values = {**model.values, **model.own_values.get(record.log.name, {})}
-    task = problem(model.plant, [record], Prior(), Prior(), horizon, values, model.scale)
+    task = problem(
+        model.plant, [record], Prior(), Prior(), horizon, values, model.scale, MOST_STEPS // SHARE
+    )
     moves, _ = task.settled(np.zeros(0), no_moves(task), is_thorough=True)
     return solve(task, np.zeros(0), moves)
 
 
-def _told(at: WindowFit, record: Record, score: WindowScore, most: float) -> ShiftedRecord | None:
-    """The best shift of the record; None where its halves differ by over `most` std."""
-    windows = np.arange(len(at.moves[0]))
+def _told(
+    at: WindowFit, record: Record, score: WindowScore, largest: float, options: DiscoveryOptions
+) -> ShiftedRecord | None:
+    """The best shift of the record; None where it is none, or its halves differ."""
+    windows, least = np.arange(len(at.moves[0])), options.min_proof_t
     whole = _fitted(at, windows, score)
-    a, b = (_shift(_fitted(at, half, score)) for half in np.array_split(windows, 2))
     std = float(told_std(whole)[0])
-    if not np.isfinite(std) or a * b <= 0 or abs(a - b) > most * 2 * std:
+    if not (np.isfinite(std) and least * std < abs(_shift(whole)) < largest):
+        return None
+    a, b = (_shift(_fitted(at, half, score)) for half in np.array_split(windows, 2))
+    if a * b <= 0 or abs(a - b) > least * 2 * std:
         return None
     t, freedom = abs(_shift(whole)) / std, degrees_of_freedom(whole)[0]
     return ShiftedRecord(

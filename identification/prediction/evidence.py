@@ -1,15 +1,13 @@
 """What speaks for a law against others in its place: all windows, fitted and unseen.
 
-    g_cb = ln(mean square without c + ε²) - ln(mean square with c + ε²)           of each block b
     E_c = n_y W mean_b g_cb - k_c ln W
     P_c = mean over resamples of the blocks of exp(E_c/2) / Σ_k exp(E_k/2)
 
-W windows of n_y outputs, k_c numbers that c adds, ε the sensors' noise. Within a block windows
-count by their squares, so that those in which nothing happens do not decide; blocks count by
-logarithms, so that no record decides alone. E is twice the gain of a log likelihood with the price
-that BIC puts on numbers (Schwarz 1978), so that exp(E/2) are the odds of a law in one resample
-(Kass, Raftery 1995): two laws that predict alike share them, however surely one is a little better.
-Blocks are drawn with replacement (bootstrap; Efron 1979).
+g_cb: gains of blocks b with the law c (`identification.prediction.blocks`), W windows of n_y
+outputs, k_c numbers that c adds. E is twice the gain of a log likelihood with the price that BIC
+puts on numbers (Schwarz 1978), so that exp(E/2) are the odds of a law in one resample (Kass,
+Raftery 1995): two laws that predict alike share them, however surely one is a little better. Blocks
+are drawn with replacement (bootstrap; Efron 1979).
 """
 
 from __future__ import annotations
@@ -18,26 +16,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from identification.prediction.blocks import block_gains
 from identification.prediction.model import WindowModel
 from identification.prediction.record_errors import scaled_squares
-from identification.prediction.unseen import PER_RECORD
 
 RESAMPLES = 2000
 SEED = 0  # of the resampling, so that a verdict repeats
 
 
-def block_gains(without: WindowModel, with_it: WindowModel) -> np.ndarray:
+def all_gains(without: WindowModel, with_it: WindowModel) -> np.ndarray:
     """g of the blocks of all fitted windows, then of all unseen ones, shape (B,)."""
     before, after = (
         [*scaled_squares(m.fit.errors, without.scale), *m.unseen.at_horizon]
         for m in (without, with_it)
     )
-    floor, out = without.unseen.floor, []
-    for a, b in zip(before, after, strict=True):
-        blocks = min(PER_RECORD, max(1, len(a) // 2))
-        for x, y in zip(np.array_split(a, blocks), np.array_split(b, blocks), strict=True):
-            out.append(np.log(x.mean() + floor) - np.log(y.mean() + floor))
-    return np.array(out)
+    return np.concatenate(block_gains(before, after, without.unseen.floor))
 
 
 def count_windows(model: WindowModel) -> int:

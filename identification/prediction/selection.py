@@ -22,7 +22,7 @@ from identification.prediction.contenders import (
     list_simpler,
     list_starts,
 )
-from identification.prediction.evidence import block_gains, count_windows, evidence
+from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import Begun, begin
 from identification.prediction.model import WindowModel
@@ -153,7 +153,7 @@ def _refit(
         progress(f"{label}: explains no more than without it")
         return None
     found = compare(worse_fit or model.unseen, new.unseen)
-    gains = block_gains(model, new)
+    gains = all_gains(model, new)
     records = len(model.unseen.at_horizon) + len(model.fit.problem.parts)
     numbers = count_numbers(c) * (records if c.effect.own else 1)
     windows, outputs = count_windows(model), len(model.scale)

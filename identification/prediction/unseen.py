@@ -1,11 +1,7 @@
 """Prediction of records that no fit has seen: two models over windows of several lengths.
 
-    g_w = ln(‖e_w(without)/s‖²/L + ε²) - ln(‖e_w(with)/s‖²/L + ε²)      of each window w
-
-Both models begin each window at the state that explains it best, found by the same smoother. Means
-over blocks of neighbouring windows are the sample of a t-test, and each record has the same number
-of blocks at most; ε, the sensors' noise, keeps windows in which nothing happens from deciding. A
-logarithm lets no single record decide.
+Both models begin each window at the state that explains it best, found by the same smoother. Gains
+of blocks of neighbouring windows (`identification.prediction.blocks`) are the sample of a t-test.
 """
 
 from __future__ import annotations
@@ -21,6 +17,7 @@ from identification.estimation.metrics import fit_percent
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
+from identification.prediction.blocks import block_gains
 from identification.prediction.own_values import Own, of_halves, own_values
 from identification.prediction.problem import MOST_STEPS, most_windows
 from identification.prediction.records import Record
@@ -30,7 +27,6 @@ from identification.windows.shooting import Shooting
 from identification.windows.windows import Windows, first_states, spread, windows
 
 LENGTHS = (0.5, 1.0, 2.0)  # of the horizon
-PER_RECORD = 20  # blocks of a record at most, of two windows at least; as `proof_blocks`
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,13 +65,12 @@ class Prediction:
     Attributes:
         t: of the mean gain over blocks, at the horizon.
         chance: of as much by luck.
-        gains: mean gain by length.
+        gains: mean gain over blocks, by length.
         falls: relative fall of the mean square over all records, by length.
         typical_falls: the same of each record's mean square by itself, in the geometric mean: a
             record that errs most, whatever the model, does not decide alone.
-        records: mean gain by record, at the horizon.
         record_falls: relative fall of the mean square by record, at the horizon.
-        blocks: mean gain by block, at the horizon, over all records.
+        blocks: gain of each block of each record, at the horizon, shape (B,) a record.
     """
 
     t: float
@@ -83,9 +78,13 @@ class Prediction:
     gains: tuple[float, ...]
     falls: tuple[float, ...]
     typical_falls: tuple[float, ...]
-    records: tuple[float, ...]
     record_falls: tuple[float, ...]
-    blocks: np.ndarray
+    blocks: tuple[np.ndarray, ...]
+
+    @property
+    def records(self) -> tuple[float, ...]:
+        """Mean gain over blocks of each record, at the horizon."""
+        return tuple(float(g.mean()) for g in self.blocks)
 
     @property
     def is_everywhere(self) -> bool:
@@ -151,34 +150,25 @@ def predict(
 
 
 def compare(without: Unseen, with_it: Unseen) -> Prediction:
-    """What the second of two models predicts better than the first, window by window."""
-    falls, typical, gains, floor = [], [], [], without.floor
+    """What the second of two models predicts better than the first."""
+    falls, typical, gains = [], [], []
     for a, b in zip(without.squares, with_it.squares, strict=True):
         falls.append(1 - float(np.concatenate(b).mean() / np.concatenate(a).mean()))
         ratios = [np.log(y.mean() / x.mean()) for x, y in zip(a, b, strict=True)]
         typical.append(1 - float(np.exp(np.mean(ratios))))
-        gains.append([window_gains(x, y, floor) for x, y in zip(a, b, strict=True)])
-    here = gains[without.lengths.index(1.0)]
-    blocks = np.concatenate([
-        [b.mean() for b in np.array_split(g, min(PER_RECORD, max(1, len(g) // 2)))] for g in here
-    ])  # fmt: skip
+        gains.append(block_gains(a, b, without.floor))
+    blocks = gains[without.lengths.index(1.0)]
+    every = np.concatenate(blocks)
     t, chance = 0.0, 1.0
-    if len(blocks) > 2 and blocks.std() > 0:
-        test = ttest_1samp(blocks, 0.0, alternative="greater")
+    if len(every) > 2 and every.std() > 0:
+        test = ttest_1samp(every, 0.0, alternative="greater")
         t, chance = float(test.statistic), float(test.pvalue)
     each = zip(without.at_horizon, with_it.at_horizon, strict=True)
-    record_falls = tuple(1 - float(b.mean() / a.mean()) for a, b in each)
     return Prediction(
-        t=t, chance=chance, record_falls=record_falls,
-        gains=tuple(float(np.concatenate(g).mean()) for g in gains),
+        t=t, chance=chance, gains=tuple(float(np.concatenate(g).mean()) for g in gains),
         falls=tuple(falls), typical_falls=tuple(typical),
-        records=tuple(float(g.mean()) for g in here), blocks=blocks,
+        record_falls=tuple(1 - float(b.mean() / a.mean()) for a, b in each), blocks=tuple(blocks),
     )  # fmt: skip
-
-
-def window_gains(without: np.ndarray, with_it: np.ndarray, floor: float) -> np.ndarray:
-    """g of windows, shape (W,), from their mean squares in units of s², and ε²."""
-    return np.asarray(np.log(without + floor) - np.log(with_it + floor))
 
 
 def _settled(

@@ -32,7 +32,7 @@ from identification.prediction.result import (
 )
 from identification.prediction.selection import Contender, evidences
 from identification.prediction.state import RecordsState, rise
-from identification.prediction.unseen import PER_RECORD, Unseen
+from identification.prediction.unseen import Unseen
 
 
 def conclude(state: RecordsState) -> RecordsDiscovery:
@@ -122,10 +122,10 @@ def _named(
         min(options.max_confidence, float(shares[0])),
     )  # fmt: skip
     confirm = state.task.confirm
-    gains = accepted.prediction.records
+    seen = accepted.prediction
     worse = [
         r.log.name
-        for r, blocks in zip(confirm, _by_record(accepted.prediction.blocks, state), strict=True)
+        for r, blocks in zip(confirm, seen.blocks, strict=True)
         if len(blocks) > 2
         and ttest_1samp(blocks, 0.0, alternative="less").pvalue < options.significance
     ]
@@ -133,7 +133,7 @@ def _named(
         effect=effect, rivals=tuple(rivals),
         one_of=bool(shares[1:].size and shares[1:].max() > options.set_confidence),
         compared=len(others),
-        agrees=tuple(r.log.name for r, g in zip(confirm, gains, strict=True) if g > 0),
+        agrees=tuple(r.log.name for r, g in zip(confirm, seen.records, strict=True) if g > 0),
         disagrees=tuple(worse),
     )  # fmt: skip
 
@@ -177,12 +177,6 @@ def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
     """Whether a model errs on unseen records by more than the sensors' noise."""
     square = float(np.mean(np.concatenate(model.unseen.at_horizon)))
     return square > model.unseen.floor * (1 + options.min_gap_share)
-
-
-def _by_record(blocks: np.ndarray, state: RecordsState) -> list[np.ndarray]:
-    """Blocks of each record that confirms."""
-    sizes = [min(PER_RECORD, max(1, len(s) // 2)) for s in state.nominal.unseen.at_horizon]
-    return np.split(blocks, np.cumsum(sizes)[:-1])
 
 
 def _gap(unseen: Unseen, scale: float) -> Gap:

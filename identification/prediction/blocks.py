@@ -1,0 +1,41 @@
+"""Blocks of neighbouring windows of a record: the sample of every comparison of two models.
+
+    g_b = ln(mean_w ‖e_w(without)/s‖²/L + ε²) - ln(mean_w ‖e_w(with)/s‖²/L + ε²),     w in block b
+
+Within a block windows count by their squares, so that those in which nothing happens do not decide;
+blocks count by logarithms, so that no block and no record decides alone. ε is the sensors' noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+PER_RECORD = 20  # blocks of a record at most, of two windows at least; as `proof_blocks`
+
+
+def count_blocks(windows: int) -> int:
+    """How many blocks a record with so many windows has."""
+    return min(PER_RECORD, max(1, windows // 2))
+
+
+def block_gains(
+    without: Sequence[np.ndarray], with_it: Sequence[np.ndarray], floor: float
+) -> list[np.ndarray]:
+    """g of the blocks of each record, shape (B,).
+
+    Args:
+        without: mean square of each window under the first model, shape (W,), a record each, in
+            units of s².
+        with_it: the same under the second model.
+        floor: ε², in units of s².
+    """
+    out = []
+    for a, b in zip(without, with_it, strict=True):
+        before, after = (
+            np.array([w.mean() for w in np.array_split(squares, count_blocks(len(a)))])
+            for squares in (a, b)
+        )
+        out.append(np.log(before + floor) - np.log(after + floor))
+    return out
