@@ -8,7 +8,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.prediction.model import WindowModel
 from identification.prediction.unseen import Prediction
 
-Doubt = Literal["numbers", "chance", "lengths", "record", "little", "size"]
+Doubt = Literal["numbers", "chance", "lengths", "record", "little", "size", "exchange"]
 
 
 def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Doubt | None:

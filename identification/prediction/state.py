@@ -7,7 +7,7 @@ fit the nominal model  ->  score all candidates  ->  refit the best  ->  predict
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,11 +15,12 @@ import numpy as np
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
-from identification.prediction.extension import refitted
+from identification.prediction.exchange import exchanged, without_contradicted
 from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import as_begun, fit_nominal
 from identification.prediction.proof import find_doubt
 from identification.prediction.records import Record
+from identification.prediction.rivals import find_rivals, prune
 from identification.prediction.scores import WindowScore
 from identification.prediction.screening import score_all
 from identification.prediction.selection import (
@@ -73,6 +74,7 @@ class RecordsState:
         worse_fit: errors of the fitted values on the records that confirm, where they are worse
             than those of the values with which the fit began: the search then begins with the
             latter. None where they are not.
+        exchanged: the model with the roles of the records exchanged; None where it was not needed.
     """
 
     task: RecordsTask
@@ -87,6 +89,7 @@ class RecordsState:
     rejected: tuple[Contender, ...]
     seconds: Mapping[str, float]
     worse_fit: Unseen | None = None
+    exchanged: WindowModel | None = None
 
 
 def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
@@ -139,6 +142,7 @@ def next_state(state: RecordsState, progress: Progress) -> RecordsState:
         state.model, state.scores, task.horizon, task.confirm, task.options, progress,
         None if state.accepted else state.worse_fit,
     )  # fmt: skip
+    tried, other_side = _checked(state, tried, progress)
     if not tried or not tried[0].is_proven:
         state = _pruned(replace(state, rejected=tried), progress)
         watch.stop("refits")
@@ -146,53 +150,43 @@ def next_state(state: RecordsState, progress: Progress) -> RecordsState:
     best = tried[0]
     watch.stop("refits")
     scores = score_all(best.model, task.effects, task.options)
-    others = _rivals(state, best, tried[1:], scores)
+    others = find_rivals(tried[1:], state.model, state.scores, best.model, scores, task.options)
     watch.stop("scores")
     accepted = (*state.accepted, best)
     return replace(
         state, is_finished=len(accepted) >= task.options.max_effects, model=best.model,
         accepted=accepted, alternatives=(*state.alternatives, others), scores=scores, rejected=(),
-        seconds=watch.seconds,
+        seconds=watch.seconds, exchanged=other_side,
     )  # fmt: skip
 
 
-def _rivals(
-    state: RecordsState, best: Contender, others: Sequence[Contender],
-    scores: Sequence[WindowScore],
-) -> tuple[Contender, ...]:  # fmt: skip
-    """Those of other proven contenders that explain less than half as much once the best is there.
+def _checked(
+    state: RecordsState, tried: tuple[Contender, ...], progress: Progress
+) -> tuple[tuple[Contender, ...], WindowModel | None]:
+    """Contenders without proof for those that the exchange of roles contradicts; and the first so.
 
-    What still explains as much is no rival of the best one: it is missing too.
+    Where the search began at values that no fit found, there is nothing to exchange.
     """
-    options = state.task.options
-    before, after = (
-        {s.candidate.key: s.fall * cost for s in reversed(each)}
-        for each, cost in ((state.scores, state.model.fit.cost), (scores, best.model.fit.cost))
-    )
-    return tuple(
-        o for o in others
-        if o.is_proven
-        and after.get(o.candidate.key, 0.0) < options.rival_share * before.get(o.candidate.key, 0.0)
-    )  # fmt: skip
+    task = state.task
+    begun_elsewhere = state.worse_fit is not None and not state.accepted
+    if begun_elsewhere or not tried or not tried[0].is_proven:
+        return tried, None
+    without = state.exchanged or exchanged(state.model, task.records, task.horizon)
+    if without is None:
+        return tried, None
+    return without_contradicted(tried, without, task.records, task.horizon, task.options, progress)
 
 
 def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
-    """Without the effects that later ones made needless; the last one was just proved."""
+    """Without the effects that later ones made needless."""
     task = state.task
-    for old in state.accepted[:-1]:
-        rest = tuple(c for c in state.model.candidates if c.key != old.candidate.key)
-        without = refitted(state.model, rest, task.nominal_model, task.confirm)
-        if without is None:
-            continue
-        if find_doubt(compare(without.unseen, state.model.unseen), 1, task.options) is None:
-            continue
-        progress(f"{old.candidate.effect.name}, {old.candidate.where}: no longer needed")
-        keep = [k for k, a in enumerate(state.accepted) if a is not old]
-        state = replace(
-            state, model=without, accepted=tuple(state.accepted[k] for k in keep),
-            alternatives=tuple(state.alternatives[k] for k in keep),
-        )  # fmt: skip
-    return state
+    model, keep = prune(
+        state.model, state.accepted, task.nominal_model, task.confirm, task.options, progress
+    )
+    return replace(
+        state, model=model, accepted=tuple(state.accepted[k] for k in keep),
+        alternatives=tuple(state.alternatives[k] for k in keep),
+    )  # fmt: skip
 
 
 def rise(begun: Unseen, fitted: Unseen) -> float:

@@ -37,9 +37,10 @@ def degrees_of_freedom(found: WindowFit) -> np.ndarray:
     Args:
         found: a fit.
     """
-    S = np.concatenate([projected(t)[0] for t in found.tangents])
-    blocks = np.array_split(S, min(BLOCKS, len(S)))
-    each = np.array([np.einsum("wmp,wmq->pq", b, b) for b in blocks])
+    columns = (projected(t)[0] for t in found.tangents)
+    windows = np.concatenate([np.swapaxes(S, 1, 2) @ S for S in columns])  # H_w, (W, p, p)
+    blocks = np.array_split(windows, min(BLOCKS, len(windows)))
+    each = np.array([b.sum(axis=0) for b in blocks])
     W2 = np.diag(found.problem.prior.weight**2)
     a = np.linalg.pinv(each.sum(axis=0) + W2, rcond=1e-14, hermitian=True)
     h = np.einsum("pj,bpq,qj->bj", a, each, a)

@@ -8,6 +8,7 @@ import numpy as np
 
 from identification.prediction.result import RecordsDiscovery
 from identification.prediction.scores import WindowScore
+from identification.quantities import quantity
 from identification.report.discovery_figures import gains_figure
 from identification.report.effect_words import describe_effect
 from identification.report.page import Section, Table, save_figures, write_report
@@ -28,6 +29,8 @@ def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
         InputError: a file cannot be written.
     """
     shown = [_records(found), _candidates(found), _values(found)]
+    if found.shifts:
+        shown.append(_shifts(found))
     save_figures(shown, folder)
     names = ", ".join(r.log.name for r in found.records if r.role == "fit")
     return write_report(
@@ -73,4 +76,15 @@ def _values(found: RecordsDiscovery) -> Section:
         "Std by blocks of windows, whose errors need not be white; unknown where too few windows"
         " tell of a value.",
         table=Table(head, tuple(rows)),
+    )
+
+
+def _shifts(found: RecordsDiscovery) -> Section:
+    rows = tuple((s.record, quantity(s.shift, s.std, "s"), 100 * s.fall) for s in found.shifts)
+    return Section(
+        "Shifts in time",
+        "As if the inputs of a record acted later than their time stamps say, each record by"
+        " itself, where both halves of it tell the same. A shift below zero may also be the answer"
+        " of a controller to what the robot did.",
+        table=Table(("record", "shift of its inputs", "of its mean square [%]"), rows),
     )

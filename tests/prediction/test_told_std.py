@@ -15,7 +15,9 @@ def fitted(monkeypatch, S, weight):
     monkeypatch.setattr(module, "projected", lambda t: (t, None))
     prior = SimpleNamespace(weight=np.asarray(weight, float))
     return SimpleNamespace(
-        tangents=[S], problem=SimpleNamespace(prior=prior), std=np.ones(S.shape[2])
+        tangents=S if isinstance(S, list) else [S],
+        problem=SimpleNamespace(prior=prior),
+        std=np.ones(len(weight)),
     )
 
 
@@ -23,6 +25,13 @@ def test_equal_windows_have_one_degree_less_than_there_are(monkeypatch):
     found = fitted(monkeypatch, np.tile(np.eye(2), (7, 1, 1)), [0, 0])
     assert degrees_of_freedom(found) == pytest.approx([6, 6])
     assert told_std(found).tolist() == [1, 1]
+
+
+def test_windows_of_records_may_differ_in_length(monkeypatch):
+    long, short = np.zeros((4, 5, 2)), np.tile(np.eye(2), (3, 1, 1))
+    long[:, :2] = np.eye(2)  # what else they have tells nothing
+    found = fitted(monkeypatch, [long, short], [0, 0])
+    assert degrees_of_freedom(found) == pytest.approx([6, 6])
 
 
 def test_one_window_tells_no_std_however_many_others_feel_another_parameter(monkeypatch):

@@ -1,0 +1,105 @@
+"""An effect seen from the other side: records that confirm are fitted, and fitted ones confirm.
+
+Which records are fitted is a choice, and physics does not depend on it. An effect that is proven
+with one choice is contradicted where, with the roles of the records exchanged, it predicts worse on
+average, or one of the records. It need not be proven once more: the records that confirm may be few
+and tell little.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from identification.discovery.options import DiscoveryOptions
+from identification.errors import InputError
+from identification.prediction.extension import MOST_REFIT
+from identification.prediction.first_fit import FINE
+from identification.prediction.fit import solve
+from identification.prediction.model import WindowModel, predict_fitted
+from identification.prediction.problem import MOST_STEPS, Problem, no_moves, problem
+from identification.prediction.records import Record
+from identification.prediction.selection import Contender, Progress
+from identification.prediction.unseen import compare
+
+STEPS = MOST_STEPS // 3  # of the fit's windows, as of rough fits: it need not be proven once more
+
+
+def without_contradicted(
+    tried: Sequence[Contender], without: WindowModel, records: Sequence[Record], horizon: float,
+    options: DiscoveryOptions, progress: Progress,
+) -> tuple[tuple[Contender, ...], WindowModel | None]:  # fmt: skip
+    """Contenders, those that are contradicted no longer proven, and the first with roles exchanged.
+
+    Args:
+        tried: contenders in their order, the proven ones first.
+        without: the model without them, with the roles of the records exchanged.
+        records: to fit and to confirm.
+        horizon: [s].
+        options: what matters.
+        progress: is told what is contradicted.
+    """
+    rest, contradicted = list(tried), list[Contender]()
+    while rest and rest[0].is_proven:
+        with_it = exchanged(rest[0].model, records, horizon)
+        if with_it is None or not is_contradicted(without, with_it, options):
+            return (*rest, *contradicted), with_it
+        c = rest[0].candidate
+        progress(f"{c.effect.name}, {c.where}: contradicted where the records exchange their roles")
+        contradicted.append(replace(rest.pop(0), doubt="exchange"))
+    return (*contradicted, *rest), None
+
+
+def exchanged(model: WindowModel, records: Sequence[Record], horizon: float) -> WindowModel | None:
+    """The same model fitted to the records that confirm; its unseen ones are those of its fit.
+
+    Args:
+        model: where the search begins.
+        records: to fit and to confirm.
+        horizon: [s].
+
+    Returns:
+        The model; None where it cannot be simulated with what these records tell.
+    """
+    fitted, confirm = ([r for r in records if r.role == role] for role in ("confirm", "fit"))
+    old = model.fit.problem.unknowns
+    try:
+        task = problem(
+            model.plant, fitted, old.shared, old.own, horizon, model.values, model.scale, STEPS
+        )
+        q = _begin(task, model)
+        moves, _ = task.settled(q, no_moves(task), is_thorough=True)
+        found = solve(task, q, moves, tolerance=FINE, most=MOST_REFIT)
+        fixed = {n: v for n, v in model.values.items() if n not in old.local.names}
+        unseen = predict_fitted(model.plant, confirm, horizon, model.scale, found, fixed)
+    except InputError:
+        return None
+    return WindowModel(model.candidates, found, unseen, model.scale)
+
+
+def is_contradicted(without: WindowModel, with_it: WindowModel, options: DiscoveryOptions) -> bool:
+    """Whether an effect predicts worse on average, or one record by enough to matter.
+
+    Args:
+        without: the model without it, with the roles of the records exchanged.
+        with_it: the model with it, likewise.
+        options: what matters.
+    """
+    found = compare(without.unseen, with_it.unseen)
+    at_horizon = found.gains[without.unseen.lengths.index(1.0)]
+    return at_horizon <= 0 or min(found.record_falls) <= -options.min_gap_share
+
+
+def _begin(task: Problem, model: WindowModel) -> np.ndarray:
+    """Where the search begins, shape (p,): the model's values, and what halves of records tell."""
+    unknowns = task.unknowns
+    own = unknowns.own
+    q = [model.fit.q[: len(unknowns.shared.names)]]
+    for name in unknowns.records:
+        told = model.unseen.own.get(name, {})
+        values = own.space.decode(own.mean)
+        each = [told.get(n, (v, 0.0))[0] for n, v in zip(own.names, values, strict=True)]
+        q.append(own.space.encode(np.array(each)) if each else np.zeros(0))
+    return np.asarray(task.prior.space.inside(np.concatenate(q)))

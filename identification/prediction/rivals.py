@@ -1,0 +1,76 @@
+"""Rivals of an accepted effect, and accepted effects that later ones made needless."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
+from identification.prediction.extension import refitted
+from identification.prediction.model import Progress, WindowModel
+from identification.prediction.proof import Doubt, find_doubt
+from identification.prediction.records import Record
+from identification.prediction.scores import WindowScore
+from identification.prediction.selection import Contender
+from identification.prediction.unseen import compare
+
+CONTRADICTED: tuple[Doubt, ...] = ("lengths", "record", "exchange")  # by what was measured
+NEEDLESS: tuple[Doubt, ...] = ("chance", "little")  # others make up for it
+
+
+def find_rivals(
+    others: Sequence[Contender], before: WindowModel, scores: Sequence[WindowScore],
+    after: WindowModel, then: Sequence[WindowScore], options: DiscoveryOptions,
+) -> tuple[Contender, ...]:  # fmt: skip
+    """Other contenders that explain less than half as much once the best one is there.
+
+    What still explains as much is no rival of the best one: it is missing too. A rival need not be
+    proven to make a name doubtful; but what some windows or a record contradict is none.
+
+    Args:
+        others: refitted in the place of the best one.
+        before: the model without it.
+        scores: of all candidates on that model.
+        after: the model with it.
+        then: scores on this one.
+        options: how much is as much.
+    """
+    was, still = (
+        {s.candidate.key: s.fall * model.fit.cost for s in reversed(each)}
+        for each, model in ((scores, before), (then, after))
+    )
+    return tuple(
+        o for o in others
+        if o.doubt not in CONTRADICTED
+        and still.get(o.candidate.key, 0.0) < options.rival_share * was.get(o.candidate.key, 0.0)
+    )  # fmt: skip
+
+
+def prune(
+    model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
+    confirm: Sequence[Record], options: DiscoveryOptions, progress: Progress,
+) -> tuple[WindowModel, tuple[int, ...]]:  # fmt: skip
+    """The model without needless effects, and which of the accepted ones stay.
+
+    An effect is needless where unseen records are predicted as well without it, by chance or but
+    for too little to matter. The last one was just proven.
+
+    Args:
+        model: with all of them.
+        accepted: in their order.
+        nominal_model: the other free parameters, and the horizon.
+        confirm: records that no fit may see.
+        options: what is beyond chance, and matters.
+        progress: is told what is no longer needed.
+    """
+    keep = list(range(len(accepted)))
+    for k, old in enumerate(accepted[:-1]):
+        rest = tuple(c for c in model.candidates if c.key != old.candidate.key)
+        without = refitted(model, rest, nominal_model, confirm)
+        if without is None:
+            continue
+        if find_doubt(compare(without.unseen, model.unseen), 1, options) in NEEDLESS:
+            progress(f"{old.candidate.effect.name}, {old.candidate.where}: no longer needed")
+            model = without
+            keep.remove(k)
+    return model, tuple(keep)
