@@ -81,6 +81,7 @@ def answer(toml: Path, a: Path, b: Path, way: str) -> dict[str, Any]:
         "named": [
             {"name": n.candidate.effect.name, "where": n.candidate.where,
              "confidence": n.confidence, "one_of": whole.one_of,
+             "same_as": getattr(getattr(whole, "same_as", None), "name", None),
              "rivals": [_name(r) for r in whole.rivals],
              "sizes": {name: p[0] for name, p in n.parameters.items()}}
             for n, whole in zip(named, found.named, strict=True)

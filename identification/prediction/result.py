@@ -12,7 +12,7 @@ from identification.discovery.effect_results import Gap
 from identification.discovery.findings.evidence import ShiftedRecord
 from identification.discovery.findings.finding import Finding
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.effect import Candidate
+from identification.effects.effect import Candidate, Effect
 from identification.prediction.model import WindowModel
 from identification.prediction.proof import Doubt
 from identification.prediction.record_errors import RecordError
@@ -54,6 +54,8 @@ class NamedByPrediction:
         compared: how many others were refitted in its place and compared with it; where there are
             none, its confidence is the highest that is ever said.
         one_of: whether the records cannot tell it from its first rival.
+        same_as: the effect that is the same force by another name, so that no record tells which
+            it is (`prediction.twins`); None where there is none.
         agrees: names of the records on which it lowers the error.
         disagrees: names of the records on which it raises the error, beyond chance.
     """
@@ -62,6 +64,7 @@ class NamedByPrediction:
     rivals: tuple[RefittedEffect, ...]
     compared: int
     one_of: bool
+    same_as: Effect | None
     agrees: tuple[str, ...]
     disagrees: tuple[str, ...]
 

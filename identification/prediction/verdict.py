@@ -32,6 +32,7 @@ from identification.prediction.result import (
 )
 from identification.prediction.selection import Contender, evidences
 from identification.prediction.state import RecordsState, rise
+from identification.prediction.twins import find_twin
 from identification.prediction.unseen import Unseen
 
 
@@ -110,6 +111,9 @@ def _named(
     is_final = any(c.key == mine.key for c in state.model.candidates)
     is_law = not mine.effect.is_curve  # which curves may imitate, but are no rival of its name
     others = [o for o in others if not (is_law and o.candidate.effect.is_curve)]
+    final = state.model if is_final else accepted.model
+    twin = find_twin(final, mine)
+    others = [o for o in others if o.candidate.effect.name != twin]  # the same is no rival
     near = [accepted, *others]
     shares = compute_confidence(evidences(near))
     rivals = [
@@ -117,10 +121,7 @@ def _named(
         for o, share in zip(others, shares[1:], strict=True)
         if share > options.listed_confidence
     ]
-    effect = _refitted(
-        state.model if is_final else accepted.model, accepted,
-        min(options.max_confidence, float(shares[0])),
-    )  # fmt: skip
+    effect = _refitted(final, accepted, min(options.max_confidence, float(shares[0])))
     confirm = state.task.confirm
     seen = accepted.prediction
     worse = [
@@ -132,6 +133,7 @@ def _named(
     return NamedByPrediction(
         effect=effect, rivals=tuple(rivals),
         one_of=bool(shares[1:].size and shares[1:].max() > options.set_confidence),
+        same_as=next((e for e in state.task.effects if e.name == twin), None),
         compared=len(others),
         agrees=tuple(r.log.name for r, g in zip(confirm, seen.records, strict=True) if g > 0),
         disagrees=tuple(worse),

@@ -90,6 +90,7 @@ def _named_to_json(named: NamedByPrediction) -> dict[str, Any]:
         ],
         "compared": named.compared,
         "one_of": named.one_of,
+        "same_as": named.same_as.name if named.same_as else None,
         "agrees": list(named.agrees),
         "disagrees": list(named.disagrees),
     }  # fmt: skip

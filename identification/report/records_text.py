@@ -92,6 +92,11 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
         said += (
             f" {'These records cannot tell it from' if named.one_of else 'Less likely:'} {each}."
         )
+    if named.same_as:
+        said += (
+            f" As long as it is smaller than the Coulomb friction it is the same force as"
+            f' "{named.same_as.phrase}": no record tells which of the two it is.'
+        )
     said += _agreement(found, named)
     if named.disagrees:
         said += f" It raises the error on {', '.join(named.disagrees)}, beyond chance."

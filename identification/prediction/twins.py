@@ -1,0 +1,39 @@
+"""Laws that are the same force by two names, as long as they are smaller than the Coulomb level.
+
+    a force f_0, a level f_c                 levels f_c + f_a and f_c - f_a by direction, f_a = -f_0
+
+    moves    f_0 - f_c sign v                -(f_c + f_a sign v) sign v = f_0 - f_c sign v
+    rests    |g + f_0| < f_c                 -(f_c - f_a) < g < f_c + f_a, g all other forces
+
+No record tells them apart, whatever moves. Where f_0 is larger than f_c they differ: friction only
+brakes.
+"""
+
+from __future__ import annotations
+
+from identification.effects.effect import Candidate
+from identification.prediction.model import WindowModel
+
+TWINS = {"offset": "asymmetric_friction", "asymmetric_friction": "offset"}
+LEVEL = "coulomb_friction.f_c"
+
+
+def find_twin(model: WindowModel, candidate: Candidate) -> str:
+    """Name of the effect that is the same force as a candidate; "" where there is none.
+
+    Args:
+        model: fitted, with the candidate.
+        candidate: the effect at its place.
+    """
+    effect = candidate.effect
+    values = {**model.plant.parameters.values(), **model.fit.shared, **model.values}
+    every = [s for s in effect.places.values() if s.startswith("@")]
+
+    def is_small(name: str) -> bool:
+        _, at, joint = name.partition("@")
+        places = [at + joint] if joint else every
+        levels = (values.get(LEVEL, 0.0) + values.get(LEVEL + p, 0.0) for p in places)
+        return abs(values.get(name, 0.0)) < min(levels, default=0.0)
+
+    small = effect.name in TWINS and all(map(is_small, candidate.sizes))
+    return TWINS[effect.name] if small else ""
