@@ -69,7 +69,7 @@ class World:
 
 
 class UnseenError(Exception):
-    """No size of the effect that is allowed shows in a log of this robot."""
+    """No size of the effect that is allowed shows in a log of this robot, under its controller."""
 
 
 @dataclass(frozen=True)
@@ -139,10 +139,13 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
         size = tried
         if shown < LEAST:
             raise UnseenError(f"{effect} of {robot.name} shows {shown:.2g} times the noise at most")
-    records = [
-        _record(robot, true, control, aim, str(kind), push, rng)
-        for kind, aim, push in zip(kinds, aims, pushes, strict=True)
-    ]
+    try:
+        records = [
+            _record(robot, true, control, aim, str(kind), push, rng)
+            for kind, aim, push in zip(kinds, aims, pushes, strict=True)
+        ]
+    except np.linalg.LinAlgError:  # of a state that left the finite numbers
+        raise UnseenError(f"{effect} of {robot.name}: its controller does not hold it") from None
     return World(
         robot=robot, effect=effect, names=hidden.names(robot) if hidden else (NULL,), joint=joint,
         places=places,
