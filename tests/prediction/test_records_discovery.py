@@ -8,10 +8,12 @@ from pendulum_robot import TOML, make_folder, written
 from records_cases import nominal_model, pendulum, record, records
 
 from identification.__main__ import main
+from identification.discovery.findings.evidence import ShiftedRecord
 from identification.effects.joint_plant import candidates
 from identification.prediction.discovery import discover_records
 from identification.report.finding_words import describe_finding
 from identification.report.records_json import records_to_json
+from identification.report.records_report import write_records_report
 from identification.report.records_text import records_text
 
 MU = "transmitted_load_friction.mu@hinge"
@@ -65,6 +67,16 @@ def test_a_record_that_repeats_another_is_no_further_witness():
     assert records_to_json(twin)["effects"][0]["same_as"] == "offset"
     beside = replace(answer, named=(replace(named, compared=2),))
     assert "beside 2 rivals that were refitted in its place" in records_text(beside)
+
+
+def test_shifts_of_records_stand_in_the_report(tmp_path):
+    answer = found({MU: 0.15}, names=FEW[:1])
+    write_records_report(answer, tmp_path)
+    assert "Shifts in time" not in (tmp_path / "report.html").read_text()
+    late = ShiftedRecord(record="record 3", shift=0.02, std=0.002, fall=0.3, chance=1e-5)
+    page = write_records_report(replace(answer, shifts=(late,)), tmp_path).read_text()
+    assert "Shifts in time" in page
+    assert "20.0 ± 2.0 ms" in page
 
 
 def test_records_without_an_effect_get_no_name():
