@@ -23,6 +23,18 @@ class PredictionOptions(KalmanOptions):
         " round; the best `max_refits` of them, and those near them, are refitted to all.",
         "judgement", least=1,
     )  # fmt: skip
+    max_scored: int = option(
+        300, "candidates",
+        "Over a horizon: more of them, which robots of several joints have, are scored on some of"
+        " the windows first, and those that are promising there on all of them.",
+        "judgement: a minute of one core",
+    )  # fmt: skip
+    max_scored_shapes: int = option(
+        2, "shapes",
+        "Over a horizon: of an effect at a place, largest number of shapes that are then scored on"
+        " all windows.",
+        "judgement", least=1,
+    )  # fmt: skip
     max_simpler: int = option(
         2, "candidates",
         "Over a horizon: largest number of laws with fewer numbers that are refitted beside the"

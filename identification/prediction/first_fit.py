@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import iterate_shapes
 from identification.effects.effect import Candidate
 from identification.errors import InputError
@@ -27,7 +28,6 @@ from identification.prediction.unknowns import Prior
 
 SHARES = (1.0, 0.3, 0.05, 0.01)  # of the size that a score gives, to begin with
 FINE = 1e-3  # relative fall of the criterion at which the refit of an effect ends
-SHAPE_STD = 1.0  # prior of a shape's coordinate about the value that scored best
 SMALL = 1e-3  # of a probe: where the search for a size begins that must not be zero
 
 
@@ -54,29 +54,32 @@ class Begun:
     q: np.ndarray
 
 
-def begin(parent: WindowModel, scores: Sequence[WindowScore]) -> Begun:
+def begin(parent: WindowModel, scores: Sequence[WindowScore], options: DiscoveryOptions) -> Begun:
     """An effect fitted to some of the windows, from the best of several starts.
 
     Args:
         parent: the model without it.
         scores: of the effect on the parent, one for each start: where shapes and sizes begin.
+        options: what is believed of shapes.
 
     Raises:
         InputError: it cannot be simulated from any start, whatever the size.
     """
     starts = [s for one in scores for s in (_shaped(one) if one.candidate.effect.state else [one])]
-    begun = [b for b in (_begun(parent, score) for score in starts) if b is not None]
+    begun = [
+        b for b in (_begun(parent, score, options.shape_std) for score in starts) if b is not None
+    ]
     if not begun:
         c = scores[0].candidate
         raise InputError(f"{c.effect.name}, {c.where} cannot be simulated at any size")
     return min(begun, key=lambda b: b.cost)
 
 
-def _begun(parent: WindowModel, score: WindowScore) -> Begun | None:
+def _begun(parent: WindowModel, score: WindowScore, shape_std: float) -> Begun | None:
     """The fit of some windows; None where it cannot be simulated at any size."""
     c = score.candidate
     parent = model_for(parent, c)
-    task, fixed = _task(parent, c)
+    task, fixed = _task(parent, c, shape_std)
     at = picks(parent.fit.tangents)
     few, begun = thinned(task, at), thinned_moves(parent.fit.moves, at)
     near = thinned_tangents(parent.fit.tangents, at)
@@ -99,11 +102,11 @@ def _begun(parent: WindowModel, score: WindowScore) -> Begun | None:
     return Begun(found.cost, windows, c, parent, fixed, task, found.q)
 
 
-def _task(parent: WindowModel, c: Candidate) -> tuple[Problem, dict[str, float]]:
+def _task(parent: WindowModel, c: Candidate, shape_std: float) -> tuple[Problem, dict[str, float]]:
     """The windows with the parameters of one effect more, and the values of what is not free."""
     plant, old = parent.plant, parent.fit.problem.unknowns
-    sizes = _free(plant, c, [n for n in c.free if n not in old.local.names])
-    shapes = _free(plant, c, [n for n in shapes_of(c) if n not in old.local.names])
+    sizes = _free(plant, c, [n for n in c.free if n not in old.local.names], shape_std)
+    shapes = _free(plant, c, [n for n in shapes_of(c) if n not in old.local.names], shape_std)
     shared, own = old.shared.plus(shapes), old.own
     shared, own = (shared, own.plus(sizes)) if c.effect.own else (shared.plus(sizes), own)
     free = (*shared.names, *own.names)
@@ -126,7 +129,7 @@ def _shaped(score: WindowScore) -> list[WindowScore]:
     ]
 
 
-def _free(plant: Plant, c: Candidate, names: Sequence[str]) -> Prior:
+def _free(plant: Plant, c: Candidate, names: Sequence[str], shape_std: float) -> Prior:
     """Parameters of an effect: of sizes nothing is known, shapes are near the grid's value."""
     if not names:
         return Prior()
@@ -134,7 +137,7 @@ def _free(plant: Plant, c: Candidate, names: Sequence[str]) -> Prior:
     start = [_away(plant.parameters, n, 0.0) if n in c.sizes else values[n] for n in names]
     first = inside(plant.parameters, names, np.array(start))
     space = coordinates(plant.parameters, names, first, linear=c.sizes)
-    weight = np.array([0.0 if n in c.sizes else 1 / SHAPE_STD for n in names])
+    weight = np.array([0.0 if n in c.sizes else 1 / shape_std for n in names])
     return Prior(space, space.encode(first), weight)
 
 

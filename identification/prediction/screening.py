@@ -1,9 +1,9 @@
 """Scores of all that a model lacks: everything on some windows, what is promising on all of them.
 
 A score of one place is worth as much as one of all places, and a shape that is best for all places
-together may be wrong for each of them. So every shape is scored at every place. Where that is
-`MANY`, it is scored on one window of `THIN`, and what then explains a share of the best is scored
-again on all windows; some windows miss what happens seldom, such as a limit that is reached.
+together may be wrong for each of them. So every shape is scored at every place. Where these are
+more than `max_scored`, they are scored on one window of `THIN`, and what then explains a share of
+the best is scored again on all windows; some windows miss what happens seldom, such as a limit.
 """
 
 from __future__ import annotations
@@ -21,9 +21,6 @@ from identification.prediction.scores import WindowScore, find_imitated, window_
 from identification.prediction.several_places import several_scores
 from identification.prediction.thinning import picks, thinned, thinned_moves, thinned_tangents
 
-MANY = 300  # candidates, which robots of several joints have
-SHAPES = 2  # of an effect at a place that are scored on all windows
-
 
 def score_all(
     model: WindowModel, effects: Sequence[Effect], options: DiscoveryOptions
@@ -36,7 +33,7 @@ def score_all(
         options: what is beyond chance, and what is promising.
     """
     listed = _listed(model, effects)
-    is_many = len(listed) > MANY
+    is_many = len(listed) > options.max_scored
     few = window_scores(some_windows(model.fit) if is_many else model.fit, listed)
     promising = _promising(few, options)
     again = {id(c) for c in promising}
@@ -96,6 +93,6 @@ def _promising(scores: Sequence[WindowScore], options: DiscoveryOptions) -> list
     for s in plausible:
         key = s.candidate.key
         count[key] = count.get(key, 0) + 1
-        if s.gain >= least and count[key] <= SHAPES:
+        if s.gain >= least and count[key] <= options.max_scored_shapes:
             out.append(s.candidate)
     return out

@@ -92,26 +92,26 @@ def refit_contenders(
         )
         return [c for c in found if c is not None]
 
-    out = refit(_near_best(_begun(model, chosen, scores, progress), options))
+    out = refit(_near_best(_begun(model, chosen, scores, options, progress), options))
     proven = [c for c in out if c.is_proven]
     if proven:
         best = max(proven, key=lambda c: c.criterion)
         tried = {c.candidate.key for c in out}
         simpler = list_simpler(best.candidate, scores, options)
         rest = [s for s in simpler if s.candidate.key not in tried]
-        out += refit(_begun(model, rest, scores, progress))
+        out += refit(_begun(model, rest, scores, options, progress))
     return _ranked(out, options)
 
 
 def _begun(
     model: WindowModel, chosen: Sequence[WindowScore], scores: Sequence[WindowScore],
-    progress: Progress,
+    options: DiscoveryOptions, progress: Progress,
 ) -> list[Begun]:  # fmt: skip
     """Effects fitted to some of the windows; those that cannot be simulated are told."""
     out = []
     for s in chosen:
         try:
-            out.append(begin(model, [s, *list_starts(s, scores)]))
+            out.append(begin(model, [s, *list_starts(s, scores)], options))
         except InputError as error:
             progress(f"{_label(s.candidate)}: left out, {error}")
     return out

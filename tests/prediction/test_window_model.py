@@ -111,7 +111,12 @@ def test_the_hidden_law_explains_most():
 def test_a_child_never_explains_less_than_its_parent(name):
     parent, logs = rubbed(), records(4, LOAD)
     (score, *_) = scored(parent, name)
-    child = with_effect(parent, begin(parent, [score]), HORIZON, as_records(logs[:2], logs[2:])[2:])
+    child = with_effect(
+        parent,
+        begin(parent, [score], DiscoveryOptions()),
+        HORIZON,
+        as_records(logs[:2], logs[2:])[2:],
+    )
     assert child is None or child.fit.cost < parent.fit.cost
 
 
