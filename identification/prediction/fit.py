@@ -11,6 +11,7 @@ H, P_w and W are those of `identification.prediction.point`.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -131,19 +132,26 @@ def solve(
     samples = sum(p.cut.outputs.size for p in problem.parts)
     trials = levenberg_marquardt(at, AtPoint.moved, DAMPING)
     while not converged and steps < most:
+        before = at.cost
         try:
             trial = next(trials)
+            if trial.taken:
+                at = trial.criterion
+                steps += at.is_fresh
+                converged = bool(before - at.cost < tolerance * before)
+            else:
+                converged = not before - trial.step.promised > tolerance * before
+            if not at.is_fresh and (converged or not trial.taken):  # old slopes prove nothing
+                at, steps, converged = at.refreshed(), steps + 1, False
+                trials = levenberg_marquardt(at, AtPoint.moved, DAMPING, trial.μ)
         except DivergenceError:  # a neighbour of the new point: the last one stands
             break
-        before = at.cost
-        if not trial.taken:
-            converged = not before - trial.step.promised > tolerance * before
-            continue
-        at, steps = trial.criterion, steps + 1
-        converged = bool(before - at.cost < tolerance * before)
-        if progress is not None:
+        if trial.taken and progress is not None:
             error = np.sqrt(at.cost / samples)
             progress(f"windows: error {error:.4g} of its scale, step {steps}")
+    if not at.is_fresh:  # std and scores are those of slopes here
+        with suppress(DivergenceError):
+            at = at.refreshed()
     return WindowFit(
         problem=problem, q=at.q, moves=at.moves, tangents=at.tangents, cost=at.cost,
         converged=converged, steps=steps,

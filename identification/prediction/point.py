@@ -3,6 +3,9 @@
     (H + μ diag H) Δq = g,    H = Σ_w S_wᵀ(I - P_w) S_w + W²
                               g = Σ_w S_wᵀ(I - P_w) r_w + W²(q̄ - q)
 
+A linearisation takes a simulation of all windows for each parameter. Where they are many, slopes
+are kept as long as steps gain what they promise (chord method; Ortega, Rheinboldt 1970, 7.1).
+
 P_w projects on what the states of a window make up for, W = diag(1/σ) are the priors. A step moves
 parameters and states together. Where a joint sticks or a limit is met the criterion is not smooth
 in the states, and a few windows would bar the way of all: each window may keep the state that it
@@ -13,7 +16,7 @@ projection; Golub, Pereyra 1973).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +27,8 @@ from identification.prediction.problem import Problem, best_of
 from identification.windows.settling import settle
 from identification.windows.tangents import Tangent, along_states
 
+MANY = 12  # parameters, from which on slopes are kept: fewer cost less than the steps they save
+KEPT = 0.5  # of the promised gain; with less, slopes are too old
 FAR = 4.0  # times V, from where no states bring a step back: it is too long
 Moves = tuple[np.ndarray, ...]  # of the windows' states, one array (W, nx) a record
 
@@ -55,8 +60,9 @@ class AtPoint:
         problem: windows and priors.
         q: shape (p,).
         moves: of the windows' states, one array (W, nx) a record.
-        tangents: the windows linearised there, one a record.
+        tangents: the windows linearised, one a record: r there, and slopes there or before.
         tolerance: relative fall of V that is worth a search of the states.
+        is_fresh: whether slopes are those at this point.
     """
 
     problem: Problem
@@ -64,6 +70,7 @@ class AtPoint:
     moves: Moves
     tangents: tuple[Tangent, ...]
     tolerance: float
+    is_fresh: bool = True
 
     @property
     def cost(self) -> float:
@@ -98,8 +105,24 @@ class AtPoint:
         """The steps are never bent."""
 
     def moved(self, step: Step, taken: np.ndarray) -> AtPoint:
-        """The criterion after a step."""
-        return linearised(self.problem, step.q, step.moves, self.tolerance, step.residuals)
+        """The criterion after a step, with the slopes before it where they serve."""
+        gain, promised = self.cost - step.cost, self.cost - step.promised
+        if len(self.q) < MANY or gain < KEPT * promised:
+            return linearised(self.problem, step.q, step.moves, self.tolerance, step.residuals)
+        each = zip(self.tangents, step.residuals, strict=True)
+        return replace(
+            self, q=step.q, moves=step.moves, tangents=tuple(replace(t, r=r) for t, r in each),
+            is_fresh=False,
+        )  # fmt: skip
+
+    def refreshed(self) -> AtPoint:
+        """The same with slopes at this point.
+
+        Raises:
+            DivergenceError: it cannot be simulated beside it.
+        """
+        known = [t.r for t in self.tangents]
+        return linearised(self.problem, self.q, self.moves, self.tolerance, known)
 
     def _promised(self, q: np.ndarray, dd: Sequence[np.ndarray]) -> float:
         """V at q, the states moved by dd, by the linearisation."""

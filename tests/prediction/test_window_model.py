@@ -10,6 +10,7 @@ from records_cases import FREE, HORIZON, nominal_model, pendulum, record, record
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import list_common
 from identification.effects.joint_plant import candidates
+from identification.prediction import point
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import begin
 from identification.prediction.nominal_fit import fit_nominal
@@ -50,6 +51,17 @@ def scored(model, *names):
 def test_clean_records_give_the_values_that_made_them():
     assert clean().values["J"] == pytest.approx(2e-3, rel=1e-4)
     assert clean().values["d"] == pytest.approx(0.02, rel=1e-4)
+
+
+def test_slopes_that_are_kept_lead_to_the_same_fit_with_fewer_linearisations(monkeypatch):
+    logs = records(4, LOAD)
+    each = fitted(logs[:2], logs[2:])
+    monkeypatch.setattr(point, "MANY", 0)  # slopes are kept, however few parameters there are
+    kept = fitted(logs[:2], logs[2:])
+    assert kept.fit.cost == pytest.approx(each.fit.cost, rel=1e-3)
+    for name in FREE:
+        assert kept.values[name] == pytest.approx(each.values[name], abs=0.1 * each.std[name])
+        assert kept.std[name] == pytest.approx(each.std[name], rel=0.02)
 
 
 def test_the_order_of_records_changes_nothing():
