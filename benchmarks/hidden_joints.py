@@ -180,7 +180,7 @@ def main() -> int:
 
 def write_page(path: Path, text: str) -> None:
     """Put the section into its page, in place of an earlier one or at the end."""
-    page = path.read_text(encoding="utf-8")
+    page = path.read_text(encoding="utf-8") if path.exists() else ""
     if BEGIN in page:
         head, _, rest = page.partition(BEGIN)
         page = head + BEGIN + text + END + rest.partition(END)[2]
