@@ -70,9 +70,11 @@ def answer(toml: Path, a: Path, b: Path, way: str) -> dict[str, Any]:
     else:
         found = discover(robot)
     end = time.process_time()
-    after = (
-        found.final.values if isinstance(found, RecordsDiscovery) else collect_final_values(found)
-    )
+    if isinstance(found, RecordsDiscovery):  # with what the other record has for itself
+        own = found.final.own_values.get(robot.records[0].name, {})
+        after = {**found.final.values, **own}
+    else:
+        after = collect_final_values(found)
     named = [n.effect if isinstance(found, RecordsDiscovery) else n for n in found.named]
     error = compare_values(robot, robot.records[0], fitted, after)
     written = compare_values(robot, robot.records[0], {}, {})
