@@ -1,7 +1,8 @@
 """Blocks of neighbouring windows of a record: the sample of every comparison of two models.
 
-    g_b = ln(mean_w ‖e_w(without)/s‖²/L + ε²) - ln(mean_w ‖e_w(with)/s‖²/L + ε²),     w in block b
+    g_b = ln(mean_w e_w²(without) + ε²) - ln(mean_w e_w²(with) + ε²),       w in block b
 
+e_w² is the mean square of the errors of a window in units of s², over its samples and outputs.
 Within a block windows count by their squares, so that those in which nothing happens do not decide;
 blocks count by logarithms, so that no block and no record decides alone. ε is the sensors' noise.
 """
@@ -12,7 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-PER_RECORD = 20  # blocks of a record at most, of two windows at least; as `proof_blocks`
+PER_RECORD = 20  # blocks of a record at most, of two windows where it has two; as `proof_blocks`
 
 
 def count_blocks(windows: int) -> int:

@@ -142,7 +142,8 @@ def solve(
             else:
                 converged = not before - trial.step.promised > tolerance * before
             if not at.is_fresh and (converged or not trial.taken):  # old slopes prove nothing
-                at, steps, converged = at.refreshed(), steps + 1, False
+                converged = False
+                at, steps = at.refreshed(), steps + 1
                 trials = levenberg_marquardt(at, AtPoint.moved, DAMPING, trial.μ)
         except DivergenceError:  # a neighbour of the new point: the last one stands
             break
@@ -151,7 +152,7 @@ def solve(
             progress(f"windows: error {error:.4g} of its scale, step {steps}")
     if not at.is_fresh:  # std and scores are those of slopes here
         with suppress(DivergenceError):
-            at = at.refreshed()
+            at, steps = at.refreshed(), steps + 1
     return WindowFit(
         problem=problem, q=at.q, moves=at.moves, tangents=at.tangents, cost=at.cost,
         converged=converged, steps=steps,

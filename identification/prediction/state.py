@@ -15,6 +15,8 @@ import numpy as np
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
+from identification.errors import InputError
+from identification.prediction.blocks import count_blocks
 from identification.prediction.exchange import exchanged, without_contradicted
 from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import as_begun, fit_nominal
@@ -29,6 +31,8 @@ from identification.prediction.selection import (
     refit_contenders,
 )
 from identification.prediction.unseen import Unseen, compare, predict
+
+FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,6 +110,7 @@ def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
     watch = Watch()
     base = task.nominal_model
     nominal = fit_nominal(base, task.records, progress)
+    _refuse_few(nominal.unseen, task.horizon)
     begun = predict(base.plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen)
     worse = None
     if find_doubt(compare(nominal.unseen, begun), 1, task.options) is None:
@@ -126,6 +131,21 @@ def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
         model=nominal, accepted=(), alternatives=(), scores=scores, rejected=(),
         seconds=watch.seconds, worse_fit=worse,
     )  # fmt: skip
+
+
+def _refuse_few(unseen: Unseen, horizon: float) -> None:
+    """Refuse records that confirm and hold too few windows to prove or to deny anything.
+
+    Raises:
+        InputError: they do.
+    """
+    windows = [len(s) for s in unseen.at_horizon]
+    if sum(map(count_blocks, windows)) < FEWEST_BLOCKS:
+        raise InputError(
+            f"the records that confirm hold {sum(windows)} windows of {horizon:g} s, too few to"
+            f" prove anything; give at least {2 * FEWEST_BLOCKS} windows, by longer records or a"
+            " shorter horizon"
+        )
 
 
 def next_state(state: RecordsState, progress: Progress) -> RecordsState:
@@ -153,11 +173,13 @@ def next_state(state: RecordsState, progress: Progress) -> RecordsState:
     others = find_rivals(tried[1:], state.model, state.scores, best.model, scores, task.options)
     watch.stop("scores")
     accepted = (*state.accepted, best)
-    return replace(
-        state, is_finished=len(accepted) >= task.options.max_effects, model=best.model,
+    is_last = len(accepted) >= task.options.max_effects
+    state = replace(
+        state, is_finished=is_last, model=best.model,
         accepted=accepted, alternatives=(*state.alternatives, others), scores=scores, rejected=(),
         seconds=watch.seconds, exchanged=other_side,
     )  # fmt: skip
+    return _pruned(state, progress) if is_last else state
 
 
 def _checked(

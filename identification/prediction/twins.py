@@ -16,6 +16,7 @@ from identification.prediction.model import WindowModel
 
 TWINS = {"offset": "asymmetric_friction", "asymmetric_friction": "offset"}
 LEVEL = "coulomb_friction.f_c"
+SLIDE = "slide_"  # before names of effects of slides, on a robot that has hinges too
 
 
 def find_twin(model: WindowModel, candidate: Candidate) -> str:
@@ -26,14 +27,16 @@ def find_twin(model: WindowModel, candidate: Candidate) -> str:
         candidate: the effect at its place.
     """
     effect = candidate.effect
-    values = {**model.plant.parameters.values(), **model.fit.shared, **model.values}
+    prefix = SLIDE if effect.name.startswith(SLIDE) else ""
+    name, level = effect.name.removeprefix(SLIDE), prefix + LEVEL
+    values = {**model.plant.parameters.values(), **model.values}
     every = [s for s in effect.places.values() if s.startswith("@")]
 
-    def is_small(name: str) -> bool:
-        _, at, joint = name.partition("@")
+    def is_small(size: str) -> bool:
+        _, at, joint = size.partition("@")
         places = [at + joint] if joint else every
-        levels = (values.get(LEVEL, 0.0) + values.get(LEVEL + p, 0.0) for p in places)
-        return abs(values.get(name, 0.0)) < min(levels, default=0.0)
+        levels = (values.get(level, 0.0) + values.get(level + p, 0.0) for p in places)
+        return abs(values.get(size, 0.0)) < min(levels, default=0.0)
 
-    small = effect.name in TWINS and all(map(is_small, candidate.sizes))
-    return TWINS[effect.name] if small else ""
+    small = name in TWINS and all(map(is_small, candidate.sizes))
+    return prefix + TWINS[name] if small else ""

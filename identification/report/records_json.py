@@ -66,6 +66,7 @@ def _refitted_to_json(effect: RefittedEffect) -> dict[str, Any]:
             for name, (value, std, unit) in effect.parameters.items()
         },
         "gain": effect.criterion,
+        "doubt": effect.doubt,
         "proof": {"t": seen.t, "falls": list(seen.falls), "records": list(seen.records)},
     }
 

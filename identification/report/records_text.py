@@ -7,7 +7,7 @@ import numpy as np
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
 from identification.quantities import alike, quantity
 from identification.report.effect_words import describe_effect
-from identification.report.finding_words import describe_finding, sentence
+from identification.report.finding_words import DOUBTS, describe_finding, sentence
 from identification.report.records_values import text_table, value_table, value_with_std
 
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
@@ -60,6 +60,7 @@ def describe_refitted(effect: RefittedEffect) -> str:
     return (
         f"{describe_effect(effect.candidate)}, {_sizes(effect)}; unseen mean square"
         f" {-fall:+.0f} % at best, t = {effect.prediction.t:.1f}"
+        + (f"; {DOUBTS[effect.doubt]}" if effect.doubt else "")
     )
 
 
@@ -82,7 +83,8 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
     if found.verdict == "unlisted effect":
         first += ", in no catalogue and drawn from the data"
     said = (
-        f"{first}: {describe_effect(named.effect.candidate)}, {_sizes(named.effect)}; confidence"
+        f"{first}: {describe_effect(named.effect.candidate)}{_twin(named)},"
+        f" {_sizes(named.effect)}; confidence"
         f" {100 * named.effect.confidence:.0f} %{_compared(named)}."
     )
     if named.rivals:
@@ -92,15 +94,20 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
         said += (
             f" {'These records cannot tell it from' if named.one_of else 'Less likely:'} {each}."
         )
-    if named.same_as:
-        said += (
-            f" As long as it is smaller than the Coulomb friction it is the same force as"
-            f' "{named.same_as.phrase}": no record tells which of the two it is.'
-        )
     said += _agreement(found, named)
     if named.disagrees:
         said += f" It raises the error on {', '.join(named.disagrees)}, beyond chance."
     return said
+
+
+def _twin(named: NamedByPrediction) -> str:
+    """The other name of the same force."""
+    if named.same_as is None:
+        return ""
+    return (
+        f' (or "{named.same_as.phrase}": below the Coulomb friction it is the same force, and no'
+        " record tells which of the two it is)"
+    )
 
 
 def _compared(named: NamedByPrediction) -> str:

@@ -10,6 +10,7 @@ from records_cases import nominal_model, pendulum, record, records
 from identification.__main__ import main
 from identification.discovery.findings.evidence import ShiftedRecord
 from identification.effects.joint_plant import candidates
+from identification.errors import InputError
 from identification.prediction.discovery import discover_records
 from identification.report.finding_words import describe_finding
 from identification.report.records_json import records_to_json
@@ -17,6 +18,14 @@ from identification.report.records_report import write_records_report
 from identification.report.records_text import records_text
 
 MU = "transmitted_load_friction.mu@hinge"
+
+
+def rows(log, count):
+    """The first samples of a log."""
+    cut = {name: getattr(log, name)[:count] for name in ("time", "inputs", "outputs")}
+    return replace(log, **cut)
+
+
 FEW = ("transmitted_load_friction", "gravity_load_friction", "quadratic_friction", "offset")
 
 
@@ -63,10 +72,18 @@ def test_a_record_that_repeats_another_is_no_further_witness():
     assert "the highest that is ever said, because no rival was near enough" in said
     (other,) = (e for e in candidates(pendulum(), ("J", "d")) if e.name == "offset")
     twin = replace(answer, named=(replace(named, same_as=other),))
-    assert 'it is the same force as "force: constant": no record tells which' in records_text(twin)
+    assert '(or "force: constant": below the Coulomb friction it is' in records_text(twin)
     assert records_to_json(twin)["effects"][0]["same_as"] == "offset"
     beside = replace(answer, named=(replace(named, compared=2),))
     assert "beside 2 rivals that were refitted in its place" in records_text(beside)
+
+
+def test_records_too_short_to_confirm_are_refused():
+    first, second = records(2, {MU: 0.15})
+    short = rows(second, 45)
+    effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name == FEW[0]]
+    with pytest.raises(InputError, match=r"hold 2 windows of 0\.2 s, too few to prove anything"):
+        discover_records(nominal_model(), [first], [short], effects)
 
 
 def test_shifts_of_records_stand_in_the_report(tmp_path):

@@ -54,3 +54,11 @@ def test_without_friction_there_is_no_twin() -> None:
     values = {candidate.sizes[0]: 0.01}
     model = SimpleNamespace(plant=pendulum(), values=values, fit=SimpleNamespace(shared={}))
     assert find_twin(model, candidate) == ""
+
+
+def test_slides_of_a_robot_that_has_hinges_too_have_twins() -> None:
+    effect = SimpleNamespace(name="slide_offset", places={"joint rail": "@rail"})
+    candidate = SimpleNamespace(effect=effect, sizes=("slide_offset.f_0@rail",))
+    values = {f"slide_{LEVEL}@rail": LEVEL_THERE, "slide_offset.f_0@rail": 0.9 * LEVEL_THERE}
+    model = SimpleNamespace(plant=pendulum(), values=values)
+    assert find_twin(model, candidate) == "slide_asymmetric_friction"
