@@ -51,6 +51,8 @@ class JointPlant:
         axes: the joints that may have effects, in the order of `joints`.
         states: states of joints that some effects need.
         leaves_out: whether effects whose states it lacks are left out, and not refused.
+        slope_steps: steps of the model in one step of its smooth model; states of joints take the
+            model's own steps.
     """
 
     bare: ModelPlant
@@ -61,6 +63,7 @@ class JointPlant:
     axes: tuple[Axis, ...]
     states: tuple[JointState, ...] = ()
     leaves_out: bool = False
+    slope_steps: int = 1
 
     def __post_init__(self) -> None:
         known = {p.name for p in self.bare.parameters}
@@ -100,11 +103,13 @@ class JointPlant:
 
     @cached_property
     def smooth(self) -> mujoco.MjModel:
-        """The model whose friction stops its joints more gently: its outputs have slopes."""
+        """The model for slopes: its friction stops joints more gently, its steps may be longer."""
+        steps = 1 if self.states else self.slope_steps
         model = copy.copy(self.model)
+        model.opt.timestep *= steps
         column = int(model.nuser_jnt) - self.layout.entries + STOP
         for joint in self.joints:
-            model.jnt_user[int(model.joint(joint).id), column] *= GENTLE
+            model.jnt_user[int(model.joint(joint).id), column] *= max(GENTLE, steps)
         return model
 
     def with_values(self, values: Mapping[str, float]) -> JointPlant:

@@ -75,7 +75,7 @@ class WindowModel:
 
 def predict_fitted(
     plant: Plant, confirm: Sequence[Record], horizon: float, scale: np.ndarray, found: WindowFit,
-    fixed: Mapping[str, float], near: Unseen | None = None,
+    fixed: Mapping[str, float], near: Sequence[Unseen] = (),
 ) -> Unseen:  # fmt: skip
     """Errors on unseen records; of parameters that each has for itself, its own halves tell.
 
@@ -86,7 +86,7 @@ def predict_fitted(
         scale: s of each output, shape (ny,), in its unit.
         found: the fit of other records.
         fixed: values that are neither the plant's own nor fitted.
-        near: errors of a model nearby, at whose states the windows' search begins.
+        near: errors of models nearby, at whose states the windows' searches begin.
 
     Raises:
         InputError: no window of the horizon fits a record.

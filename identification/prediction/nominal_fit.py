@@ -21,6 +21,7 @@ from identification.prediction.problem import (
     MOST_STEPS,
     no_moves,
     problem,
+    with_longer_steps,
     with_scale,
 )
 from identification.prediction.records import Record
@@ -67,6 +68,9 @@ def fit_nominal(
         task = problem(plant, fitted, shared, own, length, values, scale, ROUGH_STEPS)
         q = begin(nominal_model, task.unknowns) if found is None else found.q
         moves, _ = task.settled(q, no_moves(task))
+        if factor == 1.0:
+            task = with_longer_steps(task, q, moves)
+            plant = task.plant
         found = solve(task, q, moves, tolerance=ROUGH, progress=progress)
         _refuse_idle(found)
         values, scale = found.shared, _rms(found)

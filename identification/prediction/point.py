@@ -28,7 +28,7 @@ from identification.windows.settling import settle
 from identification.windows.tangents import Tangent, along_states
 
 MANY = 12  # parameters, from which on slopes are kept: fewer cost less than the steps they save
-KEPT = 0.5  # of the promised gain; with less, slopes are too old
+KEPT = 0.5  # of the promised gain; with less, slopes are too old, or states are sought anew
 FAR = 4.0  # times V, from where no states bring a step back: it is too long
 Moves = tuple[np.ndarray, ...]  # of the windows' states, one array (W, nx) a record
 
@@ -86,10 +86,11 @@ class AtPoint:
         moves = tuple(d + more for d, more in zip(self.moves, dd, strict=True))
         try:
             held = self.problem.held(q)
-            moves, r = best_of(held, moves, self.moves)
+            moves, r = best_of(held, moves, self.moves, [t.r for t in self.tangents])
             cost = self.problem.cost_of(q, r)
-            is_near = self.cost <= cost < FAR * self.cost
-            if is_near and self.cost - promised > self.tolerance * self.cost:
+            hoped = self.cost - promised
+            is_short = hoped > self.tolerance * self.cost and self.cost - cost < KEPT * hoped
+            if is_short and cost < FAR * self.cost:
                 settled = settle(held, moves, self.tangents)
                 moves, r = tuple(s.d for s in settled), tuple(s.r for s in settled)
                 cost = self.problem.cost_of(q, r)

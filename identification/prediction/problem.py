@@ -19,6 +19,7 @@ from identification.errors import DivergenceError
 from identification.model.predictor import Plant, Predictor
 from identification.prediction.records import Record
 from identification.prediction.unknowns import Prior, Unknowns
+from identification.windows.coarse import longest_steps
 from identification.windows.held import at_values
 from identification.windows.held_records import HeldRecords, hold
 from identification.windows.settling import settle
@@ -48,6 +49,11 @@ class Problem:
     def prior(self) -> Prior:
         """Of all p free parameters."""
         return self.unknowns.all
+
+    @property
+    def plant(self) -> Plant:
+        """The plant, the same for all records."""
+        return self.parts[0].predictor.plant
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -119,23 +125,36 @@ class Problem:
 
 
 def best_of(
-    held: HeldRecords, moves: Sequence[np.ndarray], others: Sequence[np.ndarray]
-) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
+    held: HeldRecords, moves: Sequence[np.ndarray], others: Sequence[np.ndarray],
+    before: Sequence[np.ndarray],
+) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:  # fmt: skip
     """Of two moves of the states the better one, each window for itself, and the residuals there.
+
+    A window that is no worse than before with the first one is not asked for the other.
 
     Args:
         held: the windows.
         moves: one array (W, nx) a record.
         others: likewise.
+        before: the residuals before, one array (W, m) a record.
     """
-    d, r = [], []
-    each = zip(moves, others, held.residuals(moves), held.residuals(others), strict=True)
-    for one, other, r_one, r_other in each:
-        squares = np.nan_to_num([np.sum(x**2, axis=1) for x in (r_one, r_other)], nan=np.inf)
-        first = (squares[0] <= squares[1])[:, None]
-        d.append(np.where(first, one, other))
-        r.append(np.where(first, r_one, r_other))
-    return tuple(d), tuple(r)
+    r = held.residuals(moves)
+    worse = [~(_squares(now) <= _squares(old)) for now, old in zip(r, before, strict=True)]
+    second = held.residuals_of(worse, others)
+    d, best = [], []
+    for at, one, other, r_one, r_other in zip(worse, moves, others, r, second, strict=True):
+        is_other = at.copy()
+        is_other[at] = _squares(r_other) < _squares(r_one[at])
+        residual = r_one.copy()
+        residual[is_other] = r_other[is_other[at]]
+        d.append(np.where(is_other[:, None], other, one))
+        best.append(residual)
+    return tuple(d), tuple(best)
+
+
+def _squares(r: np.ndarray) -> np.ndarray:
+    """Sum of squares of each window, infinite where it diverged, shape (W,)."""
+    return np.nan_to_num(np.sum(r**2, axis=1), nan=np.inf)
 
 
 def problem(
@@ -205,6 +224,18 @@ def with_unknowns(
         predictor = replace(part.predictor, names=space.names, fixed=rest)
         parts.append(replace(part, space=space, predictor=predictor))
     return Problem(tuple(parts), Unknowns(shared, own, problem_.unknowns.records))
+
+
+def with_longer_steps(problem_: Problem, q: np.ndarray, moves: Sequence[np.ndarray]) -> Problem:
+    """The same windows with simulations for slopes whose steps are as long as slopes allow.
+
+    Args:
+        problem_: of one plant.
+        q: where slopes are compared, shape (p,).
+        moves: of the windows' states, one array (W, nx) a record.
+    """
+    each = [q[problem_.unknowns.columns(k)] for k in range(len(problem_.parts))]
+    return replace(problem_, parts=tuple(longest_steps(problem_.parts, each, moves)))
 
 
 def with_scale(problem_: Problem, scale: np.ndarray) -> Problem:

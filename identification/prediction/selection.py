@@ -22,6 +22,7 @@ from identification.prediction.contenders import (
     list_simpler,
     list_starts,
 )
+from identification.prediction.crossing import at_their_best
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import Begun, begin
@@ -73,7 +74,7 @@ def refit_contenders(
     options: DiscoveryOptions,
     progress: Progress,
     worse_fit: Unseen | None = None,
-) -> tuple[Contender, ...]:
+) -> tuple[WindowModel, tuple[Contender, ...]]:
     """Refit the contenders of a round, the best first: proven ones before others, by evidence.
 
     Where the fit without effects was worse than the values with which it began, an effect must be
@@ -81,26 +82,37 @@ def refit_contenders(
     Laws with fewer numbers that act as the best one does are refitted too. A law with fewer numbers
     comes before the best one where resamples cannot tell them apart and the evidence does not
     speak very strongly.
+
+    Returns:
+        The model without them, its windows at the best states that any of them found, and they.
     """
     windows = sum(len(p.cut.starts) for p in model.fit.problem.parts)
     chosen = list_contenders(scores, options, windows * len(model.scale))
     refits = len(chosen)
 
-    def refit(each: Sequence[Begun]) -> list[Contender]:
-        found = (
-            _refit(model, b, horizon, confirm, options, refits, progress, worse_fit) for b in each
-        )
+    def refit(each: Sequence[Begun]) -> list[WindowModel]:
+        found = (_refit(model, b, horizon, confirm, progress) for b in each)
         return [c for c in found if c is not None]
 
-    out = refit(_near_best(_begun(model, chosen, scores, options, progress), options))
+    def judge(children: Sequence[WindowModel]) -> tuple[WindowModel, list[Contender]]:
+        parent, best = at_their_best(model, children, horizon, confirm)
+        return parent, [_judged(parent, c, refits, options, worse_fit) for c in best]
+
+    children = refit(_near_best(_begun(model, chosen, scores, options, progress), options))
+    parent, out = judge(children)
     proven = [c for c in out if c.is_proven]
     if proven:
         best = max(proven, key=lambda c: c.criterion)
         tried = {c.candidate.key for c in out}
         simpler = list_simpler(best.candidate, scores, options)
         rest = [s for s in simpler if s.candidate.key not in tried]
-        out += refit(_begun(model, rest, scores, options, progress))
-    return _ranked(out, options)
+        more = refit(_begun(model, rest, scores, options, progress))
+        parent, out = judge([*children, *more]) if more else (parent, out)
+    at = model.unseen.lengths.index(1.0)
+    for c in out:
+        fall, t = c.prediction.falls[at], c.prediction.t
+        progress(f"{_label(c.candidate)}: unseen mean square {-100 * fall:+.0f} %, t {t:.1f}")
+    return parent, _ranked(out, options)
 
 
 def _begun(
@@ -139,11 +151,10 @@ def _label(c: Candidate) -> str:
 
 
 def _refit(
-    model: WindowModel, begun: Begun, horizon: float, confirm: Sequence[Record],
-    options: DiscoveryOptions, refits: int, progress: Progress, worse_fit: Unseen | None,
-) -> Contender | None:  # fmt: skip
-    c = begun.candidate
-    label = _label(c)
+    model: WindowModel, begun: Begun, horizon: float, confirm: Sequence[Record], progress: Progress
+) -> WindowModel | None:
+    """The model with an effect; None where it explains nothing, or cannot be simulated."""
+    label = _label(begun.candidate)
     try:
         new = with_effect(model, begun, horizon, confirm)
     except InputError as error:
@@ -151,7 +162,15 @@ def _refit(
         return None
     if new is None:
         progress(f"{label}: explains no more than without it")
-        return None
+    return new
+
+
+def _judged(
+    model: WindowModel, new: WindowModel, refits: int, options: DiscoveryOptions,
+    worse_fit: Unseen | None,
+) -> Contender:  # fmt: skip
+    """What speaks for a model with one effect more, and against it."""
+    c = new.candidates[-1]
     found = compare(worse_fit or model.unseen, new.unseen)
     gains = all_gains(model, new)
     records = len(model.unseen.at_horizon) + len(model.fit.problem.parts)
@@ -163,8 +182,6 @@ def _refit(
         doubt = "record"
     if doubt is None and not has_size(new, options):
         doubt = "size"
-    at = model.unseen.lengths.index(1.0)
-    progress(f"{label}: unseen mean square {-100 * found.falls[at]:+.0f} %, t {found.t:.1f}")
     return Contender(
         model=new, prediction=found, gains=gains, numbers=numbers, criterion=gain,
         doubt=doubt,

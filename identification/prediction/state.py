@@ -111,7 +111,7 @@ def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
     base = task.nominal_model
     nominal = fit_nominal(base, task.records, progress)
     _refuse_few(nominal.unseen, task.horizon)
-    begun = predict(base.plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen)
+    begun = predict(base.plant, task.confirm, task.horizon, nominal.scale, {}, [nominal.unseen])
     worse = None
     if find_doubt(compare(nominal.unseen, begun), 1, task.options) is None:
         worse = nominal.unseen
@@ -158,10 +158,12 @@ def next_state(state: RecordsState, progress: Progress) -> RecordsState:
     if state.is_finished:
         return state
     task, watch = state.task, Watch(state.seconds)
-    tried = refit_contenders(
+    parent, tried = refit_contenders(
         state.model, state.scores, task.horizon, task.confirm, task.options, progress,
         None if state.accepted else state.worse_fit,
     )  # fmt: skip
+    nominal = state.nominal if state.accepted else parent
+    state = replace(state, model=parent, nominal=nominal)
     tried, other_side = _checked(state, tried, progress)
     if not tried or not tried[0].is_proven:
         state = _pruned(replace(state, rejected=tried), progress)

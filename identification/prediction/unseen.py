@@ -7,7 +7,7 @@ of blocks of neighbouring windows (`identification.prediction.blocks`) are the s
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import ttest_1samp
@@ -22,7 +22,7 @@ from identification.prediction.own_values import Own, of_halves, own_values
 from identification.prediction.problem import MOST_STEPS, most_windows
 from identification.prediction.records import Record
 from identification.windows.held_records import hold
-from identification.windows.settling import settle
+from identification.windows.settling import begun_at, best_settled, settle
 from identification.windows.shooting import Shooting
 from identification.windows.windows import Windows, first_states, spread, windows
 
@@ -98,7 +98,7 @@ def predict(
     horizon: float,
     scale: np.ndarray,
     values: Mapping[str, float],
-    near: Unseen | None = None,
+    near: Sequence[Unseen] = (),
     own: Own | None = None,
 ) -> Unseen:
     """Errors of a model on records, over windows of several lengths.
@@ -112,7 +112,8 @@ def predict(
         horizon: [s].
         scale: s of each output, shape (ny,), in its unit.
         values: parameters that are not the plant's own.
-        near: errors of a model nearby, at whose states the windows' search begins.
+        near: errors of models nearby, at whose states the windows' searches begin; each window
+            ends at the best of what it found.
         own: parameters that each record has for itself.
 
     Raises:
@@ -132,7 +133,7 @@ def predict(
             if factor == 1.0:
                 raise
             continue  # fewer than 3 samples, or longer than a record
-        begun = None if near is None else near.moves[near.lengths.index(factor)]
+        begun = [n.moves[n.lengths.index(factor)] for n in near]
         each = _settled(plant, records, cuts, scale, values, halves, begun)
         if factor == 1.0:
             measured = np.concatenate([c.outputs.reshape(-1, len(scale)) for c in cuts])
@@ -147,6 +148,19 @@ def predict(
         floor=float(np.mean((noise / scale) ** 2)), fit_percent=percent,
         own={r.log.name: of_halves(*h) for r, h in zip(records, halves, strict=True)},
     )  # fmt: skip
+
+
+def best_begun(own: Unseen, others: Sequence[Unseen]) -> Unseen:
+    """Errors of a model whose windows begin where other models begin those that they do better."""
+    moves = []
+    for k, (mine, squares) in enumerate(zip(own.moves, own.squares, strict=True)):
+        each = []
+        for r, d in enumerate(mine):
+            every = [squares[r], *(o.squares[k][r] for o in others)]
+            starts = np.array([d, *(begun_at(d, o.moves[k][r]) for o in others)])
+            each.append(starts[np.argmin(every, axis=0), np.arange(len(d))])
+        moves.append(tuple(each))
+    return replace(own, moves=tuple(moves))
 
 
 def compare(without: Unseen, with_it: Unseen) -> Prediction:
@@ -174,15 +188,13 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
 def _settled(
     plant: Plant, records: Sequence[Record], cuts: Sequence[Windows], scale: np.ndarray,
     values: Mapping[str, float], halves: Sequence[tuple[Mapping[str, float], Mapping[str, float]]],
-    near: Sequence[np.ndarray] | None,
+    near: Sequence[Sequence[np.ndarray]],
 ) -> list[tuple[np.ndarray, np.ndarray]]:  # fmt: skip
     """States at the starts of windows and errors by record, with each half's own values."""
     model = plant.model
-    out, parts, begun, places = [], [], [], []
+    out, parts, places = [], [], []
     for k, (record, cut, own) in enumerate(zip(records, cuts, halves, strict=True)):
         moves = np.zeros((len(cut.starts), 2 * model.nv + model.na))
-        if near is not None:  # of a model nearby, which may lack the last states
-            moves[:, : near[k].shape[1]] = near[k]
         out.append((moves, np.zeros(cut.outputs.shape)))
         is_late = cut.starts >= len(record.log) // 2
         if not own[0]:
@@ -194,10 +206,15 @@ def _settled(
             here = cut.rows(half)
             first = first_states(predictor, np.zeros(0), here)
             parts.append(Shooting(predictor, NOTHING, here, first, np.diag(1 / scale), True))
-            begun.append(moves[half])
             places.append((k, half))
-    settled = settle(hold(parts), begun, is_thorough=True)
-    for (k, half), part, s in zip(places, parts, settled, strict=True):
+    held = hold(parts)
+    found = [
+        settle(held, [begun_at(out[k][0][half], each[k][half]) for k, half in places],
+               is_thorough=len(near) < 2)
+        for each in near or [[moves for moves, _ in out]]
+    ]  # fmt: skip
+    for (k, half), part, settled in zip(places, parts, zip(*found, strict=True), strict=True):
         d, errors = out[k]
-        d[half], errors[half] = s.d, part.error(s.r)
+        best = best_settled(settled)
+        d[half], errors[half] = best.d, part.error(best.r)
     return out

@@ -20,7 +20,7 @@ from identification.model.paths import Slot
 from identification.model.predictor import Predictor, with_states
 from identification.model.rollout import State, rollout, without_sensors
 from identification.model.sensitivity import FORWARD_STEP
-from identification.windows.shooting import Shooting, rough
+from identification.windows.shooting import Shooting, at_own_steps, rough, slower
 from identification.windows.tangents import Tangent, decomposed
 from identification.windows.windows import moved
 
@@ -83,6 +83,8 @@ class HeldWindows:
         h = FORWARD_STEP
         moves = [d, *(d + h * e for e in np.eye(d.shape[1]))]
         y = self._simulated(self.for_slopes, moves)
+        if not np.isfinite(y).all():  # longer steps may diverge where the model's own do not
+            y = self._simulated(at_own_steps(self.for_slopes, self.model), moves)
         each = np.stack([self._joined(*p) for p in zip(y, moves, strict=True)], axis=-1)
         if not np.isfinite(each).all():
             raise DivergenceError("the simulation of a window diverged beside its best start")
@@ -105,13 +107,14 @@ class HeldWindows:
             for f in fields(State):
                 getattr(begun, f.name)[own] = getattr(predictor.begun(_NONE, rows), f.name)
         log = self.predictors[0].log
+        inputs, every = slower(self.inputs, self.every, self.model, model)
         run = rollout(
-            model, begun, np.tile(self.inputs, (k, 1, 1)), log.sampling_time / self.every,
+            model, begun, np.tile(inputs, (k, 1, 1)), log.sampling_time / every,
             numbers=[(slot, np.tile(column, k)) for slot, column in self.numbers],
             record=self.predictors[0].recorded, hold_kind=self.hold_kind,
             time=np.tile(self.times, k), keeps_diverged=True,
         )  # fmt: skip
-        run = {field: states[:, :: self.every] for field, states in run.items()}
+        run = {field: states[:, ::every] for field, states in run.items()}
         y = np.empty((k * W, *self.outputs.shape[1:]))
         for predictor, own in parts:
             if own.any():

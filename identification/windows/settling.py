@@ -149,6 +149,20 @@ def settle(
     return tuple(out[k] for k in range(len(held.parts)))
 
 
+def begun_at(d: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Changes of states (W, nx), the first ones those of a model with more or fewer states."""
+    d, n = np.array(d), min(d.shape[1], other.shape[1])
+    d[:, :n] = other[:, :n]
+    return d
+
+
+def best_settled(each: Sequence[Settled]) -> Settled:
+    """The windows of a record at the best of the states that several searches found."""
+    squares = np.array([np.sum(s.r**2, axis=1) for s in each])
+    at = np.argmin(squares, axis=0), np.arange(squares.shape[1])
+    return Settled(np.array([s.d for s in each])[at], np.array([s.r for s in each])[at])
+
+
 def _begun(held: HeldWindows, d: np.ndarray, near: Tangent | None) -> EachWindow:
     r = held.residual(d)
     if not np.isfinite(r).all():
@@ -183,7 +197,7 @@ def _searched(at: EachWindow) -> tuple[np.ndarray, np.ndarray]:
         gain = trial.before - np.where(trial.taken, trial.after, trial.before)
         promised = trial.before - trial.step.promised
         is_old = ~fresh & (promised > enough) & (gain < KEPT * promised)
-        small = np.abs(trial.after - trial.before) <= enough
+        small = (np.abs(trial.after - trial.before) <= enough) | (promised <= enough)
         μ = np.where(is_old, trial.μ, trial.next)
         keep = is_old | ~(small | (μ > MOST_DAMPING))
         if not keep.any():

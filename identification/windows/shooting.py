@@ -24,6 +24,7 @@ from dataclasses import dataclass, replace
 import mujoco
 import numpy as np
 
+from identification.errors import DivergenceError
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Plant, Predictor
 from identification.model.rollout import State, hold, rollout, substeps
@@ -99,14 +100,24 @@ class Shooting:
             moves: d of each, shape (W, nx).
             is_rough: for slopes, where only differences matter.
         """
+        plant = self.predictor.plant
+        if not is_rough:
+            return self._outputs(plant.model, q, moves)
+        try:
+            return self._outputs(rough(plant), q, moves)
+        except DivergenceError:  # longer steps may diverge where the model's own do not
+            return self._outputs(at_own_steps(rough(plant), plant.model), q, moves)
+
+    def _outputs(
+        self, model: mujoco.MjModel, q: np.ndarray, moves: Sequence[np.ndarray]
+    ) -> np.ndarray:
         predictor, W = self.predictor, len(self.cut.starts)
-        plant = predictor.plant
-        model = rough(plant) if is_rough else plant.model
         _, numbers = predictor.settings(self.space.decode(q))
         starts = [self.states(d) for d in moves]
         rows = (np.concatenate([getattr(s, f) for s in starts]) for f in ("qpos", "qvel", "act"))
         begun = predictor.begun(self.space.decode(q), State(*rows))
         inputs, every, hold_kind = self.held_inputs(self.space.decode(q))
+        inputs, every = slower(inputs, every, predictor.plant.model, model)
         run = rollout(
             model, begun, inputs, predictor.log.sampling_time / every,
             numbers=[(slot, np.repeat(column, W)) for slot, column in numbers],
@@ -144,6 +155,31 @@ def rough(plant: Plant) -> mujoco.MjModel:
     model = copy.copy(model)
     model.opt.integrator = ONE
     return model
+
+
+def at_own_steps(model: mujoco.MjModel, own: mujoco.MjModel) -> mujoco.MjModel:
+    """A model whose steps may be longer, with the steps of another one."""
+    model = copy.copy(model)
+    model.opt.timestep = own.opt.timestep
+    return model
+
+
+def slower(
+    inputs: np.ndarray, every: int, model: mujoco.MjModel, other: mujoco.MjModel
+) -> tuple[np.ndarray, int]:
+    """Inputs, `every` of them a sample, for another model whose steps may be longer.
+
+    Args:
+        inputs: shape (k, steps + 1, nu); the last one stands behind the last step.
+        every: one, or as many as a model takes steps.
+        model: that model.
+        other: one whose steps take a whole number of its steps.
+    """
+    n = round(other.opt.timestep / model.opt.timestep)
+    if n == 1 or every == 1:
+        return inputs, every
+    steps = inputs[:, :-1].reshape(len(inputs), -1, n, inputs.shape[2])
+    return np.concatenate([steps.mean(axis=2), inputs[:, -1:]], axis=1), every // n
 
 
 def tangent(

@@ -1,0 +1,150 @@
+"""Simulations for slopes may take longer steps than the model, as long as slopes stay the same."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from records_cases import AXIS, MJCF, PARAMETERS, STEP, record
+
+from identification.effects.joint_plant import joint_plant
+from identification.errors import DivergenceError
+from identification.model.coordinates import NOTHING, coordinates
+from identification.model.predictor import Predictor
+from identification.model.rollout import substeps
+from identification.prediction.fit import solve
+from identification.prediction.problem import Problem, no_moves, with_longer_steps
+from identification.prediction.unknowns import Prior, Unknowns
+from identification.windows import shooting
+from identification.windows.coarse import ERROR, longest_steps
+from identification.windows.held import held_windows
+from identification.windows.shooting import Shooting, slower, tangent
+from identification.windows.windows import first_states, windows
+
+FINE = 0.00125  # [s], an eighth of the sampling time
+TRUTH = {"J": 2e-3, "d": 0.02}
+
+
+@cache
+def plant(stiffness=0.0, timestep=FINE):
+    xml = MJCF.replace('timestep="0.005"', f'timestep="{timestep}"')
+    xml = xml.replace('damping="0.02"', f'damping="0.02" stiffness="{stiffness}"')
+    return joint_plant(xml, PARAMETERS, record(seed=0, samples=50), joints=(AXIS,))
+
+
+def cut(own, length=0.2, seed=3):
+    """Windows of a record, the model begun 20 % off."""
+    log = record(seed=seed, samples=400, plant=own)
+    names = ("J", "d")
+    space = coordinates(own.parameters, names, np.array([1.6e-3, 0.024]))
+    predictor = Predictor(own, log, names, {})
+    here = windows(log, length)
+    first = first_states(predictor, space.decode(np.zeros(2)), here)
+    return Shooting(predictor, space, here, first, np.eye(1) / 1e-3, True)
+
+
+def columns(part, q, d, steps):
+    own = replace(part.predictor.plant, slope_steps=steps)
+    t = tangent(replace(part, predictor=replace(part.predictor, plant=own)), q, d)
+    X = (t.U * t.s[:, None]) @ t.Vt * t.size[:, None]
+    return np.concatenate([X, t.S], axis=2).reshape(-1, X.shape[2] + t.S.shape[2])
+
+
+def chosen(part):
+    q, d = np.zeros(2), np.zeros((len(part.cut.starts), 2))
+    (slow,) = longest_steps([part], [q], [d])
+    return slow.predictor.plant.slope_steps
+
+
+def error(part, steps):
+    """The largest relative error of a column of slopes."""
+    q, d = np.zeros(2), np.zeros((len(part.cut.starts), 2))
+    exact, other = columns(part, q, d, 1), columns(part, q, d, steps)
+    return np.max(np.linalg.norm(other - exact, axis=0) / np.linalg.norm(exact, axis=0))
+
+
+def test_the_steps_are_longer_the_slower_a_robot_swings():
+    slow, fast = chosen(cut(plant())), chosen(cut(plant(stiffness=900.0)))
+    assert slow > fast
+
+
+def test_the_steps_divide_the_sampling_time_and_keep_the_bound_nearly_everywhere():
+    part = cut(plant())
+    n = chosen(part)
+    assert substeps(STEP, FINE) % n == 0
+    assert error(part, n) < 1.5 * ERROR  # chosen on some windows, judged on all
+
+
+def test_errors_of_slopes_are_of_the_first_order_of_the_step():
+    part = cut(plant())
+    two, four = error(part, 2), error(part, 4)
+    assert 1.6 < four / two < 4.5  # (4 - 1)/(2 - 1) = 3, beyond what friction does
+
+
+def test_the_residual_is_the_same_to_the_bit_whatever_steps_slopes_take():
+    part = cut(plant())
+    own = replace(part.predictor.plant, slope_steps=8)
+    other = replace(part, predictor=replace(part.predictor, plant=own))
+    q, d = np.array([0.1, -0.2]), np.full((len(part.cut.starts), 2), 1e-3)
+    np.testing.assert_array_equal(part.residual(q, d), other.residual(q, d))
+
+
+def test_a_fit_ends_at_the_same_values_with_fewer_steps_of_simulation():
+    part = cut(plant())
+    own = Prior(part.space, np.zeros(2), np.zeros(2))
+    task = Problem((part,), Unknowns(own, Prior(), ("record",)))
+    slow = with_longer_steps(task, np.zeros(2), no_moves(task))
+    assert slow.plant.slope_steps > 1
+    moves, _ = task.settled(np.zeros(2), no_moves(task))
+    fits = [solve(t, np.zeros(2), moves, tolerance=1e-8, most=40) for t in (task, slow)]
+    np.testing.assert_allclose(fits[1].cost, fits[0].cost, rtol=1e-6)
+    values = [np.array([*f.values.values()]) for f in fits]
+    np.testing.assert_allclose(values[1], values[0], rtol=1e-3)
+    np.testing.assert_allclose(values[1], [*TRUTH.values()], rtol=0.05)
+
+
+def test_states_of_joints_take_the_steps_of_the_model():
+    own = replace(plant(), slope_steps=8).with_states_of(["joint_elasticity.c@hinge"])
+    assert own.smooth.opt.timestep == FINE
+    assert replace(plant(), slope_steps=8).smooth.opt.timestep == pytest.approx(8 * FINE)
+
+
+def test_where_longer_steps_diverge_the_steps_of_the_model_are_taken(monkeypatch):
+    part = cut(plant())
+    exact = columns(part, np.zeros(2), np.zeros((len(part.cut.starts), 2)), 1)
+    rollout = shooting.rollout
+
+    def stubborn(model, *args, **more):
+        if model.opt.timestep > 1.5 * FINE:
+            raise DivergenceError("too long a step")
+        return rollout(model, *args, **more)
+
+    monkeypatch.setattr(shooting, "rollout", stubborn)
+    again = columns(part, np.zeros(2), np.zeros((len(part.cut.starts), 2)), 8)
+    np.testing.assert_array_equal(again, exact)
+
+
+def test_slopes_of_states_alone_are_those_of_the_tangent():
+    own = replace(plant(), slope_steps=4)
+    part = cut(own)
+    held = replace(
+        part, space=NOTHING,
+        predictor=replace(part.predictor, names=(), fixed={"J": 1.6e-3, "d": 0.024}),
+    )  # fmt: skip
+    d = np.zeros((len(part.cut.starts), 2))
+    windows_ = held_windows(held)
+    t, whole = windows_.slopes(d, windows_.residual(d)), tangent(held, np.zeros(0), d)
+    np.testing.assert_allclose(t.s * t.size, whole.s * whole.size, rtol=1e-9)
+
+
+@given(st.integers(1, 4), st.integers(1, 5), st.sampled_from([1, 2, 4, 8]))
+def test_inputs_of_longer_steps_are_means_of_those_of_the_model(samples, k, n):
+    inputs = np.random.default_rng(samples).standard_normal((k, 8 * samples + 1, 2))
+    own, other = (plant().model, replace(plant(), slope_steps=n).smooth)
+    made, every = slower(inputs, 8, own, other)
+    assert (made.shape[1] - 1) * n == inputs.shape[1] - 1
+    assert every * n == 8
+    np.testing.assert_allclose(made[:, :-1].mean(axis=1), inputs[:, :-1].mean(axis=1), atol=1e-12)
+    np.testing.assert_array_equal(made[:, -1], inputs[:, -1])
