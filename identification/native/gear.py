@@ -18,9 +18,10 @@ with r = κ c, which is 1 where it is resolved,
     τ = (1 - r) T + κ (δ ∓ ε) + D dδ/dt,   T = m (f_m/J - a),   1/m = 1/J + A,   A = (M⁻¹)_jj
     friction = min(max((1 - r) (M v/T_s + load) + r p, -b), b)
 
-so that c = 0 is a rigid gear, and friction that holds as in `identification.native.joint_friction`.
-a = dv/dt - A τ is the acceleration of the joint without its own τ, so that dδ²/dt² = (r T - κ (δ ∓ ε)
-- D dδ/dt)/m however joints are coupled. Solved for the joint's own acceleration,
+so that c = 0 is a rigid gear, and friction that holds as in `native.joint_friction`; of several
+joints, see `native.holding`. a = dv/dt - A τ is the acceleration of the joint without its own τ, so
+that d²δ/dt² = (r T - κ (δ ∓ ε) - D dδ/dt)/m however joints pull at each other. As a function of the
+joint's own acceleration
 
     τ = f - I dv/dt,   I = β J,   f = γ τ(T = f_m) - β J A f_m                           (felt)
     β = (1 - r)/(1 + r J A),   γ = (1 + J A)/(1 + r J A)

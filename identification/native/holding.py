@@ -12,12 +12,13 @@ of Coulomb's law (Moreau 1988), solved by projected Gauss-Seidel:
     f_i ← min(max(f_i + w_i/A_ii, -b⁻_i), b⁺_i),      w ← w - A_i Δf_i,      A = M⁻¹
 
 For a single joint it is f = min(max(g, -b⁻), b⁺). Where friction gives before it slips, its spring
-carries p, and the share r of it that a step h resolves is not held (see `identification.native.gear`):
+carries p, and the share r of it that a step h resolves is not held (see `native.gear`):
 
-    f_i ← min(max((1 - r_i) (f_i + w_i/A_ii) + r_i p_i, -b⁻_i), b⁺_i),   r_i = min(1, c_i (X/h)²/A_ii)
+    f_i ← min(max((1 - r_i) (f_i + w_i/A_ii) + r_i p_i, -b⁻_i), b⁺_i)
+    r_i = min(1, c_i (X/h)²/A_ii)
 
-which is Gauss-Seidel of w_i = r_i/(1 - r_i) A_ii (f_i - p_i). 1/A_ii is the inertia that swings on the
-spring of a joint while all others are free, the least that it can be.
+which is Gauss-Seidel of w_i = r_i/(1 - r_i) A_ii (f_i - p_i). 1/A_ii is the inertia that swings on
+the spring of a joint while all others are free, the least that it can be.
 """
 
 from __future__ import annotations

@@ -6,9 +6,9 @@
     mjcb_act_bias    τ in place of the drives' force, by the actuator that carries θ and ω
 
 `identification.native.gear` has the laws. MuJoCo asks all actuators for rates before it asks any
-for its force: the first one with states finds τ for all joints (`identification.native.transmission`).
-A semi-implicit step moves q by the new rate, so that the rates of θ and p are those at the end of
-such a step too.
+for its force: the first one with states finds τ for all joints (`native.transmission`). A
+semi-implicit step moves q by the new rate, so that the rates of θ and p are those at the end of
+such a step too; without the damping that such steps take implicitly.
 """
 
 from __future__ import annotations

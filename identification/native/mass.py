@@ -52,7 +52,7 @@ def unit(x, j, n):  # type: ignore[no-untyped-def]
 
 @inlined
 def mobility(m, d, dof, x):  # type: ignore[no-untyped-def]
-    """(M⁻¹)_jj of a degree of freedom [1/kg or 1/(kg m²)]; x: the address of room for nv numbers."""
+    """(M⁻¹)_jj of a degree of freedom [1/kg or 1/(kg m²)]; x: address of room for nv numbers."""
     unit(x, dof, dof + 1)
     _rise(m, d, x, dof)
     out = 0.0
