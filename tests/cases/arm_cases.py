@@ -34,9 +34,11 @@ def text(step: float, integrator: str, weight: float = G, damping: np.ndarray = 
     (d1, d2), (a1, a2) = damping, ARMATURE
     return f"""<mujoco model="arm"><option timestep="{step}" integrator="{integrator}"
       gravity="0 0 -{weight}"/>
-      <worldbody><body><joint name="shoulder" axis="0 1 0" damping="{d1}" armature="{a1}"/>
+      <worldbody><body name="upper">
+        <joint name="shoulder" axis="0 1 0" damping="{d1}" armature="{a1}"/>
         <inertial pos="0 0 -{C1}" mass="{M1}" diaginertia="{I1} {I1} {I1}"/>
-        <body pos="0 0 -{L1}"><joint name="elbow" axis="0 1 0" damping="{d2}" armature="{a2}"/>
+        <body name="lower" pos="0 0 -{L1}">
+          <joint name="elbow" axis="0 1 0" damping="{d2}" armature="{a2}"/>
           <inertial pos="0 0 -{C2}" mass="{M2}" diaginertia="{I2} {I2} {I2}"/></body></body>
       </worldbody>
       <actuator><motor name="up" joint="shoulder"/><motor name="low" joint="elbow"/></actuator>

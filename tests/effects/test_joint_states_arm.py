@@ -24,6 +24,7 @@ from arm_cases import (
 from joint_cases import run
 from scipy.linalg import eigh
 
+from identification import DivergenceError
 from identification.model.rollout import State
 from identification.native.holding import MOST
 
@@ -149,3 +150,12 @@ def test_windows_begin_at_what_the_gears_and_frictions_of_an_arm_carry():
     assert kinds == [("motor", j) for j in JOINTS] + [("grip", j) for j in JOINTS]
     np.testing.assert_allclose(first[0], [s[0], 0, s[1], 0, *p], rtol=1e-9)
     assert np.all(far > 0)
+
+
+def test_motors_of_several_joints_have_no_more_inertia_than_the_arm():
+    plant = arm_plant().with_states_of(elastic(BOTH))
+    M = mass(np.zeros(2)) + np.diag(ARMATURE)
+    assert np.linalg.eigvalsh(M - np.diag(inertias(0.9)))[0] < 0
+    with pytest.raises(DivergenceError, match="smaller share rho"):
+        run(plant, LOG, **elastic(BOTH, 0.9))
+    run(plant, LOG, **elastic({"shoulder": 0.0, "elbow": 0.03}, 0.9))
