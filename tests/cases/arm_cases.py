@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from chain_cases import with_some
 from joint_cases import arm_log, steps
 from scipy.integrate import solve_ivp
 
-from identification import Log
-from identification.effects.joint_plant import JointPlant, joint_plant
+from identification.effects.joint_plant import JointPlant
 from identification.model.rollout import State, rollout
 
 JOINTS = ("shoulder", "elbow")
@@ -25,7 +25,6 @@ M1, C1, L1, I1, M2, C2, I2 = 1.2, 0.2, 0.35, 0.02, 0.7, 0.15, 0.01
 ARMATURE, DAMPING, G = np.array([0.03, 0.012]), np.array([0.1, 0.05]), 9.81
 SAMPLE = 0.01  # [s]
 FULL = np.array([3.0, 1.0])  # of the inputs [N m]
-WANTED = ("coulomb_friction", "joint_elasticity", "gear_backlash", "presliding", "stiffness")
 LOG = arm_log(steps(100, 2, seed=3) * FULL)
 
 
@@ -46,38 +45,6 @@ def text(step: float, integrator: str, weight: float = G, damping: np.ndarray = 
     </mujoco>"""
 
 
-def chain_text(joints: int, integrator: str) -> str:
-    """An arm of several joints whose axes differ."""
-    axes = ("0 0 1", "0 1 0", "0 1 0", "1 0 0", "0 1 0", "1 0 0")
-    bodies = "".join(
-        f"""<body pos="0 0 {0.3 if k else 0}"><joint name="j{k}" axis="{axes[k % 6]}"
-        armature="{0.5 / (1 + k)}"/><inertial pos=".01 .02 .1" mass="{6 / (1 + k)}"
-        diaginertia="{0.12 / (1 + k)} {0.12 / (1 + k)} {0.06 / (1 + k)}"/>""" for k in range(joints)
-    )  # fmt: skip
-    named = [f"j{k}" for k in range(joints)]
-    return f"""<mujoco model="chain"><option timestep="0.002" integrator="{integrator}"/><worldbody>
-      {bodies}{"</body>" * joints}</worldbody>
-      <actuator>{"".join(f'<motor name="u{j}" joint="{j}"/>' for j in named)}</actuator><sensor>
-      {"".join(f'<jointpos name="q{j}" joint="{j}"/>' for j in named)}</sensor></mujoco>"""
-
-
-def chain_log(joints: int) -> Log:
-    """Random inputs of an arm of several joints."""
-    t = SAMPLE * np.arange(50)
-    return Log(
-        time=t, inputs=steps(50, joints, hold=10) * 10 / np.arange(1, joints + 1),
-        outputs=np.sin(np.outer(t, 3 + np.arange(joints)) + 1),
-        input_names=[f"uj{k}" for k in range(joints)],
-        output_names=[f"qj{k}" for k in range(joints)],
-    )  # fmt: skip
-
-
-def with_some(model: str, log: Log) -> JointPlant:
-    """A plant with the wanted effects of a model."""
-    every = joint_plant(model, (), log)
-    return joint_plant(model, (), log, effects=[e for e in every.effects if e.name in WANTED])
-
-
 @cache
 def arm_plant(
     step: float = 0.001, integrator: str = "RK4", weight: float = G, damped: bool = True
@@ -92,6 +59,12 @@ def elastic(c: dict[str, float], rho: float = 0.3, zeta: float = 0.05) -> dict[s
     return {**{f"joint_elasticity.c@{joint}": x for joint, x in c.items()},
             "joint_elasticity.rho": rho, "joint_elasticity.zeta": zeta,
             "joint_elasticity.link": 1.0}  # fmt: skip
+
+
+def gap(eps: dict[str, float], rho: float = 0.3) -> dict[str, float]:
+    """Values of gaps in stiff gears, their encoders on the links' side."""
+    return {**{f"gear_backlash.eps@{joint}": x for joint, x in eps.items()},
+            "gear_backlash.rho": rho, "gear_backlash.link": 1.0}  # fmt: skip
 
 
 def inertias(rho: float) -> np.ndarray:

@@ -8,19 +8,17 @@ from arm_cases import (
     LOG,
     M2,
     SAMPLE,
-    WANTED,
     Arm,
     G,
     arm_plant,
-    chain_log,
-    chain_text,
     elastic,
+    gap,
     inertias,
     mass,
     states_of,
     weighing,
-    with_some,
 )
+from chain_cases import WANTED, chain_log, chain_text, with_some
 from joint_cases import run
 from scipy.linalg import eigh
 
@@ -101,6 +99,32 @@ def test_gears_that_get_stiff_together_tend_to_rigid_ones_in_proportion():
     assert 0 < far < 1e-5
     assert apart(1e-7) == pytest.approx(far / 10, rel=0.02)
     assert apart(1e-10) < 1e-8
+
+
+@pytest.mark.parametrize("friction", [{}, FRICTION], ids=["free", "rubbing"])
+def test_gaps_of_both_joints_that_close_tend_to_rigid_gears_in_proportion(friction):
+    plain, values = arm_plant(0.002), gap(dict.fromkeys(JOINTS, 1e-4))
+    plant, rigid = plain.with_states_of(values), run(plain, LOG, **friction)
+
+    def apart(x):
+        return np.abs(run(plant, LOG, **friction, **gap(dict.fromkeys(JOINTS, x))) - rigid).max()
+
+    far = apart(1e-5)
+    assert 0 < far < 1e-4
+    assert apart(1e-7) == pytest.approx(far / 100, rel=0.02)
+
+
+def test_beyond_the_joints_that_hold_together_stiff_gears_tend_to_rigid_ones():
+    log = chain_log(MOST + 1)
+    plain = with_some(chain_text(MOST + 1, "RK4"), log)
+    plant, rigid = plain.with_states_of(["joint_elasticity.c"]), run(plain, log)
+    shapes = {"joint_elasticity.link": 1.0, "joint_elasticity.rho": 0.1}
+    far, near = (
+        np.abs(run(plant, log, **shapes, **{"joint_elasticity.c": c}) - rigid).max()
+        for c in (1e-7, 1e-9)
+    )
+    assert 0 < far < 1e-5
+    assert near == pytest.approx(far / 100, rel=0.02)
 
 
 @pytest.mark.parametrize("mode", range(4))

@@ -5,7 +5,7 @@ import copy
 import mujoco
 import numpy as np
 import pytest
-from arm_cases import FULL, LOG, Arm, arm_plant, elastic, inertias, states_of, weighing
+from arm_cases import FULL, LOG, Arm, arm_plant, elastic, gap, inertias, states_of, weighing
 from joint_cases import run
 
 from identification.effects.joint_states import places_of
@@ -29,6 +29,15 @@ def test_friction_holds_both_joints_of_a_resting_arm_behind_elastic_gears(integr
     got = states_of(arm_plant(0.001, integrator), values, start, u)
     assert np.abs(got["qpos"] - BENT).max() < 1e-9
     np.testing.assert_allclose(got["act"][-1, ::2] - BENT, c * 0.1 * B, rtol=0.02)
+
+
+@pytest.mark.parametrize("integrator", ["RK4", "Euler"])
+def test_friction_stops_an_arm_inside_the_gaps_of_its_gears(integrator):
+    values = {**gap({"shoulder": 0.01, "elbow": 0.01}), **FRICTION}
+    start = State(BENT, np.array([0.3, -0.4]), np.array([BENT[0], 0, BENT[1], 0]))
+    got = states_of(arm_plant(0.002, integrator), values, start, np.zeros((200, 2)))
+    assert np.abs(got["qvel"][1:8]).max() > 0.01
+    assert np.abs(got["qvel"][-50:]).max() < 1e-9
 
 
 @pytest.mark.parametrize("gear", [{}, ELASTIC], ids=["rigid", "elastic"])
