@@ -52,7 +52,7 @@ def test_what_is_not_coupled_is_clipped_by_itself():
 
 
 @given(SEEDS, st.integers(1, 6))
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=30, deadline=None)
 def test_friction_that_gives_pulls_back_to_its_springs(seed, n):
     """w = r/(1 - r) A_ii (f - p) where it does not slip, and full friction where it does."""
     M, g, low, high = drawn(seed, n)

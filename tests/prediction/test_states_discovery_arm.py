@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 from arm_cases import DAMPING, FULL, SAMPLE, Arm, inertias, text
+from chain_cases import WANTED
 from joint_cases import arm_log
 
 from identification import Parameter
@@ -18,8 +19,7 @@ from identification.prediction.screening import score_all
 
 TRUTH = {"m2": 0.7, "d1": DAMPING[0], "d2": DAMPING[1]}
 PATHS = {"m2": "body/lower.mass", "d1": "joint/shoulder.damping", "d2": "joint/elbow.damping"}
-KNOWN = ("coulomb_friction", "joint_elasticity", "gear_backlash", "presliding", "stiffness",
-         "stribeck_friction", "delay", "lag")  # fmt: skip
+KNOWN = (*WANTED, "delay", "lag")
 C, RHO, ZETA = 0.05, 0.3, 0.05
 
 
