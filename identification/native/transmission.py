@@ -36,8 +36,9 @@ from identification.native.memory import load_constant, load_double, store_doubl
 
 SWEEPS = 200  # at most; arms take some five
 ENOUGH = 1e-13  # change of a τ in a sweep that ends them, of the largest one
-# columns of a geared joint: its degree of freedom, and what `transmitted` takes
-DOF, FORCE, DELTA, RATE, MASS, KAPPA, SHARE, DAMPING, MOBILITY, TAU, ADDRESS, COLUMNS = range(12)
+# columns of a geared joint: its degree of freedom, f_m, δ, dδ/dt, ε, m, κ, r, D, A_jj, J and τ
+DOF, FORCE, DELTA, RATE, HALF, MASS, KAPPA, SHARE, DAMPING, MOBILITY, OWN, TAU = range(12)
+COLUMNS = 12
 
 
 @inlined
@@ -50,16 +51,14 @@ def is_ours(m, j, key):  # type: ignore[no-untyped-def]
 @inlined
 def _load(g, k, a):  # type: ignore[no-untyped-def]
     """T of geared joint k, which accelerates by a."""
-    J = load_constant(np.int64(g[k, ADDRESS]) + 8 * INERTIA)
-    return g[k, MASS] * (g[k, FORCE] / J - (a - g[k, MOBILITY] * g[k, TAU]))
+    return g[k, MASS] * (g[k, FORCE] / g[k, OWN] - (a - g[k, MOBILITY] * g[k, TAU]))
 
 
 @inlined
 def _passed_on(g, k, load, h):  # type: ignore[no-untyped-def]
     """τ of geared joint k under a load."""
-    gap = load_constant(np.int64(g[k, ADDRESS]) + 8 * GAP)
     return transmitted(
-        load, g[k, DELTA], g[k, RATE], gap, g[k, KAPPA], g[k, SHARE], g[k, DAMPING], h
+        load, g[k, DELTA], g[k, RATE], g[k, HALF], g[k, KAPPA], g[k, SHARE], g[k, DAMPING], h
     )
 
 
@@ -86,7 +85,8 @@ def _gather(m, d, key, g):  # type: ignore[no-untyped-def]
             g[count, MASS], g[count, KAPPA], g[count, SHARE], g[count, DAMPING] = spring(
                 gears, A, h
             )
-            g[count, MOBILITY], g[count, ADDRESS] = A, gears
+            g[count, MOBILITY], g[count, OWN] = A, load_constant(gears + 8 * INERTIA)
+            g[count, HALF] = load_constant(gears + 8 * GAP)
             g[count, TAU] = _passed_on(g, count, f_m, h)
             loose += g[count, SHARE] < 1.0
             count += 1
