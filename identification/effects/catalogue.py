@@ -20,10 +20,6 @@ def all_effects(
 ) -> tuple[Effect, ...]:
     """Every candidate of a robot.
 
-    What has a state of its own (`state_catalogue`) is a candidate of robots with one degree of
-    freedom: joints that pull at each other hold together (`native.holding`), and such states do not
-    know of that yet.
-
     Args:
         spec: of the robot, which is not changed.
         axes: its joints whose effects are sought.
@@ -35,7 +31,7 @@ def all_effects(
     """
     own = spec.copy().compile()
     return (
-        *(e for e in joint_effects(axes, turns) if own.nv == 1 or not e.state),
+        *joint_effects(axes, turns),
         *body_effects(spec),
         *input_effects(drives(log)),
         *sensor_effects(own, log.output_names, axes),

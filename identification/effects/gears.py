@@ -21,11 +21,11 @@ from identification.effects.joint_states import (
     GearNumbers,
     JointState,
     begun,
-    driven_inertia,
     gear_numbers,
     places_of,
     shown,
 )
+from identification.effects.motor_shares import felt_inertias, mobilities, refuse_greedy
 from identification.effects.values import Values
 from identification.errors import InputError
 from identification.logs.names import listed
@@ -65,8 +65,12 @@ class Gears:
     @cached_property
     def inertia(self) -> dict[str, float]:
         """I of each of these joints, that its drive feels [kg m² or kg]."""
-        model = self.spec.copy().compile() if self.joints else self.model
-        return {joint: driven_inertia(model, joint) for joint in self.joints}
+        return dict(zip(self.joints, map(float, felt_inertias(self.mobilities)), strict=True))
+
+    @cached_property
+    def mobilities(self) -> np.ndarray:
+        """M⁻¹ among these joints in several poses; see `motor_shares`."""
+        return mobilities(self.spec.copy().compile() if self.joints else self.model, [*self.joints])
 
     @cached_property
     def numbers(self) -> frozenset[str]:
@@ -107,10 +111,16 @@ class Gears:
             values: of all parameters, one or n of each.
             n: how many value sets.
             own: entries of the model that other parameters change.
+
+        Raises:
+            DivergenceError: the motors have more inertia than the robot.
         """
         out: list[tuple[Slot, np.ndarray]] = []
-        for joint in self.joints:
-            g = self.of(joint, values, n)
+        each = {joint: self.of(joint, values, n) for joint in self.joints}
+        if len(each) > 1:
+            J = np.stack([np.where(g.is_geared, g.J, 0.0) for g in each.values()], axis=1)
+            refuse_greedy(J, self.mobilities, [*each])
+        for joint, g in each.items():
             if not g.is_geared.any():
                 continue
             dof = int(self.model.joint(joint).dofadr[0])
@@ -171,16 +181,6 @@ class Gears:
             each = {name: np.repeat(x, m // n) for name, x in vars(g).items()}
             out[joint] = GearNumbers(**each)
         return out
-
-
-def fitting(start: State | None, model: mujoco.MjModel) -> State | None:
-    """A start with as many activations as a model has: the last ones are left out, or zero."""
-    if start is None:
-        return None
-    act = np.zeros(model.na)
-    given = np.ravel(start.act)[: model.na]
-    act[: len(given)] = given
-    return State(start.qpos, start.qvel, act)
 
 
 def needed_states(effects: Sequence[Effect]) -> dict[str, tuple[JointState, ...]]:

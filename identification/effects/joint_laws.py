@@ -14,7 +14,7 @@ Friction resists the motion ahead, whose sign is s, with at most
         + f_q q                                 Coulomb friction that changes along the way
         + a cos n q + b sin n q                 friction that repeats along the way
 
-and holds what drives less than that (see `identification.native.joint_callback`). Forces are
+and holds what drives less than that (see `identification.native.joint_friction`). Forces are
 
     f = - d_a |v|                               viscous friction by direction: d + d_a forward
         - c v |v|                               quadratic friction

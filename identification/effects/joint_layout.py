@@ -19,7 +19,8 @@ from identification.native.gear_element import GEAR
 from identification.native.hook_checks import refuse_unfit_functions
 from identification.native.input_filter import INPUT
 from identification.native.installer import Law, install
-from identification.native.joint_callback import FIELDS, JOINT, callbacks, width
+from identification.native.joint_callback import FIELDS, JOINT, width
+from identification.native.joint_friction import callbacks
 from identification.native.joint_states import callbacks as state_callbacks
 from identification.native.joint_states import width as state_width
 from identification.native.reading import SENSOR

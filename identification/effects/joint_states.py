@@ -27,7 +27,6 @@ from identification.native.joint_callback import TAG
 
 WIDTH = {"motor": 2, "grip": 1}  # activations
 CERTAIN = 0.02  # s_0, of the largest force of the drives: with more, teeth are sure to touch
-POSES = 8  # random ones, in which the inertia that a drive feels is compared
 
 
 @dataclass(frozen=True)
@@ -87,20 +86,6 @@ def with_actuators(spec: mujoco.MjSpec, states: Sequence[JointState]) -> mujoco.
 def places_of(model: mujoco.MjModel, states: Sequence[JointState]) -> list[int]:
     """Where each state's first activation stands."""
     return [int(model.actuator(f"{UNLOGGED}{s.kind} {s.joint}").actadr[0]) for s in states]
-
-
-def driven_inertia(model: mujoco.MjModel, joint: str) -> float:
-    """The least inertia that the drive of a joint feels in several poses [kg m² or kg]."""
-    data, rng = mujoco.MjData(model), np.random.default_rng(0)
-    dof = int(model.joint(joint).dofadr[0])
-    unit, out = np.zeros((1, model.nv)), np.zeros((1, model.nv))
-    unit[0, dof], least = 1.0, np.inf
-    for _ in range(POSES):
-        mujoco.mj_forward(model, data)
-        mujoco.mj_solveM(model, data, out, unit)
-        least = min(least, 1 / float(out[0, dof]))
-        mujoco.mj_integratePos(model, data.qpos, rng.normal(0, 1, model.nv), 1.0)
-    return least
 
 
 def gear_numbers(
@@ -182,6 +167,16 @@ def shown(
         rows = np.flatnonzero(g.is_geared & (g.side > 0))
         qpos[rows, :, q], qvel[rows, :, v] = run["act"][rows, :, at], run["act"][rows, :, at + 1]
     return {**run, "qpos": qpos, "qvel": qvel}
+
+
+def fitting(start: State | None, model: mujoco.MjModel) -> State | None:
+    """A start with as many activations as a model has: the last ones are left out, or zero."""
+    if start is None:
+        return None
+    act = np.zeros(model.na)
+    given = np.ravel(start.act)[: model.na]
+    act[: len(given)] = given
+    return State(start.qpos, start.qvel, act)
 
 
 def _columns(model: mujoco.MjModel, joint: str) -> tuple[int, int]:

@@ -25,9 +25,9 @@ from identification.effects.axes import Axis
 from identification.effects.body_numbers import body_numbers
 from identification.effects.effect import Effect
 from identification.effects.first_loads import first_loads
-from identification.effects.gears import Gears, fitting, needed_states
+from identification.effects.gears import Gears, needed_states
 from identification.effects.joint_layout import JointLayout
-from identification.effects.joint_states import JointState, with_actuators
+from identification.effects.joint_states import JointState, fitting, with_actuators
 from identification.effects.moving_bodies import MovingBody, moving_bodies
 from identification.effects.rows import changed_rows, with_rows
 from identification.model.parameter import ParameterSet

@@ -15,12 +15,22 @@ A step h resolves springs up to κ = m (X/h)² only, m being the inertia that sw
 that is stiffer is replaced by one that settles within some steps, and carries its load T beside:
 with r = κ c, which is 1 where it is resolved,
 
-    τ = (1 - r) T + κ (δ ∓ ε) + D dδ/dt,   T = m (f_m/J - a),   1/m = 1/J + 1/M_jj
+    τ = (1 - r) T + κ (δ ∓ ε) + D dδ/dt,   T = m (f_m/J - a),   1/m = 1/J + A,   A = (M⁻¹)_jj
     friction = min(max((1 - r) (M v/T_s + load) + r p, -b), b)
 
-so that c = 0 is a rigid gear, and friction that holds as in `identification.native.joint_callback`.
-a: acceleration of the joint without τ. Behind the parameters of the other effects a joint's row has
-`GEARS` numbers more. The states are activations: θ and ω of one actuator, p of another.
+so that c = 0 is a rigid gear, and friction that holds as in `native.joint_friction`; of several
+joints, see `native.holding`. a = dv/dt - A τ is the acceleration of the joint without its own τ, so
+that d²δ/dt² = (r T - κ (δ ∓ ε) - D dδ/dt)/m however joints pull at each other. As a function of the
+joint's own acceleration
+
+    τ = f - I dv/dt,   I = β J,   f = γ τ(T = f_m) - β J A f_m                           (felt)
+    β = (1 - r)/(1 + r J A),   γ = (1 + J A)/(1 + r J A)
+
+f is the drive that the joint feels, and I what is left of the motor's inertia: with r = 0 they are
+f_m and J, with r = 1 τ and 0.
+
+Behind the parameters of the other effects a joint's row has `GEARS` numbers more. The states are
+activations: θ and ω of one actuator, p of another.
 """
 
 from __future__ import annotations
@@ -30,31 +40,31 @@ from math import sqrt
 import mujoco
 import numpy as np
 
-from identification.native import structs
+from identification.native import mass, structs
 from identification.native.access import double, integer, offsets, word
 from identification.native.decorators import inlined
+from identification.native.holding import RESOLVED
 from identification.native.joint_callback import FIELDS as JOINT_FIELDS
-from identification.native.joint_callback import LAST, TAG, Joint, drive_force, inertia, joint
+from identification.native.joint_callback import LAST, Joint, drive_force, joint
 from identification.native.joint_callback import D as JOINT_D
 from identification.native.joint_callback import M as JOINT_M
-from identification.native.memory import load_constant, load_double, store_double
+from identification.native.memory import load_constant
 from identification.native.tuples import replacer
 
 GEARS = 8  # numbers of a row behind the parameters:
 MOTOR, GRIP = 0, 1  # where θ and p stand among the activations, -1 where there is none
 SIDE = 2  # 1: the drive's own feedback sees θ, 0: it sees q
 COMPLIANCE, GAP, INERTIA, RATIO, SLIP = 3, 4, 5, 6, 7  # c, ε, J, ζ, and the friction's c
-RESOLVED = 1.0  # X: RK4 then damps a swing by 7e-3 a step; semi-implicit Euler is stable up to 2
 # κ h²/m and D h/m of what is far too stiff: a semi-implicit step halves what is left of δ and its
 # rate ((1 - z)² and 1 - z² for a double root z = 1/2), and teeth rebound by a quarter at most.
 SETTLED, DAMPED = 0.25, 0.75
 MOST_DAMPED = 1.2  # largest D h/m; with X such a step is stable up to 1.5
 
-M = offsets("mjModel", "nv actuator_actadr actuator_trntype actuator_trnid jnt_user M_colind")
-D = offsets("mjData", "act act_dot qfrc_bias qLD qLDiagInv qfrc_smooth")
+M = offsets("mjModel", "nv actuator_actadr actuator_trntype actuator_trnid jnt_user")
+D = offsets("mjData", "act act_dot qfrc_bias qfrc_smooth qacc_smooth qfrc_actuator")
 INTEGRATOR = structs.inner_byte("mjModel", "opt", "integrator")
 TIMESTEP = 8 * structs.inner_word("mjModel", "opt", "timestep")
-FIELDS = JOINT_FIELDS | {*M._fields, *D._fields, "opt.integrator", "opt.timestep"}
+FIELDS = JOINT_FIELDS | mass.FIELDS | {*M._fields, *D._fields, "opt.integrator", "opt.timestep"}
 RK4, IS_JOINT = int(mujoco.mjtIntegrator.mjINT_RK4), int(mujoco.mjtTrn.mjTRN_JOINT)
 _with_drive = replacer(Joint, "f_u")
 with_sign = replacer(Joint, "sign")
@@ -74,8 +84,8 @@ def is_geared(gears):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _spring(gears, mobility, h):  # type: ignore[no-untyped-def]
-    """m, κ, r and D of a gear; mobility: 1/M_jj."""
+def spring(gears, mobility, h):  # type: ignore[no-untyped-def]
+    """m, κ, r and D of a gear; mobility: A."""
     c, J = load_constant(gears + 8 * COMPLIANCE), load_constant(gears + 8 * INERTIA)
     swinging = 1.0 / (1.0 / J + mobility)
     stiff = swinging / h**2
@@ -105,87 +115,33 @@ def transmitted(load, delta, rate, gap, kappa, r, damping, h):  # type: ignore[n
 
 
 @inlined
-def _motor_force(m, d, j, gears):  # type: ignore[no-untyped-def]
-    """f_m, the force of the drives on the motor of joint j, and the motor's θ and ω."""
+def motor_force(m, d, j, gears):  # type: ignore[no-untyped-def]
+    """f_m, the force of the drives on the motor of joint j, and the gear's δ and its rate."""
     at = word(d, D.act) + 8 * np.int64(load_constant(gears + 8 * MOTOR))
     theta, omega = load_constant(at), load_constant(at + 8)
-    if load_constant(gears + 8 * SIDE) != 0.0:
-        return drive_force(m, d, j, theta, omega), theta, omega
     q = double(d, JOINT_D.qpos, integer(m, JOINT_M.jnt_qposadr, j))
     v = double(d, JOINT_D.qvel, integer(m, JOINT_M.jnt_dofadr, j))
-    return drive_force(m, d, j, q, v), theta, omega
+    if load_constant(gears + 8 * SIDE) != 0.0:
+        return drive_force(m, d, j, theta, omega), theta - q, omega - v
+    return drive_force(m, d, j, q, v), theta - q, omega - v
 
 
 @inlined
-def felt(m, d, j, row, gears, h):  # type: ignore[no-untyped-def]
-    """The state of a joint with f_u as the joint feels it, and the inertia that friction stops.
+def felt(m, d, j, row, gears):  # type: ignore[no-untyped-def]
+    """The state of a joint with f as its drive, and I; qfrc_smooth is used as room.
 
-    The load of a gear that is not resolved is taken for f_m here, as of a motor that rests.
+    Between the flanks of a gap it feels neither drive nor inertia.
     """
-    s, M_jj = joint(m, d, j, row), inertia(m, d, integer(m, JOINT_M.jnt_dofadr, j))
+    s = joint(m, d, j, row)
     if not is_geared(gears):
-        return s, M_jj
-    f_m, theta, omega = _motor_force(m, d, j, gears)
-    _, kappa, r, damping = _spring(gears, 1.0 / M_jj, h)
-    gap = load_constant(gears + 8 * GAP)
-    f = transmitted(f_m, theta - s.q, omega - s.v, gap, kappa, r, damping, h)
-    M_jj += (1.0 - r) * load_constant(gears + 8 * INERTIA)
-    return _with_drive(s, (f,)), M_jj
-
-
-@inlined
-def solve(m, d, x):  # type: ignore[no-untyped-def]
-    """M⁻¹ x in place, x an address; M = Lᵀ D L as MuJoCo has it factorised."""
-    n, L = word(m, M.nv), word(d, D.qLD)
-    for i in range(n - 1, -1, -1):
-        first, count = integer(m, JOINT_M.M_rowadr, i), integer(m, JOINT_M.M_rownnz, i)
-        for k in range(first, first + count - 1):
-            at = x + 8 * integer(m, M.M_colind, k)
-            store_double(at, load_double(at) - load_double(L + 8 * k) * load_double(x + 8 * i))
-    for i in range(n):
-        store_double(x + 8 * i, load_double(x + 8 * i) * double(d, D.qLDiagInv, i))
-    for i in range(n):
-        first, count = integer(m, JOINT_M.M_rowadr, i), integer(m, JOINT_M.M_rownnz, i)
-        for k in range(first, first + count - 1):
-            less = load_double(L + 8 * k) * load_double(x + 8 * integer(m, M.M_colind, k))
-            store_double(x + 8 * i, load_double(x + 8 * i) - less)
-
-
-@inlined
-def through(m, d, j, gears, key, h):  # type: ignore[no-untyped-def]
-    """τ and f_m of joint j, behind MuJoCo's velocity stage; qfrc_smooth is used as room."""
-    f_m, theta, omega = _motor_force(m, d, j, gears)
-    dof, x = integer(m, JOINT_M.jnt_dofadr, j), word(d, D.qfrc_smooth)
-    for i in range(word(m, M.nv)):
-        store_double(x + 8 * i, 0.0)
-    store_double(x + 8 * dof, 1.0)
-    solve(m, d, x)
-    swinging, kappa, r, damping = _spring(gears, load_double(x + 8 * dof), h)
-    load = 0.0
-    if r < 1.0:  # else it is not needed
-        passive = word(d, JOINT_D.qfrc_passive)
-        for i in range(word(m, M.nv)):
-            f = load_double(passive + 8 * i) - double(d, D.qfrc_bias, i)
-            store_double(x + 8 * i, f)
-        for k in range(word(m, JOINT_M.njnt)):
-            if k == j:
-                continue
-            f, own = 0.0, gears_of(m, k)
-            at = x + 8 * integer(m, JOINT_M.jnt_dofadr, k)
-            tagged = own + 8 * (GEARS + LAST - 1)
-            if load_constant(tagged) == TAG and load_constant(tagged - 8) == key:
-                s, _ = felt(m, d, k, own, own, h)
-                f = s.f_u
-            else:
-                q = double(d, JOINT_D.qpos, integer(m, JOINT_M.jnt_qposadr, k))
-                v = double(d, JOINT_D.qvel, integer(m, JOINT_M.jnt_dofadr, k))
-                f = drive_force(m, d, k, q, v)
-            if f == f:  # where it is known
-                store_double(at, load_double(at) + f)
-        solve(m, d, x)
-        J = load_constant(gears + 8 * INERTIA)
-        load = swinging * (f_m / J - load_double(x + 8 * dof))
-    q = double(d, JOINT_D.qpos, integer(m, JOINT_M.jnt_qposadr, j))
-    v = double(d, JOINT_D.qvel, dof)
-    gap = load_constant(gears + 8 * GAP)
-    return transmitted(load, theta - q, omega - v, gap, kappa, r, damping, h), f_m
+        return s, 0.0
+    h = load_constant(m + TIMESTEP)
+    A = mass.mobility(m, d, integer(m, JOINT_M.jnt_dofadr, j), word(d, D.qfrc_smooth))
+    f_m, delta, rate = motor_force(m, d, j, gears)
+    _, kappa, r, damping = spring(gears, A, h)
+    gap, J = load_constant(gears + 8 * GAP), load_constant(gears + 8 * INERTIA)
+    f = transmitted(f_m, delta, rate, gap, kappa, r, damping, h)
+    if gap != 0.0 and f == 0.0:
+        return _with_drive(s, (0.0,)), 0.0
+    beta, gamma = (1.0 - r) / (1.0 + r * J * A), (1.0 + J * A) / (1.0 + r * J * A)
+    return _with_drive(s, (gamma * f - beta * J * A * f_m,)), beta * J

@@ -11,7 +11,14 @@ of Coulomb's law (Moreau 1988), solved by projected Gauss-Seidel:
 
     f_i ← min(max(f_i + w_i/A_ii, -b⁻_i), b⁺_i),      w ← w - A_i Δf_i,      A = M⁻¹
 
-For a single joint it is f = min(max(g, -b⁻), b⁺).
+For a single joint it is f = min(max(g, -b⁻), b⁺). Where friction gives before it slips, its spring
+carries p, and the share r of it that a step h resolves is not held (see `native.gear`):
+
+    f_i ← min(max((1 - r_i) (f_i + w_i/A_ii) + r_i p_i, -b⁻_i), b⁺_i)
+    r_i = min(1, c_i (X/h)²/A_ii)
+
+which is Gauss-Seidel of w_i = r_i/(1 - r_i) A_ii (f_i - p_i). 1/A_ii is the inertia that swings on
+the spring of a joint while all others are free, the least that it can be.
 """
 
 from __future__ import annotations
@@ -19,11 +26,18 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from identification.native.decorators import internal
+from identification.native.decorators import inlined, internal
 
 MOST = 24  # degrees of freedom up to which joints are held together; beyond, each by itself
 SWEEPS = 1000  # at most; mass matrices of arms take some ten
 ENOUGH = 1e-11  # change of a friction in a sweep that ends them, of the largest one
+RESOLVED = 1.0  # X: RK4 then damps a swing by 7e-3 a step; semi-implicit Euler is stable up to 2
+
+
+@inlined
+def resolved(c, inertia, h):  # type: ignore[no-untyped-def]
+    """r: the share of a spring of compliance c that a step resolves, of friction that gives."""
+    return min(1.0, c * inertia * (RESOLVED / h) ** 2)
 
 
 @internal
@@ -55,7 +69,7 @@ def invert(M, A, n):  # type: ignore[no-untyped-def]
 
 
 @internal
-def hold(A, w, low, high, f, n):  # type: ignore[no-untyped-def]
+def hold(A, w, low, high, f, n, r, p):  # type: ignore[no-untyped-def]
     """Friction into f, which comes as zeros; w comes as M⁻¹ g and is overwritten."""
     largest = 0.0
     for i in range(n):
@@ -65,7 +79,8 @@ def hold(A, w, low, high, f, n):  # type: ignore[no-untyped-def]
         for i in range(n):
             if low[i] <= 0.0 and high[i] <= 0.0:
                 continue
-            new = min(max(f[i] + w[i] / A[i, i], -low[i]), high[i])
+            new = (1.0 - r[i]) * (f[i] + w[i] / A[i, i]) + r[i] * p[i]
+            new = min(max(new, -low[i]), high[i])
             more = new - f[i]
             if more != 0.0:
                 f[i] = new
@@ -77,7 +92,7 @@ def hold(A, w, low, high, f, n):  # type: ignore[no-untyped-def]
 
 
 @njit
-def held(M, g, low, high):  # type: ignore[no-untyped-def]
+def held(M, g, low, high, r=None, p=None):  # type: ignore[no-untyped-def]
     """Friction of joints that pull at each other, shape (n,); for tests and for reading.
 
     Args:
@@ -85,9 +100,16 @@ def held(M, g, low, high):  # type: ignore[no-untyped-def]
         g: force that would stop all joints, shape (n,) [N or N m].
         low: largest friction where joints move backward, shape (n,).
         high: where they move forward.
+        r: share of friction that gives which its spring p carries, shape (n,); zero when None.
+        p: force of that spring, shape (n,) [N or N m].
     """
     n = g.size
     A, f = np.empty((n, n)), np.zeros(n)
+    share, spring = np.zeros(n), np.zeros(n)
+    if r is not None:
+        share[:] = r
+    if p is not None:
+        spring[:] = p
     invert(M.copy(), A, n)
-    hold(A, A @ g, low, high, f, n)
+    hold(A, A @ g, low, high, f, n, share, spring)
     return f

@@ -1,22 +1,10 @@
-"""The effects of joints inside MuJoCo's passive forces.
+"""What the effects of a joint see of it, and where its numbers stand.
 
-    f = Σ_e force_e(s, p_e)                               s: the `Joint` state of a joint
-    b = max(0, Σ_e friction_e(s, p_e))                    the largest friction there
-    g = M v/T + f_u + f_g + qfrc_passive + f              what would have to be resisted to stop
-    qfrc_passive += f - min(max(g, -b), b)
-
-Friction holds a joint that less than b drives, without creeping, and brakes with b what it cannot
-stop within T, one step (Coulomb's law as Duclusaud et al. 2024 integrate it: BAM, equation 3).
-Where a robot has several degrees of freedom, they pull at each other: the mass matrix is then
-whole, the bias is in the place of f_g, and all joints are held together (see `native.holding`).
 The numbers stand at the end of a joint's user data, in a row
 
     (T, what the records reach, parameters of the effects, key of the set of effects, TAG)
 
-Every joint without such a row and every other model passes through untouched. Sizes of zero add
-nothing, so that the bare model's trajectory is kept to the bit. A compiled callback must not
-raise: a row whose set of effects is not compiled in this process makes NaN, which MuJoCo reports
-as a divergence.
+`identification.native.joint_friction` says what is made of them.
 """
 
 from __future__ import annotations
@@ -29,19 +17,14 @@ import numpy as np
 
 from identification.native import structs
 from identification.native.access import double, integer, offsets, word
-from identification.native.compose import total
-from identification.native.decorators import inlined, internal
-from identification.native.element import Element, Function, Hook, Term
-from identification.native.holding import MOST, hold, invert
-from identification.native.library import mj_rne
-from identification.native.memory import load_byte, load_constant, load_double, store_double
-from identification.native.table import is_compiled
-from identification.native.tuples import replacer
+from identification.native.decorators import inlined
+from identification.native.element import Element, Hook, Term
+from identification.native.holding import MOST
+from identification.native.memory import load_byte, load_constant
 
 TAG = 7351.0609  # last entry of a row of ours, first of the bias of an actuator of ours
 STOP, REACH, FIRST, LAST = 0, 1, 6, 2  # columns of T, of what is reached, of the first parameter;
 # entries behind the last
-DRIVE, LOW, HIGH, STOPPING, FRICTION, ROWS = range(6)  # rows of the room for joints held together
 STEPS = 1.0  # T over the step, where joints are held together
 GENTLE = 3.0  # times T, for slopes: at once, friction has none that tell what a finite step does
 STEPS_ALONE = 3.0  # where each is held by itself, although the inertia of one is less than M then
@@ -80,8 +63,8 @@ GRAVITY = structs.inner_word("mjModel", "opt", "gravity")
 FIELDS = frozenset((*M._fields, *D._fields, "opt.gravity"))  # everything the callback touches
 
 _JOINT = int(mujoco.mjtTrn.mjTRN_JOINT)
-_HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
-_SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
+HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
+SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 _NO_DYNAMICS = int(mujoco.mjtDyn.mjDYN_NONE)
 _FIXED = int(mujoco.mjtGain.mjGAIN_FIXED)
 _NO_BIAS, _AFFINE = int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtBias.mjBIAS_AFFINE)
@@ -152,7 +135,7 @@ def gravity_force(m, d, j):  # type: ignore[no-untyped-def]
     ax, ay, az = (
         double(d, D.xaxis, 3 * j), double(d, D.xaxis, 3 * j + 1), double(d, D.xaxis, 3 * j + 2)
     )  # fmt: skip
-    if integer(m, M.jnt_type, j) != _HINGE:
+    if integer(m, M.jnt_type, j) != HINGE:
         return ax * gx + ay * gy + az * gz
     rx = double(d, D.subtree_com, 3 * body) - double(d, D.xanchor, 3 * j)
     ry = double(d, D.subtree_com, 3 * body + 1) - double(d, D.xanchor, 3 * j + 1)
@@ -179,110 +162,3 @@ def joint(m, d, j, row):  # type: ignore[no-untyped-def]
         v_top=load_constant(row + 8 * (REACH + 2)), f_top=load_constant(row + 8 * (REACH + 3)),
         t_end=load_constant(row + 8 * (REACH + 4)),
     )  # fmt: skip
-
-
-@inlined
-def drive_alone(m, d, j, room):  # type: ignore[no-untyped-def]
-    """The drive of a joint without effects into `room`, which others feel."""
-    kind, dof = integer(m, M.jnt_type, j), integer(m, M.jnt_dofadr, j)
-    if kind in (_HINGE, _SLIDE):
-        q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
-        f_u = drive_force(m, d, j, q, double(d, D.qvel, dof))
-        room[DRIVE, dof] = f_u if f_u == f_u else 0.0
-
-
-@internal
-def hold_together(m, d, stop, room, n):  # type: ignore[no-untyped-def]
-    """Subtract the friction of all joints; `room` has their drives and largest frictions."""
-    A, full, w = np.empty((n, n)), np.zeros((n, n)), np.zeros(n)
-    mj_rne(m, d, 0, word(d, D.qfrc_bias))  # MuJoCo itself does so right after the passive forces
-    for i in range(n):
-        first = integer(m, M.M_rowadr, i)
-        for k in range(first, first + integer(m, M.M_rownnz, i)):
-            full[i, integer(m, M.M_colind, k)] = double(d, D.M, k)
-        v = double(d, D.qvel, i)
-        g = room[DRIVE, i] - load_double(word(d, D.qfrc_bias) + 8 * i)
-        room[STOPPING, i] += g + load_double(word(d, D.qfrc_passive) + 8 * i)
-        for k in range(i + 1):
-            room[STOPPING, i] += full[i, k] * double(d, D.qvel, k) / stop
-            if k < i:
-                room[STOPPING, k] += full[i, k] * v / stop
-    invert(full, A, n)
-    for i in range(n):
-        for k in range(n):
-            w[i] += A[i, k] * room[STOPPING, k]
-    hold(A, w, room[LOW], room[HIGH], room[FRICTION], n)
-    for i in range(n):
-        f = room[FRICTION, i]
-        if f != 0.0:
-            at = word(d, D.qfrc_passive) + 8 * i
-            store_double(at, load_double(at) - f)
-
-
-def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
-    """The callback of a set of joint effects, to be compiled.
-
-    Args:
-        terms: the effects, their columns counted from the first parameter of a row.
-        key: of the set.
-    """
-    force, friction = total(JOINT, terms, "force"), total(JOINT, terms, "friction")
-    entries, with_sign = width(terms), replacer(Joint, "sign")
-
-    @inlined
-    def alone(m, d, j, row):  # type: ignore[no-untyped-def]
-        """Add what acts on a joint that is held by itself."""
-        dof = integer(m, M.jnt_dofadr, j)
-        at = word(d, D.qfrc_passive) + 8 * dof
-        s = joint(m, d, j, row)
-        f = force(s, row + 8 * FIRST, 0)
-        driven = f + s.f_g + load_double(at)
-        if s.f_u == s.f_u:  # where it is known
-            driven += s.f_u
-        g = driven + inertia(m, d, dof) * s.v / load_constant(row + 8 * STOP)
-        b = max(0.0, friction(with_sign(s, (1.0 if g > 0.0 else -1.0,)), row + 8 * FIRST, 0))
-        f -= max(-b, min(b, g))
-        if f != 0.0:
-            store_double(at, load_double(at) + f)
-
-    @inlined
-    def together(m, d, j, row, room, n):  # type: ignore[no-untyped-def]
-        """Add the force on a joint; its drive and its largest friction into `room`."""
-        dof = integer(m, M.jnt_dofadr, j)
-        at = word(d, D.qfrc_passive) + 8 * dof
-        s = joint(m, d, j, row)
-        f = force(s, row + 8 * FIRST, 0)
-        if f != 0.0:
-            store_double(at, load_double(at) + f)
-        room[DRIVE, dof] = s.f_u if s.f_u == s.f_u else 0.0
-        room[LOW, dof] = max(0.0, friction(with_sign(s, (-1.0,)), row + 8 * FIRST, 0))
-        room[HIGH, dof] = max(0.0, friction(with_sign(s, (1.0,)), row + 8 * FIRST, 0))
-
-    def passive(m, d):  # type: ignore[no-untyped-def]
-        columns, n = word(m, M.nuser_jnt), word(m, M.nv)
-        if columns < LAST:
-            return
-        are_coupled, stop = 1 < n <= MOST, 0.0
-        room = np.zeros((ROWS, n if are_coupled else 1))
-        for j in range(word(m, M.njnt)):
-            end = word(m, M.jnt_user) + 8 * columns * (j + 1)
-            if load_constant(end - 8) != TAG:
-                if are_coupled:
-                    drive_alone(m, d, j, room)
-                continue
-            own = load_constant(end - 16)
-            if own != key:
-                if not is_compiled(own):
-                    at = word(d, D.qfrc_passive) + 8 * integer(m, M.jnt_dofadr, j)
-                    store_double(at, np.nan)
-                continue
-            row = end - 8 * entries
-            stop = load_constant(row + 8 * STOP)
-            if are_coupled:
-                together(m, d, j, row, room, n)
-            else:
-                alone(m, d, j, row)
-        if are_coupled and (room[LOW].any() or room[HIGH].any()):
-            hold_together(m, d, stop, room, n)
-
-    return {"passive": passive}

@@ -1,12 +1,14 @@
 """The effects of joints with states of their own, inside MuJoCo's callbacks.
 
-    mjcb_passive     friction and forces, as in `identification.native.joint_callback`; where gears
+    mjcb_passive     friction and forces, as in `identification.native.joint_friction`; where gears
                      swing, of the joint behind its gear
     mjcb_act_dyn     rates of θ, ω and p
     mjcb_act_bias    τ in place of the drives' force, by the actuator that carries θ and ω
 
-`identification.native.gear` has the laws. A semi-implicit step moves q by the new rate, so that the
-rates of θ and p are those at the end of such a step too.
+`identification.native.gear` has the laws. MuJoCo asks all actuators for rates before it asks any
+for its force: the first one with states finds τ for all joints (`native.transmission`). A
+semi-implicit step moves q by the new rate, so that the rates of θ and p are those at the end of
+such a step too; without the damping that such steps take implicitly.
 """
 
 from __future__ import annotations
@@ -26,7 +28,6 @@ from identification.native.gear import (
     INTEGRATOR,
     IS_JOINT,
     MOTOR,
-    RESOLVED,
     RK4,
     SLIP,
     TIMESTEP,
@@ -35,14 +36,14 @@ from identification.native.gear import (
     felt,
     gears_of,
     is_geared,
-    through,
-    with_sign,
+    motor_force,
 )
-from identification.native.joint_callback import FIRST, JOINT, LAST, STOP, TAG, drive_force
+from identification.native.joint_callback import FIRST, JOINT, LAST, drive_force
 from identification.native.joint_callback import D as JOINT_D
 from identification.native.joint_callback import M as JOINT_M
+from identification.native.joint_friction import passive_force, with_sign
 from identification.native.memory import load_constant, load_double, load_int, store_double
-from identification.native.table import is_compiled
+from identification.native.transmission import is_ours, transmit
 
 
 def width(terms: Sequence[Term]) -> int:
@@ -57,71 +58,50 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
         terms: the effects without states, their columns counted from the first parameter of a row.
         key: of the set.
     """
-    force, friction = total(JOINT, terms, "force"), total(JOINT, terms, "friction")
-    entries = width(terms)
+    friction, entries = total(JOINT, terms, "friction"), width(terms)
+
+    @inlined
+    def felt_of(m, d, j, row, end):  # type: ignore[no-untyped-def]
+        gears, p = end - 8 * (GEARS + LAST), 0.0
+        s, more = felt(m, d, j, row, gears)
+        c = load_constant(gears + 8 * SLIP)
+        if c != 0.0:
+            p = double(d, D.act, np.int64(load_constant(gears + 8 * GRIP)))
+        return s, more, c, p
 
     @inlined
     def mine(m, i):  # type: ignore[no-untyped-def]
         """The joint of an actuator that carries states of this law; -1 where it does not."""
         if (
-            word(m, JOINT_M.nuser_jnt) < entries
+            i < 0
+            or word(m, JOINT_M.nuser_jnt) < entries
             or integer(m, M.actuator_trntype, i) != IS_JOINT
             or integer(m, M.actuator_actadr, i) < 0
         ):
             return -1
-        j = integer(m, M.actuator_trnid, 2 * i)
-        end = gears_of(m, j) + 8 * (GEARS + LAST)
-        if load_constant(end - 8) != TAG or load_constant(end - 16) != key:
+        j, place = integer(m, M.actuator_trnid, 2 * i), integer(m, M.actuator_actadr, i)
+        if not is_ours(m, j, key):
             return -1
-        return j
-
-    def passive(m, d):  # type: ignore[no-untyped-def]
-        columns = word(m, JOINT_M.nuser_jnt)
-        if columns < LAST:
-            return
-        for j in range(word(m, JOINT_M.njnt)):
-            end = word(m, JOINT_M.jnt_user) + 8 * columns * (j + 1)
-            if load_constant(end - 8) != TAG:
-                continue
-            dof = integer(m, JOINT_M.jnt_dofadr, j)
-            at = word(d, JOINT_D.qfrc_passive) + 8 * dof
-            own = load_constant(end - 16)
-            if own != key:
-                if not is_compiled(own):
-                    store_double(at, np.nan)
-                continue
-            row, gears = end - 8 * entries, end - 8 * (GEARS + LAST)
-            stop = load_constant(row + 8 * STOP)
-            s, M_jj = felt(m, d, j, row, gears, load_constant(m + TIMESTEP))
-            f = force(s, row + 8 * FIRST, 0)
-            driven = f + s.f_g + load_double(at)
-            if s.f_u == s.f_u:  # where it is known
-                driven += s.f_u
-            r = driven + M_jj * s.v / stop
-            c = load_constant(gears + 8 * SLIP)
-            if c != 0.0:
-                held = min(1.0, c * M_jj * (RESOLVED / load_constant(m + TIMESTEP)) ** 2)
-                p = word(d, D.act) + 8 * np.int64(load_constant(gears + 8 * GRIP))
-                r = (1.0 - held) * r + held * load_constant(p)
-            ahead = 1.0 if r > 0.0 else -1.0
-            b = max(0.0, friction(with_sign(s, (ahead,)), row + 8 * FIRST, 0))
-            f -= max(-b, min(b, r))
-            if f != 0.0:
-                store_double(at, load_double(at) + f)
+        gears = gears_of(m, j)
+        own = np.int64(load_constant(gears + 8 * MOTOR)), np.int64(load_constant(gears + 8 * GRIP))
+        return j if place in own else -1
 
     def act_dyn(m, d, i):  # type: ignore[no-untyped-def]
         j = mine(m, i)
         if j < 0:
             return 0.0
         gears, place = gears_of(m, j), integer(m, M.actuator_actadr, i)
-        row = gears + 8 * (GEARS + LAST - entries)
+        dof = integer(m, JOINT_M.jnt_dofadr, j)
         out, h = word(d, D.act_dot) + 8 * place, load_constant(m + TIMESTEP)
         semi = 0.0 if load_int(m + INTEGRATOR) == RK4 else h  # such a step moves q by the new v
+        if mine(m, i - 1) < 0:  # these actuators stand in a row
+            transmit(m, d, key, semi != 0.0)
         if np.int64(load_constant(gears + 8 * MOTOR)) == place:
             store_double(out, 0.0)
             store_double(out + 8, 0.0)
             if is_geared(gears):
-                tau, f_m = through(m, d, j, gears, key, h)
+                f_m, _, _ = motor_force(m, d, j, gears)
+                tau = load_double(word(d, D.qfrc_actuator) + 8 * dof)
                 rate = (f_m - tau) / load_constant(gears + 8 * INERTIA)
                 store_double(out, double(d, D.act, place + 1) + semi * rate)
                 store_double(out + 8, rate)
@@ -129,12 +109,11 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
         c = load_constant(gears + 8 * SLIP)
         if np.int64(load_constant(gears + 8 * GRIP)) != place or c == 0.0:
             return 0.0
-        s, M_jj = felt(m, d, j, row, gears, h)
-        f = load_double(word(d, JOINT_D.qfrc_passive) + 8 * integer(m, JOINT_M.jnt_dofadr, j))
-        f += s.f_g
-        if s.f_u == s.f_u:
-            f += s.f_u
-        v, p = s.v + semi * f / M_jj, double(d, D.act, place)
+        row = gears + 8 * (GEARS + LAST - entries)
+        s, _ = felt(m, d, j, row, gears)
+        v, p = s.v, double(d, D.act, place)
+        if semi != 0.0:
+            v += semi * load_double(word(d, D.qacc_smooth) + 8 * dof)
         b = max(0.0, friction(with_sign(s, (1.0 if v > 0.0 else -1.0,)), row + 8 * FIRST, 0))
         if b == 0.0:
             return -p / h
@@ -149,9 +128,10 @@ def callbacks(terms: Sequence[Term], key: float) -> dict[str, Function]:
             return 0.0
         if not is_geared(gears):
             return 0.0
-        tau, _ = through(m, d, j, gears, key, load_constant(m + TIMESTEP))
+        dof = integer(m, JOINT_M.jnt_dofadr, j)
         q = double(d, JOINT_D.qpos, integer(m, JOINT_M.jnt_qposadr, j))
-        v = double(d, JOINT_D.qvel, integer(m, JOINT_M.jnt_dofadr, j))
-        return tau - drive_force(m, d, j, q, v)
+        v = double(d, JOINT_D.qvel, dof)
+        return load_double(word(d, D.qfrc_actuator) + 8 * dof) - drive_force(m, d, j, q, v)
 
+    passive = passive_force(terms, key, entries, felt_of)
     return {"passive": passive, "act_dyn": act_dyn, "act_bias": act_bias}

@@ -51,6 +51,27 @@ def test_what_is_not_coupled_is_clipped_by_itself():
     np.testing.assert_allclose(held(M, g, np.ones(3), np.ones(3)), [0.5, -1.0, 1.0], rtol=1e-15)
 
 
+@given(SEEDS, st.integers(1, 6))
+@settings(max_examples=30, deadline=None)
+def test_friction_that_gives_pulls_back_to_its_springs(seed, n):
+    """w = r/(1 - r) A_ii (f - p) where it does not slip, and full friction where it does."""
+    M, g, low, high = drawn(seed, n)
+    rng = np.random.default_rng(seed + 1)
+    r, p = rng.uniform(0.01, 0.99, n), rng.uniform(-low, high)
+    f = held(M, g, low, high, r, p)
+    A = np.linalg.inv(M)
+    w = A @ (g - f) - r / (1 - r) * np.diag(A) * (f - p)
+    near = 1e-7 * (1 + np.abs(g).max())
+    scale = near * np.linalg.norm(A, 2) * (1 + np.max(r / (1 - r)))
+    assert np.all((-low - near <= f) & (f <= high + near))
+    assert np.all(w[f > -low + near] > -scale)
+    assert np.all(w[f < high - near] < scale)
+    np.testing.assert_array_equal(held(M, g, low, high, 0 * r, p), held(M, g, low, high))
+    np.testing.assert_array_equal(
+        held(M, g, low, high, 0 * r + 1, p), np.where(low + high > 0, p, 0)
+    )
+
+
 TWO = """<mujoco><option timestep="0.002" integrator="RK4"/><worldbody>
   <body><joint name="a" axis="0 1 0"/><inertial pos="0 0 -0.3" mass="1" diaginertia=".03 .03 .001"/>
     <body pos="0 0 -0.5"><joint name="b" axis="0 1 0"/>
