@@ -86,7 +86,7 @@ class AtPoint:
         moves = tuple(d + more for d, more in zip(self.moves, dd, strict=True))
         try:
             held = self.problem.held(q)
-            moves, r = best_of(held, moves, self.moves, [t.r for t in self.tangents])
+            moves, r = best_of(held, moves, self.moves)
             cost = self.problem.cost_of(q, r)
             hoped = self.cost - promised
             is_short = hoped > self.tolerance * self.cost and self.cost - cost < KEPT * hoped

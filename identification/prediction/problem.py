@@ -125,36 +125,23 @@ class Problem:
 
 
 def best_of(
-    held: HeldRecords, moves: Sequence[np.ndarray], others: Sequence[np.ndarray],
-    before: Sequence[np.ndarray],
-) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:  # fmt: skip
+    held: HeldRecords, moves: Sequence[np.ndarray], others: Sequence[np.ndarray]
+) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
     """Of two moves of the states the better one, each window for itself, and the residuals there.
-
-    A window that is no worse than before with the first one is not asked for the other.
 
     Args:
         held: the windows.
         moves: one array (W, nx) a record.
         others: likewise.
-        before: the residuals before, one array (W, m) a record.
     """
-    r = held.residuals(moves)
-    worse = [~(_squares(now) <= _squares(old)) for now, old in zip(r, before, strict=True)]
-    second = held.residuals_of(worse, others)
-    d, best = [], []
-    for at, one, other, r_one, r_other in zip(worse, moves, others, r, second, strict=True):
-        is_other = at.copy()
-        is_other[at] = _squares(r_other) < _squares(r_one[at])
-        residual = r_one.copy()
-        residual[is_other] = r_other[is_other[at]]
-        d.append(np.where(is_other[:, None], other, one))
-        best.append(residual)
-    return tuple(d), tuple(best)
-
-
-def _squares(r: np.ndarray) -> np.ndarray:
-    """Sum of squares of each window, infinite where it diverged, shape (W,)."""
-    return np.nan_to_num(np.sum(r**2, axis=1), nan=np.inf)
+    d, r = [], []
+    each = zip(moves, others, held.residuals(moves), held.residuals(others), strict=True)
+    for one, other, r_one, r_other in each:
+        squares = np.nan_to_num([np.sum(x**2, axis=1) for x in (r_one, r_other)], nan=np.inf)
+        first = (squares[0] <= squares[1])[:, None]
+        d.append(np.where(first, one, other))
+        r.append(np.where(first, r_one, r_other))
+    return tuple(d), tuple(r)
 
 
 def problem(

@@ -36,25 +36,6 @@ class HeldRecords:
             out |= {k: r[held.record == i] for i, k in enumerate(records)}
         return tuple(out[k] for k in range(len(self.parts)))
 
-    def residuals_of(
-        self, which: Sequence[np.ndarray], moves: Sequence[np.ndarray]
-    ) -> tuple[np.ndarray, ...]:
-        """r of some windows, shape (n, L ny + nx) a record; NaN where one diverges.
-
-        Args:
-            which: a mask of the windows of each record, shape (W,).
-            moves: of all windows, one array (W, nx) a record.
-        """
-        out: dict[int, np.ndarray] = {}
-        for records, held in self.groups:
-            rows = np.concatenate([which[k] for k in records])
-            r = np.empty((0, 0))
-            if rows.any():
-                r = held.rows(rows).residual(np.concatenate([moves[k] for k in records])[rows])
-            mine = held.record[rows]
-            out |= {k: r[mine == i] for i, k in enumerate(records)}
-        return tuple(out[k] for k in range(len(self.parts)))
-
 
 def hold(parts: Sequence[Shooting]) -> HeldRecords:
     """What the held parameters make of the windows of some records, one a record."""
