@@ -17,7 +17,7 @@ from identification.errors import InputError
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.records import Record
-from identification.prediction.unseen import Unseen, best_begun
+from identification.prediction.unseen import best_begun
 from identification.windows.settling import Settled, begun_at, best_settled, settle
 
 
@@ -65,22 +65,21 @@ def at_their_best(
     """
     if not children:
         return parent, ()
-    fit = crossed(parent.fit, [c.fit for c in children])
-    seen = _predicted(parent, fit, [c.unseen for c in children], horizon, confirm)
-    parent = replace(parent, fit=fit, unseen=seen)
+    parent = _crossed(parent, children, horizon, confirm)
     best = []
     for c in children:
-        mine = crossed(c.fit, [fit])
-        best.append(replace(c, fit=mine, unseen=_predicted(c, mine, [seen], horizon, confirm)))
+        others = [parent, *(o for o in children if o is not c)]
+        best.append(_crossed(c, others, horizon, confirm))
     return parent, tuple(best)
 
 
-def _predicted(
-    model: WindowModel, fit: WindowFit, others: Sequence[Unseen], horizon: float,
-    confirm: Sequence[Record],
-) -> Unseen:  # fmt: skip
-    """Errors on unseen records, each window begun where it ended, and where others are better."""
+def _crossed(
+    model: WindowModel, others: Sequence[WindowModel], horizon: float, confirm: Sequence[Record]
+) -> WindowModel:
+    """A model whose windows begin where they are best, of what its searches and others found."""
+    fit = crossed(model.fit, [o.fit for o in others])
     names = fit.problem.unknowns.local.names
     fixed = {n: v for n, v in model.values.items() if n not in names}
-    near = [model.unseen, best_begun(model.unseen, others)]
-    return predict_fitted(model.plant, confirm, horizon, model.scale, fit, fixed, near)
+    near = [model.unseen, best_begun(model.unseen, [o.unseen for o in others])]
+    seen = predict_fitted(model.plant, confirm, horizon, model.scale, fit, fixed, near)
+    return replace(model, fit=fit, unseen=seen)
