@@ -13,12 +13,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from identification.errors import InputError
+from identification.errors import DivergenceError
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.records import Record
-from identification.prediction.unseen import best_begun
-from identification.windows.settling import Settled, begun_at, best_settled, settle
+from identification.windows.crossing import Begun, best_starts, sought_from_others
 
 
 def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:
@@ -28,24 +27,18 @@ def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:
         fit: whose parameters stay as they are.
         others: fits of the same windows with other effects.
     """
-    own = [np.sum(t.r**2, axis=1) for t in fit.tangents]
-    squares = [np.array([np.sum(o.tangents[k].r ** 2, axis=1) for o in others])
-               for k in range(len(own))]  # fmt: skip
-    less = [s.min(axis=0) < mine for s, mine in zip(squares, own, strict=True)]
-    if not any(at.any() for at in less):
+    mine, *theirs = (
+        [Begun(d, np.sum(t.r**2, axis=1)) for d, t in zip(f.moves, f.tangents, strict=True)]
+        for f in (fit, *others)
+    )
+    starts = [best_starts(one, rest) for one, *rest in zip(mine, *theirs, strict=True)]
+    if not any(is_better.any() for _, is_better in starts):
         return fit
-    begun = []
-    for k, d in enumerate(fit.moves):
-        each = np.array([begun_at(d, o.moves[k]) for o in others])
-        best = each[squares[k].argmin(axis=0), np.arange(len(d))]
-        begun.append(np.where(less[k][:, None], best, d))
+    found = sought_from_others(fit.problem.held(fit.q), fit.moves, starts)
+    moves, r = tuple(s.d for s in found), [s.r for s in found]
     try:
-        found = settle(fit.problem.held(fit.q), begun, fit.tangents)
-        old = (Settled(d, t.r) for d, t in zip(fit.moves, fit.tangents, strict=True))
-        best_of = [best_settled(pair) for pair in zip(old, found, strict=True)]
-        moves, r = tuple(s.d for s in best_of), [s.r for s in best_of]
         tangents = fit.problem.tangents(fit.q, moves, r)
-    except InputError:  # from there it diverges: what its own search found stands
+    except DivergenceError:  # beside it: what its own search found stands
         return fit
     return replace(
         fit, moves=moves, tangents=tangents, cost=fit.problem.cost_of(fit.q, r)
@@ -80,6 +73,8 @@ def _crossed(
     fit = crossed(model.fit, [o.fit for o in others])
     names = fit.problem.unknowns.local.names
     fixed = {n: v for n, v in model.values.items() if n not in names}
-    near = [model.unseen, best_begun(model.unseen, [o.unseen for o in others])]
-    seen = predict_fitted(model.plant, confirm, horizon, model.scale, fit, fixed, near)
+    seen = predict_fitted(
+        model.plant, confirm, horizon, model.scale, fit, fixed, model.unseen,
+        [o.unseen for o in others],
+    )  # fmt: skip
     return replace(model, fit=fit, unseen=seen)

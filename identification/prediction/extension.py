@@ -42,7 +42,7 @@ def with_effect(
         return None
     values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}
     fixed, plant = {**values, **begun.fixed}, begun.parent.plant
-    seen = predict_fitted(plant, confirm, horizon, parent.scale, found, fixed, [parent.unseen])
+    seen = predict_fitted(plant, confirm, horizon, parent.scale, found, fixed, parent.unseen)
     return WindowModel((*parent.candidates, begun.candidate), found, seen, parent.scale)
 
 
@@ -73,7 +73,7 @@ def refitted(
     try:
         found = solve(task, q, fit.moves)
         seen = predict_fitted(
-            model.plant, confirm, horizon, model.scale, found, fixed, [model.unseen]
+            model.plant, confirm, horizon, model.scale, found, fixed, model.unseen
         )
     except InputError:
         return None

@@ -75,7 +75,7 @@ class WindowModel:
 
 def predict_fitted(
     plant: Plant, confirm: Sequence[Record], horizon: float, scale: np.ndarray, found: WindowFit,
-    fixed: Mapping[str, float], near: Sequence[Unseen] = (),
+    fixed: Mapping[str, float], near: Unseen | None = None, others: Sequence[Unseen] = (),
 ) -> Unseen:  # fmt: skip
     """Errors on unseen records; of parameters that each has for itself, its own halves tell.
 
@@ -86,7 +86,8 @@ def predict_fitted(
         scale: s of each output, shape (ny,), in its unit.
         found: the fit of other records.
         fixed: values that are neither the plant's own nor fitted.
-        near: errors of models nearby, at whose states the windows' searches begin.
+        near: errors of a model nearby, at whose states the windows' search begins.
+        others: of other models, see `predict`.
 
     Raises:
         InputError: no window of the horizon fits a record.
@@ -98,4 +99,4 @@ def predict_fitted(
     if m:
         start = found.q[len(unknowns.shared.names) :].reshape(-1, m).mean(axis=0)
     own = Own(unknowns.own, start)
-    return predict(plant, confirm, horizon, scale, values, near, own)
+    return predict(plant, confirm, horizon, scale, values, near, own, others)

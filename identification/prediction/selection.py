@@ -94,12 +94,14 @@ def refit_contenders(
         found = (_refit(model, b, horizon, confirm, progress) for b in each)
         return [c for c in found if c is not None]
 
-    def judge(children: Sequence[WindowModel]) -> tuple[WindowModel, list[Contender]]:
-        parent, best = at_their_best(model, children, horizon, confirm)
+    def judge(
+        parent: WindowModel, children: Sequence[WindowModel]
+    ) -> tuple[WindowModel, list[Contender]]:
+        parent, best = at_their_best(parent, children, horizon, confirm)
         return parent, [_judged(parent, c, refits, options, worse_fit) for c in best]
 
     children = refit(_near_best(_begun(model, chosen, scores, options, progress), options))
-    parent, out = judge(children)
+    parent, out = judge(model, children)
     proven = [c for c in out if c.is_proven]
     if proven:
         best = max(proven, key=lambda c: c.criterion)
@@ -107,7 +109,8 @@ def refit_contenders(
         simpler = list_simpler(best.candidate, scores, options)
         rest = [s for s in simpler if s.candidate.key not in tried]
         more = refit(_begun(model, rest, scores, options, progress))
-        parent, out = judge([*children, *more]) if more else (parent, out)
+        if more:
+            parent, out = judge(parent, [*(c.model for c in out), *more])
     at = model.unseen.lengths.index(1.0)
     for c in out:
         fall, t = c.prediction.falls[at], c.prediction.t

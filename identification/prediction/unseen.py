@@ -7,7 +7,7 @@ of blocks of neighbouring windows (`identification.prediction.blocks`) are the s
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.stats import ttest_1samp
@@ -21,8 +21,9 @@ from identification.prediction.blocks import block_gains
 from identification.prediction.own_values import Own, of_halves, own_values
 from identification.prediction.problem import MOST_STEPS, most_windows
 from identification.prediction.records import Record
+from identification.windows.crossing import Begun, best_starts, sought_from_others
 from identification.windows.held_records import hold
-from identification.windows.settling import begun_at, best_settled, settle
+from identification.windows.settling import settle
 from identification.windows.shooting import Shooting
 from identification.windows.windows import Windows, first_states, spread, windows
 
@@ -51,6 +52,11 @@ class Unseen:
     floor: float
     fit_percent: np.ndarray
     own: Mapping[str, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
+
+    def begun(self, length: float) -> tuple[Begun, ...]:
+        """Where windows of a length begin, in units of the horizon, and their errors, by record."""
+        k = self.lengths.index(length)
+        return tuple(Begun(*pair) for pair in zip(self.moves[k], self.squares[k], strict=True))
 
     @property
     def at_horizon(self) -> tuple[np.ndarray, ...]:
@@ -98,8 +104,9 @@ def predict(
     horizon: float,
     scale: np.ndarray,
     values: Mapping[str, float],
-    near: Sequence[Unseen] = (),
+    near: Unseen | None = None,
     own: Own | None = None,
+    others: Sequence[Unseen] = (),
 ) -> Unseen:
     """Errors of a model on records, over windows of several lengths.
 
@@ -112,9 +119,10 @@ def predict(
         horizon: [s].
         scale: s of each output, shape (ny,), in its unit.
         values: parameters that are not the plant's own.
-        near: errors of models nearby, at whose states the windows' searches begin; each window
-            ends at the best of what it found.
+        near: errors of a model nearby, at whose states the windows' search begins.
         own: parameters that each record has for itself.
+        others: errors of other models; `near` is then of this model itself, and only windows that
+            others begin with less error are sought again, from there.
 
     Raises:
         InputError: no window of the horizon fits a record.
@@ -133,8 +141,9 @@ def predict(
             if factor == 1.0:
                 raise
             continue  # fewer than 3 samples, or longer than a record
-        begun = [n.moves[n.lengths.index(factor)] for n in near]
-        each = _settled(plant, records, cuts, scale, values, halves, begun)
+        begun = None if near is None else near.begun(factor)
+        each = _settled(plant, records, cuts, scale, values, halves, begun,
+                        [o.begun(factor) for o in others])  # fmt: skip
         if factor == 1.0:
             measured = np.concatenate([c.outputs.reshape(-1, len(scale)) for c in cuts])
             errors = np.concatenate([e.reshape(-1, len(scale)) for _, e in each])
@@ -148,19 +157,6 @@ def predict(
         floor=float(np.mean((noise / scale) ** 2)), fit_percent=percent,
         own={r.log.name: of_halves(*h) for r, h in zip(records, halves, strict=True)},
     )  # fmt: skip
-
-
-def best_begun(own: Unseen, others: Sequence[Unseen]) -> Unseen:
-    """Errors of a model whose windows begin where other models begin those that they do better."""
-    moves = []
-    for k, (mine, squares) in enumerate(zip(own.moves, own.squares, strict=True)):
-        each = []
-        for r, d in enumerate(mine):
-            every = [squares[r], *(o.squares[k][r] for o in others)]
-            starts = np.array([d, *(begun_at(d, o.moves[k][r]) for o in others)])
-            each.append(starts[np.argmin(every, axis=0), np.arange(len(d))])
-        moves.append(tuple(each))
-    return replace(own, moves=tuple(moves))
 
 
 def compare(without: Unseen, with_it: Unseen) -> Prediction:
@@ -188,33 +184,38 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
 def _settled(
     plant: Plant, records: Sequence[Record], cuts: Sequence[Windows], scale: np.ndarray,
     values: Mapping[str, float], halves: Sequence[tuple[Mapping[str, float], Mapping[str, float]]],
-    near: Sequence[Sequence[np.ndarray]],
+    near: Sequence[Begun] | None, others: Sequence[Sequence[Begun]],
 ) -> list[tuple[np.ndarray, np.ndarray]]:  # fmt: skip
     """States at the starts of windows and errors by record, with each half's own values."""
     model = plant.model
-    out, parts, places = [], [], []
+    out, parts, begun, starts, places = [], [], [], [], []
     for k, (record, cut, own) in enumerate(zip(records, cuts, halves, strict=True)):
         moves = np.zeros((len(cut.starts), 2 * model.nv + model.na))
+        if near is not None:  # of a model nearby, which may lack the last states
+            moves[:, : near[k].d.shape[1]] = near[k].d
+        mine = Begun(moves, np.zeros(len(moves)) if near is None else near[k].squares)
+        elsewhere, is_better = best_starts(mine, [o[k] for o in others])
         out.append((moves, np.zeros(cut.outputs.shape)))
         is_late = cut.starts >= len(record.log) // 2
         if not own[0]:
             is_late = np.zeros(len(cut.starts), bool)
-        for half, mine in zip((~is_late, is_late), own, strict=True):
+        for half, values_here in zip((~is_late, is_late), own, strict=True):
             if not half.any():
                 continue
-            predictor = Predictor(plant, record.log, (), {**values, **record.values, **mine})
+            fixed = {**values, **record.values, **values_here}
+            predictor = Predictor(plant, record.log, (), fixed)
             here = cut.rows(half)
             first = first_states(predictor, np.zeros(0), here)
             parts.append(Shooting(predictor, NOTHING, here, first, np.diag(1 / scale), True))
+            begun.append(moves[half])
+            starts.append((elsewhere[half], is_better[half]))
             places.append((k, half))
     held = hold(parts)
-    found = [
-        settle(held, [begun_at(out[k][0][half], each[k][half]) for k, half in places],
-               is_thorough=len(near) < 2)
-        for each in near or [[moves for moves, _ in out]]
-    ]  # fmt: skip
-    for (k, half), part, settled in zip(places, parts, zip(*found, strict=True), strict=True):
+    if others:
+        settled = sought_from_others(held, begun, starts)
+    else:
+        settled = settle(held, begun, is_thorough=True)
+    for (k, half), part, s in zip(places, parts, settled, strict=True):
         d, errors = out[k]
-        best = best_settled(settled)
-        d[half], errors[half] = best.d, part.error(best.r)
+        d[half], errors[half] = s.d, part.error(s.r)
     return out

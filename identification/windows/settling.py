@@ -149,18 +149,13 @@ def settle(
     return tuple(out[k] for k in range(len(held.parts)))
 
 
-def begun_at(d: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Changes of states (W, nx), the first ones those of a model with more or fewer states."""
-    d, n = np.array(d), min(d.shape[1], other.shape[1])
-    d[:, :n] = other[:, :n]
-    return d
+def search(held: HeldWindows, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The best states of windows and the residuals there, sought from d (W, nx).
 
-
-def best_settled(each: Sequence[Settled]) -> Settled:
-    """The windows of a record at the best of the states that several searches found."""
-    squares = np.array([np.sum(s.r**2, axis=1) for s in each])
-    at = np.argmin(squares, axis=0), np.arange(squares.shape[1])
-    return Settled(np.array([s.d for s in each])[at], np.array([s.r for s in each])[at])
+    Raises:
+        DivergenceError: the simulation of a window diverged where the search begins.
+    """
+    return _searched(_begun(held, d, None))
 
 
 def _begun(held: HeldWindows, d: np.ndarray, near: Tangent | None) -> EachWindow:

@@ -6,12 +6,14 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
 from records_cases import HORIZON, nominal_model, records
 
 from identification.prediction.crossing import at_their_best, crossed
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
-from identification.prediction.unseen import best_begun
+from identification.windows.crossing import Begun, best_starts, sought_from_others
 
 FAR = 3.0  # a speed, in units of what is believed of it, at which a window is left
 
@@ -75,16 +77,26 @@ def test_without_children_a_model_stays_as_it_is():
     assert at_their_best(model, [], HORIZON, every) == (model, ())
 
 
-def test_each_unseen_window_begins_where_the_model_with_the_least_error_begins_it():
+@given(st.integers(0, 1000), st.integers(1, 4), st.integers(1, 3))
+def test_each_window_begins_where_the_model_with_the_least_error_begins_it(seed, W, count):
+    rng = np.random.default_rng(seed)
+    own, *others = (
+        Begun(rng.standard_normal((W, nx)), rng.uniform(size=W))
+        for nx in (3, *rng.integers(2, 5, count))
+    )
+    d, is_better = best_starts(own, others)
+    for w in range(W):
+        every = [own, *others]
+        best = min(every, key=lambda b: b.squares[w])
+        n = min(3, best.d.shape[1])
+        np.testing.assert_array_equal(d[w, :n], best.d[w, :n])
+        np.testing.assert_array_equal(d[w, n:], own.d[w, n:])
+        assert is_better[w] == (best is not own)
+
+
+def test_a_start_that_diverges_is_passed_over():
     _, model = fitted()
-    own = model.unseen
-    squares = [tuple(np.array(s) for s in each) for each in own.squares]
-    moves = [tuple(np.array(d) + 1.0 for d in each) for each in own.moves]
-    squares[1][0][0] *= 0.5
-    for each in squares:
-        for s in each:
-            s[1:] *= 2.0
-    other = replace(own, squares=tuple(squares), moves=tuple(moves))
-    begun = best_begun(own, [other])
-    np.testing.assert_array_equal(begun.moves[1][0][0], other.moves[1][0][0])
-    np.testing.assert_array_equal(begun.moves[1][0][1:], own.moves[1][0][1:])
+    held, moves = model.fit.problem.held(model.fit.q), model.fit.moves
+    starts = [(np.full_like(d, np.inf), np.ones(len(d), bool)) for d in moves]
+    for s, d in zip(sought_from_others(held, moves, starts), moves, strict=True):
+        np.testing.assert_array_equal(s.d, d)
