@@ -8,11 +8,11 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
 from identification.errors import InputError
+from identification.estimation.options import Progress
 from identification.logs.log import Log
 from identification.prediction.records import as_records
 from identification.prediction.records_fit import NO_HORIZON
 from identification.prediction.result import RecordsDiscovery
-from identification.prediction.selection import Progress
 from identification.prediction.starts import without_starts
 from identification.prediction.state import RecordsTask, first_state, next_state
 from identification.prediction.verdict import conclude

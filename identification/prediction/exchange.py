@@ -15,13 +15,15 @@ import numpy as np
 
 from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
+from identification.estimation.options import Progress
+from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import MOST_REFIT
 from identification.prediction.first_fit import FINE
 from identification.prediction.fit import solve
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.problem import MOST_STEPS, Problem, no_moves, problem
 from identification.prediction.records import Record
-from identification.prediction.selection import Contender, Progress
+from identification.prediction.selection import Contender
 from identification.prediction.unseen import compare
 
 STEPS = MOST_STEPS // 3  # of the fit's windows, as of rough fits: it need not be proven once more
@@ -42,9 +44,13 @@ def without_contradicted(
         progress: is told what is contradicted.
     """
     rest, contradicted = list(tried), list[Contender]()
+    unseen = [r for r in records if r.role == "fit"]
     while rest and rest[0].is_proven:
         with_it = exchanged(rest[0].model, records, horizon)
-        if with_it is None or not is_contradicted(without, with_it, options):
+        if with_it is None:
+            return (*rest, *contradicted), None
+        parent, (with_it,) = at_their_best(without, [with_it], horizon, unseen)
+        if not is_contradicted(parent, with_it, options):
             return (*rest, *contradicted), with_it
         c = rest[0].candidate
         progress(f"{c.effect.name}, {c.where}: contradicted where the records exchange their roles")

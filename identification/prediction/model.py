@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,8 +18,6 @@ from identification.prediction.own_values import Own
 from identification.prediction.records import Record
 from identification.prediction.told_std import told_std
 from identification.prediction.unseen import Unseen, predict
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)

@@ -13,10 +13,11 @@ import numpy as np
 
 from identification.discovery.nominal_model import NominalModel
 from identification.errors import InputError
+from identification.estimation.options import Progress
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import coordinates
 from identification.prediction.fit import ROUGH, WindowFit, solve
-from identification.prediction.model import Progress, WindowModel, predict_fitted
+from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.problem import (
     MOST_STEPS,
     no_moves,

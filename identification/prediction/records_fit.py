@@ -18,9 +18,10 @@ import numpy as np
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
+from identification.estimation.options import Progress
 from identification.logs.log import Log
 from identification.prediction.fit import WindowFit
-from identification.prediction.model import Progress, WindowModel
+from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import begin, fit_nominal
 from identification.prediction.point import projected
 from identification.prediction.problem import no_moves

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
+from identification.estimation.options import Progress
+from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import refitted
-from identification.prediction.model import Progress, WindowModel
+from identification.prediction.model import WindowModel
 from identification.prediction.proof import Doubt, find_doubt
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
@@ -69,7 +71,9 @@ def prune(
         without = refitted(model, rest, nominal_model, confirm)
         if without is None:
             continue
-        if find_doubt(compare(without.unseen, model.unseen), 1, options) in NEEDLESS:
+        horizon = float(nominal_model.horizon or 0.0)
+        without, (best,) = at_their_best(without, [model], horizon, confirm)
+        if find_doubt(compare(without.unseen, best.unseen), 1, options) in NEEDLESS:
             progress(f"{old.candidate.effect.name}, {old.candidate.where}: no longer needed")
             model = without
             keep.remove(k)

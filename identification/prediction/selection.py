@@ -8,7 +8,7 @@ chosen        of the proven ones the one for which most speaks (`evidence`), or 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,7 @@ import numpy as np
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.errors import InputError
+from identification.estimation.options import Progress
 from identification.prediction.contenders import (
     count_numbers,
     list_contenders,
@@ -31,8 +32,6 @@ from identification.prediction.proof import Doubt, find_doubt, has_size
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction, Unseen, compare
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, kw_only=True)

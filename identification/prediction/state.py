@@ -16,6 +16,7 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
 from identification.errors import InputError
+from identification.estimation.options import Progress
 from identification.prediction.blocks import count_blocks
 from identification.prediction.exchange import exchanged, without_contradicted
 from identification.prediction.model import WindowModel
@@ -27,7 +28,6 @@ from identification.prediction.scores import WindowScore
 from identification.prediction.screening import score_all
 from identification.prediction.selection import (
     Contender,
-    Progress,
     refit_contenders,
 )
 from identification.prediction.unseen import Unseen, compare, predict
