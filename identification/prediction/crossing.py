@@ -17,7 +17,7 @@ from identification.errors import DivergenceError
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.records import Record
-from identification.windows.crossing import Begun, best_starts, sought_from_others
+from identification.windows.crossing import Starts, best_starts, sought_from_others
 
 
 def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:
@@ -28,7 +28,7 @@ def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:
         others: fits of the same windows with other effects.
     """
     mine, *theirs = (
-        [Begun(d, np.sum(t.r**2, axis=1)) for d, t in zip(f.moves, f.tangents, strict=True)]
+        [Starts(d, np.sum(t.r**2, axis=1)) for d, t in zip(f.moves, f.tangents, strict=True)]
         for f in (fit, *others)
     )
     starts = [best_starts(one, rest) for one, *rest in zip(mine, *theirs, strict=True)]

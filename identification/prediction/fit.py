@@ -149,7 +149,7 @@ def solve(
             break
         if trial.taken and progress is not None:
             error = np.sqrt(at.cost / samples)
-            progress(f"windows: error {error:.4g} of its scale, step {steps}")
+            progress(f"error {error:.4g} of its scale, step {steps}")
     if not at.is_fresh:  # std and scores are those of slopes here
         with suppress(DivergenceError):
             at, steps = at.refreshed(), steps + 1

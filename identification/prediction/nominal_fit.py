@@ -72,22 +72,30 @@ def fit_nominal(
         if factor == 1.0:
             task = with_longer_steps(task, q, moves)
             plant = task.plant
-        found = solve(task, q, moves, tolerance=ROUGH, progress=progress)
+        found = solve(task, q, moves, tolerance=ROUGH, progress=_of(length, 0, progress))
         _refuse_idle(found)
         values, scale = found.shared, _rms(found)
     if found is None:
         raise InputError(f"windows of {horizon:g} s fit no record; choose another horizon")
     task, q = problem(plant, fitted, shared, own, horizon, values, scale), found.q
     moves, _ = task.settled(q, no_moves(task))
-    for _ in range(MOST_SCALES):
+    for k in range(MOST_SCALES):
         task, old = with_scale(task, scale), scale
-        found = solve(task, q, moves, progress=progress)
+        found = solve(task, q, moves, progress=_of(horizon, k + 1, progress))
         q, moves = found.q, found.moves
         scale = _rms(found)
         if np.all(np.abs(np.log(scale / old)) < SAME):
             break
     confirm = [r for r in records if r.role == "confirm"]
     return WindowModel((), found, predict_fitted(plant, confirm, horizon, old, found, {}), old)
+
+
+def _of(length: float, scale: int, progress: Progress | None) -> Progress | None:
+    """Progress that says the windows' length and in whose scale their errors are counted."""
+    if progress is None:
+        return None
+    tell, unit = progress, f", scale of fit {scale}" if scale else ""
+    return lambda line: tell(f"windows of {length:.3g} s{unit}: {line}")
 
 
 def as_begun(nominal_model: NominalModel, fitted: WindowModel, unseen: Unseen) -> WindowModel:

@@ -14,6 +14,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.logs.log import Log
+from identification.logs.overlap import share_samples
 
 Role = Literal["fit", "confirm"]
 
@@ -50,7 +51,8 @@ def as_records(
             itself (`Log.values`).
 
     Raises:
-        InputError: there is no log to fit, the columns differ, or a log is given twice.
+        InputError: there is no log to fit, the columns differ, or a log is given twice, in whole
+            or in part.
     """
     if not fit:
         raise InputError("no log is to be fitted; give at least one")
@@ -98,6 +100,13 @@ def _refuse_different(logs: Sequence[Log]) -> None:
                     f"log {log.name!r} has the {what.replace('_', ' ')} {mine} where"
                     f" {first.name!r} has {others}; give records of one robot and one set of"
                     " columns"
+                )
+        for other in logs[:k]:
+            if share_samples(log, other):
+                raise InputError(
+                    f"logs {log.name!r} and {other.name!r} hold the same samples; what was fitted"
+                    " confirms nothing, and what is given twice counts twice: give parts that do"
+                    " not overlap"
                 )
 
 

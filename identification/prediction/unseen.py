@@ -21,7 +21,7 @@ from identification.prediction.blocks import block_gains
 from identification.prediction.own_values import Own, of_halves, own_values
 from identification.prediction.problem import MOST_STEPS, most_windows
 from identification.prediction.records import Record
-from identification.windows.crossing import Begun, best_starts, sought_from_others
+from identification.windows.crossing import Starts, best_starts, sought_from_others
 from identification.windows.held_records import hold
 from identification.windows.settling import settle
 from identification.windows.shooting import Shooting
@@ -53,10 +53,10 @@ class Unseen:
     fit_percent: np.ndarray
     own: Mapping[str, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
 
-    def begun(self, length: float) -> tuple[Begun, ...]:
+    def begun(self, length: float) -> tuple[Starts, ...]:
         """Where windows of a length begin, in units of the horizon, and their errors, by record."""
         k = self.lengths.index(length)
-        return tuple(Begun(*pair) for pair in zip(self.moves[k], self.squares[k], strict=True))
+        return tuple(Starts(*pair) for pair in zip(self.moves[k], self.squares[k], strict=True))
 
     @property
     def at_horizon(self) -> tuple[np.ndarray, ...]:
@@ -184,7 +184,7 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
 def _settled(
     plant: Plant, records: Sequence[Record], cuts: Sequence[Windows], scale: np.ndarray,
     values: Mapping[str, float], halves: Sequence[tuple[Mapping[str, float], Mapping[str, float]]],
-    near: Sequence[Begun] | None, others: Sequence[Sequence[Begun]],
+    near: Sequence[Starts] | None, others: Sequence[Sequence[Starts]],
 ) -> list[tuple[np.ndarray, np.ndarray]]:  # fmt: skip
     """States at the starts of windows and errors by record, with each half's own values."""
     model = plant.model
@@ -193,7 +193,7 @@ def _settled(
         moves = np.zeros((len(cut.starts), 2 * model.nv + model.na))
         if near is not None:  # of a model nearby, which may lack the last states
             moves[:, : near[k].d.shape[1]] = near[k].d
-        mine = Begun(moves, np.zeros(len(moves)) if near is None else near[k].squares)
+        mine = Starts(moves, np.zeros(len(moves)) if near is None else near[k].squares)
         elsewhere, is_better = best_starts(mine, [o[k] for o in others])
         out.append((moves, np.zeros(cut.outputs.shape)))
         is_late = cut.starts >= len(record.log) // 2

@@ -17,7 +17,7 @@ from identification.windows.settling import Settled, search
 
 
 @dataclass(frozen=True)
-class Begun:
+class Starts:
     """Where a model begins the windows of a record.
 
     Attributes:
@@ -29,7 +29,7 @@ class Begun:
     squares: np.ndarray
 
 
-def best_starts(own: Begun, others: Sequence[Begun]) -> tuple[np.ndarray, np.ndarray]:
+def best_starts(own: Starts, others: Sequence[Starts]) -> tuple[np.ndarray, np.ndarray]:
     """Where the model with the least error begins each window, and whether that is another one.
 
     Args:

@@ -13,7 +13,7 @@ from records_cases import HORIZON, nominal_model, records
 from identification.prediction.crossing import at_their_best, crossed
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
-from identification.windows.crossing import Begun, best_starts, sought_from_others
+from identification.windows.crossing import Starts, best_starts, sought_from_others
 
 FAR = 3.0  # a speed, in units of what is believed of it, at which a window is left
 
@@ -81,7 +81,7 @@ def test_without_children_a_model_stays_as_it_is():
 def test_each_window_begins_where_the_model_with_the_least_error_begins_it(seed, W, count):
     rng = np.random.default_rng(seed)
     own, *others = (
-        Begun(rng.standard_normal((W, nx)), rng.uniform(size=W))
+        Starts(rng.standard_normal((W, nx)), rng.uniform(size=W))
         for nx in (3, *rng.integers(2, 5, count))
     )
     d, is_better = best_starts(own, others)

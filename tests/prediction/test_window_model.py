@@ -53,6 +53,14 @@ def test_clean_records_give_the_values_that_made_them():
     assert clean().values["d"] == pytest.approx(0.02, rel=1e-4)
 
 
+def test_progress_says_the_length_of_windows_and_the_scale_of_their_errors():
+    logs, lines = records(2), []
+    fit_nominal(nominal_model(), as_records(logs[:1], logs[1:]), lines.append)
+    lengths = [line.partition(" s")[0] for line in lines]
+    assert list(dict.fromkeys(lengths)) == [f"windows of {g:g}" for g in (0.05, 0.1, 0.2)]
+    assert any(line.startswith("windows of 0.2 s, scale of fit 1: error ") for line in lines)
+
+
 def test_slopes_that_are_kept_lead_to_the_same_fit_with_fewer_linearisations(monkeypatch):
     logs = records(4, LOAD)
     each = fitted(logs[:2], logs[2:])
