@@ -27,7 +27,8 @@ def find_rivals(
     """Other contenders that explain less than half as much once the best one is there.
 
     What still explains as much is no rival of the best one: it is missing too. A rival need not be
-    proven to make a name doubtful; but what some windows or a record contradict is none.
+    proven to make a name doubtful; but what some windows or a record contradict is none, nor what
+    predicts unseen records no better than the model without it.
 
     Args:
         others: refitted in the place of the best one.
@@ -43,7 +44,7 @@ def find_rivals(
     )
     return tuple(
         o for o in others
-        if o.doubt not in CONTRADICTED
+        if o.doubt not in CONTRADICTED and o.prediction.t > 0
         and still.get(o.candidate.key, 0.0) < options.rival_share * was.get(o.candidate.key, 0.0)
     )  # fmt: skip
 
