@@ -37,7 +37,7 @@ def nominal():
 @cache
 def found(name):
     truth = CASES[name][0] if name else Truth(slip=3e-3, f_c=F_C)
-    logs = [measured(truth, k, samples=300) for k in range(4)]
+    logs = [measured(truth, k, samples=200) for k in range(4)]
     model = nominal()
     effects = [e for e in candidates(model.plant, FREE) if e.name in (*OTHERS, *NAMES)]
     options = DiscoveryOptions(max_effects=1)
