@@ -50,7 +50,8 @@ class PredictionOptions(KalmanOptions):
     strong_bic: float = option(
         10.0, "of BIC",
         "Over a horizon: a law with fewer numbers is taken instead of one whose criterion is better"
-        " by less, where unseen records cannot tell them apart.",
+        " by less, where unseen records cannot tell them apart; and a candidate is refitted on all"
+        " windows unless some of them tell by more that the few best ones are better.",
         "Kass and Raftery 1995: very strong evidence",
     )  # fmt: skip
     rival_share: float = option(

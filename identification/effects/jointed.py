@@ -51,8 +51,9 @@ class JointPlant:
         axes: the joints that may have effects, in the order of `joints`.
         states: states of joints that some effects need.
         leaves_out: whether effects whose states it lacks are left out, and not refused.
-        slope_steps: steps of the model in one step of its smooth model; states of joints take the
-            model's own steps.
+        steps: the steps of the user's model that one step of a simulation takes; states of joints
+            take the user's own steps.
+        slope_steps: likewise in simulations for slopes, a multiple of `steps`.
     """
 
     bare: ModelPlant
@@ -63,6 +64,7 @@ class JointPlant:
     axes: tuple[Axis, ...]
     states: tuple[JointState, ...] = ()
     leaves_out: bool = False
+    steps: int = 1
     slope_steps: int = 1
 
     def __post_init__(self) -> None:
@@ -93,9 +95,11 @@ class JointPlant:
     def model(self) -> mujoco.MjModel:
         """The compiled model at its nominal values."""
         numbers = self._bodies((), np.empty((1, 0)), [])
-        if not numbers:
+        steps = 1 if self.states else self.steps
+        if not numbers and steps == 1:
             return self.bare.model
         model = copy.copy(self.bare.model)
+        model.opt.timestep *= steps
         for slot, values in numbers:
             write(model, slot, float(values[0]))
         mujoco.mj_setConst(model, mujoco.MjData(model))
@@ -104,9 +108,9 @@ class JointPlant:
     @cached_property
     def smooth(self) -> mujoco.MjModel:
         """The model for slopes: its friction stops joints more gently, its steps may be longer."""
-        steps = 1 if self.states else self.slope_steps
+        steps = 1 if self.states else max(self.steps, self.slope_steps)
         model = copy.copy(self.model)
-        model.opt.timestep *= steps
+        model.opt.timestep = steps * self.bare.model.opt.timestep
         column = int(model.nuser_jnt) - self.layout.entries + STOP
         for joint in self.joints:
             model.jnt_user[int(model.joint(joint).id), column] *= max(GENTLE, steps)

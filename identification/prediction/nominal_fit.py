@@ -70,8 +70,7 @@ def fit_nominal(
         q = begin(nominal_model, task.unknowns) if found is None else found.q
         moves, _ = task.settled(q, no_moves(task))
         if factor == 1.0:
-            task = with_longer_steps(task, q, moves)
-            plant = task.plant
+            task = with_longer_steps(task, q, moves, is_for_slopes=True)
         found = solve(task, q, moves, tolerance=ROUGH, progress=_of(length, 0, progress))
         _refuse_idle(found)
         values, scale = found.shared, _rms(found)
@@ -79,6 +78,7 @@ def fit_nominal(
         raise InputError(f"windows of {horizon:g} s fit no record; choose another horizon")
     task, q = problem(plant, fitted, shared, own, horizon, values, scale), found.q
     moves, _ = task.settled(q, no_moves(task))
+    task = with_longer_steps(task, q, moves)
     for k in range(MOST_SCALES):
         task, old = with_scale(task, scale), scale
         found = solve(task, q, moves, progress=_of(horizon, k + 1, progress))
@@ -87,7 +87,7 @@ def fit_nominal(
         if np.all(np.abs(np.log(scale / old)) < SAME):
             break
     confirm = [r for r in records if r.role == "confirm"]
-    return WindowModel((), found, predict_fitted(plant, confirm, horizon, old, found, {}), old)
+    return WindowModel((), found, predict_fitted(task.plant, confirm, horizon, old, found, {}), old)
 
 
 def _of(length: float, scale: int, progress: Progress | None) -> Progress | None:

@@ -82,7 +82,9 @@ class AtPoint:
         """Where the step with damping μ ends."""
         dq, dd = step_of(self.problem, self.q, self.tangents, float(μ))
         q = self.q + dq
-        promised = self._promised(q, dd)
+        expected = self._expected(dq, dd)
+        promised = sum(float(e.sum()) for e in expected)
+        promised += float(np.sum(self.problem.against(q) ** 2))
         moves = tuple(d + more for d, more in zip(self.moves, dd, strict=True))
         try:
             held = self.problem.held(q)
@@ -91,7 +93,7 @@ class AtPoint:
             hoped = self.cost - promised
             is_short = hoped > self.tolerance * self.cost and self.cost - cost < KEPT * hoped
             if is_short and cost < FAR * self.cost:
-                settled = settle(held, moves, self.tangents)
+                settled = settle(held, moves, self.tangents, known=r, expected=expected)
                 moves, r = tuple(s.d for s in settled), tuple(s.r for s in settled)
                 cost = self.problem.cost_of(q, r)
         except InputError:  # it diverged, or has no start: the search must go elsewhere
@@ -125,14 +127,12 @@ class AtPoint:
         known = [t.r for t in self.tangents]
         return linearised(self.problem, self.q, self.moves, self.tolerance, known)
 
-    def _promised(self, q: np.ndarray, dd: Sequence[np.ndarray]) -> float:
-        """V at q, the states moved by dd, by the linearisation."""
-        dq = q - self.q
-        left = sum(
-            float(np.sum((t.r - t.S @ dq - along_states(t, d)) ** 2))
+    def _expected(self, dq: np.ndarray, dd: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """Sums of squares by the linearisation after a step, one array (W,) a record."""
+        return [
+            np.sum((t.r - t.S @ dq - along_states(t, d)) ** 2, axis=1)
             for t, d in zip(self.tangents, dd, strict=True)
-        )
-        return left + float(np.sum(self.problem.against(q) ** 2))
+        ]
 
 
 def linearised(

@@ -19,7 +19,11 @@ from identification.errors import DivergenceError
 from identification.model.predictor import Plant, Predictor
 from identification.prediction.records import Record
 from identification.prediction.unknowns import Prior, Unknowns
-from identification.windows.coarse import longest_steps
+from identification.windows.coarse import (
+    own_step,
+    with_longest_slope_steps,
+    with_longest_steps,
+)
 from identification.windows.held import at_values
 from identification.windows.held_records import HeldRecords, hold
 from identification.windows.settling import settle
@@ -187,7 +191,7 @@ def most_windows(
     plant: Plant, records: Sequence[Record], length: float, most_steps: int = MOST_STEPS
 ) -> int:
     """How many windows of each record are simulated at most, so that all take `most_steps`."""
-    each = max(length / plant.model.opt.timestep, 1.0)
+    each = max(length / own_step(plant), 1.0)
     return max(FEWEST_WINDOWS, int(most_steps / (each * max(1, len(records)))))
 
 
@@ -213,16 +217,22 @@ def with_unknowns(
     return Problem(tuple(parts), Unknowns(shared, own, problem_.unknowns.records))
 
 
-def with_longer_steps(problem_: Problem, q: np.ndarray, moves: Sequence[np.ndarray]) -> Problem:
-    """The same windows with simulations for slopes whose steps are as long as slopes allow.
+def with_longer_steps(
+    problem_: Problem, q: np.ndarray, moves: Sequence[np.ndarray], is_for_slopes: bool = False
+) -> Problem:
+    """The same windows with simulations whose steps are as long as predictions and slopes allow.
 
     Args:
         problem_: of one plant.
-        q: where slopes are compared, shape (p,).
+        q: where they are compared, shape (p,).
         moves: of the windows' states, one array (W, nx) a record.
+        is_for_slopes: whether only simulations for slopes may take longer steps.
     """
     each = [q[problem_.unknowns.columns(k)] for k in range(len(problem_.parts))]
-    return replace(problem_, parts=tuple(longest_steps(problem_.parts, each, moves)))
+    parts: Sequence[Shooting] = problem_.parts
+    if not is_for_slopes:
+        parts = with_longest_steps(parts, each, moves)
+    return replace(problem_, parts=tuple(with_longest_slope_steps(parts, each, moves)))
 
 
 def with_scale(problem_: Problem, scale: np.ndarray) -> Problem:

@@ -180,7 +180,7 @@ def fit_records(
     records = as_records(fit, confirm, values)
     model = fit_nominal(base, records, progress)
     unseen = [r for r in records if r.role == "confirm"]
-    begun = predict(base.plant, unseen, base.horizon, model.scale, {}, model.unseen)
+    begun = predict(model.plant, unseen, base.horizon, model.scale, {}, model.unseen)
     unknowns = model.fit.problem.unknowns
     start = unknowns.all.space.decode(begin(base, unknowns))
     return RecordsFit(

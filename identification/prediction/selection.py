@@ -132,13 +132,11 @@ def _begun(
 
 
 def _near_best(begun: Sequence[Begun], options: DiscoveryOptions) -> list[Begun]:
-    """The few best on some of the windows, and those that are not far behind the best of them."""
+    """The few best on some of the windows, and those that these windows cannot tell from them."""
     each = [(_evidence_of_some(b), b) for b in begun]
     each.sort(key=lambda pair: -pair[0])
-    return [
-        b for k, (e, b) in enumerate(each)
-        if k < options.max_refits or each[0][0] - e < options.strong_bic
-    ]  # fmt: skip
+    least = min((e for e, _ in each[: options.max_refits]), default=0.0) - options.strong_bic
+    return [b for e, b in each if e > least]
 
 
 def _evidence_of_some(begun: Begun) -> float:

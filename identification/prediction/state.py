@@ -111,7 +111,7 @@ def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
     base = task.nominal_model
     nominal = fit_nominal(base, task.records, progress)
     _refuse_few(nominal.unseen, task.horizon)
-    begun = predict(base.plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen)
+    begun = predict(nominal.plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen)
     worse = None
     if find_doubt(compare(nominal.unseen, begun), 1, task.options) is None:
         worse = nominal.unseen

@@ -1,29 +1,64 @@
-"""Simulations for slopes with longer steps than the model's own.
+"""Simulations whose steps are longer than the model's own, as far as their purpose allows.
 
-    ‖S_n - S_1‖ <= ε ‖S_1‖     for each column of the tangent, n steps of the model in one
+    ‖y_n - y_1‖ <= ε_y ‖y - y_1‖     for each output: simulations of predictions
+    ‖S_n - S_1‖ <= ε_S ‖S_1‖         for each column of the tangent: simulations for slopes
 
-The residual is exact, so that slopes only say where a search goes: with a relative error ε a step
-of Gauss and Newton leaves ε of the way, and misses ε² of what the criterion can gain (inexact
-Newton; Dembo, Eisenstat, Steihaug 1982). The number of steps is the largest that keeps it.
+Index n: n steps of the model in one. What the model leaves unexplained is so much larger than the
+error of the steps that the latter adds less than ε_y² of its mean square. Slopes only say where a
+search goes: with a relative error ε_S a step of Gauss and Newton leaves ε_S of the way, and misses
+ε_S² of what the criterion can gain (inexact Newton; Dembo, Eisenstat, Steihaug 1982).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from identification.effects.jointed import JointPlant
 from identification.errors import DivergenceError
+from identification.model.predictor import Plant
 from identification.model.rollout import substeps
 from identification.windows.shooting import Shooting, tangent
 
-ERROR = 0.1  # ε: a step then misses a hundredth of what it can gain
+ERROR = 0.1  # ε_S: a step then misses a hundredth of what it can gain
+OUTPUT_ERROR = 0.05  # ε_y; its square is a tenth of the fall from which an effect matters
 WINDOWS = 10  # on which slopes are compared
 
 
-def longest_steps(
+def own_step(plant: Plant) -> float:
+    """The time step of the user's model [s], whatever steps simulations take."""
+    model = plant.bare.model if isinstance(plant, JointPlant) else plant.model
+    return float(model.opt.timestep)
+
+
+def with_longest_steps(
+    parts: Sequence[Shooting], q: Sequence[np.ndarray], d: Sequence[np.ndarray]
+) -> list[Shooting]:
+    """The same windows with the longest steps that change what is predicted by less than the bound.
+
+    Args:
+        parts: windows of each record, all of one plant.
+        q: the parameters of each, shape (p,).
+        d: moves of the states of its windows, shape (W, nx).
+    """
+
+    def differs(n: int) -> bool:
+        outputs = _outputs(n, parts, q, d)
+        pairs = zip(parts, exact, outputs, strict=True)
+        return _exceeds([y_n - y for y, y_n in zip(exact, outputs, strict=True)],
+                        [part.cut.outputs - y for part, y, _ in pairs], OUTPUT_ERROR)  # fmt: skip
+
+    plant = parts[0].predictor.plant
+    if not isinstance(plant, JointPlant):
+        return [*parts]
+    exact = _outputs(1, parts, q, d)
+    longer = replace(plant, steps=_most(_steps(parts), differs))
+    return [_of(part, longer) for part in parts]
+
+
+def with_longest_slope_steps(
     parts: Sequence[Shooting], q: Sequence[np.ndarray], d: Sequence[np.ndarray]
 ) -> list[Shooting]:
     """The same windows with the longest steps of simulations for slopes that keep the bound.
@@ -33,41 +68,66 @@ def longest_steps(
         q: the parameters of each, shape (p,).
         d: moves of the states of its windows, shape (W, nx).
     """
+
+    def differs(n: int) -> bool:
+        coarse = [_columns(n, *at) for at in few]
+        return any(_exceeds([S_n - S], [S], ERROR)
+                   for S, S_n in zip(exact, coarse, strict=True))  # fmt: skip
+
     plant = parts[0].predictor.plant
     if not isinstance(plant, JointPlant):
         return [*parts]
-    slower = replace(plant, slope_steps=_slope_steps(parts, q, d))
+    few = [_some(*at, len(parts)) for at in zip(parts, q, d, strict=True)]
+    exact = [_columns(plant.steps, *at) for at in few]
+    each = (n for n in _steps(parts) if n % plant.steps == 0)
+    slower = replace(plant, slope_steps=max(plant.steps, _most(each, differs)))
     return [_of(part, slower) for part in parts]
 
 
-def _slope_steps(
-    parts: Sequence[Shooting], q: Sequence[np.ndarray], d: Sequence[np.ndarray]
-) -> int:
-    """How many steps of the model one step of the simulations for slopes may take."""
-    each = [_every(part) for part in parts]
-    few = [_some(*at, len(parts)) for at in zip(parts, q, d, strict=True)]
-    exact = [_columns(1, *at) for at in few]
+def _steps(parts: Sequence[Shooting]) -> Iterator[int]:
+    """Numbers of steps of the model that divide the samples of all records, above one."""
+    each = [
+        substeps(part.predictor.log.sampling_time, own_step(part.predictor.plant)) for part in parts
+    ]
+    return (n for n in range(2, min(each) + 1) if all(k % n == 0 for k in each))
+
+
+def _most(each: Iterator[int], differs: Callable[[int], bool]) -> int:
+    """The largest of some numbers before the first that differs; one when there is none."""
     best = 1
-    for n in (n for n in range(2, min(each) + 1) if all(k % n == 0 for k in each)):
+    for n in each:
         try:
-            coarse = [_columns(n, *at) for at in few]
+            if differs(n):
+                break
         except DivergenceError:
-            break
-        errors = zip(coarse, exact, strict=True)
-        if any(np.any(_size(S - S_1) > ERROR * _size(S_1)) for S, S_1 in errors):
             break
         best = n
     return best
 
 
+def _exceeds(errors: Sequence[np.ndarray], of: Sequence[np.ndarray], share: float) -> bool:
+    """Whether errors exceed a share of something in any of the last columns, in its norm."""
+    return bool(np.any(_norms(errors) > share * _norms(of)))
+
+
+def _norms(each: Sequence[np.ndarray]) -> np.ndarray:
+    """Norms of the last columns of some arrays, over all of them."""
+    rows = np.concatenate([x.reshape(-1, x.shape[-1]) for x in each])
+    return np.asarray(np.linalg.norm(rows, axis=0))
+
+
+def _outputs(
+    steps: int, parts: Sequence[Shooting], q: Sequence[np.ndarray], d: Sequence[np.ndarray]
+) -> list[np.ndarray]:
+    """Outputs of windows, shape (W, L, ny) a record, with longer steps."""
+    plant = parts[0].predictor.plant
+    if isinstance(plant, JointPlant):
+        parts = [_of(part, replace(plant, steps=steps)) for part in parts]
+    return [part.outputs(one[None], [move])[0] for part, one, move in zip(parts, q, d, strict=True)]
+
+
 def _of(part: Shooting, plant: JointPlant) -> Shooting:
     return replace(part, predictor=replace(part.predictor, plant=plant))
-
-
-def _every(part: Shooting) -> int:
-    """Steps of the model in a sample."""
-    predictor = part.predictor
-    return substeps(predictor.log.sampling_time, predictor.plant.model.opt.timestep)
 
 
 def _some(
@@ -88,7 +148,3 @@ def _columns(steps: int, part: Shooting, q: np.ndarray, d: np.ndarray) -> np.nda
     X = (t.U * t.s[:, None]) @ t.Vt * t.size[:, None]
     S = np.concatenate([X, t.S], axis=2)
     return np.asarray(S.reshape(-1, S.shape[2]))
-
-
-def _size(columns: np.ndarray) -> np.ndarray:
-    return np.asarray(np.linalg.norm(columns, axis=0))

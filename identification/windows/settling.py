@@ -1,9 +1,7 @@
 """The initial states of windows that are best at given parameters, by Levenberg-Marquardt.
 
 The windows are independent, and each has its own damping: where a joint sticks, the outputs hardly
-feel its rate. Slopes cost as many simulations as a window has states, and change little from step
-to step: a window keeps them as long as its steps gain what they promise (chord method; Ortega,
-Rheinboldt 1970, 7.1), and gets new ones when they do not.
+feel its rate.
 """
 
 from __future__ import annotations
@@ -14,95 +12,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.errors import DivergenceError
-from identification.estimation.levenberg_marquardt import Cost, Damping, levenberg_marquardt
+from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
+from identification.windows.each_window import EachWindow
 from identification.windows.held import HeldWindows
 from identification.windows.held_records import HeldRecords
-from identification.windows.tangents import Tangent, along_states
+from identification.windows.tangents import Tangent
 
-# relative to the squared norms of the columns of X
-DAMPING = Damping(first=1e-9, raised=10.0, lowered=10.0, least=1e-9, floor=1e-9)
+# Relative to the squared norms of the columns of X. It begins at one part in ten thousand: a
+# direction that the outputs feel by a tenth of the others loses one per cent a step, and a window
+# in which a joint sticks, which takes no step before its damping is about one, is soon there.
+DAMPING = Damping(first=1e-4, raised=10.0, lowered=10.0, least=1e-4, floor=1e-4)
 MOST_DAMPING = 1e2
 STEPS = 20  # largest number of steps
 ENDED = 1e-3  # of the mean of the sums of squares: a window that changes by less is finished
 KEPT = 0.5  # of the promised gain; with less, slopes are too old
 FAR = 4.0  # times the median of the sums of squares; a window that is left worse is sought again
 AGAIN = (0.0, 0.5)  # of its changes, where it is begun again
-
-
-@dataclass(frozen=True)
-class StatesStep:
-    """Where a trial step ends.
-
-    Attributes:
-        d: changes of the initial states there, shape (W, nx).
-        r: residual there, shape (W, m); NaN where a window diverges.
-        promised: sums of squares there by the linearisation, shape (W,).
-    """
-
-    d: np.ndarray
-    r: np.ndarray
-    promised: np.ndarray
-
-
-@dataclass(frozen=True)
-class EachWindow:
-    """The criteria of the initial states, one per window.
-
-    Attributes:
-        windows: what is simulated.
-        d: changes of the initial states, shape (W, nx).
-        tangent: the residual at d, and slopes there or at an earlier d.
-        is_fresh: whether slopes are those at d, shape (W,).
-    """
-
-    windows: HeldWindows
-    d: np.ndarray
-    tangent: Tangent
-    is_fresh: np.ndarray
-
-    @property
-    def cost(self) -> np.ndarray:
-        """Sums of squares, shape (W,)."""
-        return np.asarray(np.sum(self.tangent.r**2, axis=1))
-
-    def step(self, μ: Cost) -> StatesStep:
-        """The damped step of each window."""
-        at = self.tangent
-        damping = np.asarray(μ)[:, None]
-        along = np.einsum("wmk,wm->wk", at.U, at.r) * at.s / (at.s**2 + damping)
-        dd = np.einsum("wkx,wk->wx", at.Vt, along) / at.size
-        promised = np.sum((at.r - along_states(at, dd)) ** 2, axis=1)
-        return StatesStep(self.d + dd, self.windows.residual(self.d + dd), promised)
-
-    def cost_after(self, step: StatesStep) -> np.ndarray:
-        """Sums of squares after a step, shape (W,)."""
-        squares = np.sum(step.r**2, axis=1)
-        return np.where(np.isfinite(squares), squares, np.inf)
-
-    def bend(self, step: StatesStep, after: Cost, μ: Cost) -> None:
-        """The steps are never bent."""
-
-    def moved(self, step: StatesStep, taken: np.ndarray) -> EachWindow:
-        """The criteria after a step of those windows that accept it, with the slopes before it."""
-        d, r = (np.where(taken[:, None], new, old)
-                for new, old in ((step.d, self.d), (step.r, self.tangent.r)))  # fmt: skip
-        return replace(
-            self, d=d, tangent=replace(self.tangent, r=r), is_fresh=self.is_fresh & ~taken
-        )
-
-    def refreshed(self, at: np.ndarray) -> EachWindow:
-        """The same with new slopes of the windows `at`, a mask."""
-        if not at.any():
-            return self
-        slopes = self.windows.rows(at).slopes(self.d[at], self.tangent.r[at])
-        return replace(self, tangent=self.tangent.with_rows(at, slopes),
-                       is_fresh=self.is_fresh | at)  # fmt: skip
-
-    def rows(self, keep: np.ndarray) -> EachWindow:
-        """Some of the windows, by mask or by index."""
-        return EachWindow(
-            self.windows.rows(keep), self.d[keep], self.tangent.rows(keep), self.is_fresh[keep]
-        )
 
 
 @dataclass(frozen=True)
@@ -123,6 +48,8 @@ def settle(
     moves: Sequence[np.ndarray],
     near: Sequence[Tangent] | None = None,
     is_thorough: bool = False,
+    known: Sequence[np.ndarray] | None = None,
+    expected: Sequence[np.ndarray] | None = None,
 ) -> tuple[Settled, ...]:
     """Fit the initial state of each window of some records, none of which has a free parameter.
 
@@ -132,6 +59,10 @@ def settle(
         near: the windows linearised at parameters nearby, one a record; when None, slopes are
             computed.
         is_thorough: whether windows that end far worse than the others are sought again.
+        known: residuals where the search begins, one array (W, m) a record; they are computed when
+            None.
+        expected: sums of squares, one array (W,) a record; windows whose known residuals are as
+            small stay as they are.
 
     Raises:
         DivergenceError: the simulation of a window diverged where the search begins.
@@ -140,7 +71,11 @@ def settle(
     for records, windows in held.groups:
         d = np.concatenate([moves[k] for k in records])
         slopes = None if near is None else _joined([near[k] for k in records], d)
-        d, r = _searched(_begun(windows, d, slopes))
+        first = (
+            windows.residual(d) if known is None else np.concatenate([known[k] for k in records])
+        )
+        hoped = None if expected is None else np.concatenate([expected[k] for k in records])
+        d, r = _searched(_begun(windows, d, first, slopes), hoped)
         if is_thorough:
             d, r = _sought_again(windows, d, r)
         for i, k in enumerate(records):
@@ -155,11 +90,12 @@ def search(held: HeldWindows, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     Raises:
         DivergenceError: the simulation of a window diverged where the search begins.
     """
-    return _searched(_begun(held, d, None))
+    return _searched(_begun(held, d, held.residual(d), None))
 
 
-def _begun(held: HeldWindows, d: np.ndarray, near: Tangent | None) -> EachWindow:
-    r = held.residual(d)
+def _begun(
+    held: HeldWindows, d: np.ndarray, r: np.ndarray, near: Tangent | None
+) -> EachWindow:  # fmt: skip
     if not np.isfinite(r).all():
         raise DivergenceError(
             "the simulation of a window diverged; use a smaller step, or values nearer to the"
@@ -179,11 +115,21 @@ def _joined(each: Sequence[Tangent], d: np.ndarray) -> Tangent | None:
     return Tangent(**parts, S=np.zeros((*parts["r"].shape, 0)))
 
 
-def _searched(at: EachWindow) -> tuple[np.ndarray, np.ndarray]:
-    """The best states and the residuals there; a finished window is no longer simulated."""
+def _searched(
+    at: EachWindow, expected: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """The best states and the residuals there; a finished window is no longer simulated.
+
+    Args:
+        at: the windows where the search begins.
+        expected: sums of squares, shape (W,), that are small enough.
+    """
     d, r = np.array(at.d), np.array(at.tangent.r)
     part, going, μ = at, np.arange(len(d)), None
-    for _ in range(STEPS):
+    if expected is not None:
+        going = np.flatnonzero(at.cost - expected > ENDED * float(np.mean(at.cost)))
+        part = at.rows(going)
+    for _ in range(STEPS if going.size else 0):
         enough = ENDED * float(np.mean(np.sum(r**2, axis=1)))
         fresh = part.is_fresh
         trial = next(levenberg_marquardt(part, EachWindow.moved, DAMPING, μ))

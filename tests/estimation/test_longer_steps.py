@@ -1,4 +1,4 @@
-"""Simulations for slopes may take longer steps than the model, as long as slopes stay the same."""
+"""Simulations may take longer steps than the model, as long as predictions and slopes stay."""
 
 from dataclasses import replace
 from functools import cache
@@ -15,10 +15,22 @@ from identification.model.coordinates import NOTHING, coordinates
 from identification.model.predictor import Predictor
 from identification.model.rollout import substeps
 from identification.prediction.fit import solve
-from identification.prediction.problem import Problem, no_moves, with_longer_steps
+from identification.prediction.problem import (
+    Problem,
+    most_windows,
+    no_moves,
+    with_longer_steps,
+)
+from identification.prediction.records import Record
 from identification.prediction.unknowns import Prior, Unknowns
 from identification.windows import shooting
-from identification.windows.coarse import ERROR, longest_steps
+from identification.windows.coarse import (
+    ERROR,
+    OUTPUT_ERROR,
+    own_step,
+    with_longest_slope_steps,
+    with_longest_steps,
+)
 from identification.windows.held import held_windows
 from identification.windows.shooting import Shooting, slower, tangent
 from identification.windows.windows import first_states, windows
@@ -54,7 +66,7 @@ def columns(part, q, d, steps):
 
 def chosen(part):
     q, d = np.zeros(2), np.zeros((len(part.cut.starts), 2))
-    (slow,) = longest_steps([part], [q], [d])
+    (slow,) = with_longest_slope_steps([part], [q], [d])
     return slow.predictor.plant.slope_steps
 
 
@@ -95,7 +107,7 @@ def test_a_fit_ends_at_the_same_values_with_fewer_steps_of_simulation():
     part = cut(plant())
     own = Prior(part.space, np.zeros(2), np.zeros(2))
     task = Problem((part,), Unknowns(own, Prior(), ("record",)))
-    slow = with_longer_steps(task, np.zeros(2), no_moves(task))
+    slow = with_longer_steps(task, np.zeros(2), no_moves(task), is_for_slopes=True)
     assert slow.plant.slope_steps > 1
     moves, _ = task.settled(np.zeros(2), no_moves(task))
     fits = [solve(t, np.zeros(2), moves, tolerance=1e-8, most=40) for t in (task, slow)]
@@ -109,6 +121,61 @@ def test_states_of_joints_take_the_steps_of_the_model():
     own = replace(plant(), slope_steps=8).with_states_of(["joint_elasticity.c@hinge"])
     assert own.smooth.opt.timestep == FINE
     assert replace(plant(), slope_steps=8).smooth.opt.timestep == pytest.approx(8 * FINE)
+
+
+def predicted(part, steps):
+    """The windows' outputs where the states are the best of the model's own steps."""
+    q, d = np.zeros(2), settled(part)
+    own = replace(part.predictor.plant, steps=steps)
+    return replace(part, predictor=replace(part.predictor, plant=own)).outputs(q[None], [d])[0]
+
+
+def settled(part):
+    q = np.zeros(2)
+    own = Prior(part.space, q, q)
+    task = Problem((part,), Unknowns(own, Prior(), ("record",)))
+    return task.settled(q, no_moves(task))[0][0]
+
+
+def steps_of(part, d=None):
+    (slow,) = with_longest_steps([part], [np.zeros(2)], [settled(part) if d is None else d])
+    return slow.predictor.plant.steps
+
+
+def test_simulations_take_the_longest_steps_that_leave_predictions_as_they_are():
+    part = cut(plant())  # begun 20 % off: something is left to explain
+    n, exact = steps_of(part), predicted(part, 1)
+    left = np.linalg.norm(part.cut.outputs - exact)
+    assert n > 1
+    assert np.linalg.norm(predicted(part, n) - exact) <= OUTPUT_ERROR * left
+    longer = [k for k in (2, 4, 8) if k > n]
+    assert all(np.linalg.norm(predicted(part, k) - exact) > OUTPUT_ERROR * left for k in longer[:1])
+
+
+def test_the_better_the_model_the_shorter_the_steps_of_its_simulations():
+    part = cut(plant(stiffness=900.0))
+    exact = predicted(part, 1)
+    near = replace(part, cut=replace(part.cut, outputs=exact + 1e-9))
+    assert steps_of(near, settled(part)) == 1 < steps_of(part)
+
+
+def test_longer_steps_hold_for_predictions_and_slopes_alike_and_change_no_window():
+    own, long = plant(), replace(plant(), steps=4)
+    assert own_step(long) == own_step(own) == FINE
+    assert long.model.opt.timestep == pytest.approx(4 * FINE)
+    assert long.smooth.opt.timestep == pytest.approx(4 * FINE)
+    assert replace(long, slope_steps=8).smooth.opt.timestep == pytest.approx(8 * FINE)
+    with_states = long.with_states_of(["joint_elasticity.c@hinge"])
+    assert with_states.model.opt.timestep == FINE
+    logs = (Record(record(seed=1, samples=400, plant=own), "fit"),)
+    assert most_windows(long, logs, 0.2) == most_windows(own, logs, 0.2)
+
+
+def test_predictions_of_longer_steps_err_by_a_high_order_of_the_step():
+    smooth = cut(plant(stiffness=900.0))
+    exact = predicted(smooth, 1)
+    two, four = (np.linalg.norm(predicted(smooth, k) - exact) for k in (2, 4))
+    assert four / two > 4.0  # RK4 gives 17 where no joint sticks
 
 
 def test_where_longer_steps_diverge_the_steps_of_the_model_are_taken(monkeypatch):
