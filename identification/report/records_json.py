@@ -39,6 +39,7 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
         "shifts": [asdict(s) for s in found.shifts],
         "repeats": list(found.repeats),
         "horizon": found.horizon,
+        "timestep": dict(zip(("simulated", "model"), found.steps, strict=True)),
         "input_error": found.input_error,
         "located": [describe_finding(finding) for finding in found.findings],
         "findings": [finding_to_json(finding) for finding in found.findings],

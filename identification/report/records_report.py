@@ -12,7 +12,7 @@ from identification.quantities import quantity
 from identification.report.discovery_figures import gains_figure
 from identification.report.effect_words import describe_effect
 from identification.report.page import Section, Table, save_figures, write_report
-from identification.report.records_text import describe_refitted, records_verdict
+from identification.report.records_text import describe_refitted, records_verdict, steps_taken
 from identification.report.records_values import value_table
 
 BEST = 10  # candidates shown
@@ -45,7 +45,7 @@ def _records(found: RecordsDiscovery) -> Section:
     return Section(
         "Error of prediction by record",
         f"Rms error over windows of {found.horizon:g} s, each from the state that explains it best."
-        " Nothing was fitted to the records that confirm.",
+        f" {' '.join(['Nothing was fitted to the records that confirm.', *steps_taken(found)])}",
         table=Table(("record", "role", f"nominal model{unit}", f"final model{unit}"), rows),
     )
 

@@ -9,6 +9,7 @@ from identification.quantities import alike, quantity
 from identification.report.effect_words import describe_effect
 from identification.report.finding_words import DOUBTS, describe_finding, sentence
 from identification.report.records_values import text_table, value_table, value_with_std
+from identification.windows.coarse import OUTPUT_ERROR
 
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
 SHOWN = 6  # candidates with the best scores that are listed
@@ -50,7 +51,7 @@ def records_text(found: RecordsDiscovery) -> str:
         parts.append(
             "\n".join(["what each candidate would explain, before it is fitted:", *scores])
         )
-    parts.append(f"{sum(found.seconds.values()):.1f} s")
+    parts += [*steps_taken(found), f"{sum(found.seconds.values()):.1f} s"]
     return "\n\n".join(parts)
 
 
@@ -142,6 +143,18 @@ def _shifts(found: RecordsDiscovery) -> list[str]:
         shift = quantity(s.shift, s.std, "s")
         lines.append(f"  {s.record}: {shift}, {100 * s.fall:.0f} % of its mean square")
     return lines
+
+
+def steps_taken(found: RecordsDiscovery) -> list[str]:
+    """A sentence where simulations took longer steps than the user's model; else none."""
+    taken, own = found.steps
+    if taken <= own:
+        return []
+    return [
+        f"Simulations took steps of {quantity(taken, unit='s')} where the model has"
+        f" {quantity(own, unit='s')}: this changes what is predicted by less than"
+        f" {100 * OUTPUT_ERROR:.0f} % of its error."
+    ]
 
 
 def _proof(found: RecordsDiscovery) -> str:

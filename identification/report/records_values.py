@@ -31,9 +31,9 @@ def value_with_std(value: float, std: float, unit: str) -> str:
 def value_table(found: RecordsDiscovery) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Head and rows: each fitted value, of the nominal model and of the one with what is named."""
     models = [found.nominal, found.final] if found.named else [found.nominal]
-    columns = [_values(model) for model in models]
-    names = [*dict.fromkeys(name for column in columns for name in column)]
     is_begun = any(f.kind is FindingKind.WORSE_FIT for f in found.findings)
+    columns = [_values(m, is_begun and m is found.nominal) for m in models]
+    names = [*dict.fromkeys(name for column in columns for name in column)]
     without = "as begun, without effects" if is_begun else "fitted without effects"
     head = ("parameter", without, "fitted with what is named")
     rows = [(name, *(column.get(name, "–") for column in columns)) for name in names]
@@ -49,12 +49,12 @@ def text_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     ]
 
 
-def _values(model: WindowModel) -> dict[str, str]:
-    """What was fitted, and what effects hold fixed, in words by name."""
+def _values(model: WindowModel, is_begun: bool) -> dict[str, str]:
+    """What was fitted, or was begun with, and what effects hold fixed, in words by name."""
     std, parameters = model.told_std, model.plant.parameters
     out = {}
     for name, value in {**model.fit.values, **model.values}.items():
         unit = parameters[name.partition(" [")[0]].unit
-        known = name in std
+        known = name in std and not is_begun
         out[name] = value_with_std(value, std[name], unit) if known else quantity(value, unit=unit)
     return out

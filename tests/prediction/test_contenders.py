@@ -1,6 +1,6 @@
 """Which candidates are refitted, and which comes first."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,7 +12,7 @@ from identification.effects.effect import Candidate, Effect, Shape, Size
 from identification.prediction.contenders import count_numbers, list_contenders, list_simpler
 from identification.prediction.evidence import compute_confidence, evidence
 from identification.prediction.scores import WindowScore
-from identification.prediction.selection import Contender, _ranked, evidences
+from identification.prediction.selection import Contender, _near_best, _ranked, evidences
 
 OPTIONS = DiscoveryOptions()
 
@@ -55,6 +55,34 @@ def test_a_curve_is_refitted_where_it_promises_more_than_every_law(fall, is_in):
     chosen = names(list_contenders(scores, OPTIONS, 100))
     assert ("curve_speed" in chosen) == is_in
     assert "law" in chosen
+
+
+def begun(cost, numbers=3):
+    """An effect that was fitted to some windows, with what decides whether it is refitted."""
+    part = SimpleNamespace(cut=SimpleNamespace(outputs=np.zeros((1, 1, 1))))
+    return SimpleNamespace(
+        cost=cost, q=np.zeros(numbers), windows=100, task=SimpleNamespace(parts=(part,))
+    )
+
+
+def behind(best, evidence_lost):
+    """The cost of an effect whose evidence is so much smaller."""
+    return best * float(np.exp(evidence_lost / 100))
+
+
+def test_what_some_windows_cannot_tell_from_the_few_best_is_refitted_too():
+    few = OPTIONS.max_refits
+    apart = [behind(1.0, 100.0 * k) for k in range(few)]  # each surely better than the next
+    near = behind(apart[-1], 0.9 * OPTIONS.strong_bic)
+    far = behind(apart[-1], 1.1 * OPTIONS.strong_bic)
+    kept = _near_best([begun(far), begun(near), *map(begun, apart)], OPTIONS)
+    assert [b.cost for b in kept] == [*apart, near]
+    assert _near_best([], OPTIONS) == []
+
+
+def test_an_effect_with_more_numbers_must_be_that_much_better_on_some_windows():
+    few, more = begun(1.0, numbers=3), begun(behind(1.0, -0.5 * np.log(100)), numbers=4)
+    assert _near_best([more, few], replace(OPTIONS, max_refits=1, strong_bic=1e-6)) == [few]
 
 
 def test_chance_keeps_a_score_out():

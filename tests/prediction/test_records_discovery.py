@@ -96,6 +96,26 @@ def test_shifts_of_records_stand_in_the_report(tmp_path):
     assert "20.0 ± 2.0 ms" in page
 
 
+def test_steps_that_are_longer_than_the_models_are_told(tmp_path):
+    answer = found({MU: 0.15}, names=FEW[:1])
+    own = answer.nominal.plant
+    own_step = own.bare.model.opt.timestep
+    for steps in (1, 2):
+        parts = tuple(
+            replace(p, predictor=replace(p.predictor, plant=replace(own, steps=steps)))
+            for p in answer.nominal.fit.problem.parts
+        )
+        problem = replace(answer.nominal.fit.problem, parts=parts)
+        model = replace(answer.nominal, fit=replace(answer.nominal.fit, problem=problem))
+        same = replace(answer, nominal=model)
+        assert records_to_json(same)["timestep"] == {
+            "simulated": pytest.approx(steps * own_step), "model": own_step
+        }  # fmt: skip
+        is_told = "Simulations took steps of 10 ms where the model has 5 ms"
+        assert (is_told in records_text(same)) == (steps > 1)
+        assert (is_told in write_records_report(same, tmp_path).read_text()) == (steps > 1)
+
+
 def test_records_without_an_effect_get_no_name():
     answer = found(None)
     assert answer.named == ()
@@ -134,6 +154,8 @@ def test_a_fit_that_is_worse_than_its_start_is_no_start_and_is_told():
     said = records_text(answer)
     assert "the fitted values predicted unseen data worse" in said
     assert "as begun, without effects" in said
+    begun = [r for r in said[said.index("fitted values:") :].splitlines() if r.startswith("  J ")]
+    assert "±" not in begun[0].split("  ")[2]  # nobody fitted it
 
 
 def test_findings_have_words():
