@@ -3,6 +3,7 @@
     python benchmarks/measured.py [ROBOT…] [--data ../shared/data] [--page docs/measured.md]
     python benchmarks/measured.py silverbox --split 2     does another split contradict the name?
     python benchmarks/measured.py emps --null 20          how many nulls of the robot get a name?
+    python benchmarks/measured.py ur10e --null 20 --few 1 the same with one record of each kind
     python benchmarks/measured.py --write FOLDER          records as CSV, models and TOML
     python benchmarks/measured.py --again                 all but fits and discoveries anew
     python benchmarks/measured.py --only-page             the page anew, from the JSON records
@@ -17,8 +18,6 @@ import argparse
 import json
 import re
 import sys
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -67,33 +66,32 @@ def work(robot: MeasuredRobot, given: argparse.Namespace) -> None:
     if given.null:
         from robots.nulls import null_study
 
-        keep(given, f"{robot.name}{ending}_null", lambda: null_study(split, given.null, say))
+        few = split.few(given.few) if given.few else split
+        for record in null_study(few, given.null, say):
+            keep(given, f"{robot.name}{ending}_null", record)
         return
     from robots.measurement import measure, measure_again
 
     if given.again:
         for path in sorted(given.records.glob(f"{robot.name}.json")):
             kept = json.loads(path.read_text(encoding="utf-8"))
-            keep(given, path.stem, partial(measure_again, robot, kept))
+            keep(given, path.stem, measure_again(robot, kept))
         return
-    keep(given, robot.name + ending, lambda: measure(split, say))
+    keep(given, robot.name + ending, measure(split, say))
     if given.split == 1:
         for what, values in robot.starts.items():
             slug = re.sub(r"\W+", "_", what)
-            again = partial(measure, split.started(values), say)
+            again = measure(split.started(values), say)
             keep(given, f"{robot.name}_start_{slug}", again, start=what)
         for what, names in robot.lacking.items():
             slug = re.sub(r"\W+", "_", what)
-            poorer = partial(measure, split.poorer(names), say)
+            poorer = measure(split.poorer(names), say)
             keep(given, f"{robot.name}_start_{slug}", poorer, start=what)
 
 
-def keep(
-    given: argparse.Namespace, name: str, make: Callable[[], dict[str, Any]], **more: str
-) -> None:
+def keep(given: argparse.Namespace, name: str, record: dict[str, Any], **more: str) -> None:
     """Write a JSON record."""
-    print(f"{name} …", flush=True)
-    record = {**make(), **more}
+    record = {**record, **more}
     given.records.mkdir(parents=True, exist_ok=True)
     path = given.records / f"{name}.json"
     path.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
@@ -114,6 +112,7 @@ def parsed() -> argparse.Namespace:
     parser.add_argument("--page", type=Path, default=PAGE)
     parser.add_argument("--split", type=int, choices=(1, 2), default=1)
     parser.add_argument("--null", type=int, default=0, metavar="N")
+    parser.add_argument("--few", type=int, default=0, metavar="N", help="records of each kind")
     parser.add_argument("--write", type=Path, metavar="FOLDER")
     parser.add_argument("--again", action="store_true")
     parser.add_argument("--only-page", action="store_true")

@@ -168,6 +168,10 @@ class MeasuredRobot:
         fit, confirm = self.second or (self.confirm, self.fit)
         return replace(self, fit=fit, confirm=confirm)
 
+    def few(self, count: int) -> MeasuredRobot:
+        """The robot with so many records that are fitted, and as many that confirm."""
+        return replace(self, fit=self.fit[:count], confirm=self.confirm[:count])
+
     def started(self, values: Mapping[str, float]) -> MeasuredRobot:
         """The robot with other values at which the search begins."""
         free = (replace(p, value=values.get(p.name, p.value)) for p in self.free)

@@ -9,7 +9,7 @@ colour and their size, and lose what ties them to the motion.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -72,8 +72,10 @@ def null_of(
     return replace(robot, fit=fit, confirm=confirm)
 
 
-def null_study(robot: MeasuredRobot, count: int, say: Callable[[str], None]) -> dict[str, Any]:
-    """How many nulls of a robot get a name.
+def null_study(
+    robot: MeasuredRobot, count: int, say: Callable[[str], None]
+) -> Iterator[dict[str, Any]]:
+    """How many nulls of a robot get a name; the record so far after each of them.
 
     Args:
         robot: the robot, which is discovered first.
@@ -86,6 +88,8 @@ def null_study(robot: MeasuredRobot, count: int, say: Callable[[str], None]) -> 
     """
     compiled, found, _ = discovered(robot, say)
     plant, values = found.final.plant, found.final.values
+    if isinstance(plant, JointPlant):
+        plant = replace(plant, steps=1)  # the steps of the model itself
     best, rows = best_model(robot, compiled.plant, found), []
     for k in range(count):
         null = null_of(best, plant, values, k)
@@ -93,7 +97,8 @@ def null_study(robot: MeasuredRobot, count: int, say: Callable[[str], None]) -> 
         named = [n.effect.candidate.effect.name for n in answer.named]
         rows.append({"verdict": answer.verdict, "named": named, "seconds": seconds})
         say(f"null {k + 1} of {count}: {rows[-1]}")
-    return {
-        "robot": robot.name, "count": count, "nulls": rows,
-        "with_a_name": sum(bool(row["named"]) for row in rows),
-    }  # fmt: skip
+        yield {
+            "robot": robot.name, "records": [len(robot.fit), len(robot.confirm)],
+            "count": len(rows), "nulls": list(rows),
+            "with_a_name": sum(bool(row["named"]) for row in rows),
+        }  # fmt: skip

@@ -163,7 +163,9 @@ def _again(name: str, kept: dict[str, Any]) -> list[str]:
         if other is None:
             continue
         if ending.endswith("null"):
-            lines.append(f"Nulls (the best model with its own residual resampled in blocks):"
+            of = "" if "records" not in other else " with {} fitted and {} that confirm".format(
+                *other["records"])  # fmt: skip
+            lines.append(f"Nulls{of} (the best model with its own residual resampled in blocks):"
                          f" {other['with_a_name']} of {other['count']} get a name.\n")  # fmt: skip
         elif "refused" in other:
             lines.append(f"Split otherwise it is refused: {other['refused']}\n")
