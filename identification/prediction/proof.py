@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
+
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction.model import WindowModel
 from identification.prediction.unseen import Prediction
 
-Doubt = Literal["numbers", "chance", "lengths", "record", "little", "size", "exchange"]
+AT_BOUND = 1e-6  # relative distance from a bound that is on it
+Doubt = Literal["numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange"]
 
 
 def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Doubt | None:
@@ -43,4 +46,20 @@ def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
     own = [n for n in model.fit.problem.names if n.partition(" [")[0] in c.free]
     return not own or any(
         abs(values[n]) > max(options.min_proof_t * std[n], least[n.partition(" [")[0]]) for n in own
+    )
+
+
+def is_at_bound(model: WindowModel) -> bool:
+    """Whether a size of the last effect ended on the bound beyond which it is not believed.
+
+    The data then ask for more than physics allows: the effect stands for something else. Zero as a
+    bound of a size is no effect, and no reason.
+    """
+    parameters, sizes = model.plant.parameters, model.candidates[-1].free
+    values = {n: v for n, v in model.fit.values.items() if n.partition(" [")[0] in sizes}
+    each = ((v, parameters[n.partition(" [")[0]]) for n, v in values.items())
+    return any(
+        bound != 0 and np.isfinite(bound) and abs(v - bound) <= AT_BOUND * abs(bound)
+        for v, p in each
+        for bound in (p.lower, p.upper)
     )

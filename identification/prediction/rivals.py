@@ -16,7 +16,8 @@ from identification.prediction.scores import WindowScore
 from identification.prediction.selection import Contender
 from identification.prediction.unseen import compare
 
-CONTRADICTED: tuple[Doubt, ...] = ("lengths", "record", "exchange")  # by what was measured
+# By what was measured, or by what is believed of its size.
+CONTRADICTED: tuple[Doubt, ...] = ("lengths", "record", "bound", "exchange")
 NEEDLESS: tuple[Doubt, ...] = ("chance", "little")  # others make up for it
 
 
@@ -28,6 +29,7 @@ def find_rivals(
 
     What still explains as much is no rival of the best one: it is missing too. A rival need not be
     proven to make a name doubtful; but what some windows or a record contradict is none, nor what
+    ends on the bound of its size, nor what
     predicts unseen records no better than the model without it.
 
     Args:

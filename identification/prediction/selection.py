@@ -28,7 +28,7 @@ from identification.prediction.evidence import all_gains, count_windows, evidenc
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import Begun, begin
 from identification.prediction.model import WindowModel
-from identification.prediction.proof import Doubt, find_doubt, has_size
+from identification.prediction.proof import Doubt, find_doubt, has_size, is_at_bound
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction, Unseen, compare
@@ -182,6 +182,8 @@ def _judged(
         doubt = "record"
     if doubt is None and not has_size(new, options):
         doubt = "size"
+    if doubt is None and is_at_bound(new):
+        doubt = "bound"
     return Contender(
         model=new, prediction=found, gains=gains, numbers=numbers, criterion=gain,
         doubt=doubt,

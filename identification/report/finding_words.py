@@ -183,6 +183,8 @@ DOUBTS = {
     "record": "a record is predicted worse with it",
     "little": "it takes away too little to matter over windows of some length",
     "size": "its size is not known well enough to differ from zero",
+    "bound": "its size ends on the bound beyond which it is not believed, so that it stands for"
+    " something else",
     "exchange": "where the other records are fitted instead, it predicts a record worse, or all of"
     " them on average",
 }

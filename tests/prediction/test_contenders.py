@@ -5,12 +5,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numba import njit
 
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect, Shape, Size
+from identification.model.parameter import Parameter, ParameterSet
 from identification.prediction.contenders import count_numbers, list_contenders, list_simpler
 from identification.prediction.evidence import compute_confidence, evidence
+from identification.prediction.proof import is_at_bound
 from identification.prediction.scores import WindowScore
 from identification.prediction.selection import Contender, _near_best, _ranked, evidences
 
@@ -170,3 +174,24 @@ def test_confidence_is_shared_by_equals_as_their_blocks_scatter():
     shares = compute_confidence(evidences([a, b]))
     assert shares.sum() == pytest.approx(1.0)
     assert 0 < shares.min() < shares.max() < 1
+
+
+def fitted(value, lower, upper):
+    """A model whose last effect has one free size, which was fitted."""
+    name = "law.size@a"
+    size = Parameter(name=name, value=0.0, unit="N", where="", lower=lower, upper=upper)
+    parameters = ParameterSet("effects", (size,))
+    return SimpleNamespace(
+        plant=SimpleNamespace(parameters=parameters),
+        candidates=(SimpleNamespace(free=(name,)),),
+        fit=SimpleNamespace(values={f"{name} [log]": value, "J": 1.0}),
+    )
+
+
+@given(st.floats(0.1, 10.0), st.floats(-0.999, 0.999))
+def test_only_a_size_on_a_bound_that_is_not_zero_stands_for_something_else(bound, share):
+    assert is_at_bound(fitted(bound, -bound, bound))
+    assert is_at_bound(fitted(-bound, -bound, bound))
+    assert not is_at_bound(fitted(share * bound, -bound, bound))
+    assert not is_at_bound(fitted(0.0, 0.0, bound))
+    assert not is_at_bound(fitted(share * bound, -np.inf, np.inf))
