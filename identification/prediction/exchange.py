@@ -94,8 +94,7 @@ def is_contradicted(without: WindowModel, with_it: WindowModel, options: Discove
         options: what matters.
     """
     found = compare(without.unseen, with_it.unseen)
-    at_horizon = found.gains[without.unseen.lengths.index(1.0)]
-    return at_horizon <= 0 or min(found.record_falls) <= -options.min_gap_share
+    return found.gain <= 0 or min(found.record_falls) <= -options.min_gap_share
 
 
 def _begin(task: Problem, model: WindowModel) -> np.ndarray:

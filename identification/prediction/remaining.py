@@ -37,7 +37,8 @@ def find_remaining(
         worse = WorseFit(rise(state.begun, state.worse_fit))
         out.append(Finding(FindingKind.WORSE_FIT, worse))
     for r in rejected:
-        if r.prediction.is_everywhere and r.prediction.t > state.task.options.min_proof_t:
+        seen = r.prediction
+        if seen.is_everywhere and seen.fall > 0 and seen.t > state.task.options.min_proof_t:
             out.append(Finding(FindingKind.UNPROVEN_EFFECT, _unproven(r)))
     square = float(np.mean(np.concatenate(state.model.unseen.at_horizon)))
     ratio = (
@@ -80,5 +81,5 @@ def different_records(state: RecordsState) -> list[DifferentRecord]:
 def _unproven(r: RefittedEffect) -> UnprovenEffect:
     c = r.candidate
     return UnprovenEffect(
-        c.effect.name, c.where, max(r.prediction.falls), r.prediction.t, r.doubt or "chance"
+        c.effect.name, c.where, r.prediction.fall, r.prediction.t, r.doubt or "chance"
     )

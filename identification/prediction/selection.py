@@ -110,9 +110,8 @@ def refit_contenders(
         more = refit(_begun(model, rest, scores, options, progress))
         if more:
             parent, out = judge(parent, [*(c.model for c in out), *more])
-    at = model.unseen.lengths.index(1.0)
     for c in out:
-        fall, t = c.prediction.falls[at], c.prediction.t
+        fall, t = c.prediction.fall, c.prediction.t
         progress(f"{_label(c.candidate)}: unseen mean square {-100 * fall:+.0f} %, t {t:.1f}")
     return parent, _ranked(out, options)
 

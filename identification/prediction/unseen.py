@@ -71,8 +71,9 @@ class Prediction:
     Attributes:
         t: of the mean gain over blocks, at the horizon.
         chance: of as much by luck.
-        gains: mean gain over blocks, by length.
+        gains: mean gain over blocks, by length of the windows.
         falls: relative fall of the mean square over all records, by length.
+        fall: the one at the horizon, and `gain` likewise.
         typical_falls: the same of each record's mean square by itself, in the geometric mean: a
             record that errs most, whatever the model, does not decide alone.
         record_falls: relative fall of the mean square by record, at the horizon.
@@ -81,7 +82,9 @@ class Prediction:
 
     t: float
     chance: float
+    gain: float
     gains: tuple[float, ...]
+    fall: float
     falls: tuple[float, ...]
     typical_falls: tuple[float, ...]
     record_falls: tuple[float, ...]
@@ -167,7 +170,8 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
         ratios = [np.log(y.mean() / x.mean()) for x, y in zip(a, b, strict=True)]
         typical.append(1 - float(np.exp(np.mean(ratios))))
         gains.append(block_gains(a, b, without.floor))
-    blocks = gains[without.lengths.index(1.0)]
+    at = without.lengths.index(1.0)
+    blocks, means = gains[at], tuple(float(np.concatenate(g).mean()) for g in gains)
     every = np.concatenate(blocks)
     t, chance = 0.0, 1.0
     if len(every) > 2 and every.std() > 0:
@@ -175,8 +179,8 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
         t, chance = float(test.statistic), float(test.pvalue)
     each = zip(without.at_horizon, with_it.at_horizon, strict=True)
     return Prediction(
-        t=t, chance=chance, gains=tuple(float(np.concatenate(g).mean()) for g in gains),
-        falls=tuple(falls), typical_falls=tuple(typical),
+        t=t, chance=chance, gain=means[at], gains=means, fall=falls[at], falls=tuple(falls),
+        typical_falls=tuple(typical),
         record_falls=tuple(1 - float(b.mean() / a.mean()) for a, b in each), blocks=tuple(blocks),
     )  # fmt: skip
 

@@ -57,10 +57,10 @@ def records_text(found: RecordsDiscovery) -> str:
 
 def describe_refitted(effect: RefittedEffect) -> str:
     """An effect with its sizes, and what it does for unseen records."""
-    fall = 100 * max(effect.prediction.falls)
+    fall = 100 * effect.prediction.fall
     return (
         f"{describe_effect(effect.candidate)}, {_sizes(effect)}; unseen mean square"
-        f" {-fall:+.0f} % at best, t = {effect.prediction.t:.1f}"
+        f" {-fall:+.0f} %, t = {effect.prediction.t:.1f}"
         + (f"; {DOUBTS[effect.doubt]}" if effect.doubt else "")
     )
 

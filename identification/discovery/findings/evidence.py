@@ -251,7 +251,7 @@ class UnprovenEffect:
     Attributes:
         name: of the effect.
         where: its place.
-        fall: relative fall of the unseen mean square, at best.
+        fall: relative fall of the unseen mean square, at the horizon.
         t: of its gain over blocks.
         doubt: what is against it, a word of `identification.prediction.proof.Doubt`.
     """
