@@ -9,6 +9,7 @@ from typing import Annotated
 import tyro
 
 from identification.commands.program import run_program
+from inca_mj.commands.calibrate import Calibrate
 from inca_mj.commands.compare import Compare
 from inca_mj.commands.crosscheck import Crosscheck
 from inca_mj.commands.demo import Demo
@@ -25,6 +26,7 @@ Command = (
     | Annotated[Compare, tyro.conf.subcommand("compare")]
     | Annotated[Crosscheck, tyro.conf.subcommand("crosscheck")]
     | Annotated[Identify, tyro.conf.subcommand("identify")]
+    | Annotated[Calibrate, tyro.conf.subcommand("calibrate")]
     | Annotated[Discover, tyro.conf.subcommand("discover")]
     | Annotated[Sensitivity, tyro.conf.subcommand("sensitivity")]
     | Annotated[Excite, tyro.conf.subcommand("excite")]

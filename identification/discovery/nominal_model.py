@@ -10,6 +10,7 @@ import numpy as np
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.errors import InputError
+from identification.estimation.options import Progress
 from identification.kalman.point import evaluate_point
 from identification.kalman.refit import Refit, refit
 from identification.logs.log import Log
@@ -36,6 +37,9 @@ class NominalModel:
             own value, where every search begins.
         own_values: by record and by name, where the search of a record's own values begins; the
             plant's own value where not given.
+        groups: names that share one std, by what they have in common: deviations of the drives,
+            displacements of points. Their std are the largest that are believed; a search finds
+            how much each group scatters (see `scattered`).
 
     Raises:
         InputError: there is not one std for each name.
@@ -48,6 +52,7 @@ class NominalModel:
     own: tuple[str, ...] = ()
     mean: Mapping[str, float] = field(default_factory=dict)
     own_values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if np.shape(self.std) != (len(self.names),):
@@ -55,6 +60,12 @@ class NominalModel:
                 f"{len(self.names)} free parameters have std of the shape {np.shape(self.std)};"
                 " give one for each"
             )
+
+    def scattered(self, std: Mapping[str, float]) -> NominalModel:
+        """The same model with other std of some groups."""
+        own = {name: std[g] for g, names in self.groups.items() if g in std for name in names}
+        every = [own.get(name, s) for name, s in zip(self.names, self.std, strict=True)]
+        return replace(self, std=np.array(every))
 
     @property
     def linear(self) -> tuple[str, ...]:
@@ -70,6 +81,7 @@ def fit_with_effects(
     options: DiscoveryOptions,
     steps: int = 20,
     near: Refit | None = None,
+    progress: Progress | None = None,
 ) -> Refit:
     """Fit the nominal model's parameters together with the sizes and free shapes of some effects.
 
@@ -81,6 +93,7 @@ def fit_with_effects(
         options: which noise and which parameters are believed.
         steps: largest number of steps.
         near: a fit whose linearisation and noise are good enough to begin with.
+        progress: is told one line per step.
 
     Raises:
         DivergenceError: the start cannot be simulated.
@@ -109,12 +122,14 @@ def fit_with_effects(
     of_shapes = np.full(len(shapes), 1 / options.shape_std)
     weight = np.concatenate([1 / nominal_model.std, np.zeros(len(sizes)), of_shapes])
     linear, level = (None, None) if near is None else (near.point.linear, near.level)
+    beside = None if near is None else near.point
     predictor = Predictor(nominal_model.plant, log, names, fixed)
-    point = evaluate_point(predictor, space, space.encode(first), linear)
+    small = frozenset(name for group in nominal_model.groups.values() for name in group)
+    point = evaluate_point(predictor, space, space.encode(first), linear, beside, small)
     if level is not None:
         # The correlation time that was found without the effect may have been the effect's own.
         level = replace(level, noise=level.noise.lasting(options.start_correlation_time))
-    return refit(point, mean, weight, options, steps, level)
+    return refit(point, mean, weight, options, steps, level, progress)
 
 
 def _within_factor(

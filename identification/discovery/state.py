@@ -30,6 +30,7 @@ from identification.discovery.selection.pairs import find_pair
 from identification.discovery.selection.pruning import prune
 from identification.discovery.task import DiscoveryTask
 from identification.estimation.options import Progress
+from identification.kalman.hierarchy import estimate_scatter
 from identification.model.sensitivity import refuse_without_effect
 
 Stage = Literal["selection", "pruning", "finished"]
@@ -83,6 +84,8 @@ def first_state(task: DiscoveryTask, progress: Progress) -> SearchState:
     watch = _Watch()
     nominal = fit_model(task, (), {})
     refuse_without_effect(nominal.refit.point.J, task.nominal_model.names, task.log)
+    if task.nominal_model.groups:
+        task, nominal = _with_scatter(task, nominal)
     watch.stop("nominal fit")
     progress(f"nominal fit: {1e3 * nominal.validation.rms:.3g}e-3 on unseen data")
     sensitivities = _compute_all_sensitivities(task, nominal)
@@ -109,6 +112,13 @@ def next_state(state: SearchState, progress: Progress) -> SearchState:
     if state.stage == "pruning":
         return _prune(state)
     return state
+
+
+def _with_scatter(task: DiscoveryTask, nominal: FittedModel) -> tuple[DiscoveryTask, FittedModel]:
+    """The task with the scatter that the nominal fit shows, and the nominal fit under it."""
+    scatter = estimate_scatter(nominal.refit, task.nominal_model.groups)
+    task = replace(task, nominal_model=task.nominal_model.scattered(scatter))
+    return task, fit_model(task, (), nominal.refit.point.values, nominal)
 
 
 def _select(state: SearchState, progress: Progress) -> SearchState:

@@ -32,7 +32,8 @@ class LinearPlant:
     """Linearisation at the N samples of a log.
 
     Attributes:
-        A: transition from each sample to the next, shape (N-1, nx, nx).
+        A: transition from each sample to the next, shape (N-1, nx, nx); zeros where another
+            record of a joined log begins.
         B: effect of an input held over the sample, shape (N-1, nx, nu).
         C: outputs from the state, shape (ny, nx).
     """
@@ -54,6 +55,21 @@ def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = 
     Raises:
         DivergenceError: the simulation left the finite numbers.
     """
+    each = [_of_record(record, values[columns], forces) for record, columns in predictor.records()]
+    return each[0] if len(each) == 1 else _joined(each)
+
+
+def _joined(each: Sequence[LinearPlant]) -> LinearPlant:
+    """The plants of several records, one after the other; nothing passes from one to the next."""
+    gap = LinearPlant(np.zeros_like(each[0].A[:1]), np.zeros_like(each[0].B[:1]), each[0].C)
+    parts = [part for plant in each for part in (gap, plant)][1:]
+    return LinearPlant(
+        np.concatenate([p.A for p in parts]), np.concatenate([p.B for p in parts]), each[0].C
+    )
+
+
+def _of_record(predictor: Predictor, values: np.ndarray, forces: Sequence[int]) -> LinearPlant:
+    """The linearisation along one record."""
     plant, log = predictor.plant, predictor.log
     start, numbers = predictor.settings(values)
     states = rollout(

@@ -16,7 +16,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from identification.kalman.linear import LinearPlant
-from identification.kalman.noise_model import Noise, Whitener, build_whitener
+from identification.kalman.noise_model import Noise, Whitener, augment, build_whitener
 from identification.kalman.options import KalmanOptions
 
 FIRST, LAST = 1.6, 1.15  # factors with which the pattern search begins and ends
@@ -53,15 +53,11 @@ def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) ->
         sampling_time: [s].
         time: correlation time of the inputs' error [s].
     """
-    n, nx, nu = plant.B.shape
-    a = np.exp(-sampling_time / time)
-    A = np.zeros((n, nx + nu, nx + nu))
-    A[:, :nx, :nx], A[:, :nx, nx:], A[:, nx:, nx:] = plant.A, plant.B, a * np.eye(nu)
-    P, moved = np.zeros((nx + nu, nx + nu)), 0.0
-    P[nx:, nx:] = np.eye(nu)
+    n, nx, _ = plant.B.shape
+    A, _, P, Q = augment(plant, Noise(1.0, time), sampling_time)
+    moved = 0.0
     for k in range(n):
-        P = A[k] @ P @ A[k].T
-        P[nx:, nx:] += (1 - a**2) * np.eye(nu)
+        P = A[k] @ P @ A[k].T + Q[k]
         moved += np.einsum("ij,jk,ik->", plant.C, P[:nx, :nx], plant.C)
     return 1 / np.sqrt(moved / (n * len(plant.C)))
 

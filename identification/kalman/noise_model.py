@@ -80,7 +80,8 @@ def augment(
 
     Returns:
         A, shape (N-1, nz, nz), C, shape (ny, nz), and the covariances over σ² of the first state,
-        P, and of the process noise of a sample, Q, shape (nz, nz) each.
+        P, shape (nz, nz), and of the process noise of each sample, Q, shape (N-1, nz, nz). Where
+        another record begins, A is zero and Q is P: nothing is known of its inputs' error.
     """
     n, nx, nu = plant.B.shape
     a = np.exp(-sampling_time / noise.time)
@@ -90,7 +91,9 @@ def augment(
     C = np.hstack([plant.C, np.zeros((len(plant.C), nu))])
     P = np.zeros((nx + nu, nx + nu))
     P[nx:, nx:] = noise.ratio**2 * np.eye(nu)
-    return A, C, P, (1 - a**2) * P
+    begins = np.asarray(~plant.A.any(axis=(1, 2)))
+    A[begins] = 0
+    return A, C, P, np.where(begins[:, None, None], P, (1 - a**2) * P)
 
 
 def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
@@ -111,6 +114,6 @@ def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Wh
         K[k] = PC @ L[k].T @ L[k]
         log_determinant += 2 * np.log(np.diag(factor)).sum()
         if k < n:
-            P = A[k] @ (P - K[k] @ PC.T) @ A[k].T + Q
+            P = A[k] @ (P - K[k] @ PC.T) @ A[k].T + Q[k]
             P = (P + P.T) / 2
     return Whitener(A, C, K, L, log_determinant)

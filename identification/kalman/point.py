@@ -5,6 +5,7 @@ e = y - ŷ(q),   Φ = ∂ŷ/∂q,   δx_{k+1} = A_k δx_k + B_k δu_k
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,6 +29,8 @@ class Point:
         e: residual, shape (N, ny).
         J: sensitivities Φ, shape (N, ny, p).
         linear: the plant linearised along its trajectory.
+        small: free parameters that stay small, such as deviations of single drives: the outputs
+            are nearly linear in them, and their columns of J hold at points nearby as well.
     """
 
     predictor: Predictor
@@ -36,6 +39,7 @@ class Point:
     e: np.ndarray
     J: np.ndarray
     linear: LinearPlant
+    small: frozenset[str] = frozenset()
 
     @property
     def log(self) -> Log:
@@ -55,8 +59,9 @@ class Point:
 
 
 def evaluate_point(
-    predictor: Predictor, space: Coordinates, q: np.ndarray, linear: LinearPlant | None = None
-) -> Point:
+    predictor: Predictor, space: Coordinates, q: np.ndarray, linear: LinearPlant | None = None,
+    near: Point | None = None, small: frozenset[str] = frozenset(),
+) -> Point:  # fmt: skip
     """Simulate a plant and its sensitivities at q, in one batch of simulations.
 
     Args:
@@ -64,16 +69,26 @@ def evaluate_point(
         space: coordinates of the free parameters.
         q: shape (p,).
         linear: a linearisation from a point nearby that is good enough; a new one when None.
+        near: a point nearby on the same log, from which columns of small parameters are taken.
+        small: see `Point`.
 
     Raises:
         DivergenceError: a simulation left the finite numbers.
     """
     inside = space.inside(q)
-    predicted, J = _sensitivities(predictor, space, inside)
+    predicted, J = _sensitivities(predictor, space, inside, _known(near, small))
     if linear is None:
         linear = linearise(predictor, space.decode(inside))
     e = predictor.log.outputs - predicted
-    return Point(predictor=predictor, space=space, q=inside, e=e, J=J, linear=linear)
+    return Point(predictor=predictor, space=space, q=inside, e=e, J=J, linear=linear, small=small)
+
+
+def _known(near: Point | None, small: frozenset[str]) -> dict[str, np.ndarray]:
+    """Columns of J that hold at a point nearby, by name, each (N, ny)."""
+    if near is None:
+        return {}
+    columns = zip(near.space.names, np.moveaxis(near.J, 2, 0), strict=True)
+    return {name: column for name, column in columns if name in small}
 
 
 def evaluate_sensitivities(point: Point, whole: Log) -> np.ndarray:
@@ -82,12 +97,19 @@ def evaluate_sensitivities(point: Point, whole: Log) -> np.ndarray:
 
 
 def _sensitivities(
-    predictor: Predictor, space: Coordinates, q: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """ŷ at q, shape (N, ny), and J, shape (N, ny, p)."""
+    predictor: Predictor, space: Coordinates, q: np.ndarray,
+    known: Mapping[str, np.ndarray] | None = None,
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """ŷ at q, shape (N, ny), and J, shape (N, ny, p), of which some columns may be known."""
+    known = known or {}
+    asked = np.array([name not in known for name in space.names])
     moves = np.where(q + STEP > space.upper, -STEP, STEP)
-    predicted = predictor.predict(space.decode(np.vstack([q, q + np.diag(moves)])))
-    return predicted[0], np.moveaxis((predicted[1:] - predicted[0]) / moves[:, None, None], 0, -1)
+    predicted = predictor.predict(space.decode(np.vstack([q, q + np.diag(moves)[asked]])))
+    J = np.empty((*predicted[0].shape, len(q)))
+    J[..., asked] = np.moveaxis((predicted[1:] - predicted[0]) / moves[asked, None, None], 0, -1)
+    for j in np.flatnonzero(~asked):
+        J[..., j] = known[space.names[j]]
+    return predicted[0], J
 
 
 def extend_point(point: Point, whole: Log) -> Point:

@@ -117,10 +117,14 @@ class Problem:
         there = self.residual(self.point.q + move)
         return np.inf if there is None else float(there @ there)
 
+    @property
+    def covariance(self) -> np.ndarray:
+        """Of q by the curvature of the criterion, shape (p, p)."""
+        return np.linalg.pinv(self.rows.T @ self.rows, rcond=1e-14, hermitian=True)
+
     def std(self) -> np.ndarray:
         """Std of q by the curvature of the criterion, shape (p,)."""
-        covariance = np.linalg.pinv(self.rows.T @ self.rows, rcond=1e-14, hermitian=True)
-        return np.sqrt(np.diag(covariance))
+        return np.sqrt(np.diag(self.covariance))
 
 
 def linearise_criterion(

@@ -10,7 +10,6 @@ far from the truth, and at the truth it is that of maximum likelihood.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Generator
 from dataclasses import dataclass
 from functools import partial
@@ -19,6 +18,7 @@ from itertools import islice
 import numpy as np
 
 from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
+from identification.estimation.options import Progress
 from identification.kalman.innovations import innovation_tests
 from identification.kalman.noise_fit import NoiseLevel, fit_noise
 from identification.kalman.options import KalmanOptions
@@ -73,6 +73,7 @@ def refit(
     options: KalmanOptions,
     steps: int = 20,
     near: NoiseLevel | None = None,
+    progress: Progress | None = None,
 ) -> Refit:
     """Estimate the free parameters of a point, beginning where it is.
 
@@ -83,9 +84,13 @@ def refit(
         options: which noise is believed.
         steps: largest number of steps.
         near: a noise to begin at, where one is known.
+        progress: is told one line per step.
     """
-    seen = deque(enumerate(descend(point, mean, prior, options, near, steps)), maxlen=1)
-    taken, (end, level) = seen[0]
+    for step in enumerate(descend(point, mean, prior, options, near, steps)):
+        taken, (end, level) = step
+        if progress is not None:
+            off = float(np.sqrt(np.mean(end.e**2)))
+            progress(f"step {taken}: free run {off:.3g}, sensors {level.sigma:.3g} rms")
     return conclude(end, level, mean, prior, taken)
 
 
@@ -156,8 +161,10 @@ def _move(
     """The criterion about the point after a step, with the noise of that point."""
     point = problem.point
     change = np.abs(step[point.space.logarithmic]).max(initial=0.0)
-    linear = point.linear if change < NEAR else None
-    point = evaluate_point(point.predictor, point.space, point.q + step, linear)
+    is_near = bool(change < NEAR)
+    linear, near = (point.linear, point) if is_near else (None, None)
+    q = point.q + step
+    point = evaluate_point(point.predictor, point.space, q, linear, near, point.small)
     level = estimate_noise(point, problem.prior, options, problem.level, largest=largest)
     return linearise_criterion(point, level, problem.mean, problem.prior)
 

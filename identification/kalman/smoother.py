@@ -41,7 +41,7 @@ def smooth(
         z, P = z + K @ (e[k] - C @ z), P - K @ PC.T
         seen.append((z, P))
         if k + 1 < n:
-            z, P = A[k] @ z, A[k] @ P @ A[k].T + Q
+            z, P = A[k] @ z, A[k] @ P @ A[k].T + Q[k]
             P = (P + P.T) / 2
     out = np.empty((n, len(z)))
     out[-1] = seen[-1][0]

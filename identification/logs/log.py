@@ -104,12 +104,14 @@ class Log:
     def __len__(self) -> int:
         return len(self.time)
 
-    def __reduce__(self) -> tuple[Callable[[dict[str, Any]], Log], tuple[dict[str, Any]]]:
+    def __reduce__(
+        self,
+    ) -> tuple[Callable[[type[Log], dict[str, Any]], Log], tuple[type[Log], dict[str, Any]]]:
         # A mapping proxy cannot be pickled, but logs are sent to other processes.
         values = {name: getattr(self, name) for name in self.__dataclass_fields__}
         for name in ("extras", "units", "values", "splits"):
             values[name] = dict(values[name])
-        return _rebuild, (values,)
+        return _rebuild, (type(self), values)
 
     @property
     def columns(self) -> dict[str, FloatArray]:
@@ -185,5 +187,5 @@ def _frozen(values: FloatArray) -> FloatArray:
     return array
 
 
-def _rebuild(values: dict[str, Any]) -> Log:
-    return Log(**values)
+def _rebuild(kind: type[Log], values: dict[str, Any]) -> Log:
+    return kind(**values)

@@ -10,13 +10,15 @@ value sets of a call are simulated in one `Batch.rollout`: a Jacobian of p colum
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import mujoco
 import numpy as np
 
 from identification.errors import InputError, unknown_name
+from identification.logs.joined import JoinedLog, records_of
 from identification.logs.log import Log
+from identification.model.own import of_record, values_of_record
 from identification.model.protocol import Numbers as Numbers
 from identification.model.protocol import Plant as Plant
 from identification.model.protocol import with_states as with_states
@@ -79,6 +81,17 @@ class Predictor:
         """The fields of the state that outputs are made of."""
         return ("qpos", "qvel") if with_states(self.plant) is None else ("qpos", "qvel", "act")
 
+    def records(self) -> tuple[tuple[Predictor, list[int]], ...]:
+        """A predictor of each record of the log, and the columns of values that it takes."""
+        if not isinstance(self.log, JoinedLog):
+            return ((self, [*range(len(self.names))]),)
+        out = []
+        for number, log in records_of(self.log):
+            seen = of_record(self.names, number)
+            fixed = values_of_record(self.fixed, number)
+            out.append((replace(self, log=log, names=tuple(seen), fixed=fixed), [*seen.values()]))
+        return tuple(out)
+
     def predict(self, values: np.ndarray, samples: int | None = None) -> np.ndarray:
         """Outputs of n value sets over the first samples of the log.
 
@@ -93,6 +106,8 @@ class Predictor:
             DivergenceError: a simulation left the finite numbers.
         """
         log = self.log
+        if isinstance(log, JoinedLog):
+            return self._predict_records(np.atleast_2d(values), samples)
         start, numbers = self.settings(values)
         states = rollout(
             self.plant.model,
@@ -106,6 +121,20 @@ class Predictor:
             time=log.begun,
         )
         return self.outputs(values, states)
+
+    def _predict_records(self, values: np.ndarray, samples: int | None) -> np.ndarray:
+        """Outputs of all records, each simulated from its own start, one after the other.
+
+        Value sets that differ in values of other records only are simulated once.
+        """
+        out, left = [], len(self.log) if samples is None else samples
+        for predictor, columns in self.records():
+            here = min(left, len(predictor.log))
+            if here > 0:
+                different, which = np.unique(values[:, columns], axis=0, return_inverse=True)
+                out.append(predictor.predict(different, here)[which.ravel()])
+            left -= here
+        return np.concatenate(out, axis=1)
 
     def outputs(self, values: np.ndarray, states: Mapping[str, np.ndarray]) -> np.ndarray:
         """What the sensors say of simulated states, for n value sets (n, p).

@@ -10,11 +10,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-import numpy as np
-
 from identification.errors import InputError
 from identification.logs.log import Log
-from identification.logs.overlap import share_samples
+from identification.logs.overlap import refuse_different
 
 Role = Literal["fit", "confirm"]
 
@@ -56,7 +54,7 @@ def as_records(
     """
     if not fit:
         raise InputError("no log is to be fitted; give at least one")
-    _refuse_different([*fit, *confirm])
+    refuse_different([*fit, *confirm])
     given = values or {}
     every = [*fit, *confirm]
     own = [{**log.values, **given.get(log.name, {})} for log in every]
@@ -83,33 +81,3 @@ def _distinct(logs: Sequence[Log]) -> list[Log]:
             name = f"{log.name} ({k})"
         out.append(log if name == log.name else replace(log, name=name))
     return out
-
-
-def _refuse_different(logs: Sequence[Log]) -> None:
-    first = logs[0]
-    for k, log in enumerate(logs):
-        if any(_is_same(log, other) for other in logs[:k]):
-            raise InputError(
-                f"log {log.name!r} is given twice; a record counts once, and confirms nothing when"
-                " it was fitted: leave one of them out"
-            )
-        for what in ("input_names", "output_names", "hold"):
-            mine, others = getattr(log, what), getattr(first, what)
-            if mine != others:
-                raise InputError(
-                    f"log {log.name!r} has the {what.replace('_', ' ')} {mine} where"
-                    f" {first.name!r} has {others}; give records of one robot and one set of"
-                    " columns"
-                )
-        for other in logs[:k]:
-            if share_samples(log, other):
-                raise InputError(
-                    f"logs {log.name!r} and {other.name!r} hold the same samples; what was fitted"
-                    " confirms nothing, and what is given twice counts twice: give parts that do"
-                    " not overlap"
-                )
-
-
-def _is_same(a: Log, b: Log) -> bool:
-    """Whether two logs are one record, to the bit."""
-    return a is b or (np.array_equal(a.inputs, b.inputs) and np.array_equal(a.outputs, b.outputs))

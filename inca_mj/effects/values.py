@@ -18,10 +18,9 @@ from identification.effects.effect_parameters import effect_parameters
 from identification.effects.values import Values, is_present, numbers_at, table_at
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.paths import Slot
-from identification.model.predictor import Numbers
 from inca_mj.effects.hooks import THINGS, Platform
 from inca_mj.effects.layout import Layout
-from inca_mj.robot.geometry import DRIVES, Geometry
+from inca_mj.robot.geometry import Geometry
 
 _NOWHERE = Platform(
     **dict.fromkeys(Platform._fields, np.nan)
@@ -50,24 +49,27 @@ def present(effect: Effect, values: Mapping[str, float]) -> bool:
     return is_present(effect, THINGS, values)
 
 
-def numbers(layout: Layout, names: Sequence[str], own: Mapping[str, float], values: np.ndarray,
-            model: mujoco.MjModel, geometry: Geometry) -> Numbers:  # fmt: skip
-    """Model numbers of n value sets, for the effects that `names` touch.
+def numbers(
+    layout: Layout, names: Sequence[str], every: Values, model: mujoco.MjModel
+) -> Iterator[tuple[Slot, float | np.ndarray]]:
+    """Entries of the rows of drives and platform that some parameters of effects change.
 
     Args:
         layout: the effects and their columns.
-        names: parameters that differ from `own`, p of them.
-        own: values of all parameters.
-        values: shape (n, p).
+        names: the parameters.
+        every: values of all parameters, one or n of each.
         model: with the names of the robot.
-        geometry: its connectors, of which the centre of mass may move away.
     """
-    every, n = effect_values.merged(own, names, values), len(values)
-    changed = [
-        *_in_rows(layout, names, every, model),
-        *_connectors(layout, names, every, n, model, geometry),
-    ]
-    return [(slot, np.broadcast_to(column, n)) for slot, column in changed]
+    for i, thing in enumerate(THINGS):
+        for column, new in effect_values.changed_columns(
+            layout.effects, layout.on_drives, thing, names, every
+        ):
+            yield Slot("actuator_user", (i,), column), new
+    body = int(model.body("platform").id)
+    for column, new in effect_values.changed_columns(
+        layout.effects, layout.on_platform, "platform", names, every
+    ):
+        yield Slot("body_user", (body,), column), new
 
 
 def inputs(
@@ -83,38 +85,7 @@ def inputs(
     return effect_values.changed_inputs(effects, THINGS, every, held, timestep, len(values))
 
 
-def _in_rows(
-    layout: Layout, names: Sequence[str], every: Values, model: mujoco.MjModel
-) -> Iterator[tuple[Slot, float | np.ndarray]]:
-    """Entries of the rows of drives and platform that some parameters change."""
-    for i, thing in enumerate(THINGS):
-        for column, new in effect_values.changed_columns(
-            layout.effects, layout.on_drives, thing, names, every
-        ):
-            yield Slot("actuator_user", (i,), column), new
-    body = int(model.body("platform").id)
-    for column, new in effect_values.changed_columns(
-        layout.effects, layout.on_platform, "platform", names, every
-    ):
-        yield Slot("body_user", (body,), column), new
-
-
-def _connectors(
-    layout: Layout, names: Sequence[str], every: Values, n: int, model: mujoco.MjModel,
-    geometry: Geometry,
-) -> Iterator[tuple[Slot, np.ndarray]]:  # fmt: skip
-    """The connectors as seen from the centre of mass, where some parameters move it."""
-    touched = {name.partition(".")[0] for name in names}
-    if not any("centre" in e.hooks and e.name in touched for e in layout.effects):
-        return
-    centre = _centre_of_mass(layout.effects, every, n)
-    for k in range(DRIVES):
-        site = int(model.site(f"connector_{k + 1}").id)
-        for j in range(3):
-            yield Slot("site_pos", (site,), j), geometry.B[k, j] - centre[:, j]
-
-
-def _centre_of_mass(effects: Sequence[Effect], every: Values, n: int) -> np.ndarray:
+def centre_of_mass(effects: Sequence[Effect], every: Values, n: int) -> np.ndarray:
     """Where the effects put the centre of mass in n value sets, in body axes, shape (n, 3) [m]."""
     out = np.zeros((n, 3))
     for effect in (e for e in effects if "centre" in e.hooks):
@@ -129,7 +100,7 @@ def about_centre(
     geometry: Geometry, effects: Sequence[Effect], values: Mapping[str, float]
 ) -> Geometry:
     """The geometry with its connectors as seen from where the centre of mass is."""
-    (centre,) = _centre_of_mass(effects, values, 1)
+    (centre,) = centre_of_mass(effects, values, 1)
     if not centre.any():
         return geometry
     return replace(geometry, connectors=tuple(map(tuple, geometry.B - centre)))

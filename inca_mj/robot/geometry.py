@@ -7,6 +7,7 @@ and a 4 N pretension rests it at z = 1.43 m. A file of the user's own replaces t
 
 from __future__ import annotations
 
+import json
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from identification.errors import InputError
+from identification.files import write_text
 
 DRIVES = 8
 FARTHEST = 100.0  # a frame of more is one in another unit [m]
@@ -113,6 +115,20 @@ def geometry_of(record: Mapping[str, Any]) -> Geometry:
     """
     rows = {name: tuple(map(tuple, record[name])) for name in ("exits", "connectors")}
     return Geometry(**{**record, **rows})
+
+
+def write_geometry(geometry: Geometry, path: str | Path) -> Path:
+    """Write a geometry as TOML, exact to the last bit; `read_geometry` reads it.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    said = {"assumed": geometry.assumed, "source": geometry.source}
+    lines = [f"{name} = {json.dumps(value)}" for name, value in said.items()]
+    for name, about in (("exits", "exit points A in O"), ("connectors", "connectors B in P")):
+        rows = [f"  [{', '.join(repr(float(x)) for x in row)}]," for row in getattr(geometry, name)]
+        lines += ["", f"# {about} [m]", f"{name} = [", *rows, "]"]
+    return write_text(Path(path), "\n".join(lines) + "\n")
 
 
 def read_geometry(path: str | Path) -> Geometry:

@@ -23,6 +23,7 @@ from inca_mj.effects.layout import Layout
 from inca_mj.effects.values import drive_values, present
 from inca_mj.robot.geometry import DRIVES, Geometry
 from inca_mj.robot.kinematics import rotation
+from inca_mj.robot.spread import at_drives
 
 SECANTS = 12  # more than enough, because secant steps converge faster than linearly
 UNKNOWN = dict.fromkeys(Drive._fields, np.nan)
@@ -53,23 +54,23 @@ class Change:
 
     def strain(self, T: np.ndarray) -> np.ndarray:
         """ε(0) at tensions T, shape (8,)."""
-        lambda_ = self.values["lambda"]
-        one = np.ones(DRIVES)
-        strain, last, error = T / lambda_, 0 * one, -T
+        lambda_ = at_drives("lambda", self.values)
+        strain, last, error = T / lambda_, np.zeros(DRIVES), -T
         for _ in range(SECANTS if self.stiffening else 0):
             wrong = lambda_ * strain + self._added(strain) - T
             moved = (strain != last) & (wrong != error)
-            slope = np.divide(wrong - error, strain - last, where=moved, out=lambda_ * one)
+            slope = np.divide(wrong - error, strain - last, where=moved, out=lambda_.copy())
             last, error, strain = strain, wrong, strain - wrong / slope
         return strain
 
     def _added(self, strain: np.ndarray) -> np.ndarray:
         out = np.zeros(DRIVES)
+        R, lambda_ = at_drives("R", self.values), at_drives("lambda", self.values)
         for effect in self.stiffening:
             p = drive_values(effect, self.values)
             for k in range(DRIVES):
                 s = _drive(strain=strain[k], strain_rate=0.0, x=strain[k], d=self.d[k],
-                           R=self.values["R"], lambda_=self.values["lambda"])  # fmt: skip
+                           R=R[k], lambda_=lambda_[k])  # fmt: skip
                 out[k] += effect.hooks["tension"](s, tuple(p[:, k]))
         return out
 
@@ -91,11 +92,12 @@ def change_at_rest(
     R = rotation(*pose[3:])
     r = pose[:3] + geometry.B @ R.T - geometry.A
     way, load, wider = np.zeros((DRIVES, 4)), np.zeros(6), np.zeros(DRIVES)
+    radius = at_drives("R", values)
     for effect in there:
         p = drive_values(effect, values)
         for k in range(DRIVES):
             s = _drive(rx=r[k, 0], ry=r[k, 1], rz=r[k, 2], d=float(np.linalg.norm(r[k])),
-                       phi=0.0, omega=0.0, x=0.0, R=values["R"])  # fmt: skip
+                       phi=0.0, omega=0.0, x=0.0, R=radius[k])  # fmt: skip
             if "path" in effect.hooks:
                 way[k] += effect.hooks["path"](s, tuple(p[:, k]))
             if "force" in effect.hooks:

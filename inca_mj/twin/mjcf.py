@@ -23,6 +23,7 @@ from inca_mj.robot import law
 from inca_mj.robot.geometry import DRIVES, Geometry
 from inca_mj.robot.kinematics import quaternion
 from inca_mj.robot.parameters import GRAVITY
+from inca_mj.robot.spread import EACH_DRIVE, at_drives, displaced
 from inca_mj.twin.appearance import dress_drum, dress_platform, dress_world
 from inca_mj.twin.statics import activations, start
 
@@ -88,9 +89,10 @@ def _platform(
     body.add_freejoint(name="platform")
     _weigh(body, p["m"], [p["I_x"], p["I_y"], p["I_z"]])
     body.add_site(name="platform", pos=[0, 0, 0], size=[0.004, 0.004, 0.004])
-    for k, connector in enumerate(about_centre(geometry, layout.effects, p).connectors, 1):
+    placed = displaced(geometry, p)
+    for k, connector in enumerate(about_centre(placed, layout.effects, p).connectors, 1):
         body.add_site(name=f"connector_{k}", pos=connector, size=[0.006, 0.006, 0.006])
-    dress_platform(body, geometry)
+    dress_platform(body, placed)
     by_name = {effect.name: effect for effect in layout.effects}
     body.userdata = np.concatenate(
         [np.zeros(0), *(drive_values(by_name[t.effect], p)[:, 0] for t in layout.on_platform)]
@@ -124,7 +126,8 @@ def _drive(
 ) -> None:
     """Drum, motor, cable and current actuator of drive k."""
     p = parameters.values()
-    exit_point = np.array(geometry.exits[k - 1])
+    own = {name: float(at_drives(name, p)[k - 1]) for name in EACH_DRIVE}
+    exit_point = np.array(displaced(geometry, p).exits[k - 1])
     spec.worldbody.add_site(name=f"exit_{k}", pos=exit_point, size=[0.012, 0.012, 0.012])
 
     # The roller turns beside the exit point. Its position is only drawn; its inertia is J.
@@ -137,8 +140,8 @@ def _drive(
         name=f"motor_{k}",
         type=mujoco.mjtJoint.mjJNT_HINGE,
         axis=axis,
-        armature=p["J"],
-        damping=p["b_v"],
+        armature=own["J"],
+        damping=own["b_v"],
     )
     dress_drum(drum, axis)
 
@@ -146,7 +149,7 @@ def _drive(
     cable.wrap_site(f"exit_{k}")
     cable.wrap_site(f"connector_{k}")
     cable_row = np.zeros(law.TENDON_COLUMNS)
-    cable_row[[law.TENDON_TAG, law.LAMBDA, law.B]] = law.TAG, p["lambda"], p["b"]
+    cable_row[[law.TENDON_TAG, law.LAMBDA, law.B]] = law.TAG, own["lambda"], own["b"]
     cable.userdata = cable_row
 
     row = np.zeros(layout.actuator_columns)
@@ -156,14 +159,14 @@ def _drive(
         values = drive_values(by_name[term.effect], p)[:, k - 1]
         row[term.column : term.column + len(values)] = values
     row[law.ACTUATOR_TAG], row[law.CABLE] = law.TAG, k - 1
-    row[[law.R, law.R_S, law.K_S]] = p["R"], p["R_s"], p["k_s"]
-    row[[law.B_C, law.BETA]] = p["b_c"], p["beta"]
+    row[[law.R, law.R_S, law.K_S]] = own["R"], own["R_s"], own["k_s"]
+    row[[law.B_C, law.BETA]] = own["b_c"], own["beta"]
     row[law.T_0] = start(parameters, geometry, layout).balance[k - 1]
     spec.add_actuator(
         name=f"current_{k}",
         target=f"motor_{k}",
         trntype=mujoco.mjtTrn.mjTRN_JOINT,
-        gear=[p["K_t"], 0, 0, 0, 0, 0],
+        gear=[own["K_t"], 0, 0, 0, 0, 0],
         dyntype=mujoco.mjtDyn.mjDYN_USER,  # activation: the no-load length d₀
         actdim=layout.states,
         gaintype=mujoco.mjtGain.mjGAIN_FIXED,

@@ -24,6 +24,7 @@ from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.effects.values import records
 from inca_mj.robot.geometry import geometry_of
 from inca_mj.robot.parameters import parameter_set
+from inca_mj.robot.spread import with_spread
 from inca_mj.twin.twin import Twin, build_twin
 
 _ARRAYS = (
@@ -141,6 +142,8 @@ def _known(
 
 def _parameters(name: str, values: dict[str, float], effects: Sequence[Effect]) -> ParameterSet:
     base = parameter_set(name)
+    if any("@" in value and "." not in value for value in values):
+        base = with_spread(base)
     known: tuple[Parameter, ...] = (*base.records, *records(effects))
     return replace(base, records=known).with_values(values)
 

@@ -22,6 +22,7 @@ from inca_mj.effects.values import about_centre
 from inca_mj.robot.geometry import Geometry
 from inca_mj.robot.kinematics import cables, length_jacobian, rotation
 from inca_mj.robot.parameters import GRAVITY, PRETENSION
+from inca_mj.robot.spread import at_drives, displaced
 from inca_mj.twin.at_rest import Change, change_at_rest, own_states
 
 NO_EFFECTS = Layout()
@@ -105,16 +106,17 @@ def start_from(
 ) -> Start:
     """`start` from plain values by name, in SI units, with the changes by candidate effects."""
     pose = np.array([values[name] for name in ("x", "y", "z", "roll", "pitch", "yaw")])
-    moved = about_centre(geometry, layout.effects, values)
+    placed, λ = displaced(geometry, values), at_drives("lambda", values)
+    moved = about_centre(placed, layout.effects, values)
     change = change_at_rest(values, pose, moved, layout)
-    T = pretension(pose, moved if layout.settled else geometry, values["m"], change)
+    T = pretension(pose, moved if layout.settled else placed, values["m"], change)
     d, _ = cables(pose[:3], rotation(*pose[3:]), moved)
-    strain, balance = T / values["lambda"], T
-    d_0 = values["lambda"] * d / (values["lambda"] + T)
+    strain, balance = T / λ, T
+    d_0 = λ * d / (λ + T)
     if change is not None:
         strain = change.strain(T)
         d_0 = (d + change.longer) / (1 + strain)
-        balance = T * (1 + change.wider / values["R"])
+        balance = T * (1 + change.wider / at_drives("R", values))
     return Start(
         pose=pose,
         tension=T,

@@ -12,14 +12,14 @@ import mujoco
 import numpy as np
 
 from identification.effects.effect import Effect
+from identification.effects.values import merged
 from identification.model.export import write_xml
 from identification.model.parameter import ParameterSet
-from identification.model.paths import Slot, resolve, write
+from identification.model.paths import Slot, write
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
 from inca_mj.effects.layout import Layout
 from inca_mj.effects.values import inputs as effect_inputs
-from inca_mj.effects.values import numbers as effect_numbers
 from inca_mj.effects.values import with_effects
 from inca_mj.robot import law
 from inca_mj.robot.geometry import INCA, Geometry
@@ -27,6 +27,7 @@ from inca_mj.robot.kinematics import quaternion
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin import native
 from inca_mj.twin.mjcf import TIMESTEP, build, check_inertia
+from inca_mj.twin.numbers import model_numbers
 from inca_mj.twin.statics import Start, activations, start, start_from
 
 
@@ -101,15 +102,15 @@ class Twin:
             for row in values
         ]
         balance = np.array([begin.balance for begin in starts])
+        for name in names:
+            self.parameters[name]
         numbers = [
-            (resolve(self.model, self.parameters[name].where), column)
-            for name, column in zip(names, values.T, strict=True)
-            if self.parameters[name].where not in ("start", "effect")
-        ]
-        numbers += effect_numbers(self.layout, names, own, values, self.model, self.geometry)
-        numbers += [
-            (Slot("actuator_user", (i,), law.T_0), column) for i, column in enumerate(balance.T)
-        ]
+            *model_numbers(
+                self.model, self.parameters, self.geometry, self.layout, names,
+                merged(own, names, values), len(values),
+            ),
+            *((Slot("actuator_user", (i,), law.T_0), T) for i, T in enumerate(balance.T)),
+        ]  # fmt: skip
         states = [start_state(begin) for begin in starts]
         rows = (np.array([getattr(s, field) for s in states]) for field in ("qpos", "qvel", "act"))
         return State(*rows), numbers
@@ -181,12 +182,9 @@ def write_values(
     model: mujoco.MjModel, parameters: ParameterSet, geometry: Geometry, layout: Layout
 ) -> None:
     """Write all model parameters into mjModel, in place; `Twin` writes those of the start."""
-    for parameter in parameters:
-        if parameter.where not in ("start", "effect"):
-            write(model, resolve(model, parameter.where), parameter.value)
     own = parameters.values()
-    for slot, column in effect_numbers(layout, tuple(own), own, np.array([[*own.values()]]),
-                                       model, geometry):  # fmt: skip
+    every = merged(own, tuple(own), np.array([[*own.values()]]))
+    for slot, column in model_numbers(model, parameters, geometry, layout, tuple(own), every, 1):
         write(model, slot, float(column[0]))
 
 

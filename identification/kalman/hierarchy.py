@@ -1,0 +1,54 @@
+"""How much the parts of a robot scatter: the std of a group's prior, from the data.
+
+    x = q - q̄,   x_j ~ N(0, s_g²) for the j of a group g
+    V = (FᵀF + S⁻²)⁻¹,   x̂ = V Fᵀ y,   s_g² ← mean over j of (x̂_j² + V_jj)          (EM)
+
+F and y are the whitened sensitivities and the residual about a fit. The s that this ends at makes
+the data most likely where x is integrated out (type-II maximum likelihood: MacKay 1992; Tipping
+2001). The table's s is the largest that is believed: what deviates farther is an effect, and no
+scatter. Where the parts are alike s falls towards zero, and their deviations are free of charge.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from identification.kalman.problem import linearise_criterion
+from identification.kalman.refit import Refit
+
+ROUNDS = 200  # of EM, each of which costs one inverse of FᵀF
+ENDED = 1e-3  # relative change of every s below which EM ends
+LEAST = 1e-2  # of the table's s: below it a deviation moves nothing that a log would show
+
+
+def estimate_scatter(fit: Refit, groups: Mapping[str, Sequence[str]]) -> dict[str, float]:
+    """The std of each group's prior that makes the fitted data most likely, by group.
+
+    Args:
+        fit: a fit under the table's std.
+        groups: names of free parameters that share one std.
+    """
+    point = fit.point
+    places = {g: [point.space.names.index(n) for n in names] for g, names in groups.items()}
+    table = {g: 1 / fit.prior[at[0]] for g, at in places.items()}
+    problem = linearise_criterion(point, fit.level, fit.mean, fit.prior)
+    F, y = problem.rows[: point.e.size], problem.target[: point.e.size]
+    x = point.q - fit.mean
+    H, b = F.T @ F, F.T @ (y + F @ x)
+    prior, s = fit.prior.copy(), dict(table)
+    for _ in range(ROUNDS):
+        V = np.linalg.inv(H + np.diag(prior**2))
+        power = (V @ b) ** 2 + np.diag(V)
+        new = {
+            g: float(np.clip(np.sqrt(power[at].mean()), LEAST * table[g], table[g]))
+            for g, at in places.items()
+        }
+        moved = max((abs(new[g] / s[g] - 1) for g in new), default=0.0)
+        s = new
+        for g, at in places.items():
+            prior[at] = 1 / s[g]
+        if moved < ENDED:
+            break
+    return s

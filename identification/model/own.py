@@ -1,0 +1,67 @@
+"""Parameters of which each record of a joined log has a value of its own, such as its start.
+
+NAME        of the first record
+NAME [k]    of record k
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from identification.model.parameter import ParameterSet
+
+RECORD = "record"  # `Parameter.where` of a value that one record alone has
+_OWN = re.compile(r"(?P<name>.+) \[(?P<number>\d+)\]")
+
+
+def own_name(name: str, number: int) -> str:
+    """Name of a parameter's value in a record, whose number is counted from 1."""
+    return name if number == 1 else f"{name} [{number}]"
+
+
+def with_own(parameters: ParameterSet, names: Sequence[str], records: int) -> ParameterSet:
+    """Parameters of a robot with own values of each record, where they do not have them yet.
+
+    Args:
+        parameters: the set.
+        names: those of which each record has its own value.
+        records: how many records there are.
+
+    Raises:
+        InputError: a name is unknown.
+    """
+    known = {p.name for p in parameters}
+    new = [
+        replace(parameters[name], name=own_name(name, k), where=RECORD, ties=())
+        for k in range(2, records + 1)
+        for name in names
+    ]
+    return replace(
+        parameters, records=(*parameters.records, *(p for p in new if p.name not in known))
+    )
+
+
+def of_record(names: Sequence[str], number: int) -> dict[str, int]:
+    """What a record sees: names of parameters as its plant knows them, and their columns.
+
+    Args:
+        names: of all records' parameters, one a column.
+        number: of the record.
+    """
+    seen: dict[str, int] = {}
+    mine: dict[str, int] = {}
+    for column, name in enumerate(names):
+        own = _OWN.fullmatch(name)
+        if own is None:
+            seen[name] = column
+        elif int(own["number"]) == number:
+            mine[own["name"]] = column
+    return {**seen, **mine}
+
+
+def values_of_record(values: Mapping[str, float], number: int) -> dict[str, float]:
+    """The values that a record sees, by names as its plant knows them."""
+    names = [*values]
+    return {name: values[names[column]] for name, column in of_record(names, number).items()}

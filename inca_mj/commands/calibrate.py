@@ -1,0 +1,122 @@
+"""inca calibrate LOG...: the values of every drive and the place of every point, from logs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from identification.commands.common import (
+    Output,
+    conclude,
+    note,
+    output_field,
+    refuse_folder,
+    table,
+)
+from inca_mj.commands.common import Values, do_not_draw, values_field
+
+if TYPE_CHECKING:
+    from inca_mj.workflows.calibration import Calibration
+
+FILES = "The calibrated robot is in model.xml and effects.json; inca_mj.load_twin reads them."
+
+GAPS = ("record", "role", "alike", "calibrated")
+COMMON = ("parameter", "nominal", "common value")
+POINTS = ("point", "x", "y", "z")
+
+
+@dataclass(frozen=True)
+class Calibrate:
+    """Calibrate drives, geometry and platform from logs, and tell what the logs cannot say."""
+
+    log: Annotated[tuple[Path, ...], tyro.conf.Positional]
+    """Logs of one robot; without --confirm the second half of each is kept unseen."""
+    confirm: Annotated[
+        tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")
+    ] = ()
+    """Logs of which only the start pose is fitted; the flag may be given again."""
+    spread: str = "usual"
+    """How much drives and points usually differ: usual, or a TOML file (models/inca6d_spread.toml
+    shows one)."""
+    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+
+    def run(self) -> int:
+        """Calibrate, say, keep."""
+        do_not_draw()
+        from identification.errors import InputError
+        from inca_mj.report.calibration import calibration_json
+        from inca_mj.twin.logs import read_inca_log
+        from inca_mj.workflows.calibration import calibrate
+        from inca_mj.workflows.spread import spread_of
+
+        if not self.log:
+            raise InputError("no log is given; write inca calibrate LOG...")
+        unseen = [path for paths in self.confirm for path in paths]
+        logs, confirm = ([read_inca_log(path) for path in paths] for paths in (self.log, unseen))
+        spread, parameters, place = (
+            spread_of(self.spread), self.robot.parameters(), self.robot.place()
+        )  # fmt: skip
+        refuse_folder(self.output.out)
+        found = calibrate(
+            logs, parameters, place, confirm=confirm, spread=spread, progress=note
+        )  # fmt: skip
+        conclude(self, calibration_json(found), text(found), lambda out: keep(found, out))
+        return 0
+
+
+def text(found: Calibration) -> str:
+    """The calibration for a terminal."""
+    from inca_mj.report import calibration as told
+
+    parts = [
+        "\n".join(told.calibration_verdict(found)),
+        table(GAPS, told.gap_rows(found)),
+        table(COMMON, told.common_rows(found)),
+        "deviation of each drive [%]\n"
+        + table(("drive", *found.spread.drives), told.drive_rows(found)),
+    ]
+    if found.spread.points:
+        parts.append("displacement [mm]\n" + table(POINTS, told.point_rows(found)))
+    return "\n\n".join(parts)
+
+
+def keep(found: Calibration, out: Path) -> None:
+    """Write the twin, its geometry, figures and the report into a folder."""
+    from identification.report.page import Section, Table, write_report
+    from identification.report.style import save_png
+    from inca_mj.report import calibration as told
+    from inca_mj.report.calibration_figures import drives_figure, points_figure
+    from inca_mj.robot.geometry import write_geometry
+    from inca_mj.twin.saved import save_twin
+
+    save_twin(found.robot, out)
+    write_geometry(found.robot.geometry, out / "geometry.toml")
+    figures = {f"{point}_points": points_figure(found, point) for point in found.spread.points}
+    if found.spread.drives:
+        figures["drives"] = drives_figure(found)
+    for name, figure in figures.items():
+        save_png(figure, out / f"{name}.png")
+    captions = tuple((name.replace("_", " "), figure) for name, figure in figures.items())
+    gaps, common, drives, points = (
+        tuple(rows(found))
+        for rows in (told.gap_rows, told.common_rows, told.drive_rows, told.point_rows)
+    )
+    sections = [
+        Section(
+            "Records", "Free runs over samples that no fit of physical values has seen.",
+            table=Table(GAPS, gaps),
+        ),
+        Section("Common values", table=Table(COMMON, common)),
+        Section("Drives and points", figures=captions),
+        Section(
+            "Deviation of each drive [%]", table=Table(("drive", *found.spread.drives), drives)
+        ),
+        Section("Displacement of each point [mm]", table=Table(POINTS, points)),
+    ]  # fmt: skip
+    write_report(
+        out / "report.html", "Calibration", told.calibration_verdict(found), sections, footer=FILES
+    )

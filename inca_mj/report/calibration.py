@@ -1,0 +1,160 @@
+"""What a calibration found: sentences, tables, and plain values for JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from identification.quantities import alike, quantity
+from inca_mj.robot.geometry import DRIVES
+from inca_mj.robot.spread import AXES, EACH_DRIVE, POINTS
+from inca_mj.twin.logs import POSE
+from inca_mj.workflows.calibration import Calibration
+from inca_mj.workflows.spread import INERTIAS
+
+TOLD = 0.8  # a group whose deviations keep more than this share of their prior std is not told
+ALIKE = 0.1  # parts that scatter less than this share of what is usual are alike
+_WORDS = {
+    "R": "roller radius", "R_s": "spring drum radius", "k_s": "drum spring",
+    "lambda": "cable elasticity", "b": "cable damping", "J": "motor inertia",
+    "b_v": "viscous friction", "b_c": "Coulomb friction", "beta": "friction smoothness",
+    "K_t": "torque constant", "exit": "exit points", "connector": "connectors",
+}  # fmt: skip
+
+
+def calibration_verdict(found: Calibration) -> list[str]:
+    """What the calibration means, in sentences."""
+    n, length = len(found.logs), sum(log.duration for log in found.logs)
+    records = "one record" if n == 1 else f"{n} records"
+    before, after = (
+        float(np.sqrt(np.mean([getattr(gap, when) ** 2 for gap in found.unseen])))
+        for when in ("before", "after")
+    )
+    was, now = alike([before, after], "rad")
+    said = [
+        f"Calibrated from {records}, {length:.0f} s in all. Free runs over unseen samples are off"
+        f" by {now} rms; with all drives alike and all points as drawn it was {was}."
+    ]
+    if after >= before:
+        said.append(
+            "The calibration predicts no better than drives that are alike and points as drawn: do"
+            " not use it. Record longer, or with inputs that move the platform farther."
+        )
+    usual = {**found.spread.drives, **found.spread.points}
+    same = [_WORDS[g] for g, s in found.scatter.items() if s < ALIKE * usual[g]]
+    if same:
+        said.append(f"All parts are alike in: {', '.join(same)}.")
+    unknown = untold(found)
+    if unknown:
+        said.append(
+            "The records do not tell the single deviations of: "
+            + ", ".join(_WORDS[g] for g in unknown)
+            + ". What is said of them is what is usual."
+        )
+    if "exit" in found.spread.points:
+        own, together = point_std(found, "exit")
+        said.append(
+            f"Exit points are known to {1e3 * own:.2g} mm rms relative to one another, and to"
+            f" {1e3 * together:.2g} mm rms in the frame: no angle of a motor tells where the frame"
+            " as a whole stands."
+        )
+    return said
+
+
+def untold(found: Calibration) -> tuple[str, ...]:
+    """Groups of which the records do not tell the single deviations."""
+    out = []
+    for group, names in found.spread.groups.items():
+        left = np.mean([found.std[name] ** 2 for name in names]) / found.scatter[group] ** 2
+        usual = {**found.spread.drives, **found.spread.points}[group]
+        if left > TOLD**2 and found.scatter[group] >= ALIKE * usual:
+            out.append(group)
+    return tuple(out)
+
+
+def point_std(found: Calibration, point: str) -> tuple[float, float]:
+    """Rms std of points relative to one another, and in the frame [m].
+
+    Relative to one another: without the translations and turns of all of them together.
+    """
+    names = [f"{point}_{axis}@{k}" for k in range(1, DRIVES + 1) for axis in AXES]
+    at = [found.fit.point.space.names.index(name) for name in names]
+    C = found.covariance[np.ix_(at, at)]
+    places = found.robot.geometry.A if point == "exit" else found.robot.geometry.B
+    turns = [np.cross(axis, places - places.mean(axis=0)).ravel() for axis in np.eye(3)]
+    shifts = [np.tile(axis, DRIVES) for axis in np.eye(3)]
+    Q = np.linalg.qr(np.array([*shifts, *turns]).T)[0]
+    P = np.eye(len(names)) - Q @ Q.T
+    return float(np.sqrt(np.trace(P @ C @ P) / len(C))), float(np.sqrt(np.trace(C) / len(C)))
+
+
+def common_rows(found: Calibration) -> list[tuple[str, str, str]]:
+    """Common values: name, nominal value, value with std."""
+    parameters, nominal = found.robot.parameters, found.fit.point.predictor.plant.parameters
+    names = [n for n in (*EACH_DRIVE, "m", *INERTIAS, *POSE) if n in found.std]
+    return [
+        (n, quantity(nominal[n].value, 0.0, nominal[n].unit),
+         quantity(parameters[n].value, found.std[n], parameters[n].unit))
+        for n in names
+    ]  # fmt: skip
+
+
+def drive_rows(found: Calibration) -> list[tuple[str, ...]]:
+    """Deviations of the drives: the drive, then the deviation of each parameter [%]."""
+    return [
+        (str(k), *(_percent(found, f"{name}@{k}") for name in found.spread.drives))
+        for k in range(1, DRIVES + 1)
+    ]
+
+
+def point_rows(found: Calibration) -> list[tuple[str, ...]]:
+    """Displacements: the point, then x, y, z [mm]."""
+    return [
+        (f"{point} {k}", *(_millimetres(found, f"{point}_{axis}@{k}") for axis in AXES))
+        for point in POINTS
+        if point in found.spread.points
+        for k in range(1, DRIVES + 1)
+    ]
+
+
+def gap_rows(found: Calibration) -> list[tuple[str, ...]]:
+    """Records: name, role, and the gap on unseen samples before and after."""
+    return [(g.name, g.role, *alike([g.before, g.after], "rad")) for g in found.unseen]
+
+
+def calibration_json(found: Calibration) -> dict[str, Any]:
+    """The calibration as plain values."""
+    parameters, values, std = found.robot.parameters, found.values, found.std
+
+    def row(name: str, unit: str) -> dict[str, Any]:
+        return {"value": values[name], "std": std[name], "unit": unit}
+
+    common = [n for n in (*EACH_DRIVE, "m", *INERTIAS, *POSE) if n in std]
+    return {
+        "verdict": calibration_verdict(found),
+        "parameters": {n: row(n, parameters[n].unit) for n in common},
+        "drives": _by_place(found.spread.drives, row, ""),
+        "points": _by_place([f"{p}_{a}" for p in found.spread.points for a in AXES], row, "m"),
+        "scatter": dict(found.scatter),
+        "not_told": list(untold(found)),
+        "exits": found.robot.geometry.A.tolist(),
+        "connectors": found.robot.geometry.B.tolist(),
+        "records": [vars(gap) for gap in found.unseen],
+        "noise_rms": found.fit.level.sigma,
+        "input_error_rms": found.fit.level.input_std,
+        "seconds": found.seconds,
+    }
+
+
+def _by_place(names: Any, row: Any, unit: str) -> dict[str, list[Mapping[str, Any]]]:
+    return {n: [row(f"{n}@{k}", unit) for k in range(1, DRIVES + 1)] for n in names}
+
+
+def _percent(found: Calibration, name: str) -> str:
+    return f"{100 * found.values[name]:+.1f} ± {100 * found.std[name]:.1f}"
+
+
+def _millimetres(found: Calibration, name: str) -> str:
+    return f"{1e3 * found.values[name]:+.2f} ± {1e3 * found.std[name]:.2f}"

@@ -1,0 +1,95 @@
+"""Entries of mjModel that follow from the robot's parameters, for n value sets at once.
+
+a drive k gets      value (1 + δ_k)
+an exit point       A_k + its displacement
+a connector         B_k + its displacement - the centre of mass
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import mujoco
+import numpy as np
+
+from identification.effects.values import Values
+from identification.model.parameter import ParameterSet
+from identification.model.paths import Slot, resolve
+from identification.model.predictor import Numbers
+from inca_mj.effects.layout import Layout
+from inca_mj.effects.values import centre_of_mass
+from inca_mj.effects.values import numbers as effect_numbers
+from inca_mj.robot.geometry import DRIVES, Geometry
+from inca_mj.robot.spread import AXES
+
+Entries = Iterator[tuple[Slot, float | np.ndarray]]
+
+
+def model_numbers(
+    model: mujoco.MjModel, parameters: ParameterSet, geometry: Geometry, layout: Layout,
+    names: Sequence[str], every: Values, n: int,
+) -> Numbers:  # fmt: skip
+    """The entries of the model that some parameters change.
+
+    Args:
+        model: with the names of the robot.
+        parameters: of the robot.
+        geometry: its nominal points.
+        layout: its effects and their columns.
+        names: the parameters that change.
+        every: values of all parameters, one or n of each.
+        n: how many value sets.
+    """
+    changed = [
+        *_in_paths(model, parameters, names, every),
+        *_exits(model, geometry, names, every),
+        *_connectors(model, geometry, layout, names, every, n),
+        *effect_numbers(layout, names, every, model),
+    ]
+    return [(slot, np.broadcast_to(column, n)) for slot, column in changed]
+
+
+def _in_paths(
+    model: mujoco.MjModel, parameters: ParameterSet, names: Sequence[str], every: Values
+) -> Entries:
+    """Parameters that stand in the model, at each drive by itself where they differ."""
+    touched = {name.partition("@")[0] for name in names}
+    for parameter in parameters:
+        name = parameter.name
+        if name not in touched or "/" not in parameter.where:
+            continue
+        slot, value = resolve(model, parameter.where), every[name]
+        if f"{name}@1" not in every:
+            yield slot, value
+            continue
+        for k, row in enumerate(slot.rows, 1):
+            yield Slot(slot.field, (row,), slot.column), value * (1 + every[f"{name}@{k}"])
+
+
+def _exits(
+    model: mujoco.MjModel, geometry: Geometry, names: Sequence[str], every: Values
+) -> Entries:
+    """The exit points that some parameters displace."""
+    for k in range(DRIVES):
+        for j, axis in enumerate(AXES):
+            name = f"exit_{axis}@{k + 1}"
+            if name in names:
+                site = int(model.site(f"exit_{k + 1}").id)
+                yield Slot("site_pos", (site,), j), geometry.A[k, j] + every[name]
+
+
+def _connectors(
+    model: mujoco.MjModel, geometry: Geometry, layout: Layout, names: Sequence[str],
+    every: Values, n: int,
+) -> Entries:  # fmt: skip
+    """The connectors as seen from the centre of mass, where some parameters move them or it."""
+    touched = {name.partition(".")[0] for name in names}
+    moves_centre = any("centre" in e.hooks and e.name in touched for e in layout.effects)
+    centre = centre_of_mass(layout.effects, every, n)
+    for k in range(DRIVES):
+        for j, axis in enumerate(AXES):
+            name = f"connector_{axis}@{k + 1}"
+            if moves_centre or name in names:
+                site = int(model.site(f"connector_{k + 1}").id)
+                own = every.get(name, 0.0) - centre[:, j]
+                yield Slot("site_pos", (site,), j), geometry.B[k, j] + own
