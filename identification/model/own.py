@@ -10,9 +10,8 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from identification.model.parameter import ParameterSet
+from identification.model.parameter import RECORD, ParameterSet
 
-RECORD = "record"  # `Parameter.where` of a value that one record alone has
 _OWN = re.compile(r"(?P<name>.+) \[(?P<number>\d+)\]")
 
 

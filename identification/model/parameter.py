@@ -8,6 +8,8 @@ from math import inf, isfinite
 
 from identification.errors import InputError, repeated, unknown_name
 
+RECORD = "record"  # where a value goes that one record of a joined log has for itself
+
 
 @dataclass(frozen=True, kw_only=True)
 class Parameter:
@@ -17,8 +19,8 @@ class Parameter:
         name: canonical name, as in JSON, TOML and on the command line.
         value: value in `unit`.
         unit: SI unit, "" when dimensionless.
-        where: path in the MuJoCo model (see `identification.model.paths`), or "start" for an
-            initial condition.
+        where: path in the MuJoCo model (see `identification.model.paths`), "start" for an initial
+            condition, or "record" for the value of one record (see `identification.model.own`).
         lower: smallest admissible value [unit].
         upper: largest admissible value [unit].
         symbol: letter in the equations; `name` when not given.
@@ -66,7 +68,7 @@ class Parameter:
     @property
     def places(self) -> tuple[tuple[str, float], ...]:
         """Every path that it writes, with its factor: `where` with factor 1, then the ties."""
-        return ((self.where, 1.0), *self.ties)
+        return () if self.where == RECORD else ((self.where, 1.0), *self.ties)
 
 
 @dataclass(frozen=True)

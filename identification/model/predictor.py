@@ -18,7 +18,7 @@ import numpy as np
 from identification.errors import InputError, unknown_name
 from identification.logs.joined import JoinedLog, records_of
 from identification.logs.log import Log
-from identification.model.own import of_record, values_of_record
+from identification.model.own import of_record
 from identification.model.protocol import Numbers as Numbers
 from identification.model.protocol import Plant as Plant
 from identification.model.protocol import with_states as with_states
@@ -85,10 +85,13 @@ class Predictor:
         """A predictor of each record of the log, and the columns of values that it takes."""
         if not isinstance(self.log, JoinedLog):
             return ((self, [*range(len(self.names))]),)
+        given = {n: v for n, v in self.fixed.items() if n not in self.names}
         out = []
         for number, log in records_of(self.log):
-            seen = of_record(self.names, number)
-            fixed = values_of_record(self.fixed, number)
+            columns = of_record((*self.names, *given), number)
+            seen = {name: k for name, k in columns.items() if k < len(self.names)}
+            known = [*given.values()]
+            fixed = {n: known[k - len(self.names)] for n, k in columns.items() if n not in seen}
             out.append((replace(self, log=log, names=tuple(seen), fixed=fixed), [*seen.values()]))
         return tuple(out)
 

@@ -92,7 +92,7 @@ def _platform(
     placed = displaced(geometry, p)
     for k, connector in enumerate(about_centre(placed, layout.effects, p).connectors, 1):
         body.add_site(name=f"connector_{k}", pos=connector, size=[0.006, 0.006, 0.006])
-    dress_platform(body, placed)
+    dress_platform(body, geometry)
     by_name = {effect.name: effect for effect in layout.effects}
     body.userdata = np.concatenate(
         [np.zeros(0), *(drive_values(by_name[t.effect], p)[:, 0] for t in layout.on_platform)]
@@ -127,10 +127,11 @@ def _drive(
     """Drum, motor, cable and current actuator of drive k."""
     p = parameters.values()
     own = {name: float(at_drives(name, p)[k - 1]) for name in EACH_DRIVE}
-    exit_point = np.array(displaced(geometry, p).exits[k - 1])
-    spec.worldbody.add_site(name=f"exit_{k}", pos=exit_point, size=[0.012, 0.012, 0.012])
+    exit_point = np.array(geometry.exits[k - 1])
+    placed = displaced(geometry, p).exits[k - 1]
+    spec.worldbody.add_site(name=f"exit_{k}", pos=placed, size=[0.012, 0.012, 0.012])
 
-    # The roller turns beside the exit point. Its position is only drawn; its inertia is J.
+    # The roller turns beside the nominal exit point, where it is only drawn; its inertia is J.
     outward = np.array([exit_point[0], exit_point[1], 0.0])
     outward = outward / np.linalg.norm(outward) if outward.any() else np.array([1.0, 0.0, 0.0])
     drum = spec.worldbody.add_body(name=f"drum_{k}", pos=exit_point + 0.08 * outward)

@@ -20,8 +20,8 @@ import numpy as np
 from identification import Log
 from identification.errors import InputError
 from identification.logs.joined import join_logs
-from identification.model.own import RECORD, own_name, values_of_record, with_own
-from identification.model.parameter import ParameterSet
+from identification.model.own import own_name, values_of_record, with_own
+from identification.model.parameter import RECORD, ParameterSet
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import POINT, displaced, with_spread

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from mujoco.batch import Batch
-from twin_cases import differing, laws, moving
+from twin_cases import UNREAD, differing, laws, moving
 
 from identification.model.paths import resolve
 from identification.model.rollout import rollout
@@ -17,10 +17,6 @@ from inca_mj.twin.twin import build_twin
 
 NOMINAL = build_twin()
 START = {"x": 0.03, "y": -0.02, "z": 1.45, "roll": 0.05, "pitch": 0.02, "yaw": -0.1}
-
-# Where a free body stands and how long its cables are when the model was compiled: the state
-# replaces the first, and springs of zero stiffness do not read the second.
-UNREAD = {"body_pos", "body_quat", "qpos_spring", "tendon_lengthspring"}
 
 
 @settings(deadline=None, max_examples=10)
