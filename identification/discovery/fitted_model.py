@@ -42,7 +42,7 @@ class FittedModel:
     @property
     def innovations(self) -> np.ndarray:
         """Innovations of the fitted samples, in units of σ, shape (n, ny)."""
-        return self.validation.innovations[: len(self.refit.point.log)]
+        return self.validation.innovations[self.validation.seen]
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ from identification.estimation.metrics import fit_percent
 from identification.kalman.noise_model import Whitener, build_whitener
 from identification.kalman.point import extend_point
 from identification.kalman.refit import Refit
+from identification.logs.joined import rows_of
 from identification.logs.log import Log
 
 SHORTEST = 5  # samples of a block at least
@@ -31,7 +32,7 @@ SHORTEST = 5  # samples of a block at least
 
 @dataclass(frozen=True, kw_only=True)
 class Validation:
-    """The prediction of a whole log by a model that was fitted on its beginning.
+    """The prediction of a whole log by a model that was fitted on a part of it.
 
     Attributes:
         refit: the fit.
@@ -39,7 +40,7 @@ class Validation:
         e: residual of the free run, shape (N, ny).
         innovations: whitened residual in units of σ, shape (N, ny).
         filter: the whitening filter.
-        first: index of the first unseen sample.
+        seen: true for the samples that were fitted, shape (N,).
         disturbance: rms of what input errors do to the judged error, in the outputs' unit.
         measured: outputs of the unseen samples that are judged, shape (n, ny).
         judged: their error, of the free run or of the windows, shape (n, ny).
@@ -50,7 +51,7 @@ class Validation:
     e: np.ndarray
     innovations: np.ndarray
     filter: Whitener
-    first: int
+    seen: np.ndarray
     disturbance: float
     measured: np.ndarray
     judged: np.ndarray
@@ -70,23 +71,24 @@ def validate(fit: Refit, log: Log) -> Validation:
     """Predict a whole log with a fit.
 
     Args:
-        fit: of the beginning of the log.
+        fit: of the log's part `estimation`.
         log: the whole log.
 
     Raises:
         DivergenceError: the model cannot be simulated over the whole log.
     """
     point = extend_point(fit.point, log)
-    first = len(fit.point.log)
+    seen = rows_of(log, "estimation")
     with threadpool_limits(1, "blas"):
         filter_ = build_whitener(point.linear, fit.level.noise, log.sampling_time)
         E = filter_(point.e) / fit.level.sigma
         nu, ratio = point.linear.B.shape[2], fit.level.noise.ratio
-        measured, judged = log.outputs[first:], point.e[first:]
-        moved = propagate_input_error(filter_.A, filter_.C, ratio, nu)[first:]
+        measured, judged = log.outputs[~seen], point.e[~seen]
+        moved = propagate_input_error(filter_.A, filter_.C, ratio, nu)
+        moved = moved[~seen] if moved.size else moved
     disturbance = fit.level.sigma * np.sqrt(moved.mean()) if moved.size else 0.0
     return Validation(
-        refit=fit, log=log, e=point.e, innovations=E, filter=filter_, first=first,
+        refit=fit, log=log, e=point.e, innovations=E, filter=filter_, seen=seen,
         disturbance=float(disturbance), measured=measured, judged=judged,
     )  # fmt: skip
 
@@ -102,7 +104,7 @@ def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -
     with threadpool_limits(1, "blas"):
         E = without.filter(with_it.e) / without.refit.level.sigma
     fewer = np.sum(without.innovations**2 - E**2, axis=1) / 2
-    gain = fewer[with_it.first :]
+    gain = fewer[~with_it.seen]
     count = min(options.proof_blocks, len(gain) // SHORTEST)
     starts = np.linspace(0, len(gain), count, endpoint=False).astype(int)
     blocks = np.add.reduceat(gain, starts)

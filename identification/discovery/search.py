@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
@@ -15,6 +13,7 @@ from identification.discovery.verdict import conclude
 from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.estimation.options import Progress
+from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
 
 
@@ -60,14 +59,17 @@ def refuse_unfit(log: Log, options: DiscoveryOptions) -> None:
     Raises:
         InputError: it is too short, or its part `estimation` is not its beginning.
     """
-    part, least = log.part("estimation"), options.min_samples
-    n, rest = len(part), len(log) - len(part)
+    seen, least = rows_of(log, "estimation"), options.min_samples
+    n, rest = int(seen.sum()), int((~seen).sum())
     if min(n, rest) < least:
         raise InputError(
             f"the log has {n} samples to fit and {rest} that are not fitted; discovery needs at"
             f" least {least} of each: record longer, or change the split in the log's TOML"
         )
-    if not np.array_equal(part.inputs, log.inputs[:n]):
+    for _, record in records_of(log):
+        mine = rows_of(record, "estimation")
+        if not mine.any() or mine[: int(mine.sum())].all():
+            continue
         raise InputError(
             "the log's part 'estimation' does not begin where the log begins; discovery fits the"
             " beginning and confirms on the rest: change the split in the log's TOML"

@@ -113,7 +113,7 @@ def _sensitivities(
 
 
 def extend_point(point: Point, whole: Log) -> Point:
-    """The same point on a longer log, of which its own log is the beginning; without J."""
+    """The same point on a longer log, of which its own log is a part; without J."""
     predictor = replace(point.predictor, log=whole)
     values = point.space.decode(point.q)
     e = whole.outputs - predictor.predict(values)[0]

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from identification.errors import InputError
-from identification.logs.log import Log
+from identification.errors import InputError, unknown_name
+from identification.logs.log import Log, halves
 from identification.logs.overlap import refuse_different
 from identification.logs.sampling import grid, rows_between
 
@@ -45,6 +45,21 @@ class JoinedLog(Log):
                 numbers.append(number)
         return _joined(parts, numbers, self.name, float(self.time[first]))
 
+    def part(self, name: str) -> Log:
+        """The samples of a named split, of all records that have it; see `Log.part`.
+
+        Raises:
+            InputError: no record has it.
+        """
+        has = [(number, record) for number, record in zip(self.numbers, self.records, strict=True)
+               if name in (record.splits or halves(record))]  # fmt: skip
+        if not has:
+            known = dict.fromkeys(n for record in self.records for n in record.splits)
+            raise unknown_name("part of the logs", name, known)
+        parts = [record.part(name) for _, record in has]
+        numbers = [number for number, _ in has]
+        return _joined(parts, numbers, f"{self.name} [{name}]", float(self.time[0]))
+
 
 def join_logs(logs: Sequence[Log], name: str = "") -> Log:
     """Several records as one log; a single one stays as it is.
@@ -66,6 +81,19 @@ def join_logs(logs: Sequence[Log], name: str = "") -> Log:
         _refuse_unlike(logs[0], log)
     numbers = [*range(1, 1 + len(logs))]
     return _joined(logs, numbers, name or " + ".join(log.name for log in logs), 0.0)
+
+
+def rows_of(log: Log, name: str) -> np.ndarray:
+    """Which samples of a log, or of the records of a joined one, belong to a split, shape (N,)."""
+    out = []
+    for _, record in records_of(log):
+        splits = record.splits or halves(record)
+        inside = np.zeros(len(record), bool)
+        if name in splits:
+            first, last = rows_between(record.time, *splits[name])
+            inside[first:last] = True
+        out.append(inside)
+    return np.concatenate(out)
 
 
 def _joined(records: Sequence[Log], numbers: Sequence[int], name: str, start: float) -> JoinedLog:

@@ -176,22 +176,22 @@ def simulate_response(filter_: Whitener, r: np.ndarray) -> np.ndarray:
 def _fit_family(
     validation: Validation, J: np.ndarray, F: np.ndarray, family: ErrorFamily, blocks: int
 ) -> FamilyFit:
-    fit, E, first, p = validation.refit, validation.innovations, validation.first, J.shape[2]
+    fit, E, seen, p = validation.refit, validation.innovations, validation.seen, J.shape[2]
     r = fit.level.input_std * family.r
     moved = simulate_response(validation.filter, r)
     X = np.concatenate([F, validation.filter(moved) / fit.level.sigma], axis=2)
     weight = np.concatenate([fit.prior, np.ones(r.shape[2])])
     off = np.concatenate([fit.mean - fit.point.q, np.zeros(r.shape[2])])
-    rows = np.vstack([X[:first].reshape(-1, X.shape[2]), np.diag(weight)])
-    target = np.concatenate([E[:first].ravel(), weight * off])
+    rows = np.vstack([X[seen].reshape(-1, X.shape[2]), np.diag(weight)])
+    target = np.concatenate([E[seen].ravel(), weight * off])
     scale = 1 / (np.linalg.norm(rows, axis=0) + 1e-300)
     rows *= scale
     δg = scale * np.linalg.lstsq(rows.T @ rows, rows.T @ target, rcond=1e-12)[0]
-    before, after = E[first:], E[first:] - X[first:] @ δg
+    before, after = E[~seen], E[~seen] - X[~seen] @ δg
     fewer = np.sum(before**2 - after**2, axis=1) / 2
     means = [part.mean() for part in np.array_split(fewer, blocks)]
-    free = validation.e[first:]
-    remaining = free - np.concatenate([J, moved], axis=2)[first:] @ δg
+    free = validation.e[~seen]
+    remaining = free - np.concatenate([J, moved], axis=2)[~seen] @ δg
     return FamilyFit(
         name=family.name,
         p_value=float(ttest_1samp(means, 0.0, alternative="greater").pvalue),

@@ -28,20 +28,20 @@ def find_robot_change(validation: Validation, options: DiscoveryOptions) -> tupl
         validation: the prediction of the whole log by a fitted model.
         options: what is beyond chance, and large enough to matter.
     """
-    first, E = validation.first, validation.innovations
-    fitted, blocks = E[:first], options.proof_blocks
-    if not _is_larger(fitted, E[first:], options):
+    seen, E = validation.seen, validation.innovations
+    fitted, blocks = E[seen], options.proof_blocks
+    if not _is_larger(fitted, E[~seen], options):
         return ()
     try:
         remaining = E - _explain(validation)
     except DivergenceError:  # a small change of a parameter makes the simulation diverge
         remaining = E
-    unseen = remaining[first:]
+    unseen = remaining[~seen]
     if not _is_larger(fitted, unseen, options):
         return ()
-    log, ratio = validation.refit.point.log, _power(unseen).mean() / _power(fitted).mean()
+    ratio = _power(unseen).mean() / _power(fitted).mean()
     onset = find_onset(_power(fitted), _power(unseen), blocks)
-    time = log.time[-1] + log.sampling_time * (1 + onset)
+    time = validation.log.time[~seen][onset]
     evidence = RobotChange(float(np.sqrt(ratio)), float(time))
     return (Finding(FindingKind.ROBOT_CHANGE, evidence),)
 
