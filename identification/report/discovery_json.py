@@ -17,6 +17,7 @@ from identification.report.finding_json import (
     rejected_to_json,
 )
 from identification.report.finding_words import describe_finding
+from identification.report.record_gaps import record_gaps
 from identification.report.records_json import records_to_json
 
 
@@ -36,6 +37,7 @@ def discovery_to_json(found: Discovery | RecordsDiscovery) -> dict[str, Any]:
             "before": _gap_to_json(found.before),
             "after": _gap_to_json(found.after),
         },
+        "records": record_gaps(found),
         "located": [describe_finding(finding) for finding in findings],
         "findings": [finding_to_json(finding) for finding in findings],
         "detectable": [

@@ -18,6 +18,7 @@ from identification.report.discovery_verdict import (
 )
 from identification.report.effect_words import describe_effect, describe_rejected
 from identification.report.finding_words import describe_finding
+from identification.report.record_gaps import record_lines
 from identification.report.records_text import records_text
 from identification.report.records_values import text_table
 
@@ -33,6 +34,7 @@ def discovery_text(found: Discovery | RecordsDiscovery) -> str:
         "\n".join(discovery_verdict(found)),
         "\n".join(_diff(found)),
         "\n".join(_gap(found)),
+        "\n".join(record_lines(found)),
         "\n".join(_values(found)),
         _list("where the nominal model fails", found.located),
         _list("where the final model still fails", found.findings),

@@ -28,7 +28,9 @@ class Demo:
 
     def run(self) -> int:
         """Do all of it, say the verdict first and where the report lies last."""
-        return Discover(_shipped(self.log), self.film, robot=self.robot, output=self.output).run()
+        return Discover(
+            (_shipped(self.log),), film=self.film, robot=self.robot, output=self.output
+        ).run()
 
 
 def _shipped(log: Path) -> Path:

@@ -1,4 +1,4 @@
-"""inca discover LOG: what the model lacks, with proof on unseen data."""
+"""inca discover LOG...: what the model lacks, with proof on unseen data."""
 
 from __future__ import annotations
 
@@ -33,8 +33,14 @@ FILES = "The model with it is in model.xml and effects.json; inca_mj.load_twin r
 class Discover:
     """Find what the model lacks and prove it on unseen data, or say that it is unknown."""
 
-    log: Annotated[Path, tyro.conf.Positional]
-    """Log to explain; its TOML may name the splits estimation and validation."""
+    log: Annotated[tuple[Path, ...], tyro.conf.Positional]
+    """Logs to explain; the TOML of each may name the splits estimation and validation."""
+    confirm: Annotated[
+        tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")
+    ] = ()
+    """Logs for the proof, of which a fit sees the first two seconds; the flag may be repeated."""
+    spread: str = "none"
+    """How much the drives and points of one robot differ: none, usual, or a TOML file."""
     film: bool = True
     """Film the final twin against the log; only with --out."""
     settled: bool = False
@@ -52,18 +58,30 @@ class Discover:
         else:
             do_not_draw()
         from identification.discovery.options import read_options
+        from identification.errors import InputError
         from identification.files import whole_folder
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.discovery import discover
+        from inca_mj.workflows.spread import spread_of
 
-        log, parameters, place = (
-            read_inca_log(self.log), self.robot.parameters(), self.robot.place()
-        )  # fmt: skip
+        if not self.log:
+            raise InputError("no log is given; write inca discover LOG")
+        logs = [read_inca_log(path) for path in self.log]
+        confirm = [read_inca_log(path) for paths in self.confirm for path in paths]
+        parameters, place = self.robot.parameters(), self.robot.place()
+        spread = spread_of(self.spread)
         options = None if self.options is None else read_options(self.options)
         out = self.output.out
         refuse_folder(out)
         found = discover(
-            log, parameters, place, progress=note, settled=self.settled, options=options
+            logs,
+            parameters,
+            place,
+            confirm=confirm,
+            spread=spread,
+            progress=note,
+            settled=self.settled,
+            options=options,
         )
         from identification.report.discovery_text import discovery_text  # slow to import
 
@@ -118,11 +136,13 @@ def _without_zeros(robot: Twin) -> Twin:
 def _film(found: Discovery, robot: Twin, run: Run, out: Path) -> Path | None:
     """The final twin over the start of the log; None, and a sentence, where it cannot be."""
     from identification.errors import GraphicsError, InputError
+    from identification.logs.joined import records_of
     from inca_mj.rendering.film import film
     from inca_mj.rendering.scene import Scene
     from inca_mj.twin.logs import pose_of
 
-    scene = Scene(run, found.log.outputs, pose_of(found.log))
+    log = records_of(found.log)[0][1]
+    scene = Scene(run, log.outputs, pose_of(log))
     try:
         return film(scene, out / "film.mp4", seconds=FILMED, progress=bar("film"))
     except (GraphicsError, InputError) as error:

@@ -1,18 +1,17 @@
-"""All candidate effects, in the order of the design: drives, cables, platform."""
+"""All candidate effects: those with a law of their own, then those by rule, then the sensors'."""
 
 from identification.effects.effect import Effect
 from inca_mj.effects.cable import CABLE_CREEP, CABLE_HARDENING, CABLE_WEIGHT
+from inca_mj.effects.change import DRIFTS, MISMATCHES
 from inca_mj.effects.drum import (
     BACKLASH,
     DRUM_ECCENTRICITY,
     DRUM_LAYERING,
-    DRUM_RADIUS_MISMATCH,
     SPRING_HARDENING,
     SPRING_HYSTERESIS,
 )
 from inca_mj.effects.friction import (
     ASYMMETRIC_FRICTION,
-    FRICTION_MISMATCH,
     LOAD_DEPENDENT_FRICTION,
     QUADRATIC_FRICTION,
     STRIBECK_FRICTION,
@@ -23,7 +22,6 @@ from inca_mj.effects.motor import (
     CURRENT_SATURATION,
     DELAY,
     TORQUE_CONSTANT_DRIFT,
-    TORQUE_CONSTANT_MISMATCH,
 )
 from inca_mj.effects.place import (
     AIR_DRAG,
@@ -32,22 +30,20 @@ from inca_mj.effects.place import (
     EXTERNAL_FORCE,
     PULLEY_RADIUS,
 )
+from inca_mj.effects.sensor import SENSORS
 
 CATALOGUE: tuple[Effect, ...] = (
     STRIBECK_FRICTION,
     ASYMMETRIC_FRICTION,
     LOAD_DEPENDENT_FRICTION,
     QUADRATIC_FRICTION,
-    FRICTION_MISMATCH,
     COGGING,
     CURRENT_LAG,
     DELAY,
     CURRENT_SATURATION,
     TORQUE_CONSTANT_DRIFT,
-    TORQUE_CONSTANT_MISMATCH,
     DRUM_ECCENTRICITY,
     DRUM_LAYERING,
-    DRUM_RADIUS_MISMATCH,
     BACKLASH,
     SPRING_HARDENING,
     SPRING_HYSTERESIS,
@@ -59,4 +55,7 @@ CATALOGUE: tuple[Effect, ...] = (
     COM_OFFSET,
     EXTERNAL_FORCE,
     AIR_DRAG,
+    *MISMATCHES,
+    *DRIFTS,
+    *SENSORS,
 )

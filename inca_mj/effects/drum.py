@@ -2,7 +2,6 @@
 
     eccentricity        R (1 + a cos φ + b sin φ)         the radius swings once a turn
     layering            R + h φ                           the cable piles up on the roller
-    radius mismatch     R (1 + δ) on one drive
     backlash            a gap of ±h between rotor and drum
     spring hardening    F_s with k_s (1 + k₃ s²), s = R_s φ
     spring hysteresis   F_s (1 + η tanh(β ω))
@@ -22,7 +21,7 @@ from math import cos, sin, tanh
 from numba import njit
 
 from identification.effects.effect import Effect, Shape, Size
-from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
+from inca_mj.effects.hooks import DRIVES_EACH
 
 WAY = 0.05  # s₁, at which k₃ means the same for every power [m]
 
@@ -37,12 +36,6 @@ def drum_eccentricity(s, p):  # type: ignore[no-untyped-def]
 def drum_layering(s, p):  # type: ignore[no-untyped-def]
     """ΔR = h φ [m]."""
     return p[0] * s.phi
-
-
-@njit
-def drum_radius_mismatch(s, p):  # type: ignore[no-untyped-def]
-    """ΔR = δ R [m]."""
-    return p[0] * s.R
 
 
 @njit
@@ -85,15 +78,6 @@ DRUM_LAYERING = Effect(
     phrase="roller: cable piles up",
     reference="Pott 2018, Cable-Driven Parallel Robots",
     hooks={"radius": drum_layering},
-)
-DRUM_RADIUS_MISMATCH = Effect(
-    "drum_radius_mismatch",
-    "R (1 + δ) on one drive",
-    (Size("delta", "", 0.05, 1e-3, about="relative excess of the radius"),),
-    places=ONE_DRIVE,
-    phrase="roller: one radius differs",
-    reference="thesis Table 2.1",
-    hooks={"radius": drum_radius_mismatch},
 )
 BACKLASH = Effect(
     "backlash",

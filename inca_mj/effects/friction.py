@@ -4,7 +4,6 @@ Stribeck          -f_s exp(-|ω/v_s|^n) tanh(β ω)      a peak of friction at l
 asymmetric        -f_a |tanh(β ω)|                    brakes winding in, helps paying out
 load-dependent    -μ R T tanh(β ω)                    pulleys and bearings rub with the tension
 quadratic         -c ω |ω|^(n-1)                      fluid or air that the roller stirs
-mismatch          -δ b_c tanh(β ω)                    b_c (1 + δ) on one drive
 """
 
 from math import exp, tanh
@@ -12,7 +11,7 @@ from math import exp, tanh
 from numba import njit
 
 from identification.effects.effect import Effect, Shape, Size
-from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
+from inca_mj.effects.hooks import DRIVES_EACH
 
 
 @njit
@@ -39,12 +38,6 @@ def quadratic_friction(s, p):  # type: ignore[no-untyped-def]
     """Δτ = -c ω |ω|^(n-1) [N m], ω in rad/s."""
     c, n = p
     return -c * s.omega * abs(s.omega) ** (n - 1)
-
-
-@njit
-def friction_mismatch(s, p):  # type: ignore[no-untyped-def]
-    """Δτ = -δ b_c tanh(β ω) [N m]: b_c (1 + δ) in all."""
-    return -p[0] * s.b_c * tanh(s.beta * s.omega)
 
 
 STRIBECK_FRICTION = Effect(
@@ -87,13 +80,4 @@ QUADRATIC_FRICTION = Effect(
     phrase="friction: grows with the square of the speed",
     reference="Olsson, Åström, Canudas de Wit, Gäfvert, Lischinsky 1998",
     hooks={"torque": quadratic_friction},
-)
-FRICTION_MISMATCH = Effect(
-    "friction_mismatch",
-    "b_c (1 + δ) on one drive",
-    (Size("delta", "", 0.5, 0.01, about="relative excess of Coulomb friction"),),
-    places=ONE_DRIVE,
-    phrase="friction: one drive differs",
-    reference="thesis 2.39",
-    hooks={"torque": friction_mismatch},
 )

@@ -17,16 +17,19 @@ from typing import Any
 
 from identification.native.element import Element, Hook
 from identification.native.input_filter import INPUT
+from identification.native.reading import SENSOR
 from inca_mj.robot.geometry import DRIVES
 
 # What a hook sees of a drive; NaN where it comes before the quantity is known.
 #   time [s]; phi [rad], omega [rad/s] of the motor; i [A] as logged; x own state
 #   rx, ry, rz [m] connector minus exit point, in O; d [m] path, d_0 [m] no-load length
-#   strain [-], strain_rate [1/s]; T [N], F_s [N]; R, R_s [m], k_s [N/m], b_c [N m], beta [s/rad],
-#   K_t [N m/A], lambda_ [N]: the model's numbers, without what effects add to them
+#   strain [-], strain_rate [1/s]; T [N], F_s [N]; R, R_s [m], k_s [N/m], b_v [N m s/rad],
+#   b_c [N m], beta [s/rad], K_t [N m/A], lambda_ [N], b [N s/m]: the model's numbers, without what
+#   effects add to them
 Drive: Any = namedtuple(
     "Drive",
-    "time phi omega i x rx ry rz d d_0 strain strain_rate T F_s R R_s k_s b_c beta K_t lambda_",
+    "time phi omega i x rx ry rz d d_0 strain strain_rate T F_s"
+    " R R_s k_s b_v b_c beta K_t lambda_ b",
 )
 
 # What a hook sees of the platform: position [m], velocity [m/s] in O, body rates [rad/s]
@@ -64,7 +67,7 @@ CENTRE = Element(
         Hook("centre", ("its offset along x [m]", "along y [m]", "along z [m]")),
     ),
 )
-ELEMENTS = (DRIVE, PLATFORM, CENTRE, INPUT)
+ELEMENTS = (DRIVE, PLATFORM, CENTRE, INPUT, SENSOR)
 
 # Where effects may act, with the suffix of their parameters' names.
 THINGS = tuple(str(k) for k in range(1, DRIVES + 1))

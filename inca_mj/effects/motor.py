@@ -6,7 +6,6 @@
     saturation                 i clipped at ±i_max, or i_max tanh(i/i_max)
     torque constant drift      K_t (1 - α t)                    kind 0: warms with time
                                K_t (1 - α ∫(i/1 A)² dt)         kind 1: warms with its losses
-    torque constant mismatch   K_t (1 + δ) on one drive
 
 Lag and delay act on the currents before they reach the model; their laws are those of any robot
 (`identification.effects.input_laws`). A limit has no size that is zero when it is absent, so that
@@ -20,7 +19,7 @@ from numba import njit
 from identification.effects.effect import BEFORE, Effect, Shape, Size
 from identification.effects.input_laws import DELAY as DELAYED
 from identification.effects.input_laws import LAG as LAGGED
-from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
+from inca_mj.effects.hooks import DRIVES_EACH
 
 # Limits to try [A]: dense where a log of the thesis has its currents, then by a factor of 1.4.
 GRID = (0.55, 0.65, 0.75, 0.85, 0.95, 1.2, 1.7, 2.4, 3.4, 4.8)
@@ -52,12 +51,6 @@ def torque_constant_drift(s, p):  # type: ignore[no-untyped-def]
 def heat_rate(s, p):  # type: ignore[no-untyped-def]
     """ẋ = i²: heat, in seconds at 1 A."""
     return s.i * s.i
-
-
-@njit
-def torque_constant_mismatch(s, p):  # type: ignore[no-untyped-def]
-    """Δi = δ i [A]: K_t (1 + δ) in all."""
-    return p[0] * s.i
 
 
 COGGING = Effect(
@@ -125,12 +118,3 @@ TORQUE_CONSTANT_DRIFT = Effect(
     reference="Krishnan 2010, -0.1 to -0.2 %/K of magnets",
     hooks={"current": torque_constant_drift, "rate": heat_rate},
 )  # fmt: skip
-TORQUE_CONSTANT_MISMATCH = Effect(
-    "torque_constant_mismatch",
-    "K_t (1 + δ) on one drive",
-    (Size("delta", "", 0.2, 1e-3, about="relative excess of the torque constant"),),
-    places=ONE_DRIVE,
-    phrase="motor: one torque constant differs",
-    reference="thesis Table 3.2",
-    hooks={"current": torque_constant_mismatch},
-)

@@ -85,6 +85,16 @@ def inputs(
     return effect_values.changed_inputs(effects, THINGS, every, held, timestep, len(values))
 
 
+def readings(
+    effects: Sequence[Effect], names: Sequence[str], own: Mapping[str, float], values: np.ndarray,
+    sensors: Sequence[str], perfect: np.ndarray,
+) -> np.ndarray:  # fmt: skip
+    """What encoders say, for n value sets, from what perfect ones would say; see `Plant`."""
+    every = effect_values.merged(own, names, values)
+    things = [sensor.rpartition("_")[2] for sensor in sensors]
+    return effect_values.changed_outputs(effects, things, every, perfect, len(values))
+
+
 def centre_of_mass(effects: Sequence[Effect], every: Values, n: int) -> np.ndarray:
     """Where the effects put the centre of mass in n value sets, in body axes, shape (n, 3) [m]."""
     out = np.zeros((n, 3))

@@ -65,12 +65,13 @@ class Change:
 
     def _added(self, strain: np.ndarray) -> np.ndarray:
         out = np.zeros(DRIVES)
-        R, lambda_ = at_drives("R", self.values), at_drives("lambda", self.values)
+        R, lambda_, b = (at_drives(name, self.values) for name in ("R", "lambda", "b"))
         for effect in self.stiffening:
             p = drive_values(effect, self.values)
             for k in range(DRIVES):
-                s = _drive(strain=strain[k], strain_rate=0.0, x=strain[k], d=self.d[k],
-                           R=R[k], lambda_=lambda_[k])  # fmt: skip
+                s = _drive(time=0.0, strain=strain[k], strain_rate=0.0, x=strain[k], d=self.d[k],
+                           d_0=self.d[k] / (1 + strain[k]),
+                           R=R[k], lambda_=lambda_[k], b=b[k])  # fmt: skip
                 out[k] += effect.hooks["tension"](s, tuple(p[:, k]))
         return out
 

@@ -108,8 +108,10 @@ def _begun(m, d, i):  # type: ignore[no-untyped-def]
         d=double(d, D.ten_length, k), d_0=load_constant(_act(m, d, i)),
         strain=np.nan, strain_rate=np.nan, T=np.nan, F_s=np.nan,
         R=drive(m, i, law.R), R_s=drive(m, i, law.R_S), k_s=drive(m, i, law.K_S),
+        b_v=double(m, M.dof_damping, integer(m, M.jnt_dofadr, joint)),
         b_c=drive(m, i, law.B_C), beta=drive(m, i, law.BETA),
-        K_t=double(m, M.actuator_gear, 6 * i), lambda_=cable(m, k, law.LAMBDA),
+        K_t=double(m, M.actuator_gear, 6 * i),
+        lambda_=cable(m, k, law.LAMBDA), b=cable(m, k, law.B),
     )  # fmt: skip
 
 

@@ -20,6 +20,7 @@ from identification.model.predictor import Numbers
 from identification.model.rollout import State
 from inca_mj.effects.layout import Layout
 from inca_mj.effects.values import inputs as effect_inputs
+from inca_mj.effects.values import readings as effect_readings
 from inca_mj.effects.values import with_effects
 from inca_mj.robot import law
 from inca_mj.robot.geometry import INCA, Geometry
@@ -133,8 +134,9 @@ class Twin:
     def outputs(
         self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str], readings: np.ndarray
     ) -> np.ndarray:
-        """What the encoders say, which are perfect; see `Plant`."""
-        return np.asarray(readings[0])
+        """What the encoders say, after effects that act on them; see `Plant`."""
+        own = self.parameters.values()
+        return effect_readings(self.effects, names, own, values, sensors, readings)
 
     def save(self, path: str | Path) -> Path:
         """Write the model as MJCF, exact to the last bit; returns the path."""

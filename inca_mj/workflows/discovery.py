@@ -1,51 +1,57 @@
-"""Discovery on a log of the robot, with its nominal model, its priors and its catalogue."""
+"""Discovery on logs of the robot, with its nominal model, its priors and its catalogue."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from identification import Log
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
+from identification.logs.joined import join_logs, records_of
+from identification.model.own import with_own
 from identification.model.parameter import ParameterSet
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.robot.geometry import INCA, Geometry
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.robot.spread import with_spread
 from inca_mj.twin.logs import POSE
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
+from inca_mj.workflows.calibration import nominal_model
 from inca_mj.workflows.comparison import timestep_for
+from inca_mj.workflows.spread import NONE, Spread
 
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery
 
 TIMESTEP = 2e-3  # [s]; RK4 errs by 0.03 mrad, 1/20 of an encoder's noise, at half the cost of 1 ms
-
-# Values that the thesis calls measured or arbitrary are known to 30 %, those of data sheets better.
-KNOWN = {
-    "lambda": 0.3, "b": 0.3, "J": 0.3, "b_v": 0.3, "b_c": 0.3, "beta": 0.3, "K_t": 0.3,
-    "k_s": 0.3, "R": 0.005, "m": 0.01, **dict.fromkeys(POSE, 0.1),
-}  # fmt: skip
+TOLD = 2.0  # of a record that confirms, the fit sees so much, which tells where it begins [s]
 
 
 def discover(
-    log: Log,
+    log: Log | Sequence[Log],
     parameters: ParameterSet | None = None,
     geometry: Geometry = INCA,
     *,
+    confirm: Sequence[Log] = (),
+    spread: Spread = NONE,
     effects: Sequence[Effect] = CATALOGUE,
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
     settled: bool = False,
     options: DiscoveryOptions | None = None,
 ) -> Discovery:
-    """Name the physical effect that the twin lacks to explain a log, and prove it.
+    """Name the physical effect that the twin lacks to explain logs, and prove it.
 
     Args:
-        log: what was measured; its part `estimation` (or first half) is fitted, and the rest is
-            unseen data for the proof.
+        log: what was measured, one record or several. Where nothing confirms, the part `estimation`
+            (or first half) of each is fitted, and the rest is unseen data for the proof.
+        confirm: records for the proof, of which a fit sees the first two seconds only, which tell
+            where they begin; `log` is then fitted whole.
+        spread: how much the drives and points of one robot usually differ (`spread_of`): each has
+            then values of its own, held by what is usual. By default all drives are alike.
         parameters: nominal values; the thesis' Table 3.2 when None.
         geometry: anchors of the cables.
         effects: candidates; the catalogue of 25 by default.
@@ -57,25 +63,45 @@ def discover(
         options: the judgement constants; the defaults of `DiscoveryOptions` when None.
 
     Raises:
-        InputError: the log is too short, is not wired as the robot is, or its start has no
-            pretension.
+        InputError: a log is too short, is not wired as the robot is, two logs are no records of
+            one robot, or a start has no pretension.
         DivergenceError: the nominal model cannot be simulated.
     """
-    step = timestep_for(log.sampling_time, timestep)
-    refuse_miswired(log, build_twin(parameters, geometry, timestep=step, visual=False))
+    logs = [log] if isinstance(log, Log) else [*log]
+    every = join_logs([*map(_whole, logs), *map(_begun, confirm)] if confirm else logs)
+    step = timestep_for(every.sampling_time, timestep)
+    plain = build_twin(parameters, geometry, timestep=step, visual=False)
+    for one in (*logs, *confirm):
+        refuse_miswired(one, plain)
 
     # These imports are slow, so they come after the checks that may refuse the log.
-    from identification.discovery.nominal_model import NominalModel
     from identification.discovery.search import discover as search
     from identification.discovery.search import refuse_unfit
     from inca_mj.workflows.look_alikes import told
 
     options = options or DiscoveryOptions()
-    refuse_unfit(log, options)
+    refuse_unfit(every, options)
     if progress is not None:
         progress(f"preparing the law of the cables with {len(effects)} effects")
+    records = len(records_of(every))
+    known = parameters or parameter_set()
+    known = with_own(with_spread(known) if spread.groups else known, POSE, records)
     plant = build_twin(
-        parameters, geometry, timestep=step, effects=effects, settled=settled, visual=False
+        known, geometry, timestep=step, effects=effects, settled=settled, visual=False
     )
-    nominal_model = NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()]))
-    return told(search(nominal_model, log, effects, progress, options))
+    return told(
+        search(nominal_model(plant, spread, records), every, effects, progress, options)
+    )  # fmt: skip
+
+
+def _whole(log: Log) -> Log:
+    """A record of which every sample is fitted."""
+    end = float(log.time[-1]) + log.sampling_time
+    return replace(log, splits={"estimation": (float(log.time[0]), end)})
+
+
+def _begun(log: Log) -> Log:
+    """A record of which only the beginning is fitted."""
+    first, last = float(log.time[0]), float(log.time[-1]) + log.sampling_time
+    told = min(first + TOLD, (first + last) / 2)
+    return replace(log, splits={"estimation": (first, told), "validation": (told, last)})

@@ -7,7 +7,9 @@ from dataclasses import replace
 from identification.discovery.final_values import collect_final_values
 from identification.discovery.result import Discovery
 from identification.errors import InputError
+from identification.logs.joined import records_of
 from identification.logs.log import Log
+from identification.model.parameter import RECORD
 from inca_mj.effects.values import with_effects
 from inca_mj.twin.run import Run, simulate
 from inca_mj.twin.twin import Twin, build_twin
@@ -27,10 +29,11 @@ def named_twin(found: Discovery) -> Twin:
         )
     names = {named.candidate.effect.name for named in found.named}
     effects = tuple(e for e in plant.effects if e.name in names)
-    base = tuple(p for p in plant.parameters if p.where != "effect")
+    base = tuple(p for p in plant.parameters if p.where not in ("effect", RECORD))
     known = with_effects(replace(plant.parameters, records=base), effects)
     values = collect_final_values(found).items()
-    at = {name: value for name, value in values if name in known.values()}
+    own = known.values()
+    at = {name: value for name, value in values if name in own}
     free = {name: at[name] for name in found.final.point.space.names if name in at}
     return build_twin(
         known.with_values(at).with_values(free, "fitted to the log"),
@@ -42,5 +45,6 @@ def named_twin(found: Discovery) -> Twin:
 
 
 def rerun(robot: Twin, log: Log) -> Run:
-    """The robot under the currents of a log."""
+    """The robot under the currents of a log, or of the first record of a joined one."""
+    log = records_of(log)[0][1]
     return simulate(robot, log.inputs, log.sampling_time, hold_kind=log.hold)

@@ -74,5 +74,6 @@ def drive(**known) -> Drive:
         strain=1.6e-4, strain_rate=0.01, T=4.0, F_s=11.0,
         R=p["R"].value, R_s=p["R_s"].value, k_s=p["k_s"].value, b_c=p["b_c"].value,
         beta=p["beta"].value, K_t=p["K_t"].value, lambda_=p["lambda"].value,
+        b=p["b"].value, b_v=p["b_v"].value,
     )  # fmt: skip
     return Drive(**{**usual, **known})

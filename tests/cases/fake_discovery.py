@@ -27,13 +27,15 @@ from identification.kalman.noise_model import Noise
 from identification.kalman.point import Point
 from identification.kalman.refit import Refit
 from identification.model.coordinates import coordinates
-from inca_mj.effects.friction import FRICTION_MISMATCH, STRIBECK_FRICTION
+from inca_mj.effects.change import MISMATCHES
+from inca_mj.effects.friction import STRIBECK_FRICTION
 from inca_mj.effects.motor import DELAY
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import Twin, build_twin
 
+(FRICTION_MISMATCH,) = (e for e in MISMATCHES if e.name == "friction_mismatch")
 EFFECTS = (STRIBECK_FRICTION, FRICTION_MISMATCH, DELAY)
 SIZES = {"stribeck_friction.f_s": 0.00412345678901234, "stribeck_friction.v_s": 1.9 / 1.01}
 BASE = ("b_v", "x")

@@ -33,8 +33,18 @@ NAMES = [
 ]
 
 
-def test_names_are_the_canonical_ones_in_order():
-    assert [effect.name for effect in CATALOGUE] == NAMES
+CHANGING = ("cable_elasticity", "cable_damping", "drum_spring", "viscous_friction", "friction")
+RULE = [
+    *(f"{name}_mismatch" for name in CHANGING),
+    *(f"{name}_drift" for name in CHANGING),
+    "encoder_scale",
+    "encoder_eccentricity",
+    "encoder_lag",
+]
+
+
+def test_names_are_the_canonical_ones_each_once():
+    assert sorted(effect.name for effect in CATALOGUE) == sorted({*NAMES, *RULE})
 
 
 def test_all_sizes_zero_is_the_bare_robot_to_the_bit():

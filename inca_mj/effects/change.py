@@ -1,0 +1,128 @@
+"""Effects by rule: any parameter of a drive may differ at one drive, or drift with time.
+
+    p (1 + δ)          mismatch: δ at one drive
+    p (1 - α t)        drift: of one drive or of all; t is the time of the record
+
+A law says what a relative change c of a parameter adds; mismatch and drift follow from it:
+
+    λ      ΔT = c λ ε                             cable_elasticity
+    b      ΔT = c b (ḋ - ḋ₀)                      cable_damping
+    k_s    Δτ = -c k_s R_s² φ, as far as F_s goes     drum_spring
+    b_v    Δτ = -c b_v ω                          viscous_friction
+    b_c    Δτ = -c b_c tanh(β ω)                  friction
+    R      ΔR = c R                               drum_radius
+    K_t    Δi = c i                               torque_constant
+
+A change of R_s acts as one of k_s: the torque of a drum spring depends on k_s R_s² alone. That of J
+would need the acceleration, of which a force must not depend.
+"""
+
+from __future__ import annotations
+
+from math import tanh
+from typing import Any
+
+from numba import njit
+
+from identification.effects.effect import Effect, Size
+from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
+
+
+@njit
+def cable_elasticity(s, c):  # type: ignore[no-untyped-def]
+    """ΔT = c λ ε [N]."""
+    return c * s.lambda_ * s.strain
+
+
+@njit
+def cable_damping(s, c):  # type: ignore[no-untyped-def]
+    """ΔT = c b (ḋ - ḋ₀) [N]."""
+    return c * s.b * s.strain_rate * s.d_0
+
+
+@njit
+def drum_spring(s, c):  # type: ignore[no-untyped-def]
+    """Δτ = -c k_s R_s² φ [N m]; the spring never pushes."""
+    return s.R_s * max(-s.F_s, -c * s.k_s * s.R_s * s.phi)
+
+
+@njit
+def viscous_friction(s, c):  # type: ignore[no-untyped-def]
+    """Δτ = -c b_v ω [N m]."""
+    return -c * s.b_v * s.omega
+
+
+@njit
+def friction(s, c):  # type: ignore[no-untyped-def]
+    """Δτ = -c b_c tanh(β ω) [N m]."""
+    return -c * s.b_c * tanh(s.beta * s.omega)
+
+
+@njit
+def drum_radius(s, c):  # type: ignore[no-untyped-def]
+    """ΔR = c R [m]."""
+    return c * s.R
+
+
+@njit
+def torque_constant(s, c):  # type: ignore[no-untyped-def]
+    """Δi = c i [A]."""
+    return c * s.i
+
+
+def _mismatch(law: Any, hook: str, letter: str, phrase: str, largest: float) -> Effect:
+    @njit
+    def mismatch(s, p):  # type: ignore[no-untyped-def]
+        return law(s, p[0])
+
+    return Effect(
+        f"{law.__name__}_mismatch",
+        f"{letter} (1 + δ) on one drive",
+        (Size("delta", "", largest, 0.02 * largest, about=f"relative excess of {letter}"),),
+        places=ONE_DRIVE,
+        phrase=f"{phrase} differs at one drive",
+        reference="thesis Table 3.2",
+        hooks={hook: mismatch},
+    )
+
+
+def _drift(law: Any, hook: str, letter: str, phrase: str, largest: float) -> Effect:
+    @njit
+    def drift(s, p):  # type: ignore[no-untyped-def]
+        return law(s, -p[0] * s.time)
+
+    return Effect(
+        f"{law.__name__}_drift",
+        f"{letter} (1 - α t)",
+        (
+            Size(
+                "alpha", "1/s", largest, 0.02 * largest, about=f"relative loss of {letter} a second"
+            ),
+        ),
+        places=DRIVES_EACH,
+        phrase=f"{phrase} drifts",
+        reference="thesis Table 3.2",
+        hooks={hook: drift},
+    )
+
+
+# law, hook, letter, phrase, largest plausible deviation of one drive
+_RULES: tuple[tuple[Any, str, str, str, float], ...] = (
+    (cable_elasticity, "tension", "λ", "cable: elasticity", 0.3),
+    (cable_damping, "tension", "b", "cable: damping", 1.0),
+    (drum_spring, "torque", "k_s", "drum spring: stiffness", 0.3),
+    (viscous_friction, "torque", "b_v", "friction: viscous part", 1.0),
+    (friction, "torque", "b_c", "friction: Coulomb part", 0.5),
+    (drum_radius, "radius", "R", "roller: radius", 0.05),
+    (torque_constant, "current", "K_t", "motor: torque constant", 0.2),
+)
+DRIFTING = 20.0  # [s] in which a parameter may lose as much as one drive may deviate
+
+MISMATCHES = tuple(_mismatch(*rule) for rule in _RULES)
+# A roller does not change its radius while it runs, but for the cable that piles up on it; and the
+# torque constant's drift may also follow heat.
+DRIFTS = tuple(
+    _drift(law, hook, letter, phrase, largest / DRIFTING)
+    for law, hook, letter, phrase, largest in _RULES
+    if law not in (drum_radius, torque_constant)
+)

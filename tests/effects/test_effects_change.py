@@ -1,0 +1,59 @@
+"""Effects by rule are a change of the model's own parameter, in motion and in time."""
+
+import numpy as np
+import pytest
+from effect_cases import CATALOGUE, full, simulate
+
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.robot.spread import with_spread
+from inca_mj.twin.twin import build_twin
+
+SPREAD = build_twin(with_spread(parameter_set()))
+SETTLED = build_twin(effects=CATALOGUE, settled=True)
+PARAMETERS = {
+    "cable_elasticity": "lambda", "cable_damping": "b", "viscous_friction": "b_v",
+    "friction": "b_c", "drum_radius": "R", "torque_constant": "K_t",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", PARAMETERS)
+def test_a_mismatch_is_a_deviation_of_that_drive(name):
+    """On a robot that has settled with it, so that it changes the rest as a deviation does."""
+    names, values = [f"{name}_mismatch.delta@3"], [[0.0], [0.05]]
+    none, ours = simulate(SETTLED, names, values, 0.5)
+    _, theirs = simulate(SPREAD, [f"{PARAMETERS[name]}@3"], values, 0.5)
+    moved = np.abs(ours - none).max()
+    assert moved > 1e-7
+    assert np.abs(ours - theirs).max() < 1e-6 * moved
+
+
+def test_a_drum_spring_of_another_stiffness_is_one_of_another_radius():
+    """The torque depends on k_s R_s² alone, but for the pretension, which R_s does not change."""
+    none, ours = simulate(full(), ["drum_spring_mismatch.delta@3"], [[0.0], [0.05]], 0.5)
+    _, theirs = simulate(SPREAD, ["k_s@3"], [[0.0], [0.05]], 0.5)
+    _, radius = simulate(SPREAD, ["R_s@3"], [[0.0], [np.sqrt(1.05) - 1]], 0.5)
+    moved = np.abs(ours - none).max()
+    assert np.abs(ours - theirs).max() < 1e-6 * moved
+    assert np.abs(theirs - radius).max() < 1e-6 * moved
+
+
+@pytest.mark.parametrize("name", ["viscous_friction", "friction", "cable_damping"])
+def test_a_drift_begins_at_nothing_and_grows(name):
+    """At its half it has grown to half: over short spans it is a mismatch of that size."""
+    names = [f"{name}_drift.alpha@3"]
+    none, drifted = simulate(full(), names, [[0.0], [0.02]], 2.0)
+    early, late = (np.abs(drifted - none)[a:b].max() for a, b in ((0, 20), (100, 200)))
+    assert 0 < early < 0.1 * late
+
+
+def test_readings_of_encoders_follow_their_laws_and_leave_the_motion_alone():
+    none, scaled = simulate(full(), ["encoder_scale.s@2"], [[0.0], [0.01]], 0.5)
+    np.testing.assert_allclose(scaled[:, 1], 1.01 * none[:, 1], rtol=1e-12)
+    np.testing.assert_array_equal(np.delete(scaled, 1, axis=1), np.delete(none, 1, axis=1))
+    names = ["encoder_eccentricity.a", "encoder_eccentricity.b"]
+    none, waved = simulate(full(), names, [[0.0, 0.0], [0.01, 0.02]], 0.5)
+    np.testing.assert_allclose(waved, none + 0.01 * np.cos(none) + 0.02 * np.sin(none), atol=1e-12)
+    none, late = simulate(full(), ["encoder_lag.tau@5"], [[0.0], [1e-3]], 0.5)
+    np.testing.assert_array_equal(np.delete(late, 4, axis=1), np.delete(none, 4, axis=1))
+    rate = np.gradient(none[:, 4], 0.01)
+    np.testing.assert_allclose(late[5:-5, 4], (none[:, 4] - 1e-3 * rate)[5:-5], atol=5e-4)
