@@ -38,8 +38,8 @@ class NominalModel:
         own_values: by record and by name, where the search of a record's own values begins; the
             plant's own value where not given.
         groups: names that share one std, by what they have in common: deviations of the drives,
-            displacements of points. Their std are the largest that are believed; a search finds
-            how much each group scatters (see `scattered`).
+            displacements of points. Their std is the largest that is believed.
+        scatter: the std of some groups, as the data show it; `std` where not given.
 
     Raises:
         InputError: there is not one std for each name.
@@ -53,6 +53,7 @@ class NominalModel:
     mean: Mapping[str, float] = field(default_factory=dict)
     own_values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    scatter: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if np.shape(self.std) != (len(self.names),):
@@ -61,11 +62,17 @@ class NominalModel:
                 " give one for each"
             )
 
-    def scattered(self, std: Mapping[str, float]) -> NominalModel:
-        """The same model with other std of some groups."""
-        own = {name: std[g] for g, names in self.groups.items() if g in std for name in names}
-        every = [own.get(name, s) for name, s in zip(self.names, self.std, strict=True)]
-        return replace(self, std=np.array(every))
+    @property
+    def grouped(self) -> dict[str, str]:
+        """The group of each name that has one."""
+        return {name: group for group, names in self.groups.items() for name in names}
+
+    @property
+    def prior_std(self) -> np.ndarray:
+        """The std of each prior, with the scatter that the data show, shape (p,)."""
+        group = self.grouped
+        pairs = zip(self.names, self.std, strict=True)
+        return np.array([self.scatter.get(group.get(name, ""), std) for name, std in pairs])
 
     @property
     def linear(self) -> tuple[str, ...]:
@@ -115,16 +122,17 @@ def fit_with_effects(
     first = np.array([_inside(parameters[n], begin[n]) for n in names])
     space = coordinates(parameters, names, first, linear=(*sizes, *nominal_model.linear))
     space = _within_factor(space, parameters, nominal_model.names, options.nominal_factor)
+    space = _within_scatter(space, nominal_model, options.max_scatter)
     # A size has no prior, so that the mean of its prior is never used.
     known = {*nominal_model.names, *shapes}
     middle = {**own, **nominal_model.mean}
     mean = space.encode(np.where([n in known for n in names], [middle[n] for n in names], first))
     of_shapes = np.full(len(shapes), 1 / options.shape_std)
-    weight = np.concatenate([1 / nominal_model.std, np.zeros(len(sizes)), of_shapes])
+    weight = np.concatenate([1 / nominal_model.prior_std, np.zeros(len(sizes)), of_shapes])
     linear, level = (None, None) if near is None else (near.point.linear, near.level)
     beside = None if near is None else near.point
     predictor = Predictor(nominal_model.plant, log, names, fixed)
-    small = frozenset(name for group in nominal_model.groups.values() for name in group)
+    small = frozenset(nominal_model.grouped)
     point = evaluate_point(predictor, space, space.encode(first), linear, beside, small)
     if level is not None:
         # The correlation time that was found without the effect may have been the effect's own.
@@ -144,6 +152,16 @@ def _within_factor(
         lower=np.where(bounded, np.maximum(space.lower, middle - np.log(factor)), space.lower),
         upper=np.where(bounded, np.minimum(space.upper, middle + np.log(factor)), space.upper),
     )
+
+
+def _within_scatter(space: Coordinates, nominal: NominalModel, most: float) -> Coordinates:
+    """Coordinates in which no member of a group leaves its mean, zero, by more than `most` std."""
+    std = dict(zip(nominal.names, nominal.std, strict=True))
+    grouped = nominal.grouped
+    far = np.array([most * std[n] if n in grouped else np.inf for n in space.names])
+    return replace(
+        space, lower=np.maximum(space.lower, -far), upper=np.minimum(space.upper, far)
+    )  # fmt: skip
 
 
 def _nonzero(record: Parameter, value: float) -> float:

@@ -48,6 +48,12 @@ class DiscoveryOptions(PredictionOptions):
         " wrong model would carry it anywhere to imitate what is missing.",
         "judgement", least=1.0,
     )  # fmt: skip
+    max_scatter: float = option(
+        3.0, "std of its group",
+        "A part of a robot that deviates from the others by more is no scatter: it is an effect,"
+        " and the nominal model does not follow it.",
+        "0.3 % of a normal distribution", least=1.0,
+    )  # fmt: skip
     limit_distance: float = option(
         0.02, "of a logarithm",
         "A parameter this near to the end of its range counts as at its limit.",

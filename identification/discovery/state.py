@@ -117,7 +117,7 @@ def next_state(state: SearchState, progress: Progress) -> SearchState:
 def _with_scatter(task: DiscoveryTask, nominal: FittedModel) -> tuple[DiscoveryTask, FittedModel]:
     """The task with the scatter that the nominal fit shows, and the nominal fit under it."""
     scatter = estimate_scatter(nominal.refit, task.nominal_model.groups)
-    task = replace(task, nominal_model=task.nominal_model.scattered(scatter))
+    task = replace(task, nominal_model=replace(task.nominal_model, scatter=scatter))
     return task, fit_model(task, (), nominal.refit.point.values, nominal)
 
 

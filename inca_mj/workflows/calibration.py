@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 TIMESTEP = 2e-3  # [s]; RK4 errs by 0.03 mrad, 1/20 of an encoder's noise, at half the cost of 1 ms
 STEPS = 30  # of a fit, at most
+FAR = 20.0  # [std] that a drive or a point may be off: one that is broken is told, and not bounded
 
 
 @dataclass(frozen=True)
@@ -143,7 +144,7 @@ def calibrate(
 
     def fit(model: NominalModel, start: Mapping[str, float], near: Refit | None = None) -> Refit:
         return fit_with_effects(
-            model, fitted, (), start, DiscoveryOptions(), STEPS, near, progress
+            model, fitted, (), start, DiscoveryOptions(max_scatter=FAR), STEPS, near, progress
         )  # fmt: skip
 
     say = progress or (lambda line: None)
@@ -152,7 +153,7 @@ def calibrate(
     rough = fit(model, {})
     scatter = estimate_scatter(rough, spread.groups)
     say("the same with the scatter that the data show")
-    end = fit(model.scattered(scatter), rough.point.values, rough)
+    end = fit(replace(model, scatter=scatter), rough.point.values, rough)
     say("for comparison, all drives alike and all points as drawn")
     plain = nominal_model(plant, NONE, len(logs))
     alike = fit(plain, {name: end.point.values[name] for name in plain.names})

@@ -1,0 +1,188 @@
+"""What calibrations and discoveries of robots as they are built come to: rates, errors, a page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from discovery_statistics import rate
+
+Row = Mapping[str, Any]
+HEAD = """# Robots as they are built
+
+No drive of a real robot is like another, and no exit point is where the drawing has it. This page
+is made by `python benchmarks/as_built.py` from the rows in `benchmarks/results/as_built`; it is not
+written by hand. The logs are of an independent simulator: 20 s at 100 Hz, encoders of 4000 counts
+with 0.5 mrad of noise, an unlogged error of the currents of 0.5 mA. Each drive has parameters of
+its own (uniformly within λ 5 %, b 20 %, J 5 %, b_v 15 %, b_c 15 %, K_t 2 %, R 0.5 %, R_s 1 %,
+k_s 3 % of a common value), anchors are off by 3 mm and connectors by 0.5 mm (std of each
+coordinate), inertias by up to 10 %. What is known of this before a fit is
+`models/inca6d_spread.toml`.
+"""
+
+
+def page(calibrations: Sequence[Row], discoveries: Sequence[Row]) -> str:
+    """The page, from all rows."""
+    return "\n".join([HEAD, *_calibrations(calibrations), *_discoveries(discoveries)])
+
+
+def _calibrations(rows: Sequence[Row]) -> list[str]:
+    done = [row for row in rows if "drives" in row]
+    lines = [
+        "## Calibration", "", "    inca calibrate LOG... [--confirm LOG...]", "",
+        "Errors are relative to the truth. *Told* is the mean std that the calibration gives;"
+        " *inside* is the share of the errors within 1.96 of their std, which should be 95 %."
+        " Without records that confirm, the first half of each record is fitted.", "",
+    ]  # fmt: skip
+    for key in sorted({_records(row) for row in done}):
+        mine = [row for row in done if _records(row) == key]
+        fitted, confirm = key
+        named = f"Fitted: records {fitted}" + (f"; {confirm} confirms" if confirm else ", halves")
+        lines += [f"### {named} ({len(mine)} robots, {_commits(mine)})", ""]
+        lines += ["| value | rms error | told | inside |", "|---|---|---|---|"]
+        for name in mine[0]["drives"]:
+            error, std = _stack(mine, lambda row, n=name: row["drives"][n])
+            lines.append(f"| {name} of each drive | {_percent(error)} | {_percent(std)} |"
+                         f" {_inside(error, std)} |")  # fmt: skip
+        every = [_stack(mine, lambda row, n=name: row["drives"][n]) for name in mine[0]["drives"]]
+        error, std = (np.concatenate(part) for part in zip(*every, strict=True))
+        lines.append(f"| all values of drives | | | {_inside(error, std)} |")
+        for point in ("exit", "connector"):
+            error, std = _stack(mine, lambda row, p=point: row["points"][p])
+            before = np.concatenate([np.ravel(row["points"][point]["before"]) for row in mine])
+            now, drawn, told = (f"{1e3 * _rms(x):.2f} mm" for x in (error, before, std))
+            lines.append(
+                f"| {point} points, each coordinate | {now} (as drawn {drawn}) | {told} |"
+                f" {_inside(error, std)} |"
+            )
+        for name in ("I_x", "I_y", "I_z", "m"):
+            error, std = _stack(mine, lambda row, n=name: row["platform"][n])
+            lines.append(
+                f"| {name} | {_percent(error)} | {_percent(std)} | {_inside(error, std)} |"
+            )
+        gaps = [gap for row in mine for gap in row["unseen"]]
+        before, after = (1e3 * _rms(np.array([g[w] for g in gaps])) for w in ("before", "after"))
+        lines += [
+            "",
+            f"Free runs over unseen samples are off by {after:.1f} mrad rms; with all drives alike"
+            f" and all points as drawn by {before:.0f} mrad. {_time(mine)}",
+            "",
+        ]  # fmt: skip
+    return lines
+
+
+def _discoveries(rows: Sequence[Row]) -> list[str]:
+    done = [row for row in rows if "verdict" in row]
+    lines = ["## Discovery", "", "    inca discover LOG... --spread usual", ""]
+    for key in sorted({(*_records(row), row["key"].split("/")[3]) for row in done}):
+        mine = [row for row in done if (*_records(row), row["key"].split("/")[3]) == key]
+        fitted, confirm, spread = key
+        what = f"records {fitted}" + (f", {confirm} confirms" if confirm else "")
+        lines += [f"### {what}, spread {spread} ({len(mine)} robots, {_commits(mine)})", ""]
+        for kind, title in _KINDS.items():
+            some = [row for row in mine if row["truth"]["kind"] == kind]
+            if some:
+                lines.append(f"- {title}: {'; '.join(_rates(kind, some))}.")
+        lines += ["", f"{_time(mine)}", "", "| robot | truth | answer | best score |",
+                  "|---|---|---|---|"]  # fmt: skip
+        lines += [_line(row) for row in sorted(mine, key=lambda row: row["robot"])] + [""]
+    failed = [f"{row['key']}: {row['error']}" for row in rows if "error" in row]
+    return [*lines, *(f"- failed: {line}" for line in failed)]
+
+
+_KINDS = {
+    "null": "nothing hidden", "single": "one effect", "triple": "three effects",
+    "sensor": "a sensor's fault", "rule": "an effect by rule",
+}  # fmt: skip
+
+
+def _rates(kind: str, rows: Sequence[Row]) -> list[str]:
+    tests: dict[str, Any] = {
+        "the right name first": lambda r: bool(r["named"]) and _names(r)[0] in _truth(r),
+        "right or in the set": _is_in_set,
+        "the right score first": lambda r: r["scores"][0][0] in _truth(r),
+        "a wrong name": lambda r: any(n not in _truth(r) for n in _names(r)),
+    }
+    if kind == "null":
+        tests = {
+            '"nothing missing"': lambda r: r["verdict"] == "nothing missing",
+            "a false name": lambda r: bool(r["named"]),
+        }
+    if kind == "triple":
+        tests = {
+            "two or three right": lambda r: len(_right(r)) >= 2,
+            "a wrong name": lambda r: len(_right(r)) < len(r["named"]),
+        }
+    return [f"{what} {_rate(rows, test)}" for what, test in tests.items()]
+
+
+def _truth(row: Row) -> set[str]:
+    return set(row["truth"]["effects"])
+
+
+def _names(row: Row) -> list[str]:
+    return [named["name"] for named in row["named"]]
+
+
+def _right(row: Row) -> set[str]:
+    return set(_names(row)) & _truth(row)
+
+
+def _is_in_set(row: Row) -> bool:
+    return any(
+        {named["name"], *(named["rivals"] if named["one_of"] else [])} & _truth(row)
+        for named in row["named"]
+    )
+
+
+def _line(row: Row) -> str:
+    truth = " + ".join(row["truth"]["effects"]) or "nothing"
+    where = row["truth"]["where"]
+    truth += f", drive {where}" if where else ""
+    answer = "; ".join(
+        f"{n['name']}, {n['where']} ({100 * n['confidence']:.0f} %"
+        + (f", or {n['rivals'][0]}" if n["one_of"] else "") + ")"
+        for n in row["named"]
+    )  # fmt: skip
+    answer = f"{answer or row['verdict']}{', something left' if row['unexplained'] else ''}"
+    best = row["scores"][0]
+    return f"| {row['robot']} | {truth} | {answer} | {best[0]}, {best[1]} |"
+
+
+def _records(row: Row) -> tuple[str, str]:
+    _, fitted, confirm, _ = row["key"].split("/")
+    return fitted, confirm
+
+
+def _commits(rows: Sequence[Row]) -> str:
+    return ", ".join(sorted({row["commit"] for row in rows}))
+
+
+def _time(rows: Sequence[Row]) -> str:
+    seconds = np.median([row["processor_seconds"] for row in rows])
+    return f"Median processor time {seconds:.0f} s."
+
+
+def _rate(rows: Sequence[Row], test: Any) -> str:
+    r = rate(rows, test)
+    return f"{r['hits']} of {r['of']} [{100 * r['low']:.0f}, {100 * r['high']:.0f} %]"
+
+
+def _stack(rows: Sequence[Row], part: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Errors and std of all rows, flat."""
+    parts = [part(row) for row in rows]
+    error, std = (np.concatenate([np.ravel(p[key]) for p in parts]) for key in ("error", "std"))
+    return error, std
+
+
+def _rms(x: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(np.square(x))))
+
+
+def _percent(x: np.ndarray) -> str:
+    return f"{100 * _rms(x):.2g} %"
+
+
+def _inside(error: np.ndarray, std: np.ndarray) -> str:
+    return f"{100 * np.mean(np.abs(error) < 1.96 * std):.0f} %"
