@@ -43,6 +43,11 @@ _PUBLIC = {
     "Identification": "workflows.identification",
     "identify_windows": "workflows.disturbed",
     "identify_innovations": "workflows.disturbed",
+    "calibrate": "workflows.calibration",
+    "Calibration": "workflows.calibration",
+    "Spread": "workflows.spread",
+    "spread_of": "workflows.spread",
+    "with_spread": "robot.spread",
     "discover": "workflows.discovery",
     "named_twin": "workflows.discovery_model",
     "sensitivity": "workflows.sensitivity",
@@ -78,6 +83,7 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.robot.law import spring_force as spring_force
     from inca_mj.robot.parameters import GRAVITY as GRAVITY
     from inca_mj.robot.parameters import parameter_set as parameter_set
+    from inca_mj.robot.spread import with_spread as with_spread
     from inca_mj.twin.control import CONTROL_TIMESTEP as CONTROL_TIMESTEP
     from inca_mj.twin.control import load_environment as load_environment
     from inca_mj.twin.logs import read_inca_log as read_inca_log
@@ -92,6 +98,8 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.twin.twin import build_twin as build_twin
     from inca_mj.verification.check import crosscheck as crosscheck
     from inca_mj.verification.result import CrossCheck as CrossCheck
+    from inca_mj.workflows.calibration import Calibration as Calibration
+    from inca_mj.workflows.calibration import calibrate as calibrate
     from inca_mj.workflows.comparison import Comparison as Comparison
     from inca_mj.workflows.comparison import compare as compare
     from inca_mj.workflows.discovery import discover as discover
@@ -104,6 +112,8 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.workflows.identification import identify as identify
     from inca_mj.workflows.limits import Limits as Limits
     from inca_mj.workflows.sensitivity import sensitivity as sensitivity
+    from inca_mj.workflows.spread import Spread as Spread
+    from inca_mj.workflows.spread import spread_of as spread_of
     from inca_mj.workflows.trials import TrialResult as TrialResult
     from inca_mj.workflows.trials import monte_carlo as monte_carlo
     from inca_mj.workflows.trials import trials as trials

@@ -1,0 +1,77 @@
+"""Calibration: known deviations come back, from one record and from several."""
+
+import numpy as np
+import pytest
+from as_built_cases import COMMON, NOISE, SPREAD, deviations, log_as_built
+
+from inca_mj.report.calibration import calibration_json, calibration_verdict, untold
+from inca_mj.robot.spread import at_drives
+from inca_mj.workflows.calibration import calibrate
+from inca_mj.workflows.spread import NONE
+
+
+@pytest.fixture(scope="module")
+def one():
+    return calibrate([log_as_built(5.0)], spread=SPREAD)
+
+
+@pytest.fixture(scope="module")
+def two():
+    """Two records that begin 5 cm apart, and a third one that confirms."""
+    logs = [log_as_built(3.0), log_as_built(3.0, seed=1, x=0.05)]
+    return calibrate(logs, spread=SPREAD, confirm=[log_as_built(3.0, seed=2, x=-0.03)])
+
+
+def test_deviations_come_back_within_their_std(one):
+    """Sixteen deviations and two common values: of so many the largest error is below 4 std."""
+    truth = deviations() | COMMON
+    error = np.array([(one.values[n] - truth[n]) / one.std[n] for n in truth])
+    assert np.abs(error).max() < 4
+    assert np.sqrt(np.mean(error**2)) < 1.6  # 18 squares of mean 1, five of their std
+
+
+def test_the_calibrated_robot_predicts_what_it_has_not_seen(one):
+    (gap,) = one.unseen
+    assert gap.after < 2 * NOISE < gap.before
+    assert not untold(one)
+    assert "one record" in calibration_verdict(one)[0]
+
+
+def test_the_scatter_is_that_of_the_drawn_deviations(one):
+    for group, names in SPREAD.groups.items():
+        drawn = np.sqrt(np.mean([deviations()[name] ** 2 for name in names]))
+        assert one.scatter[group] == pytest.approx(min(drawn, SPREAD.drives[group]), rel=0.25)
+
+
+def test_records_share_drives_and_begin_at_poses_of_their_own(two):
+    values, std = two.values, two.std
+    assert abs(values["x [2]"] - 0.05) < 5 * std["x [2]"] + 1e-4
+    assert abs(values["x"]) < 5 * std["x"] + 1e-4
+    for name, true in deviations().items():
+        assert abs(values[name] - true) < 5 * std[name], name
+    (gap,) = two.unseen
+    assert gap.role == "confirm"
+    assert gap.after < 2 * NOISE < gap.before
+
+
+def test_the_twin_has_the_values_that_are_told(one):
+    values = one.robot.parameters.values()
+    assert {n: values[n] for n in COMMON} == {n: one.values[n] for n in COMMON}
+    expected = one.values["K_t"] * (1 + one.values["K_t@3"])
+    assert at_drives("K_t", values)[2] == pytest.approx(expected, rel=1e-12)
+    told = calibration_json(one)
+    assert told["drives"]["K_t"][2]["value"] == one.values["K_t@3"]
+    assert told["records"][0]["after"] == one.unseen[0].after
+
+
+def test_drives_that_are_alike_have_no_scatter():
+    found = calibrate([log_as_built(5.0, alike=True)], spread=SPREAD)
+    assert found.scatter["K_t"] < 0.1 * SPREAD.drives["K_t"]
+    assert max(abs(found.values[f"K_t@{k}"]) for k in range(1, 9)) < 1e-3
+
+
+def test_what_cannot_be_calibrated_is_refused(refusal):
+    log = log_as_built(3.0)
+    assert "inca identify" in refusal(calibrate, [log], spread=NONE)
+    assert "no log" in refusal(calibrate, [], spread=SPREAD)
+    assert "given twice" in refusal(calibrate, [log], spread=SPREAD, confirm=[log])
