@@ -78,8 +78,9 @@ def energy(x: np.ndarray, q: np.ndarray) -> Energy:
         x: state, shape (36,).
         q: packed numbers, from `pack`.
     """
-    R, R_s, k_s, λ, _, J = q[:6]
-    m, I_P = q[10], q[11:14]
+    own = q[at.ROWS].reshape(at.DRIVES, at.ROW).T
+    R, R_s, k_s, λ, J = own[[at.R, at.R_S, at.K_S, at.LAMBDA, at.J]]
+    m, I_P = q[at.M], q[at.INERTIA]
     v, ω, ω_m, d_0 = x[at.VELOCITY], x[at.RATES], x[at.SPEEDS], x[at.NO_LOAD]
     d = cables(x, q)[1]
     ε = np.maximum(0.0, (d - d_0) / d_0)
@@ -87,9 +88,9 @@ def energy(x: np.ndarray, q: np.ndarray) -> Energy:
 
     # E_spring = −∫ F_s ds over s = R_s φ_m, with F_s = F_0 − k_s s until it reaches zero.
     F_0, s = R / R_s * q[at.PRETENSION], R_s * x[at.ANGLES]
-    s = np.minimum(s, F_0 / k_s) if k_s > 0 else s
+    s = np.minimum(s, np.divide(F_0, k_s, out=np.full(at.DRIVES, np.inf), where=k_s > 0))
     return Energy(
-        kinetic=float(0.5 * m * (v @ v) + 0.5 * (I_P * ω) @ ω + 0.5 * J * (ω_m @ ω_m)),
+        kinetic=float(0.5 * m * (v @ v) + 0.5 * (I_P * ω) @ ω + 0.5 * (J * ω_m) @ ω_m),
         gravitational=float(m * q[at.G_EARTH] * x[at.POSITION][2]),
         external=float(-q[at.FORCE] @ (x[at.POSITION] + b_G)),
         elastic=float(np.sum(0.5 * λ * ε**2 * d_0)),
@@ -105,15 +106,16 @@ def power(x: np.ndarray, i: np.ndarray, q: np.ndarray) -> Power:
         i: currents, shape (8,) [A].
         q: packed numbers, from `pack`.
     """
-    λ, (b_v, b_c, β, K_t) = q[3], q[6:10]
+    own = q[at.ROWS].reshape(at.DRIVES, at.ROW).T
+    λ, b_v, b_c, β, K_t = own[[at.LAMBDA, at.B_V, at.B_C, at.BETA, at.K_T]]
     ω_m, d_0 = x[at.SPEEDS], x[at.NO_LOAD]
     T, d, d_rate, d_0_rate, _ = cables(x, q)
     ε = np.maximum(0.0, (d - d_0) / d_0)
     stretching = d_rate - d / d_0 * d_0_rate  # d₀ε̇
     return Power(
-        motor=float(K_t * (i @ ω_m)),
-        viscous=float(-b_v * (ω_m @ ω_m)),
-        coulomb=float(-b_c * (np.tanh(β * ω_m) @ ω_m)),
+        motor=float((K_t * i) @ ω_m),
+        viscous=float(-(b_v * ω_m) @ ω_m),
+        coulomb=float(-(b_c * np.tanh(β * ω_m)) @ ω_m),
         damper=float(-np.sum((T - λ * ε) * stretching)),
         wound=float(np.sum(0.5 * λ * ε**2 * d_0_rate)),
     )

@@ -16,6 +16,8 @@ O, ᴮb_i in the platform frame, s_i from A_i to B_i, and R_AB the platform's ro
     F_s = max(0, (R/R_s) T(0) − k_s R_s φ_m)                                         (2.41)
     J ω̇_m = K_t i − R T + R_s F_s − b_v ω_m − b_c tanh(β ω_m)                  (2.37 - 2.40)
 
+R, R_s, k_s, λ, b, J, b_v, b_c, β and K_t are those of drive i; the thesis has one of each for all.
+
 Misprints of the thesis, each noted where it is coded: 2.3, 2.5, 2.35, 2.36, 2.40, 2.41 (and 2.16
 in `kinematics`). The cable cannot push and the drum spring cannot either, hence both max(0, ·);
 the thesis says so only in words.
@@ -105,13 +107,12 @@ def cables(x: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, ...]:
 
     Args:
         x: state, shape (36,).
-        q: packed numbers, shape (77,).
+        q: packed numbers, shape (147,).
 
     Returns:
         T [N], d [m], ḋ [m/s], ḋ₀ [m/s], each of shape (8,), and sᴮ of shape (8, 3), the unit
         vector from A_i to B_i along the body axes.
     """
-    R, lam, b = q[0], q[3], q[4]
     p, v, ω = vector(x[at.POSITION]), vector(x[at.VELOCITY]), vector(x[at.RATES])
     ω_m, d_0 = x[at.SPEEDS], x[at.NO_LOAD]
     A, B = q[at.EXITS], q[at.CONNECTORS]
@@ -121,7 +122,7 @@ def cables(x: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, ...]:
     T, d, d_rate, d_0_rate = np.empty((4, at.DRIVES))
     sB = np.empty((at.DRIVES, 3))
     for i in range(at.DRIVES):
-        a_i, b_i = vector(A[3 * i :]), vector(B[3 * i :])
+        own, a_i, b_i = q[at.ROW * i :], vector(A[3 * i :]), vector(B[3 * i :])
         Rb = times(R_AB, b_i)
         ds = (p[0] + Rb[0] - a_i[0], p[1] + Rb[1] - a_i[1], p[2] + Rb[2] - a_i[2])
         d[i] = sqrt(dot(ds, ds))
@@ -129,19 +130,19 @@ def cables(x: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, ...]:
         sB[i, 0], sB[i, 1], sB[i, 2] = s
         ω_b = cross(ω, b_i)
         d_rate[i] = dot(s, (v[0] + ω_b[0], v[1] + ω_b[1], v[2] + ω_b[2]))
-        d_0_rate[i] = -R * ω_m[i] * d_0[i] / d[i]
+        d_0_rate[i] = -own[at.R] * ω_m[i] * d_0[i] / d[i]
         ε = (d[i] - d_0[i]) / d_0[i]
-        T[i] = max(0.0, lam * ε + b * (d_rate[i] - d_0_rate[i]))
+        T[i] = max(0.0, own[at.LAMBDA] * ε + own[at.B] * (d_rate[i] - d_0_rate[i]))
     return T, d, d_rate, d_0_rate, sB
 
 
 @compiled
-def spring_force(φ_m: float, T_0: float, q: np.ndarray) -> float:
-    """Force F_s of one drum spring [N] (2.41).
+def spring_force(φ_m: float, T_0: float, own: np.ndarray) -> float:
+    """Force F_s of one drum spring [N] (2.41); own: the drive's row of q.
 
     Misprint: the thesis prints R_s/R; at rest R_s F_s must balance R T(0), so it is R/R_s.
     """
-    R, R_s, k_s = q[0], q[1], q[2]
+    R, R_s, k_s = own[at.R], own[at.R_S], own[at.K_S]
     return max(0.0, R / R_s * T_0 - k_s * R_s * φ_m)
 
 
@@ -152,13 +153,12 @@ def derivative(x: np.ndarray, i: np.ndarray, q: np.ndarray) -> np.ndarray:
     Args:
         x: state, shape (36,), in the order of `inca_mj.reference.layout`.
         i: motor currents, positive winds in, shape (8,) [A].
-        q: packed numbers, shape (77,).
+        q: packed numbers, shape (147,).
 
     Returns:
         The rate of the state, shape (36,).
     """
-    R, R_s, J, b_v, b_c, β, K_t = q[0], q[1], q[5], q[6], q[7], q[8], q[9]
-    m, I_P, g = q[10], (q[11], q[12], q[13]), q[at.G_EARTH]
+    m, I_P, g = q[at.M], vector(q[at.INERTIA]), q[at.G_EARTH]
     G, b_G = vector(q[at.FORCE]), vector(q[at.FORCE_AT])
     v, ω, euler = vector(x[at.VELOCITY]), vector(x[at.RATES]), vector(x[at.EULER])
     φ_m, ω_m, T_0 = x[at.ANGLES], x[at.SPEEDS], q[at.PRETENSION]
@@ -186,10 +186,12 @@ def derivative(x: np.ndarray, i: np.ndarray, q: np.ndarray) -> np.ndarray:
         rate[3 + k] = F[k] / m - ω_v[k]
         rate[9 + k] = (M[k] - ω_Iω[k]) / I_P[k]
     for k in range(at.DRIVES):
+        own = q[at.ROW * k :]
         # Misprint: 2.40 prints T R − F_s R_s; where positive winds in, the cable brakes.
-        Γ = K_t * i[k] - R * T[k] + R_s * spring_force(φ_m[k], T_0[k], q)
-        friction = b_v * ω_m[k] + b_c * tanh(β * ω_m[k])
+        Γ = own[at.K_T] * i[k] - own[at.R] * T[k]
+        Γ += own[at.R_S] * spring_force(φ_m[k], T_0[k], own)
+        friction = own[at.B_V] * ω_m[k] + own[at.B_C] * tanh(own[at.BETA] * ω_m[k])
         rate[12 + k] = ω_m[k]
-        rate[20 + k] = (Γ - friction) / J
+        rate[20 + k] = (Γ - friction) / own[at.J]
         rate[28 + k] = d_0_rate[k]
     return rate

@@ -19,15 +19,17 @@ ANGLES = slice(12, 20)  # motor angles φ_m, positive winds the cable in [rad]
 SPEEDS = slice(20, 28)  # motor rates ω_m [rad/s]
 NO_LOAD = slice(28, 36)  # no-load lengths d₀ of the free cables [m]
 
-# Numbers q: scalars in this order, then vectors.
-SCALARS = (
-    *("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t"),
-    *("m", "I_x", "I_y", "I_z"),
-)
-G_EARTH = 14  # g [m/s^2]
-FORCE = slice(15, 18)  # external force G, in O [N]
-FORCE_AT = slice(18, 21)  # its point b_G, in the platform frame [m]
-EXITS = slice(21, 45)  # A_i in O, row by row [m]
-CONNECTORS = slice(45, 69)  # B_i in the platform frame, row by row [m]
-PRETENSION = slice(69, 77)  # T(0), which the drum springs balance at φ_m = 0 [N]
-NUMBERS = 77
+# Numbers q: a row for each drive, whose entries have this order, then what the drives share.
+EACH_DRIVE = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t")
+R, R_S, K_S, LAMBDA, B, J, B_V, B_C, BETA, K_T = range(10)
+ROW = 10
+ROWS = slice(0, 80)
+M = 80  # mass of the platform [kg]
+INERTIA = slice(81, 84)  # I_x, I_y, I_z of the platform [kg m^2]
+G_EARTH = 84  # g [m/s^2]
+FORCE = slice(85, 88)  # external force G, in O [N]
+FORCE_AT = slice(88, 91)  # its point b_G, in the platform frame [m]
+EXITS = slice(91, 115)  # A_i in O, row by row [m]
+CONNECTORS = slice(115, 139)  # B_i in the platform frame, row by row [m]
+PRETENSION = slice(139, 147)  # T(0), which the drum springs balance at φ_m = 0 [N]
+NUMBERS = 147

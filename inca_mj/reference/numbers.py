@@ -1,4 +1,8 @@
-"""The constants of the equations in one flat array, in the order of `layout`."""
+"""The constants of the equations in one flat array, in the order of `layout`.
+
+Every drive has numbers of its own, and every point its own place: `inca_mj.robot.spread` says how
+the deviations and displacements of the parameters give them.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +16,7 @@ from inca_mj.reference import layout as at
 from inca_mj.reference.statics import rest
 from inca_mj.robot.geometry import Geometry
 from inca_mj.robot.parameters import GRAVITY
+from inca_mj.robot.spread import at_drives, displaced
 
 NO_FORCE = (0.0, 0.0, 0.0)
 
@@ -23,14 +28,15 @@ def pack(
     force: Sequence[float] = NO_FORCE,
     force_at: Sequence[float] = NO_FORCE,
 ) -> np.ndarray:
-    """The numbers q of `derivative(x, i, q)`, shape (77,).
+    """The numbers q of `derivative(x, i, q)`, shape (147,).
 
     The drum springs balance the pretension of the parameters' start pose; `force` is not part
     of that balance, it acts from the first instant on.
 
     Args:
-        parameters: values of the robot, and its start pose.
-        geometry: exit points and connectors.
+        parameters: values of the robot, and its start pose; deviations of its drives and
+            displacements of its points count where they are among them.
+        geometry: nominal exit points and connectors.
         force: constant external force G on the platform, in O [N].
         force_at: the point b_G where it acts, in the platform frame [m].
 
@@ -40,10 +46,12 @@ def pack(
     """
     value = parameters.values()
     q = np.empty(at.NUMBERS)
-    q[: len(at.SCALARS)] = [value[name] for name in at.SCALARS]
+    q[at.ROWS] = np.column_stack([at_drives(name, value) for name in at.EACH_DRIVE]).ravel()
+    q[at.M], q[at.INERTIA] = value["m"], [value[name] for name in ("I_x", "I_y", "I_z")]
     q[at.G_EARTH] = GRAVITY
     q[at.FORCE], q[at.FORCE_AT] = _three("force", force, "N"), _three("force_at", force_at, "m")
-    q[at.EXITS], q[at.CONNECTORS] = geometry.A.ravel(), geometry.B.ravel()
+    placed = displaced(geometry, value)
+    q[at.EXITS], q[at.CONNECTORS] = placed.A.ravel(), placed.B.ravel()
     q[at.PRETENSION] = rest(parameters, geometry).tension
     return q
 

@@ -5,7 +5,7 @@ w the wrench that carries the weight,
 
     W = [−s_i; −b_i × s_i],   w = (0, 0, m g, 0, 0, 0),   W T = w
     T(0) = t₀ + W⁺ (w − W t₀)          the solution nearest to t₀ = 4 N each
-    d₀(0) = λ d/(λ + T(0))             so that λ (d − d₀)/d₀ = T(0)
+    d₀(0) = λ d/(λ + T(0))             so that λ (d − d₀)/d₀ = T(0), each cable with its own λ
 
 The thesis does not say how T(0) was chosen, only that it balances the drum springs.
 """
@@ -22,6 +22,7 @@ from inca_mj.reference import kinematics
 from inca_mj.reference import layout as at
 from inca_mj.robot.geometry import Geometry
 from inca_mj.robot.parameters import GRAVITY, PRETENSION
+from inca_mj.robot.spread import at_drives, displaced
 
 UNBALANCED = 1e-9  # largest force [N] or torque [N m] left by the pretension
 
@@ -52,8 +53,9 @@ def rest(parameters: ParameterSet, geometry: Geometry) -> Rest:
     """The rest at the start pose (x, y, z, roll, pitch, yaw) of a parameter set.
 
     Args:
-        parameters: needs `m`, `lambda` and the start pose.
-        geometry: exit points and connectors.
+        parameters: needs `m`, `lambda` and the start pose; takes the deviations of λ and the
+            displacements of points that it has.
+        geometry: nominal exit points and connectors.
 
     Raises:
         InputError: a cable has no length, the cables cannot carry the weight at this pose, or
@@ -63,8 +65,9 @@ def rest(parameters: ParameterSet, geometry: Geometry) -> Rest:
     position = np.array([value[name] for name in ("x", "y", "z")])
     euler = np.array([value[name] for name in ("roll", "pitch", "yaw")])
     R_AB = kinematics.rotation(euler)
-    _refuse_zero_length(position + geometry.B @ R_AB.T - geometry.A)
-    pose = kinematics.geometric(position, R_AB, geometry)
+    placed = displaced(geometry, value)
+    _refuse_zero_length(position + placed.B @ R_AB.T - placed.A)
+    pose = kinematics.geometric(position, R_AB, placed)
 
     W = wrench_matrix(pose)
     w = np.array([0.0, 0.0, value["m"] * GRAVITY, 0.0, 0.0, 0.0])
@@ -73,7 +76,7 @@ def rest(parameters: ParameterSet, geometry: Geometry) -> Rest:
     _refuse_unbalanced(W @ T - w)
     _refuse_slack(T)
 
-    λ, d = value["lambda"], pose.lengths
+    λ, d = at_drives("lambda", value), pose.lengths
     d_0 = λ * d / (λ + T)
     state = np.zeros(at.STATES)
     state[at.POSITION], state[at.EULER], state[at.NO_LOAD] = position, euler, d_0

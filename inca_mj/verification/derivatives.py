@@ -27,6 +27,7 @@ from inca_mj.reference import layout as at
 from inca_mj.reference import outputs, pack
 from inca_mj.robot.geometry import DRIVES, INCA, Geometry
 from inca_mj.robot.parameters import GRAVITY, PRETENSION, SETS, parameter_set
+from inca_mj.robot.spread import at_drives, displaced
 from inca_mj.twin.twin import Twin, build_twin
 from inca_mj.verification.states import random_states, to_mujoco
 
@@ -120,7 +121,7 @@ def _random_values(base: ParameterSet, rng: np.random.Generator) -> dict[str, fl
 
 def _compare(robot: Twin, n: int, rng: np.random.Generator) -> tuple[list[float], float]:
     """Largest relative errors (linear, angular, motor, no-load rate, tension), share of slack."""
-    x = random_states(n, robot.geometry, rng)
+    x = random_states(n, displaced(robot.geometry, robot.parameters.values()), rng)
     i = rng.normal(0, 2, (n, DRIVES))
     q = pack(robot.parameters, robot.geometry)
     exact = [outputs(*row, q) for row in zip(x, i, strict=True)]
@@ -168,9 +169,12 @@ def _magnitudes(
     I_P = np.array([p["I_x"], p["I_y"], p["I_z"]])
     ω, φ, ω_m = x[:, at.RATES], x[:, at.ANGLES], x[:, at.SPEEDS]
     linear = T.sum(axis=1) / p["m"] + GRAVITY
-    moments = T @ np.linalg.norm(robot.geometry.B, axis=1)
+    moments = T @ np.linalg.norm(displaced(robot.geometry, p).B, axis=1)
     angular = (moments[:, None] + np.abs(np.cross(ω, I_P * ω))) / I_P
-    spring = np.abs(p["R"] * robot.start.tension - p["k_s"] * p["R_s"] ** 2 * φ)
-    driven = p["K_t"] * np.abs(i) + p["R"] * T + spring
-    motor = (driven + p["b_v"] * np.abs(ω_m) + p["b_c"]) / p["J"]
+    R, R_s, k_s, J, b_v, b_c, K_t = (
+        at_drives(name, p) for name in ("R", "R_s", "k_s", "J", "b_v", "b_c", "K_t")
+    )
+    spring = np.abs(R * robot.start.tension - k_s * R_s**2 * φ)
+    driven = K_t * np.abs(i) + R * T + spring
+    motor = (driven + b_v * np.abs(ω_m) + b_c) / J
     return linear, angular, motor

@@ -7,6 +7,8 @@
     J ω̇_m      = K_t (1 + δ)(1 − D) i_m + torques − R_k T + R_s F_s − friction
     m v̇        = reference + weight of the cables − R_ABᵀ c |v|^(n−1) v
 
+R, R_s, K_t and the other numbers of a drive are its own: `own` is its row of the packed numbers.
+
 Each function is one of these lines and none of them is the reference's, so that a test may ask
 the two to agree where no effect is on. An effect that is off is skipped or adds an exact zero.
 """
@@ -79,9 +81,9 @@ def sagging(T: float, K: float) -> float:
 
 @compiled
 def tension(d: float, d_0: float, stretch: float, ε_v: float, span: float, g: float,
-            q: np.ndarray, D: np.ndarray) -> float:  # fmt: skip
+            own: np.ndarray, D: np.ndarray) -> float:  # fmt: skip
     """T of one cable [N]; stretch: ḋ − ḋ₀ [m/s], span: horizontal [m]."""
-    λ, b = q[3], q[4]
+    λ, b = own[base.LAMBDA], own[base.B]
     T = elastic((d - d_0) / d_0, ε_v, λ, D) + b * stretch
     if D[at.SAG] != 0.0 and D[at.LINE_WEIGHT] > 0.0:
         w = D[at.LINE_WEIGHT] * g * span
@@ -90,9 +92,9 @@ def tension(d: float, d_0: float, stretch: float, ε_v: float, span: float, g: f
 
 
 @compiled
-def friction(ω: float, φ: float, RT: float, q: np.ndarray, D: np.ndarray) -> float:
+def friction(ω: float, φ: float, RT: float, own: np.ndarray, D: np.ndarray) -> float:
     """Torque that brakes a rotor [N m]; RT: load of the cable [N m]."""
-    b_v, b_c, β = q[6], q[7], q[8]
+    b_v, b_c, β = own[base.B_V], own[base.B_C], own[base.BETA]
     σ = tanh(β * ω)
     level = b_c * (1.0 + D[at.COULOMB_ERROR]) + D[at.LOAD] * RT
     if D[at.ANGLE_COS] != 0.0 or D[at.ANGLE_SIN] != 0.0:
@@ -107,9 +109,9 @@ def friction(ω: float, φ: float, RT: float, q: np.ndarray, D: np.ndarray) -> f
 
 
 @compiled
-def spring(φ: float, ω: float, RT_0: float, q: np.ndarray, D: np.ndarray) -> float:
+def spring(φ: float, ω: float, RT_0: float, own: np.ndarray, D: np.ndarray) -> float:
     """F_s of one drum spring [N]; RT_0: the load that it balances at φ = 0 [N m]."""
-    R_s, k_s, β = q[1], q[2], q[8]
+    R_s, k_s, β = own[base.R_S], own[base.K_S], own[base.BETA]
     s = R_s * φ
     F = RT_0 / R_s - k_s * s
     if D[at.SPRING_HARD] != 0.0:
@@ -118,14 +120,14 @@ def spring(φ: float, ω: float, RT_0: float, q: np.ndarray, D: np.ndarray) -> f
 
 
 @compiled
-def motor(t: float, i: float, heat: float, φ: float, q: np.ndarray, D: np.ndarray) -> float:
+def motor(t: float, i: float, heat: float, φ: float, own: np.ndarray, D: np.ndarray) -> float:
     """Torque of a motor [N m]."""
     loss = D[at.HEAT_LOSS] * heat
     if D[at.DRIFT_TIME] > 0.0:
         loss += D[at.DRIFT] * D[at.DRIFT_TIME] * (1.0 - exp(-t / D[at.DRIFT_TIME]))
     else:
         loss += D[at.DRIFT] * t
-    Γ = q[9] * (1.0 + D[at.GAIN_ERROR]) * (1.0 - loss) * i
+    Γ = own[base.K_T] * (1.0 + D[at.GAIN_ERROR]) * (1.0 - loss) * i
     if D[at.COG_N] != 0.0:
         Γ += D[at.COG_COS] * cos(D[at.COG_N] * φ) + D[at.COG_SIN] * sin(D[at.COG_N] * φ)
     if D[at.RIPPLE] != 0.0:
@@ -162,13 +164,14 @@ def world_rate(t: float, x: np.ndarray, i: np.ndarray, q: np.ndarray, D: np.ndar
         t: since the first sample [s].
         x: state, shape (60,), in the order of `layout`.
         i: currents that flow, shape (8,) [A].
-        q: packed numbers of the reference, shape (77,).
+        q: packed numbers of the reference, shape (147,).
         D: numbers of the drives, shape (8, 44).
         P: numbers of the platform, shape (3,).
         rate: where ẋ is written, shape (60,).
     """
-    R, R_s, J, m, g = q[0], q[1], q[5], q[10], q[base.G_EARTH]
-    I_P, G, b_G = (q[11], q[12], q[13]), vector(q[15:]), vector(q[18:])
+    m, g, I_P = q[base.M], q[base.G_EARTH], vector(q[base.INERTIA])
+    G, b_G = vector(q[base.FORCE]), vector(q[base.FORCE_AT])
+    A, B, T_0 = q[base.EXITS], q[base.CONNECTORS], q[base.PRETENSION]
     p, v, euler, ω = vector(x), vector(x[3:]), vector(x[6:]), vector(x[9:])
     R_AB = rotation(euler)
     R_BA = transposed(R_AB)
@@ -178,9 +181,9 @@ def world_rate(t: float, x: np.ndarray, i: np.ndarray, q: np.ndarray, D: np.ndar
     F = (m * down[0] + GB[0] + air[0], m * down[1] + GB[1] + air[1], m * down[2] + GB[2] + air[2])
     M = cross(b_G, GB)
     for k in range(base.DRIVES):
-        D_k = D[k]
-        a, b_k = vector(q[21 + 3 * k :]), vector(q[45 + 3 * k :])
-        φ, ω_m, d_0, T_0 = x[12 + k], x[20 + k], x[28 + k], q[69 + k]
+        D_k, own = D[k], q[base.ROW * k :]
+        a, b_k = vector(A[3 * k :]), vector(B[3 * k :])
+        φ, ω_m, d_0, R = x[12 + k], x[20 + k], x[28 + k], own[base.R]
         ψ, ε_v, heat = (φ if D_k[at.PLAY] == 0.0 else x[36 + k]), x[44 + k], x[52 + k]
 
         moved, moving = shake(t, D_k)
@@ -194,7 +197,7 @@ def world_rate(t: float, x: np.ndarray, i: np.ndarray, q: np.ndarray, D: np.ndar
         R_k, ω_d = radius(ψ, R, D_k), drum_rate(φ, ψ, ω_m, D_k[at.PLAY])
         d_0_rate = -R_k * ω_d * d_0 / d
         span = sqrt(ds[0] * ds[0] + ds[1] * ds[1])
-        T = tension(d, d_0, d_rate - d_0_rate, ε_v, span, g, q, D_k)
+        T = tension(d, d_0, d_rate - d_0_rate, ε_v, span, g, own, D_k)
 
         hangs = 0.5 * D_k[at.LINE_WEIGHT] * d
         pull = (hangs * down[0] - T * sB[0], hangs * down[1] - T * sB[1],
@@ -203,10 +206,10 @@ def world_rate(t: float, x: np.ndarray, i: np.ndarray, q: np.ndarray, D: np.ndar
         F = (F[0] + pull[0], F[1] + pull[1], F[2] + pull[2])
         M = (M[0] + turn[0], M[1] + turn[1], M[2] + turn[2])
 
-        Γ = motor(t, i[k], heat, φ, q, D_k) - R_k * T
-        Γ += R_s * spring(φ, ω_m, radius(0.0, R, D_k) * T_0, q, D_k)
+        Γ = motor(t, i[k], heat, φ, own, D_k) - R_k * T
+        Γ += own[base.R_S] * spring(φ, ω_m, radius(0.0, R, D_k) * T_0[k], own, D_k)
         rate[12 + k] = ω_m
-        rate[20 + k] = (Γ - friction(ω_m, φ, R_k * T, q, D_k)) / J
+        rate[20 + k] = (Γ - friction(ω_m, φ, R_k * T, own, D_k)) / own[base.J]
         rate[28 + k] = d_0_rate
         rate[36 + k] = ω_d
         ε = (d - d_0) / d_0

@@ -17,6 +17,7 @@ from math import ceil, exp, tanh
 import numpy as np
 from numba import njit
 
+from inca_mj.reference import layout as base
 from inca_mj.reference.equations import rotation, times, vector
 from inca_mj.worlds import layout as at
 from inca_mj.worlds.equations import radius, world_rate
@@ -61,17 +62,18 @@ def close_play(x: np.ndarray, before: np.ndarray, q: np.ndarray, D: np.ndarray) 
         q: packed numbers of the reference.
         D: numbers of the drives.
     """
+    A, B = q[base.EXITS], q[base.CONNECTORS]
     for k in range(8):
         h, φ, ψ = D[k, at.PLAY], x[12 + k], x[36 + k]
         if h == 0.0:
             continue
         inside = min(max(before[k], φ - h), φ + h)
         if inside != ψ:
-            Rb = times(rotation(vector(x[6:])), vector(q[45 + 3 * k :]))
-            ds = (x[0] + Rb[0] - q[21 + 3 * k], x[1] + Rb[1] - q[22 + 3 * k],
-                  x[2] + Rb[2] - q[23 + 3 * k])  # fmt: skip
+            Rb = times(rotation(vector(x[6:])), vector(B[3 * k :]))
+            ds = (x[0] + Rb[0] - A[3 * k], x[1] + Rb[1] - A[3 * k + 1],
+                  x[2] + Rb[2] - A[3 * k + 2])  # fmt: skip
             d, _ = path(ds, D[k, at.PULLEY], D[k, at.PULLEY_SIDE])
-            x[28 + k] -= radius(ψ, q[0], D[k]) * (inside - ψ) * x[28 + k] / d
+            x[28 + k] -= radius(ψ, q[base.ROW * k + base.R], D[k]) * (inside - ψ) * x[28 + k] / d
             x[36 + k] = inside
 
 

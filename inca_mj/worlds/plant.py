@@ -20,6 +20,7 @@ from inca_mj.reference import kinematics, pack
 from inca_mj.reference import layout as base
 from inca_mj.robot.geometry import DRIVES, Geometry
 from inca_mj.robot.parameters import GRAVITY, PRETENSION
+from inca_mj.robot.spread import at_drives, displaced
 from inca_mj.worlds import layout as at
 from inca_mj.worlds.effect import HiddenEffect, HiddenNumbers
 from inca_mj.worlds.integrate import PLAY_STEP, STEP, trajectory
@@ -31,7 +32,7 @@ class HiddenPlant:
     """The numbers of one robot; its arrays are read-only.
 
     Attributes:
-        q: packed numbers of the reference, at the true geometry, shape (77,).
+        q: packed numbers of the reference, at the true geometry, shape (147,).
         D: numbers of the drives, shape (8, 44).
         P: numbers of the platform, shape (3,).
         start: first state, shape (60,).
@@ -52,16 +53,23 @@ def make_plant(
 ) -> HiddenPlant:
     """A robot at rest at the start pose of its parameters.
 
+    Args:
+        parameters: true values; deviations of its drives and displacements of its points count
+            where they are among them.
+        geometry: nominal exit points and connectors.
+        effects: what else it has.
+
     Raises:
         InputError: no tensions that pull hold the platform there.
     """
-    n = HiddenNumbers(geometry.A, geometry.B)
+    value = parameters.values()
+    placed, λ = displaced(geometry, value), at_drives("lambda", value)
+    n = HiddenNumbers(placed.A, placed.B)
     for effect in effects:
         effect.put(n)
     q = pack(parameters, geometry)
     q[base.EXITS], q[base.CONNECTORS] = n.A.ravel(), n.B.ravel()
     q[base.FORCE], q[base.FORCE_AT] = n.force, -n.centre
-    value = parameters.values()
     euler = np.array([value[name] for name in ("roll", "pitch", "yaw")])
     R_AB = kinematics.rotation(euler)
     p = np.array([value[name] for name in ("x", "y", "z")]) + R_AB @ n.centre
@@ -74,7 +82,7 @@ def make_plant(
     d, s = np.array([length for length, _ in paths]), np.array([list(u) for _, u in paths])
     T = _pretension(n, s, arms, d, value["m"], R_AB)
     q[base.PRETENSION] = T
-    ε = np.array([_strain(T_k, value["lambda"], D) for T_k, D in zip(T, n.D, strict=True)])
+    ε = np.array([_strain(*each) for each in zip(T, λ, n.D, strict=True)])
     x = np.zeros(at.STATES)
     x[base.POSITION], x[base.EULER] = p, euler
     x[base.NO_LOAD] = (d + _sag(n.D, d, ds, T)) / (1 + ε)

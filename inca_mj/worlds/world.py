@@ -1,89 +1,27 @@
-"""A world: a robot nobody knows exactly, with effects nobody named, and a log of it."""
+"""A world: a robot nobody knows exactly, with effects nobody named, and logs of it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
-from identification.errors import InputError, unknown_name
+from identification.errors import InputError
 from identification.logs.log import Log
 from identification.model.parameter import ParameterSet
 from inca_mj.reference import layout as base
 from inca_mj.robot.geometry import DRIVES, INCA, Geometry
-from inca_mj.robot.inputs import multisine, prbs
-from inca_mj.robot.parameters import parameter_set
 from inca_mj.worlds.effect import HiddenEffect
 from inca_mj.worlds.measure import coloured, encode, noise_rms
 from inca_mj.worlds.plant import make_plant, simulate_world
 from inca_mj.worlds.ratio import HiddenAbsorbed, sized
+from inca_mj.worlds.robot import elsewhere, true_robot
+from inca_mj.worlds.setting import HiddenSetting, make_currents
 from inca_mj.worlds.truth import HiddenTruth, HiddenWorld
 
-VARIED = ("lambda", "b", "J", "b_v", "b_c", "K_t")  # what a user would estimate
-EVERY = ("R", "R_s", "k_s", *VARIED, "beta", "m", "I_x", "I_y", "I_z")
-
-_INPUTS = {"prbs": prbs, "multisine": multisine}
-
-
-@dataclass(frozen=True, kw_only=True)
-class HiddenSetting:
-    """How a world is made and measured.
-
-    Attributes:
-        input: "prbs" or "multisine".
-        low: smallest current [A].
-        high: largest current [A].
-        duration: of the log [s]; its samples are those of [0, duration).
-        sampling_time: [s].
-        varied: parameters that differ from the `trial` set, uniformly within ± `spread`.
-        spread: relative.
-        offset: largest error of the start position, by axis [m].
-        tilt: largest error of the start angles, by axis [rad].
-        counts: of an encoder a turn; 0 for one without steps.
-        noise: white, before the encoder rounds [rad].
-        error_rms: of the unlogged coloured error of the currents [A].
-        error_time: its time constant [s]; 0 for white.
-
-    Raises:
-        InputError: the input is unknown, or a number is out of its range.
-    """
-
-    input: str = "prbs"
-    low: float = 0.5
-    high: float = 1.0
-    duration: float = 20.0
-    sampling_time: float = 0.01
-    varied: tuple[str, ...] = VARIED
-    spread: float = 0.1
-    offset: float = 0.01
-    tilt: float = 0.0
-    counts: int = 4000
-    noise: float = 5e-4
-    error_rms: float = 0.0
-    error_time: float = 0.05
-
-    def __post_init__(self) -> None:
-        if self.input not in _INPUTS:
-            raise unknown_name("input", self.input, _INPUTS)
-        for name in ("spread", "offset", "tilt", "counts", "noise", "error_rms", "error_time"):
-            if not getattr(self, name) >= 0:
-                raise InputError(f"setting: {name} must not be negative")
-        if not (0 < 2 * self.sampling_time <= self.duration and self.low <= self.high):
-            raise InputError("setting: give two samples or more, and low no more than high")
-
-    @property
-    def samples(self) -> int:
-        """Number of samples."""
-        return round(self.duration / self.sampling_time)
-
-
-def make_currents(seed: int, setting: HiddenSetting) -> np.ndarray:
-    """The commanded currents of a world, shape (n, 8) [A]."""
-    n, T_s, low, high = setting.samples, setting.sampling_time, setting.low, setting.high
-    if setting.input == "prbs":
-        return prbs(n, T_s, seed=seed, low=low, high=high)
-    return multisine(n, T_s, seed=seed, mean=(low + high) / 2, amplitude=(high - low) / 2)
+INPUTS = ("prbs", "multisine", "prbs")  # of the records of one robot
+FURTHER = 0.02  # later records begin up to this much farther off than the first [m]
 
 
 def world(
@@ -113,51 +51,98 @@ def world(
         DivergenceError: the effects are so large that the robot breaks.
     """
     setting = setting or HiddenSetting()
+    (only,) = records(
+        seed, effects, n=1, ratio=ratio, setting=setting, inputs=(setting.input,), geometry=geometry
+    )
+    return only
+
+
+def records(
+    seed: int,
+    effects: Sequence[HiddenEffect] = (),
+    *,
+    n: int = 3,
+    ratio: float | Sequence[float] | None = None,
+    setting: HiddenSetting | None = None,
+    inputs: Sequence[str] = INPUTS,
+    further: float = FURTHER,
+    geometry: Geometry = INCA,
+) -> tuple[HiddenWorld, ...]:
+    """Logs of one robot with these effects, each with an input, a start and noise of its own.
+
+    The first is that of `world` with the first input, to the last bit.
+
+    Args:
+        seed: 0 or more.
+        effects: frozen records, sizes in physical units.
+        n: how many logs.
+        ratio: as of `world`; sizes are found on the first log.
+        setting: of the experiment; its input does not count.
+        inputs: "prbs" or "multisine" of each log, taken in turn where there are fewer.
+        further: a later start position may be off by this much more than the first, by axis [m].
+        geometry: nominal exit points and connectors.
+
+    Raises:
+        InputError: a number is bad, an effect is there twice in one place, or a ratio cannot be
+            reached.
+        DivergenceError: the effects are so large that the robot breaks.
+    """
+    setting = setting or HiddenSetting()
     places = [(e.name, e.where) for e in effects]
     if len(set(places)) < len(places):
         raise InputError("an effect is named twice in one place; give it once, with its size")
     if seed < 0:
         raise InputError(f"seed {seed} is negative; give 0 or more")
-    draws = np.random.default_rng([seed, 1])
-    robot = _true_robot(draws, setting)
-    u = make_currents(seed, setting)
-    noise = noise_rms(setting.counts, setting.noise)
+    if n < 1 or not inputs or not further >= 0:
+        raise InputError("give one record or more, an input or more, and no negative distance")
+    settings = [replace(setting, input=inputs[j % len(inputs)]) for j in range(n)]
+    robot = true_robot(seed, setting)
+    u = make_currents(seed, settings[0])
     chosen, ratios = tuple(effects), _ratios(ratio, len(effects))
     if ratios:
         absorbed = HiddenAbsorbed(robot, geometry, u, setting.sampling_time, setting.varied)
-        chosen = tuple(sized(e, absorbed, r * noise) for e, r in zip(chosen, ratios, strict=True))
+        goals = [r * noise_rms(setting.counts, setting.noise) for r in ratios]
+        chosen = tuple(sized(e, absorbed, goal) for e, goal in zip(chosen, goals, strict=True))
+    made = [_record(seed, (), robot, geometry, chosen, ratios, settings[0], u)]
+    for j in range(1, n):
+        rng = np.random.default_rng([seed, 5, j])
+        moved = elsewhere(robot, setting.offset + further, setting.tilt, rng)
+        u = make_currents(int(rng.integers(2**31)), settings[j])
+        made.append(_record(seed, (j,), moved, geometry, chosen, ratios, settings[j], u))
+    return tuple(made)
+
+
+def _record(
+    seed: int,
+    number: tuple[int, ...],
+    robot: ParameterSet,
+    geometry: Geometry,
+    effects: tuple[HiddenEffect, ...],
+    ratios: tuple[float, ...],
+    setting: HiddenSetting,
+    u: np.ndarray,
+) -> HiddenWorld:
+    """A log of a robot under the currents u; `number` is empty for the first."""
     error = coloured(
         u.shape, setting.sampling_time, setting.error_rms, setting.error_time,
-        np.random.default_rng([seed, 2]),
+        np.random.default_rng([seed, 2, *number]),
     )  # fmt: skip
-    plant = make_plant(robot, geometry, chosen)
+    plant = make_plant(robot, geometry, effects)
     angles = simulate_world(plant, u + error, setting.sampling_time)[:, base.ANGLES].copy()
-    y = encode(angles, setting.counts, setting.noise, np.random.default_rng([seed, 3]))
+    noise = np.random.default_rng([seed, 3, *number])
+    y = encode(angles, setting.counts, setting.noise, noise)
     truth = HiddenTruth(
         seed=seed,
-        effects=chosen,
+        effects=effects,
         ratios=ratios,
         parameters=robot.values(),
-        noise_rms=noise,
+        noise_rms=noise_rms(setting.counts, setting.noise),
         error_rms=setting.error_rms,
         angles=angles,
         error=error,
     )
-    return HiddenWorld(_log(u, y, setting), truth)
-
-
-def _true_robot(rng: np.random.Generator, setting: HiddenSetting) -> ParameterSet:
-    nominal = parameter_set("trial")
-    # Every parameter is drawn, so that what varies does not change what another seed gives.
-    factor = dict(zip(EVERY, 1 + setting.spread * rng.uniform(-1, 1, len(EVERY)), strict=True))
-    values = {name: factor[name] * nominal[name].value for name in setting.varied}
-    for names, largest in (
-        (("x", "y", "z"), setting.offset),
-        (("roll", "pitch", "yaw"), setting.tilt),
-    ):
-        for name, part in zip(names, rng.uniform(-1, 1, 3), strict=True):
-            values[name] = nominal[name].value + largest * float(part)
-    return nominal.with_values(values)
+    name = "world" if not number else f"world, record {number[0] + 1}"
+    return HiddenWorld(_log(u, y, setting, name), truth)
 
 
 def _ratios(ratio: float | Sequence[float] | None, n: int) -> tuple[float, ...]:
@@ -169,7 +154,7 @@ def _ratios(ratio: float | Sequence[float] | None, n: int) -> tuple[float, ...]:
     return ratios
 
 
-def _log(u: np.ndarray, y: np.ndarray, setting: HiddenSetting) -> Log:
+def _log(u: np.ndarray, y: np.ndarray, setting: HiddenSetting, name: str) -> Log:
     names = [tuple(f"{kind}_{k}" for k in range(1, DRIVES + 1)) for kind in ("current", "angle")]
     units = {**dict.fromkeys(names[0], "A"), **dict.fromkeys(names[1], "rad")}
     time = setting.sampling_time * np.arange(len(u), dtype=np.float64)
@@ -180,5 +165,5 @@ def _log(u: np.ndarray, y: np.ndarray, setting: HiddenSetting) -> Log:
         input_names=names[0],
         output_names=names[1],
         units=units,
-        name="world",
+        name=name,
     )

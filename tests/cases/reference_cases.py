@@ -10,6 +10,7 @@ from inca_mj.reference import layout as at
 from inca_mj.reference import rest
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import SETS, parameter_set
+from inca_mj.robot.spread import DRIVE, POINT, with_spread
 
 FORCE, FORCE_AT = (0.3, -0.2, 0.5), (0.01, 0.02, -0.03)
 
@@ -48,6 +49,15 @@ def taut(seed: int) -> np.ndarray:
 
 def without_losses() -> ParameterSet:
     return parameter_set("trial", {"b": 0.0, "b_v": 0.0, "b_c": 0.0})
+
+
+def differing(seed: int, drives: float = 0.2, points: float = 0.01) -> ParameterSet:
+    """A robot whose drives all differ by up to `drives`, and its points by up to `points` [m]."""
+    spread = with_spread(parameter_set())
+    largest = {DRIVE: drives, POINT: points}
+    of = {p.name: largest[p.where] for p in spread if p.where in largest}
+    parts = np.random.default_rng(seed).uniform(-1, 1, len(of))
+    return spread.with_values({n: of[n] * x for n, x in zip(of, parts, strict=True)})
 
 
 seeds = st.integers(0, 2**32 - 1)

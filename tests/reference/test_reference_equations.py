@@ -1,5 +1,7 @@
 """The right-hand side against the slow obvious way, and against its symmetries."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,6 +9,7 @@ from reference_cases import (
     FORCE,
     FORCE_AT,
     currents,
+    differing,
     plain_rotation,
     random_state,
     seeds,
@@ -19,15 +22,19 @@ from inca_mj.reference import layout as at
 from inca_mj.reference.equations import cables
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
+from inca_mj.robot.spread import EACH_DRIVE
 
 
-def obvious(x, i, value, T_0, G, b_G):
-    """f(x, i) with numpy vectors in the fixed frame O, written from the physics."""
+def obvious(x, i, value, T_0, G, b_G, geometry=INCA):
+    """f(x, i) with numpy vectors in the fixed frame O, written from the physics.
+
+    Each value of a drive is one number, or an array of one for each drive.
+    """
     p, v, ω = x[at.POSITION], x[at.VELOCITY], x[at.RATES]
     φ_m, ω_m, d_0 = x[at.ANGLES], x[at.SPEEDS], x[at.NO_LOAD]
     R_AB = plain_rotation(x[at.EULER])
-    arms, v_O, ω_O = INCA.B @ R_AB.T, R_AB @ v, R_AB @ ω
-    ds = p + arms - INCA.A
+    arms, v_O, ω_O = geometry.B @ R_AB.T, R_AB @ v, R_AB @ ω
+    ds = p + arms - geometry.A
     d = np.linalg.norm(ds, axis=1)
     s = ds / d[:, None]
     d_rate = np.sum(s * (v_O + np.cross(ω_O, arms)), axis=1)
@@ -69,6 +76,24 @@ def test_the_compiled_equations_are_the_obvious_ones(x, i, name):
     q = pack(p, INCA, force=FORCE, force_at=FORCE_AT)
     expected = obvious(x, i, p.values(), rest(p, INCA).tension, np.array(FORCE), FORCE_AT)
     np.testing.assert_allclose(derivative(x, i, q), expected, rtol=1e-9, atol=1e-7)
+
+
+@settings(deadline=None)
+@given(states, currents, seeds)
+def test_so_are_those_of_drives_that_differ(x, i, seed):
+    p = differing(seed)
+    own = p.values()
+    value = dict(own)
+    for name in EACH_DRIVE:
+        value[name] = own[name] * np.array([1 + own[f"{name}@{k}"] for k in range(1, 9)])
+    moves = {
+        point: np.array([[own[f"{point}_{axis}@{k}"] for axis in "xyz"] for k in range(1, 9)])
+        for point in ("exit", "connector")
+    }
+    geometry = replace(INCA, exits=INCA.A + moves["exit"], connectors=INCA.B + moves["connector"])
+    expected = obvious(x, i, value, rest(p, INCA).tension, np.array(FORCE), FORCE_AT, geometry)
+    rate = derivative(x, i, pack(p, INCA, force=FORCE, force_at=FORCE_AT))
+    np.testing.assert_allclose(rate, expected, rtol=1e-9, atol=1e-7)
 
 
 # Mirrors of the geometry: the sign of a polar vector's entries, and where each drive lands.

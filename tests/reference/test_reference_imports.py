@@ -5,7 +5,10 @@ from pathlib import Path
 
 import inca_mj.reference
 
-SHARED = {"inca_mj.robot.geometry", "inca_mj.robot.parameters", "inca_mj.reference"}
+SHARED = {
+    *("inca_mj.robot.geometry", "inca_mj.robot.parameters", "inca_mj.robot.spread"),
+    "inca_mj.reference",
+}
 
 
 def imported(path):
@@ -16,7 +19,7 @@ def imported(path):
             yield node.module or "."
 
 
-def test_the_reference_shares_only_geometry_and_parameters_with_the_twin():
+def test_the_reference_shares_only_the_numbers_of_the_robot_with_the_twin():
     folder = Path(inca_mj.reference.__file__).parent
     names = {name for path in folder.glob("*.py") for name in imported(path)}
     assert not any(name.split(".")[0] == "mujoco" for name in names)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from reference_cases import differing, seeds
 
 from identification.errors import InputError
 from inca_mj.reference import derivative, kinematics, pack, rest
@@ -28,6 +29,12 @@ def imbalance(p):
 @pytest.mark.parametrize("name", SETS)
 def test_the_start_is_an_exact_equilibrium(name):
     assert imbalance(parameter_set(name)) < 1e-14
+
+
+@settings(deadline=None)
+@given(seeds)
+def test_so_is_that_of_drives_that_differ(seed):
+    assert imbalance(differing(seed)) < 1e-14
 
 
 offset = st.floats(-0.1, 0.1)

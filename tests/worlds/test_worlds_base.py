@@ -29,7 +29,7 @@ from inca_mj.worlds import layout as at
 CLOSE = 1e-7  # the oracle is adaptive, at 1e-11 [rad]
 SHARED = {
     *("inca_mj.robot.geometry", "inca_mj.robot.parameters", "inca_mj.robot.inputs"),
-    *("inca_mj.reference", "inca_mj.worlds"),
+    *("inca_mj.robot.spread", "inca_mj.reference", "inca_mj.worlds"),
 }
 
 

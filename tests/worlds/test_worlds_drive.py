@@ -55,7 +55,7 @@ def test_friction_takes_energy_and_never_gives(effect):
 
 def test_each_friction_by_its_letters():
     ω, φ, RT, none = -3.0, 2.0, 0.05, plant()
-    b_c, σ = none.q[7], np.tanh(none.q[8] * ω)
+    b_c, σ = none.q[base.B_C], np.tanh(none.q[base.BETA] * ω)
     for effect, more in (
         (HiddenStribeckFriction(f_s=0.01, v_s=2.0), 0.01 * np.exp(-2.25) * σ),
         (HiddenStribeckFriction(f_s=0.01, v_s=2.0, exponent=1.0), 0.01 * np.exp(-1.5) * σ),
@@ -133,7 +133,7 @@ def test_a_drift_is_an_input_that_fades():
 def test_a_ripple_in_time_is_another_input():
     u = fine(prbs(0.5))
     middle = (np.arange(len(u)) + 0.5)[:, None] * FINE
-    more = 2e-3 * np.sin(2 * np.pi * 5 * middle + 1) / plant().q[9]
+    more = 2e-3 * np.sin(2 * np.pi * 5 * middle + 1) / plant().q[base.K_T]
     got = angles([HiddenTorqueRippleTime(a=2e-3, frequency=5.0, phase=1.0)], u, FINE)
     np.testing.assert_allclose(got, angles([], u + more, FINE), atol=1e-6)
 

@@ -1,0 +1,121 @@
+"""How far a robot that was built is from its drawing.
+
+    value at drive k = common value (1 + δ_k),      δ_k uniform in ± the half-width of the parameter
+    exit point       = nominal place + e,           e ~ N(0, s²) in each coordinate
+    connector        = nominal place + e            likewise, with an s of its own
+    I_x, I_y, I_z, m = value (1 + δ),               δ uniform in ± the half-width, each by itself
+
+The common value is that of `HiddenSetting.varied` and `spread`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.model.parameter import ParameterSet
+from inca_mj.robot.geometry import DRIVES
+from inca_mj.robot.spread import AXES, EACH_DRIVE, POINTS, with_spread
+
+INERTIAS = ("I_x", "I_y", "I_z")
+_FIELDS = {"lambda": "lambda_"}  # a word of Python's own cannot be a field
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tolerances:
+    """How much drives, points and platform of a robot differ from what they should be.
+
+    Attributes:
+        R: largest relative deviation of a drive's roller radius from the common value; the
+            other parameters of a drive likewise.
+        R_s: of the drum radius, spring side.
+        k_s: of the constant of the drum spring.
+        lambda_: of the elastic modulus λ of the cable.
+        b: of the damping of the cable.
+        J: of the inertia of motor, rollers and cable.
+        b_v: of the viscous friction.
+        b_c: of the Coulomb friction.
+        beta: of the smoothness of the Coulomb friction.
+        K_t: of the torque constant.
+        exit: std of each coordinate of an exit point [m].
+        connector: std of each coordinate of a connector [m].
+        inertia: largest relative deviation of each inertia of the platform.
+        m: largest relative deviation of its mass.
+
+    Raises:
+        InputError: a number is negative, or not less than 1 (0.1 m for points).
+    """
+
+    R: float = 0.0
+    R_s: float = 0.0
+    k_s: float = 0.0
+    lambda_: float = 0.0
+    b: float = 0.0
+    J: float = 0.0
+    b_v: float = 0.0
+    b_c: float = 0.0
+    beta: float = 0.0
+    K_t: float = 0.0
+    exit: float = 0.0
+    connector: float = 0.0
+    inertia: float = 0.0
+    m: float = 0.0
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            most = 0.1 if field.name in POINTS else 1.0
+            if not 0 <= getattr(self, field.name) < most:
+                raise InputError(
+                    f"tolerances: {field.name} = {getattr(self, field.name)} must be 0 or more, and"
+                    f" less than {most:g}"
+                )
+
+    @property
+    def drives(self) -> dict[str, float]:
+        """Largest relative deviation of a drive, by the name of each parameter."""
+        return {name: getattr(self, _FIELDS.get(name, name)) for name in EACH_DRIVE}
+
+    @property
+    def points(self) -> dict[str, float]:
+        """Std of each coordinate [m], by kind of point."""
+        return {point: getattr(self, point) for point in POINTS}
+
+
+EXACT = Tolerances()  # all drives alike, all points where the drawing has them
+AS_BUILT = Tolerances(
+    R=0.005, R_s=0.01, k_s=0.03, lambda_=0.05, b=0.2, J=0.05, b_v=0.15, b_c=0.15, K_t=0.02,
+    exit=0.003, connector=0.0005, inertia=0.1, m=0.02,
+)  # fmt: skip
+
+
+def as_built(
+    parameters: ParameterSet, tolerances: Tolerances, rng: np.random.Generator
+) -> ParameterSet:
+    """A robot within its tolerances; the same parameters where these are `EXACT`.
+
+    Everything is drawn, so that no tolerance changes what another one gives.
+
+    Args:
+        parameters: the common values.
+        tolerances: of drives, points and platform.
+        rng: of the deviations.
+
+    Raises:
+        InputError: a point is farther from its place than a displacement may be.
+    """
+    if tolerances == EXACT:
+        return parameters
+    values = {}
+    for name, largest in tolerances.drives.items():
+        for k, part in enumerate(rng.uniform(-1, 1, DRIVES), 1):
+            values[f"{name}@{k}"] = largest * float(part)
+    for point, std in tolerances.points.items():
+        for k, row in enumerate(rng.normal(size=(DRIVES, len(AXES))), 1):
+            for axis, part in zip(AXES, row, strict=True):
+                values[f"{point}_{axis}@{k}"] = std * float(part)
+    for name in (*INERTIAS, "m"):
+        largest = tolerances.inertia if name in INERTIAS else tolerances.m
+        values[name] = parameters[name].value * (1 + largest * float(rng.uniform(-1, 1)))
+    return with_spread(parameters).with_values(values)
