@@ -40,6 +40,9 @@ class NominalModel:
         groups: names that share one std, by what they have in common: deviations of the drives,
             displacements of points. Their std is the largest that is believed.
         scatter: the std of some groups, as the data show it; `std` where not given.
+        deviants: by the name of a deviation, the effect and its place that it is when it is too
+            large for scatter; of an effect of several sizes in their order.
+        is_bounded: whether fits keep every member of a group within `max_scatter` std.
 
     Raises:
         InputError: there is not one std for each name.
@@ -54,6 +57,8 @@ class NominalModel:
     own_values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     scatter: Mapping[str, float] = field(default_factory=dict)
+    deviants: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    is_bounded: bool = False
 
     def __post_init__(self) -> None:
         if np.shape(self.std) != (len(self.names),):
@@ -122,7 +127,8 @@ def fit_with_effects(
     first = np.array([_inside(parameters[n], begin[n]) for n in names])
     space = coordinates(parameters, names, first, linear=(*sizes, *nominal_model.linear))
     space = _within_factor(space, parameters, nominal_model.names, options.nominal_factor)
-    space = _within_scatter(space, nominal_model, options.max_scatter)
+    if nominal_model.is_bounded:
+        space = _within_scatter(space, nominal_model, options.max_scatter)
     # A size has no prior, so that the mean of its prior is never used.
     known = {*nominal_model.names, *shapes}
     middle = {**own, **nominal_model.mean}

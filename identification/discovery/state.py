@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from identification.discovery.deviants import accept_deviants, within_bounds
 from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.fitted_model import (
     AcceptedEffect,
@@ -84,19 +85,25 @@ def first_state(task: DiscoveryTask, progress: Progress) -> SearchState:
     watch = _Watch()
     nominal = fit_model(task, (), {})
     refuse_without_effect(nominal.refit.point.J, task.nominal_model.names, task.log)
+    model = nominal
+    accepted: tuple[AcceptedEffect, ...] = ()
     if task.nominal_model.groups:
         task, nominal = _with_scatter(task, nominal)
+        task = within_bounds(task)
+        nominal, model, accepted = accept_deviants(task, nominal, progress)
     watch.stop("nominal fit")
     progress(f"nominal fit: {1e3 * nominal.validation.rms:.3g}e-3 on unseen data")
-    sensitivities = _compute_all_sensitivities(task, nominal)
+    sensitivities = _compute_all_sensitivities(task, model)
     watch.stop("sensitivities")
-    scores = score_candidates(nominal, sensitivities, task.options)
+    nominal_scores = scores = score_candidates(nominal, sensitivities, task.options)
+    if accepted:
+        scores = score_candidates(model, sensitivities, task.options)
     watch.stop("scores")
     progress(f"{len(scores)} candidates scored, {scores[0].candidate.effect.name} first")
     return SearchState(
-        task=task, stage="selection", nominal=nominal, sensitivities=sensitivities,
-        nominal_scores=scores, model=nominal, accepted=(), scores=scores, rejected=(),
-        seconds=watch.seconds,
+        task=task, stage="selection" if len(accepted) < task.options.max_effects else "pruning",
+        nominal=nominal, sensitivities=sensitivities, nominal_scores=nominal_scores, model=model,
+        accepted=accepted, scores=scores, rejected=(), seconds=watch.seconds,
     )  # fmt: skip
 
 
@@ -156,14 +163,12 @@ def _prune(state: SearchState) -> SearchState:
     )
 
 
-def _compute_all_sensitivities(
-    task: DiscoveryTask, nominal: FittedModel
-) -> tuple[Sensitivity, ...]:
+def _compute_all_sensitivities(task: DiscoveryTask, model: FittedModel) -> tuple[Sensitivity, ...]:
     """Of every effect on all its places, then of its best shape at each single place."""
-    point = nominal.refit.point
+    point = model.refit.point
     common = compute_sensitivities(point, list_common(task.effects))
     best: dict[str, Score] = {}
-    for s in score_candidates(nominal, common, task.options):
+    for s in score_candidates(model, common, task.options):
         best.setdefault(s.candidate.effect.name, s)
     single = list_single([s.candidate for s in best.values()])
     return common + compute_sensitivities(point, single)

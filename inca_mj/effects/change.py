@@ -26,6 +26,8 @@ from numba import njit
 
 from identification.effects.effect import Effect, Size
 from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
+from inca_mj.robot.geometry import DRIVES
+from inca_mj.robot.spread import AXES
 
 PROBE = 0.1  # of the largest plausible size: a cable that is 3 % softer moves an angle by 0.1 mrad
 
@@ -122,6 +124,24 @@ _RULES: tuple[tuple[Any, str, str, str, float], ...] = (
     (drum_radius, "radius", "R", "roller: radius", 0.05),
     (torque_constant, "current", "K_t", "motor: torque constant", 0.2),
 )
+_DEVIATING = {
+    "lambda": "cable_elasticity", "b": "cable_damping", "k_s": "drum_spring",
+    "b_v": "viscous_friction", "b_c": "friction", "R": "drum_radius", "K_t": "torque_constant",
+}  # fmt: skip
+# The effect, and its place, that a deviation of the model's parameters is when it is no scatter.
+DEVIANTS = {
+    **{
+        f"{name}@{k}": (f"{word}_mismatch", f"drive {k}")
+        for name, word in _DEVIATING.items()
+        for k in range(1, DRIVES + 1)
+    },
+    **{
+        f"exit_{axis}@{k}": ("anchor_offset", f"drive {k}")
+        for k in range(1, DRIVES + 1)
+        for axis in AXES
+    },
+}
+
 DRIFTING = 20.0  # [s] in which a parameter may lose as much as one drive may deviate
 
 MISMATCHES = tuple(_mismatch(*rule) for rule in _RULES)

@@ -22,6 +22,7 @@ from identification.errors import InputError
 from identification.logs.joined import join_logs
 from identification.model.own import own_name, values_of_record, with_own
 from identification.model.parameter import RECORD, ParameterSet
+from inca_mj.effects.change import DEVIANTS
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import POINT, displaced, with_spread
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
 
 TIMESTEP = 2e-3  # [s]; RK4 errs by 0.03 mrad, 1/20 of an encoder's noise, at half the cost of 1 ms
 STEPS = 30  # of a fit, at most
-FAR = 20.0  # [std] that a drive or a point may be off: one that is broken is told, and not bounded
 
 
 @dataclass(frozen=True)
@@ -144,7 +144,7 @@ def calibrate(
 
     def fit(model: NominalModel, start: Mapping[str, float], near: Refit | None = None) -> Refit:
         return fit_with_effects(
-            model, fitted, (), start, DiscoveryOptions(max_scatter=FAR), STEPS, near, progress
+            model, fitted, (), start, DiscoveryOptions(), STEPS, near, progress
         )  # fmt: skip
 
     say = progress or (lambda line: None)
@@ -187,7 +187,10 @@ def nominal_model(plant: Twin, spread: Spread, records: int = 1) -> NominalModel
     known = dict(spread.known)
     for k in range(2, records + 1):
         known |= {own_name(name, k): known[name] for name in POSE}
-    return NominalModel(plant, tuple(known), np.array([*known.values()]), groups=spread.groups)
+    return NominalModel(
+        plant, tuple(known), np.array([*known.values()]), groups=spread.groups,
+        deviants={name: effect for name, effect in DEVIANTS.items() if name in known},
+    )  # fmt: skip
 
 
 def _robot_of(plant: Twin, values: Mapping[str, float]) -> Twin:
