@@ -1,0 +1,56 @@
+"""Discovery where drives differ: their scatter is no effect, and a drive that is off is one."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from as_built_cases import NOISE, SPREAD, log_as_built, robot_as_built
+
+from identification.report.discovery_json import discovery_to_json
+from inca_mj.effects.catalogue import CATALOGUE
+from inca_mj.robot.inputs import prbs
+from inca_mj.twin.logs import run_to_log
+from inca_mj.twin.run import simulate
+from inca_mj.workflows.discovery import discover
+from inca_mj.workflows.discovery_model import named_twin
+
+SOME = tuple(
+    e for e in CATALOGUE
+    if e.name in ("torque_constant_mismatch", "asymmetric_friction", "drum_eccentricity")
+)  # fmt: skip
+
+
+def log_with(seed, seconds=4.0, **values):
+    """A log of the robot as built with other values."""
+    robot = robot_as_built().with_values(values)
+    log = run_to_log(simulate(robot, prbs(round(100 * seconds), 0.01, seed=seed)), f"record {seed}")
+    noise = NOISE * np.random.default_rng(seed).standard_normal(log.outputs.shape)
+    return replace(log, outputs=log.outputs + noise, extras={}, units={})
+
+
+def test_drives_that_differ_as_drives_do_lack_nothing():
+    found = discover(log_as_built(4.0), spread=SPREAD, effects=SOME)
+    assert found.verdict == "nothing missing"
+    assert found.after.rms < 2 * NOISE
+
+
+@pytest.fixture(scope="module")
+def off():
+    """A drive with 15 % less torque than it should have, in two records."""
+    logs = [log_with(seed, 4.0, **{"K_t@5": -0.15}, x=x) for seed, x in ((3, 0.0), (4, 0.04))]
+    return discover(logs, spread=SPREAD, effects=SOME)
+
+
+def test_a_drive_that_is_off_by_more_is_named(off):
+    (named,) = off.named
+    assert named.candidate.key == ("torque_constant_mismatch", "drive 5")
+    ((value, std, _),) = named.parameters.values()
+    assert abs(value + 0.15) < max(5 * std, 0.03)  # within the scatter of the others
+    assert off.after.rms < 2 * NOISE < off.before.rms
+    assert named_twin(off).parameters.values()["torque_constant_mismatch.delta@5"] == value
+
+
+def test_each_record_is_told_by_itself(off):
+    records = discovery_to_json(off)["records"]
+    assert [r["file"] for r in records] == ["record 3", "record 4"]
+    assert all(r["role"] == "fit" and r["after"] < r["before"] for r in records)
