@@ -25,6 +25,10 @@ from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
 from identification.estimation.options import Progress
 
+# Steps of the nominal fit without a part that is off. It is a robot that cannot be, and its fit
+# wanders; a few steps say how far it is from the data.
+FEW = 5
+
 
 def find_deviants(task: DiscoveryTask, nominal: FittedModel) -> tuple[Candidate, ...]:
     """Effects of the parts that deviate by more than parts do, the farthest first.
@@ -69,7 +73,7 @@ def accept_deviants(
     if not candidates:
         return nominal, nominal, ()
     start = _as_effects(task.nominal_model, candidates, nominal.refit.point.values)
-    model = bounded = fit_model(task, (), _without(candidates, start), nominal)
+    model = bounded = fit_model(task, (), _without(candidates, start), nominal, FEW)
     accepted: list[AcceptedEffect] = []
     for candidate in candidates:
         new = try_fit(task, (*model.candidates, candidate), start, nominal)

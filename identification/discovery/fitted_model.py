@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.discovery.effect_results import Proof
-from identification.discovery.nominal_model import fit_with_effects
+from identification.discovery.nominal_model import STEPS, fit_with_effects
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import Validation, validate
 from identification.discovery.scoring.scores import Score, score
@@ -72,6 +72,7 @@ def fit_model(
     candidates: tuple[Candidate, ...],
     start: Mapping[str, float],
     near: FittedModel | None = None,
+    steps: int = STEPS,
 ) -> FittedModel:
     """Fit the nominal model with some effects, and validate it.
 
@@ -80,6 +81,7 @@ def fit_model(
         candidates: the effects.
         start: values to begin at by name.
         near: a model whose linearisation and noise are good enough to begin with.
+        steps: largest number of steps.
 
     Raises:
         DivergenceError: the start cannot be simulated.
@@ -88,7 +90,7 @@ def fit_model(
     model, log, options = task.nominal_model, task.log, task.options
     nearby = None if near is None else near.refit
     part = log.part("estimation")
-    fit = fit_with_effects(model, part, candidates, start, options, near=nearby)
+    fit = fit_with_effects(model, part, candidates, start, options, steps, nearby)
     return FittedModel(candidates, fit, validate(fit, log))
 
 

@@ -18,6 +18,7 @@ from identification.model.coordinates import Coordinates, coordinates
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Plant, Predictor
 
+STEPS = 20  # of a fit, at most
 SMALL = 1e-3  # of a probe: the search for a size begins at least this far from zero
 
 
@@ -91,7 +92,7 @@ def fit_with_effects(
     candidates: Sequence[Candidate],
     start: Mapping[str, float],
     options: DiscoveryOptions,
-    steps: int = 20,
+    steps: int = STEPS,
     near: Refit | None = None,
     progress: Progress | None = None,
 ) -> Refit:
