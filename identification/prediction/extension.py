@@ -6,16 +6,19 @@ Size zero is the parent, so that a child never explains less.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.effect import Candidate
+from identification.effects.jointed import JointPlant
 from identification.errors import InputError
+from identification.model.predictor import Plant
 from identification.prediction.first_fit import FINE, Begun, shapes_of
 from identification.prediction.fit import solve
 from identification.prediction.model import WindowModel, predict_fitted
-from identification.prediction.problem import with_unknowns
+from identification.prediction.problem import with_longer_steps, with_unknowns
 from identification.prediction.records import Record
 
 MOST_REFIT = 12  # its linearisations; an effect that takes more is not what is missing
@@ -44,6 +47,37 @@ def with_effect(
     fixed, plant = {**values, **begun.fixed}, begun.parent.plant
     seen = predict_fitted(plant, confirm, horizon, parent.scale, found, fixed, parent.unseen)
     return WindowModel((*parent.candidates, begun.candidate), found, seen, parent.scale)
+
+
+def with_fitting_steps(
+    model: WindowModel, horizon: float, confirm: Sequence[Record]
+) -> WindowModel:
+    """The model refitted with steps of simulations that its own error allows.
+
+    Steps that err by little beside what a parent leaves may err by much beside what its child does.
+    A model whose steps are short enough stays as it is.
+
+    Args:
+        model: with effects that its steps were not chosen for.
+        horizon: [s].
+        confirm: records that no fit may see.
+
+    Raises:
+        DivergenceError: it cannot be simulated with other steps.
+    """
+    fit = model.fit
+    task = with_longer_steps(fit.problem, fit.q, fit.moves)
+    if _steps(task.plant) >= _steps(model.plant):
+        return model
+    found = solve(task, fit.q, fit.moves, tolerance=FINE, most=MOST_REFIT)
+    fixed = {n: v for c in model.candidates for n, v in (*c.fixed.items(), *c.whole.items())}
+    seen = predict_fitted(task.plant, confirm, horizon, model.scale, found, fixed, model.unseen)
+    return replace(model, fit=found, unseen=seen)
+
+
+def _steps(plant: Plant) -> int:
+    """How many steps of the user's model are one step of a simulation."""
+    return plant.steps if isinstance(plant, JointPlant) else 1
 
 
 def refitted(

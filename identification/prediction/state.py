@@ -19,6 +19,7 @@ from identification.errors import InputError
 from identification.estimation.options import Progress
 from identification.prediction.blocks import count_blocks
 from identification.prediction.exchange import exchanged, without_contradicted
+from identification.prediction.extension import with_fitting_steps
 from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import as_begun, fit_nominal
 from identification.prediction.proof import find_doubt
@@ -170,14 +171,15 @@ def next_state(state: RecordsState, progress: Progress) -> RecordsState:
         watch.stop("refits")
         return replace(state, is_finished=True, seconds=watch.seconds)
     best = tried[0]
+    model = with_fitting_steps(best.model, task.horizon, task.confirm)
     watch.stop("refits")
-    scores = score_all(best.model, task.effects, task.options)
+    scores = score_all(model, task.effects, task.options)
     others = find_rivals(tried[1:], state.model, state.scores, best.model, scores, task.options)
     watch.stop("scores")
     accepted = (*state.accepted, best)
     is_last = len(accepted) >= task.options.max_effects
     state = replace(
-        state, is_finished=is_last, model=best.model,
+        state, is_finished=is_last, model=model,
         accepted=accepted, alternatives=(*state.alternatives, others), scores=scores, rejected=(),
         seconds=watch.seconds, exchanged=other_side,
     )  # fmt: skip

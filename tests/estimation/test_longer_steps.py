@@ -14,11 +14,14 @@ from identification.errors import DivergenceError
 from identification.model.coordinates import NOTHING, coordinates
 from identification.model.predictor import Predictor
 from identification.model.rollout import substeps
+from identification.prediction.extension import with_fitting_steps
 from identification.prediction.fit import solve
+from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.problem import (
     Problem,
     most_windows,
     no_moves,
+    problem,
     with_longer_steps,
 )
 from identification.prediction.records import Record
@@ -215,3 +218,22 @@ def test_inputs_of_longer_steps_are_means_of_those_of_the_model(samples, k, n):
     assert every * n == 8
     np.testing.assert_allclose(made[:, :-1].mean(axis=1), inputs[:, :-1].mean(axis=1), atol=1e-12)
     np.testing.assert_array_equal(made[:, -1], inputs[:, -1])
+
+
+def test_a_model_that_explains_more_takes_the_steps_that_its_own_error_allows():
+    own = plant(stiffness=900.0)
+    logs = [record(seed=k, samples=300, plant=own, noise=1e-6) for k in (3, 4)]
+    fitted, confirm = Record(logs[0], "fit"), [Record(logs[1], "confirm")]
+    names, scale = ("J", "d"), np.array([1e-3])
+    space = coordinates(own.parameters, names, np.array([*TRUTH.values()]))
+    prior = Prior(space, space.encode(np.array([*TRUTH.values()])), np.zeros(2))
+    long = replace(own, steps=4)
+    task = problem(long, [fitted], prior, Prior(), 0.2, {}, scale)
+    q = prior.mean
+    found = solve(task, q, task.settled(q, no_moves(task))[0])
+    seen = predict_fitted(long, confirm, 0.2, scale, found, {})
+    rough = WindowModel((), found, seen, scale)
+    fine = with_fitting_steps(rough, 0.2, confirm)
+    assert fine.plant.steps < 4
+    assert fine.fit.cost < 0.5 * rough.fit.cost
+    assert with_fitting_steps(fine, 0.2, confirm) is fine
