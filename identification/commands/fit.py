@@ -11,7 +11,7 @@ from identification.commands.robots import OnRobot
 
 WORSE = (
     "the fitted values predict unseen records worse than those of the robot's file, and are not to"
-    " be used (exit code 1); everything that was found is kept"
+    " be used (exit code 1)"
 )
 
 

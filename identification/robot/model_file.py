@@ -57,7 +57,10 @@ def with_step(spec: mujoco.MjSpec, logs: Sequence[Log]) -> tuple[str, ...]:
         logs: what is to be simulated.
 
     Returns:
-        A sentence, or nothing where its own step divides them, or where none would.
+        A sentence, or nothing where its own step divides them.
+
+    Raises:
+        InputError: no step divides the sampling of all logs.
     """
     own, h = float(spec.option.timestep), logs[0].sampling_time
     if _divides(own, logs):
@@ -66,7 +69,13 @@ def with_step(spec: mujoco.MjSpec, logs: Sequence[Log]) -> tuple[str, ...]:
     steps = (h / n for n in range(least, FINER * least + 1))
     step = next((s for s in steps if _divides(s, logs)), None)
     if step is None:
-        return ()  # whoever simulates will say so
+        times = {log.name: log.sampling_time for log in logs}
+        other = max(times, key=lambda name: abs(round(times[name] / h) * h - times[name]))
+        raise InputError(
+            f"no step of the model divides the sampling times of log {logs[0].name!r}, {h:.6g} s,"
+            f" and of log {other!r}, {times[other]:.6g} s; give the TOML beside one of them a"
+            " sampling_time that is a whole multiple or part of the other's"
+        )
     spec.option.timestep = step
     return (
         f"The model's step of {own:g} s does not divide the sampling time of {h:g} s; simulations"

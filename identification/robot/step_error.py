@@ -79,7 +79,7 @@ def step_error(robot: Robot) -> StepError:
         DivergenceError: a simulation left the finite numbers.
     """
     log, h = robot.log, robot.log.sampling_time
-    samples = 1 + int(min(SECONDS, log.duration) / h)
+    samples = max(2, 1 + int(min(SECONDS, log.duration) / h))
     coarse, fine = (
         Predictor(r.plant, log, (), dict(log.values)).predict(np.empty((1, 0)), samples)[0]
         for r in (robot, _stepped(robot, 0.5))
