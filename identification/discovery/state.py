@@ -2,6 +2,7 @@
 
 fit the nominal model  ->  score all candidates  ->  refit the best  ->  prove on unseen samples
                                    ^_____________________________________________|   again, with it
+then parts that deviate by more than parts do  ->  pruning
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ from identification.estimation.options import Progress
 from identification.kalman.hierarchy import estimate_scatter
 from identification.model.sensitivity import refuse_without_effect
 
-Stage = Literal["selection", "pruning", "finished"]
+Stage = Literal["selection", "deviants", "pruning", "finished"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,25 +86,19 @@ def first_state(task: DiscoveryTask, progress: Progress) -> SearchState:
     watch = _Watch()
     nominal = fit_model(task, (), {})
     refuse_without_effect(nominal.refit.point.J, task.nominal_model.names, task.log)
-    model = nominal
-    accepted: tuple[AcceptedEffect, ...] = ()
     if task.nominal_model.groups:
         task, nominal = _with_scatter(task, nominal)
-        task = within_bounds(task)
-        nominal, model, accepted = accept_deviants(task, nominal, progress)
     watch.stop("nominal fit")
     progress(f"nominal fit: {1e3 * nominal.validation.rms:.3g}e-3 on unseen data")
-    sensitivities = _compute_all_sensitivities(task, model)
+    sensitivities = _compute_all_sensitivities(task, nominal)
     watch.stop("sensitivities")
-    nominal_scores = scores = score_candidates(nominal, sensitivities, task.options)
-    if accepted:
-        scores = score_candidates(model, sensitivities, task.options)
+    scores = score_candidates(nominal, sensitivities, task.options)
     watch.stop("scores")
     progress(f"{len(scores)} candidates scored, {scores[0].candidate.effect.name} first")
     return SearchState(
-        task=task, stage="selection" if len(accepted) < task.options.max_effects else "pruning",
-        nominal=nominal, sensitivities=sensitivities, nominal_scores=nominal_scores, model=model,
-        accepted=accepted, scores=scores, rejected=(), seconds=watch.seconds,
+        task=task, stage="selection", nominal=nominal, sensitivities=sensitivities,
+        nominal_scores=scores, model=nominal, accepted=(), scores=scores, rejected=(),
+        seconds=watch.seconds,
     )  # fmt: skip
 
 
@@ -116,6 +111,8 @@ def next_state(state: SearchState, progress: Progress) -> SearchState:
     """
     if state.stage == "selection":
         return _select(state, progress)
+    if state.stage == "deviants":
+        return _deviate(state, progress)
     if state.stage == "pruning":
         return _prune(state)
     return state
@@ -139,13 +136,35 @@ def _select(state: SearchState, progress: Progress) -> SearchState:
     watch.stop("refits")
     if not new:
         rejected = selection.rejected
-        return replace(state, stage="pruning", rejected=rejected, seconds=watch.seconds)
+        return replace(state, stage="deviants", rejected=rejected, seconds=watch.seconds)
     model = new[-1].model
     scores = score_candidates(model, state.sensitivities, task.options)
     watch.stop("scores")
     return replace(
         state, stage="selection" if most > len(new) else "pruning", model=model,
         accepted=(*state.accepted, *new), scores=scores, rejected=(), seconds=watch.seconds,
+    )  # fmt: skip
+
+
+def _deviate(state: SearchState, progress: Progress) -> SearchState:
+    """Parts that deviate by more than parts do become effects, once no candidate is left to add.
+
+    Before, a part may deviate only because the model lacks something else.
+    """
+    task, watch = state.task, _Watch(state.seconds)
+    room = task.options.max_effects - len(state.accepted)
+    parent, new = accept_deviants(task, state.model, room, progress)
+    watch.stop("refits")
+    if not new:
+        return replace(state, stage="pruning", seconds=watch.seconds)
+    task, model = within_bounds(task), new[-1].model
+    nominal = state.nominal if state.accepted else parent
+    scores = score_candidates(model, state.sensitivities, task.options)
+    watch.stop("scores")
+    return replace(
+        state, task=task, stage="selection" if room > len(new) else "pruning", nominal=nominal,
+        model=model, accepted=(*state.accepted, *new), scores=scores, rejected=(),
+        seconds=watch.seconds,
     )  # fmt: skip
 
 

@@ -31,8 +31,8 @@ def states():
 
 
 def test_each_step_accepts_an_effect_or_ends_the_selection(states):
-    assert [s.stage for s in states] == ["selection"] * 3 + ["pruning", "finished"]
-    assert [len(s.accepted) for s in states] == [0, 1, 2, 2, 2]
+    assert [s.stage for s in states] == ["selection"] * 3 + ["deviants", "pruning", "finished"]
+    assert [len(s.accepted) for s in states] == [0, 1, 2, 2, 2, 2]
     assert set(names(states[-1])) == {"offset", "rubbing"}
     for state in states:
         assert {c.effect.name for c in state.model.candidates} == set(names(state))
