@@ -40,6 +40,7 @@ class NominalModel:
             plant's own value where not given.
         groups: names that share one std, by what they have in common: deviations of the drives,
             displacements of points. Their std is the largest that is believed.
+        scattering: those groups whose std the data show; of the others it stays.
         scatter: the std of some groups, as the data show it; `std` where not given.
         deviants: by the name of a deviation, the effect and its place that it is when it is too
             large for scatter; of an effect of several sizes in their order.
@@ -57,6 +58,7 @@ class NominalModel:
     mean: Mapping[str, float] = field(default_factory=dict)
     own_values: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    scattering: tuple[str, ...] = ()
     scatter: Mapping[str, float] = field(default_factory=dict)
     deviants: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     is_bounded: bool = False

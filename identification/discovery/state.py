@@ -86,7 +86,7 @@ def first_state(task: DiscoveryTask, progress: Progress) -> SearchState:
     watch = _Watch()
     nominal = fit_model(task, (), {})
     refuse_without_effect(nominal.refit.point.J, task.nominal_model.names, task.log)
-    if task.nominal_model.groups:
+    if task.nominal_model.scattering:
         task, nominal = _with_scatter(task, nominal)
     watch.stop("nominal fit")
     progress(f"nominal fit: {1e3 * nominal.validation.rms:.3g}e-3 on unseen data")
@@ -120,8 +120,10 @@ def next_state(state: SearchState, progress: Progress) -> SearchState:
 
 def _with_scatter(task: DiscoveryTask, nominal: FittedModel) -> tuple[DiscoveryTask, FittedModel]:
     """The task with the scatter that the nominal fit shows, and the nominal fit under it."""
-    scatter = estimate_scatter(nominal.refit, task.nominal_model.groups)
-    task = replace(task, nominal_model=replace(task.nominal_model, scatter=scatter))
+    model = task.nominal_model
+    groups = {group: model.groups[group] for group in model.scattering}
+    scatter = estimate_scatter(nominal.refit, groups)
+    task = replace(task, nominal_model=replace(model, scatter=scatter))
     return task, fit_model(task, (), nominal.refit.point.values, nominal)
 
 

@@ -1,9 +1,9 @@
 """Calibration: the values of every drive and the place of every point, from logs of the robot.
 
 A fit by innovations frees the common values, the deviation of each drive, the displacement of each
-point, and the inertias. What is usual holds them (`inca_mj.workflows.spread`), until the data show
-how much the drives and points of this robot scatter. The result is compared with a fit in which all
-drives are alike and all points are as drawn.
+point, and the inertias. What is usual holds them (`inca_mj.workflows.spread`), and of the drives,
+once they are fitted, how much those of this robot scatter. The result is compared with a fit in
+which all drives are alike and all points are as drawn.
 
 Physical values are shared by all records. Each record begins at a pose of its own.
 """
@@ -64,7 +64,7 @@ class Calibration:
     Attributes:
         logs: the records that were fitted.
         spread: what was known of the scatter of drives and points before.
-        scatter: the std of each group that the data show, by group.
+        scatter: the std of each group: of drives as the data show it, of points as it was known.
         alike: the fit with all drives alike and all points as drawn.
         fit: the fit with every drive and point by itself.
         covariance: of the coordinates q of `fit`, shape (p, p).
@@ -151,8 +151,9 @@ def calibrate(
     say("every drive and every point by itself")
     model = nominal_model(plant, spread, len(logs))
     rough = fit(model, {})
-    scatter = estimate_scatter(rough, spread.groups)
-    say("the same with the scatter that the data show")
+    drives = {group: spread.groups[group] for group in spread.drives}
+    scatter = {**spread.points, **estimate_scatter(rough, drives)}
+    say("the same with the scatter of the drives that the data show")
     end = fit(replace(model, scatter=scatter), rough.point.values, rough)
     say("for comparison, all drives alike and all points as drawn")
     plain = nominal_model(plant, NONE, len(logs))
@@ -189,6 +190,7 @@ def nominal_model(plant: Twin, spread: Spread, records: int = 1) -> NominalModel
         known |= {own_name(name, k): known[name] for name in POSE}
     return NominalModel(
         plant, tuple(known), np.array([*known.values()]), groups=spread.groups,
+        scattering=tuple(spread.drives),
         deviants={name: effect for name, effect in DEVIANTS.items() if name in known},
     )  # fmt: skip
 
