@@ -55,7 +55,9 @@ def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = 
     Raises:
         DivergenceError: the simulation left the finite numbers.
     """
-    each = [_of_record(record, values[columns], forces) for record, columns in predictor.records()]
+    each = [
+        _of_record(record, values[..., columns], forces) for record, columns in predictor.records()
+    ]
     return each[0] if len(each) == 1 else _joined(each)
 
 

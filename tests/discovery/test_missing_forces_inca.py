@@ -9,7 +9,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.report.finding_words import describe_finding
 from inca_mj.effects.motor import DELAY
 from inca_mj.twin.twin import build_twin
-from inca_mj.workflows.discovery import KNOWN
+from inca_mj.workflows.spread import KNOWN
 from inca_mj.worlds import HiddenSetting, effect, world
 
 

@@ -125,7 +125,7 @@ def test_where_nothing_was_tried_beside_a_name_the_next_is_told_and_why_not() ->
     text = discovery_text(replace(found(), rejected=()))
     told = text[text.index("next beside what is named, and not refitted:") :]
     assert told.splitlines()[1].startswith(
-        "  friction: one drive differs, drive 3: gain 70, beyond"
+        "  friction: Coulomb part differs at one drive, drive 3: gain 70, beyond"
     )
 
 

@@ -18,8 +18,8 @@ def one():
 @pytest.fixture(scope="module")
 def two():
     """Two records that begin 5 cm apart, and a third one that confirms."""
-    logs = [log_as_built(2.5), log_as_built(2.5, seed=1, x=0.05)]
-    return calibrate(logs, spread=SPREAD, confirm=[log_as_built(2.5, seed=2, x=-0.03)])
+    logs = [log_as_built(2.0), log_as_built(2.0, seed=1, x=0.05)]
+    return calibrate(logs, spread=SPREAD, confirm=[log_as_built(2.0, seed=2, x=-0.03)])
 
 
 def test_deviations_come_back_within_their_std(one):
@@ -66,12 +66,12 @@ def test_the_twin_has_the_values_that_are_told(one):
 
 def test_drives_that_are_alike_have_no_scatter():
     found = calibrate([log_as_built(4.0, alike=True)], spread=SPREAD)
-    assert found.scatter["K_t"] < 0.1 * SPREAD.drives["K_t"]
-    assert max(abs(found.values[f"K_t@{k}"]) for k in range(1, 9)) < 1e-3
+    assert found.scatter["K_t"] < 0.2 * SPREAD.drives["K_t"]
+    assert max(abs(found.values[f"K_t@{k}"]) for k in range(1, 9)) < 4e-3
 
 
 def test_what_cannot_be_calibrated_is_refused(refusal):
-    log = log_as_built(2.5)
+    log = log_as_built(2.0)
     assert "inca identify" in refusal(calibrate, [log], spread=NONE)
     assert "no log" in refusal(calibrate, [], spread=SPREAD)
     assert "given twice" in refusal(calibrate, [log], spread=SPREAD, confirm=[log])

@@ -9,7 +9,7 @@ import pytest
 from identification.model.predictor import Predictor
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.twin.twin import build_twin
-from inca_mj.worlds import SHAPES, HiddenSetting, draw_effect, world
+from inca_mj.worlds import HIDDEN_EFFECTS, SHAPES, HiddenSetting, draw_effect, world
 
 SEED = 11
 SETTING = HiddenSetting(duration=2.0, noise=0.0, counts=0)
@@ -29,6 +29,7 @@ OTHER = {
 CASES = [
     (e.name, other)
     for e in CATALOGUE
+    if e.name in HIDDEN_EFFECTS  # effects by rule and of encoders have no hidden world
     for other in ((False, True) if e.name in SHAPES else (False,))
 ]
 
