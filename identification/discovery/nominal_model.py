@@ -107,7 +107,7 @@ def fit_with_effects(
         start: values to begin at by name; the plant's own where not given.
         options: which noise and which parameters are believed.
         steps: largest number of steps.
-        near: a fit whose linearisation and noise are good enough to begin with.
+        near: a fit whose noise, and columns of small parameters, are good enough to begin with.
         progress: is told one line per step.
 
     Raises:
@@ -138,11 +138,10 @@ def fit_with_effects(
     mean = space.encode(np.where([n in known for n in names], [middle[n] for n in names], first))
     of_shapes = np.full(len(shapes), 1 / options.shape_std)
     weight = np.concatenate([1 / nominal_model.prior_std, np.zeros(len(sizes)), of_shapes])
-    linear, level = (None, None) if near is None else (near.point.linear, near.level)
-    beside = None if near is None else near.point
+    level, beside = (None, None) if near is None else (near.level, near.point)
     predictor = Predictor(nominal_model.plant, log, names, fixed)
     small = frozenset(nominal_model.grouped)
-    point = evaluate_point(predictor, space, space.encode(first), linear, beside, small)
+    point = evaluate_point(predictor, space, space.encode(first), beside, small)
     if level is not None:
         # The correlation time that was found without the effect may have been the effect's own.
         level = replace(level, noise=level.noise.lasting(options.start_correlation_time))

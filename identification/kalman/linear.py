@@ -2,16 +2,14 @@
 
     δẋ = F(t) δx + G(t) δu,    δx_{k+1} = A_k δx_k + B_k δu_k,    δy_k = C δx_k
 
-    [A_k B_k; 0 I] = exp([F G; 0 0] T_s)                               (Van Loan 1978)
+    A = exp(F Δt),  Γ = ∫ exp(F τ) dτ over Δt:  exp([F I; 0 0] Δt) = [A Γ; 0 I]     (Van Loan 1978)
 
-x is MuJoCo's state in tangent space: position (nv), velocity (nv), activation (na). The columns of
-F that belong to position and velocity come from MuJoCo's finite differences of one short Euler
-step; the others are finite differences of accelerations.
+x is MuJoCo's state in tangent space: position (nv), velocity (nv), activation (na). F and G are
+means over an interval, of which a sample has a few.
 """
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -20,11 +18,9 @@ import numpy as np
 from scipy.linalg import expm
 from threadpoolctl import threadpool_limits
 
+from identification.kalman.derivatives import force_derivatives, state_derivatives
+from identification.kalman.trajectory import COARSE, Trajectory, follow
 from identification.model.predictor import Predictor, output_columns
-from identification.model.rollout import rollout
-
-SHORT = 1e-6  # Euler step whose difference from the identity is F [s]
-EPS = 1e-6  # of the finite differences
 
 
 @dataclass(frozen=True)
@@ -43,6 +39,35 @@ class LinearPlant:
     C: np.ndarray
 
 
+@dataclass(frozen=True)
+class Linearisation:
+    """The linearisation of one record over the L intervals of its trajectory.
+
+    Attributes:
+        along: the trajectory.
+        A: transition over each interval, shape (L, nx, nx).
+        Γ: effect of a constant rate of change of the state, shape (L, nx, nx).
+        B: effect of a constant input, shape (L, nx, nu).
+        C: outputs from the state, shape (ny, nx).
+        felt: which entries of the state are x: those that outputs feel, shape (2 nv + na,).
+    """
+
+    along: Trajectory
+    A: np.ndarray
+    Γ: np.ndarray
+    B: np.ndarray
+    C: np.ndarray
+    felt: np.ndarray
+
+    def at_samples(self) -> LinearPlant:
+        """The transitions from sample to sample."""
+        parts = self.along.intervals
+        A, B = self.A[::parts], self.B[::parts]
+        for i in range(1, parts):
+            A, B = self.A[i::parts] @ A, self.A[i::parts] @ B + self.B[i::parts]
+        return LinearPlant(A, B, self.C)
+
+
 def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = ()) -> LinearPlant:
     """Linearise a plant along the trajectory that it predicts for one value set.
 
@@ -55,14 +80,31 @@ def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = 
     Raises:
         DivergenceError: the simulation left the finite numbers.
     """
-    each = [
-        _of_record(record, values[..., columns], forces) for record, columns in predictor.records()
-    ]
-    return each[0] if len(each) == 1 else _joined(each)
+    return join(linearise_records(predictor, values, forces))
 
 
-def _joined(each: Sequence[LinearPlant]) -> LinearPlant:
+def linearise_records(
+    predictor: Predictor, values: np.ndarray, forces: Sequence[int] = (), points: int = COARSE
+) -> tuple[Linearisation, ...]:
+    """The linearisation of each record of a log; see `linearise`.
+
+    Args:
+        predictor: plant and log.
+        values: shape (p,), in the parameters' units.
+        forces: degrees of freedom, as above.
+        points: of the trajectory, for each sample.
+    """
+    return tuple(
+        _of_record(record, follow(record, values[..., columns], points), forces)
+        for record, columns in predictor.records()
+    )
+
+
+def join(records: Sequence[Linearisation]) -> LinearPlant:
     """The plants of several records, one after the other; nothing passes from one to the next."""
+    each = [record.at_samples() for record in records]
+    if len(each) == 1:
+        return each[0]
     gap = LinearPlant(np.zeros_like(each[0].A[:1]), np.zeros_like(each[0].B[:1]), each[0].C)
     parts = [part for plant in each for part in (gap, plant)][1:]
     return LinearPlant(
@@ -70,33 +112,24 @@ def _joined(each: Sequence[LinearPlant]) -> LinearPlant:
     )
 
 
-def _of_record(predictor: Predictor, values: np.ndarray, forces: Sequence[int]) -> LinearPlant:
+def _of_record(predictor: Predictor, along: Trajectory, forces: Sequence[int]) -> Linearisation:
     """The linearisation along one record."""
-    plant, log = predictor.plant, predictor.log
-    start, numbers = predictor.settings(values)
-    states = rollout(
-        plant.model, start, log.inputs, log.sampling_time, numbers=numbers,
-        record=("qpos", "qvel", "act") if plant.model.na else ("qpos", "qvel"),
-        hold_kind=log.hold, before=predictor.inputs(values), time=log.begun,
-    )  # fmt: skip
-    model = copy.copy(plant.model)
-    for slot, column in numbers:
-        getattr(model, slot.field)[slot.index()] = column[0]
-    mujoco.mj_setConst(model, mujoco.MjData(model))
-    along = {field: values[0] for field, values in states.items()}
-    F, G = _derivatives(model, along, log.inputs, log.sampling_time, log.begun, forces)
-    C = np.zeros((log.outputs.shape[1], F.shape[1]))
-    for row, (field, i) in enumerate(output_columns(model, log.output_names)):
-        C[row, _tangent(model, field, i)] = 1
-    F, G = (F[:-1] + F[1:]) / 2, (G[:-1] + G[1:]) / 2
+    F, G = state_derivatives(along)
+    if forces:
+        G = along.average(force_derivatives(along, list(forces)))
+    C = np.zeros((predictor.log.outputs.shape[1], F.shape[1]))
+    columns = output_columns(predictor.plant.model, predictor.log.output_names)
+    for row, (field, i) in enumerate(columns):
+        C[row, tangent_index(along.model, field, i)] = 1
     felt = _felt(F, C)
     F, G, C = F[:, felt][:, :, felt], G[:, felt], C[:, felt]
-    nx, nu = F.shape[1], G.shape[2]
-    block = np.zeros((len(F), nx + nu, nx + nu))
-    block[:, :nx] = np.concatenate([F, G], axis=2) * log.sampling_time
+    nx = F.shape[1]
+    block = np.zeros((len(F), 2 * nx, 2 * nx))
+    block[:, :nx] = np.concatenate([F, np.broadcast_to(np.eye(nx), F.shape)], axis=2)
     with threadpool_limits(1, "blas"):  # the matrices are small, so threads would only wait
-        block = expm(block)
-    return LinearPlant(block[:, :nx, :nx], block[:, :nx, nx:], C)
+        block = expm(block * along.duration[:, None, None])
+    Γ = block[:, :nx, nx:]
+    return Linearisation(along, block[:, :nx, :nx], Γ, Γ @ G, C, felt)
 
 
 def _felt(F: np.ndarray, C: np.ndarray) -> np.ndarray:
@@ -108,63 +141,9 @@ def _felt(F: np.ndarray, C: np.ndarray) -> np.ndarray:
     return felt
 
 
-def _derivatives(
-    model: mujoco.MjModel,
-    states: dict[str, np.ndarray],
-    inputs: np.ndarray,
-    sampling_time: float,
-    begun: float,
-    forces: Sequence[int],
-) -> tuple[np.ndarray, np.ndarray]:
-    """F (N, nx, nx) and G (N, nx, nu) at all samples."""
-    model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
-    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
-    model.opt.timestep = SHORT
-    data = mujoco.MjData(model)
-    moved, nx, n = 2 * model.nv, 2 * model.nv + model.na, len(inputs)
-    F, G = np.empty((n, nx, nx)), np.zeros((n, nx, len(forces) or model.nu))
-    unit, pushed = np.eye(model.nv)[list(forces)], np.empty((len(forces), model.nv))
-    for k in range(n):
-        data.time = begun + k * sampling_time
-        data.qpos, data.qvel, data.ctrl = states["qpos"][k], states["qvel"][k], inputs[k]
-        if model.na:
-            data.act = states["act"][k]
-        mujoco.mjd_transitionFD(model, data, EPS, 1, F[k], None, None, None)
-        F[k] = (F[k] - np.eye(nx)) / SHORT
-        F[k, :, moved:] = _differences(model, data, "act", model.na)
-        if forces:
-            mujoco.mj_forward(model, data)
-            mujoco.mj_solveM(model, data, pushed, unit)
-            G[k, model.nv : moved] = pushed.T
-        else:
-            G[k] = _differences(model, data, "ctrl", model.nu)
-    return F, G
-
-
-def _differences(model: mujoco.MjModel, data: mujoco.MjData, field: str, n: int) -> np.ndarray:
-    """Columns of F or G for activations or inputs, shape (nx, n).
-
-    MuJoCo's own differences keep the passive forces constant while activations and inputs change.
-    The passive forces of a callback may depend on them: the tension of a cable depends on an
-    activation, the length that its drum has paid out.
-    """
-    out = np.zeros((1 + n, 2 * model.nv + model.na))
-    at = getattr(data, field)
-    for i in range(-1, n):  # -1: nothing is changed
-        if i >= 0:
-            was = at[i]
-            at[i] = was + EPS
-        mujoco.mj_forward(model, data)
-        out[1 + i, model.nv : 2 * model.nv] = data.qacc
-        out[1 + i, 2 * model.nv :] = data.act_dot
-        if i >= 0:
-            at[i] = was
-    return ((out[1:] - out[0]) / EPS).T
-
-
-def _tangent(model: mujoco.MjModel, field: str, i: int) -> int:
+def tangent_index(model: mujoco.MjModel, field: str, i: int) -> int:
     """Index in the tangent state of an entry of qpos (of a hinge or slide) or qvel."""
     if field == "qvel":
-        return model.nv + i
+        return int(model.nv) + i
     joint = int(np.flatnonzero(model.jnt_qposadr == i)[0])
     return int(model.jnt_dofadr[joint])

@@ -5,17 +5,29 @@ e = y - ŷ(q),   Φ = ∂ŷ/∂q,   δx_{k+1} = A_k δx_k + B_k δu_k
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.kalman.linear import LinearPlant, linearise
+from identification.kalman.linear import (
+    Linearisation,
+    LinearPlant,
+    join,
+    linearise,
+    linearise_records,
+)
+from identification.kalman.sensitivity_equations import can_solve, solve_sensitivities
 from identification.logs.log import Log
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
 
-STEP = 1e-4  # of q, for forward differences
+STEP = 1e-4  # of q, for forward differences of simulations
+# The same for differences of accelerations, as a share: large ones nearly cancel each other, such
+# as those of an anchor that moves and of the cable that is longer at rest for it.
+SHORTER = 1e-2
+HOLDS = 0.1  # share by which outputs may miss what the columns of a point say of a short step
+WRONG = 0.1  # share by which a simulation may differ from the sensitivity equations
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +43,7 @@ class Point:
         linear: the plant linearised along its trajectory.
         small: free parameters that stay small, such as deviations of single drives: the outputs
             are nearly linear in them, and their columns of J hold at points nearby as well.
+        by_equations: whether the sensitivity equations hold here, and J comes from them.
     """
 
     predictor: Predictor
@@ -40,6 +53,7 @@ class Point:
     J: np.ndarray
     linear: LinearPlant
     small: frozenset[str] = frozenset()
+    by_equations: bool = False
 
     @property
     def log(self) -> Log:
@@ -59,16 +73,15 @@ class Point:
 
 
 def evaluate_point(
-    predictor: Predictor, space: Coordinates, q: np.ndarray, linear: LinearPlant | None = None,
-    near: Point | None = None, small: frozenset[str] = frozenset(),
+    predictor: Predictor, space: Coordinates, q: np.ndarray, near: Point | None = None,
+    small: frozenset[str] = frozenset(),
 ) -> Point:  # fmt: skip
-    """Simulate a plant and its sensitivities at q, in one batch of simulations.
+    """Simulate a plant at q, with its sensitivities and its linearisation.
 
     Args:
         predictor: plant, log and free parameters.
         space: coordinates of the free parameters.
         q: shape (p,).
-        linear: a linearisation from a point nearby that is good enough; a new one when None.
         near: a point nearby on the same log, from which columns of small parameters are taken.
         small: see `Point`.
 
@@ -76,11 +89,39 @@ def evaluate_point(
         DivergenceError: a simulation left the finite numbers.
     """
     inside = space.inside(q)
-    predicted, J = _sensitivities(predictor, space, inside, _known(near, small))
-    if linear is None:
-        linear = linearise(predictor, space.decode(inside))
-    e = predictor.log.outputs - predicted
-    return Point(predictor=predictor, space=space, q=inside, e=e, J=J, linear=linear, small=small)
+    records = linearise_records(predictor, space.decode(inside))
+    predicted, J, solved = _sensitivities(predictor, space, inside, records, _known(near, small))
+    return Point(
+        predictor=predictor,
+        space=space,
+        q=inside,
+        e=predictor.log.outputs - predicted,
+        J=J,
+        linear=join(records),
+        small=small,
+        by_equations=solved,
+    )
+
+
+def shift_point(point: Point, q: np.ndarray) -> Point | None:
+    """The point after a short step, with the columns and the linearisation from before it.
+
+    Args:
+        point: the point before the step.
+        q: shape (p,).
+
+    Returns:
+        None where the outputs do not go where the columns say: they no longer hold.
+
+    Raises:
+        DivergenceError: the simulation left the finite numbers.
+    """
+    inside = point.space.inside(q)
+    e = point.log.outputs - point.predictor.predict(point.space.decode(inside))[0]
+    expected, found = point.J @ (inside - point.q), point.e - e
+    if np.linalg.norm(found - expected) > HOLDS * np.linalg.norm(found):
+        return None
+    return replace(point, q=inside, e=e)
 
 
 def _known(near: Point | None, small: frozenset[str]) -> dict[str, np.ndarray]:
@@ -93,23 +134,54 @@ def _known(near: Point | None, small: frozenset[str]) -> dict[str, np.ndarray]:
 
 def evaluate_sensitivities(point: Point, whole: Log) -> np.ndarray:
     """J of the same point on a longer log, shape (N, ny, p)."""
-    return _sensitivities(replace(point.predictor, log=whole), point.space, point.q)[1]
+    predictor = replace(point.predictor, log=whole)
+    records = linearise_records(predictor, point.space.decode(point.q))
+    return _sensitivities(predictor, point.space, point.q, records, {})[1]
 
 
 def _sensitivities(
-    predictor: Predictor, space: Coordinates, q: np.ndarray,
-    known: Mapping[str, np.ndarray] | None = None,
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """ŷ at q, shape (N, ny), and J, shape (N, ny, p), of which some columns may be known."""
-    known = known or {}
+    predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
+    known: Mapping[str, np.ndarray],
+) -> tuple[np.ndarray, np.ndarray, bool]:  # fmt: skip
+    """ŷ at q (N, ny), J (N, ny, p) of which some columns may be known, `Point.by_equations`."""
     asked = np.array([name not in known for name in space.names])
-    moves = np.where(q + STEP > space.upper, -STEP, STEP)
-    predicted = predictor.predict(space.decode(np.vstack([q, q + np.diag(moves)[asked]])))
-    J = np.empty((*predicted[0].shape, len(q)))
-    J[..., asked] = np.moveaxis((predicted[1:] - predicted[0]) / moves[asked, None, None], 0, -1)
+    J = np.empty((*predictor.log.outputs.shape, len(q)))
     for j in np.flatnonzero(~asked):
         J[..., j] = known[space.names[j]]
-    return predicted[0], J
+    moves = np.diag(np.where(q + STEP > space.upper, -STEP, STEP))[asked]
+    if can_solve(predictor, records):
+        predicted, solved = _by_equations(predictor, space, q, records, moves)
+        if solved is not None:
+            J[..., asked] = solved
+            return predicted, J, True
+    runs = predictor.predict(space.decode(np.vstack([q, q + moves])))
+    moved = (runs[1:] - runs[0]) / moves.sum(axis=1)[:, None, None]
+    J[..., asked] = np.moveaxis(moved, 0, -1)
+    return runs[0], J, False
+
+
+def _by_equations(
+    predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
+    moves: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray | None]:  # fmt: skip
+    """ŷ at q and the columns of J from the sensitivity equations; None where they do not hold.
+
+    A simulation along all columns at once, each with the same weight, says whether they hold. They
+    do not where a joint hits its limit.
+    """
+    small = SHORTER * moves
+    S = solve_sensitivities(
+        predictor, records, space.decode(q), space.decode(q + small), small.sum(axis=1)
+    )
+    size = np.sqrt(np.mean(S**2, axis=(0, 1)))
+    signs = np.random.default_rng(0).choice([-1.0, 1.0], len(size))
+    weight = np.where(size > 0, signs / np.where(size > 0, size, 1.0), 0.0)
+    weight *= STEP / np.abs(weight).max(initial=STEP)
+    there = space.inside(q + weight @ (moves != 0))
+    predicted, ahead = predictor.predict(space.decode(np.vstack([q, there])))
+    expected, found = S @ ((there - q) @ (moves != 0).T), ahead - predicted
+    wrong = np.linalg.norm(found - expected) > WRONG * np.linalg.norm(found)
+    return predicted, None if wrong else S
 
 
 def extend_point(point: Point, whole: Log) -> Point:

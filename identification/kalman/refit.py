@@ -22,12 +22,12 @@ from identification.estimation.options import Progress
 from identification.kalman.innovations import innovation_tests
 from identification.kalman.noise_fit import NoiseLevel, fit_noise
 from identification.kalman.options import KalmanOptions
-from identification.kalman.point import Point, evaluate_point
+from identification.kalman.point import Point, evaluate_point, shift_point
 from identification.kalman.problem import Problem, linearise_criterion
 
-NEAR = 0.02  # relative change of the parameters after which the linearisation still holds
-# The same for columns of small parameters. Columns that are a tenth off cost a Gauss-Newton step a
-# hundredth of its gain, because the gain is quadratic about the optimum.
+NEAR = 0.02  # relative change of the parameters after which columns and linearisation may hold
+# Relative change of the parameters after which columns of small ones still hold: columns that are a
+# tenth off cost a Gauss-Newton step a hundredth of its gain, which is quadratic about the optimum.
 SIMILAR = 0.1
 ENDED = 0.1  # expected fall of the criterion, in units of the noise, below which a search ends
 # Gauss-Newton steps until one fails; the columns of the rows are scaled to length 1
@@ -164,10 +164,11 @@ def _move(
     """The criterion about the point after a step, with the noise of that point."""
     point = problem.point
     change = np.abs(step[point.space.logarithmic]).max(initial=0.0)
-    linear = point.linear if change < NEAR else None
-    near = point if change < SIMILAR else None
-    q = point.q + step
-    point = evaluate_point(point.predictor, point.space, q, linear, near, point.small)
+    there = shift_point(point, point.q + step) if change < NEAR else None
+    if there is None:
+        near = point if change < SIMILAR else None
+        there = evaluate_point(point.predictor, point.space, point.q + step, near, point.small)
+    point = there
     level = estimate_noise(point, problem.prior, options, problem.level, largest=largest)
     return linearise_criterion(point, level, problem.mean, problem.prior)
 

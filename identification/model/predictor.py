@@ -150,17 +150,30 @@ class Predictor:
         Returns:
             Shape (m, samples, ny).
         """
-        model, sensors = self.plant.model, self.log.output_names
         plant = with_states(self.plant)
         if plant is not None:
             states = plant.shown(*self._every(values), states)
-        columns = output_columns(model, sensors)
+        return self.said(values, self.readings(states))
+
+    def readings(self, states: Mapping[str, np.ndarray]) -> np.ndarray:
+        """What perfect sensors would say of simulated states; see `Plant.outputs`.
+
+        Args:
+            states: of m simulations, each field (m, samples, size).
+
+        Returns:
+            Shape (3, m, samples, ny).
+        """
+        model, sensors = self.plant.model, self.log.output_names
         joints = [int(model.sensor(name).objid[0]) for name in sensors]
-        y = [states[field][:, :, i] for field, i in columns]
+        y = [states[field][:, :, i] for field, i in output_columns(model, sensors)]
         q = [states["qpos"][:, :, int(model.jnt_qposadr[j])] for j in joints]
         v = [states["qvel"][:, :, int(model.jnt_dofadr[j])] for j in joints]
-        readings = np.stack([np.stack(part, axis=-1) for part in (y, q, v)])
-        return self.plant.outputs(*self._every(values), sensors, readings)
+        return np.stack([np.stack(part, axis=-1) for part in (y, q, v)])
+
+    def said(self, values: np.ndarray, readings: np.ndarray) -> np.ndarray:
+        """What the plant's sensors say, for n value sets (n, p); see `Plant.outputs`."""
+        return self.plant.outputs(*self._every(values), self.log.output_names, readings)
 
 
 def output_columns(model: mujoco.MjModel, names: Sequence[str]) -> list[tuple[str, int]]:

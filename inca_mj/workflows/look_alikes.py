@@ -95,9 +95,7 @@ def _distance(point: Point, log: Log, named: Candidate, rival: Candidate, sigma:
         lower=point.space.lower[keep], upper=point.space.upper[keep],
         scale=point.space.scale[keep],
     )  # fmt: skip
-    here = evaluate_point(
-        Predictor(point.predictor.plant, log, names, fixed), space, q, point.linear
-    )
+    here = evaluate_point(Predictor(point.predictor.plant, log, names, fixed), space, q)
     mine, *theirs = (s.S for s in compute_sensitivities(here, [named, rival]))
     size = np.array([values.get(n, 0.0) or named.whole.get(n, 0.0) for n in named.sizes])
     S = np.concatenate([here.J, *theirs], axis=2).reshape(log.outputs.size, -1)

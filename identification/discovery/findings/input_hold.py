@@ -29,7 +29,7 @@ def find_input_hold(fit: Refit, options: DiscoveryOptions) -> tuple[Finding, ...
     other = HOLDS[1 - HOLDS.index(point.log.hold)]
     predictor = replace(point.predictor, log=replace(point.log, hold=other))
     try:
-        there = evaluate_point(predictor, point.space, point.q, point.linear)
+        there = evaluate_point(predictor, point.space, point.q, point, point.small)
     except DivergenceError:
         return ()
     level = estimate_noise(there, fit.prior, options, fit.level)

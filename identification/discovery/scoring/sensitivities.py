@@ -5,18 +5,25 @@ S_j = (ŷ(θ, η_j = h_j) - ŷ(θ, 0))/h_j          h_j: a probe, a size that a 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 
 import numpy as np
 
 from identification.effects.effect import Candidate, Effect
 from identification.errors import DivergenceError, InputError
+from identification.kalman.linear import Linearisation, linearise_records
 from identification.kalman.point import Point
+from identification.kalman.sensitivity_equations import solve_sensitivities
+from identification.kalman.trajectory import FINE
 from identification.model.predictor import Predictor
 
-BATCH = 48  # simulations in one batch, which bounds the memory of their trajectories
+BATCH = 48  # columns that are computed at once, which bounds the memory of their trajectories
+# Share of its probe at which an effect enters the equations: large accelerations nearly cancel each
+# other there, such as those of an anchor that moves and of the cable that is longer at rest for it.
+SHORTER = 1e-2
 
 
 @dataclass(frozen=True)
@@ -69,49 +76,95 @@ def iterate_shapes(effect: Effect) -> Iterator[dict[str, float]]:
 def compute_sensitivities(point: Point, candidates: Sequence[Candidate]) -> tuple[Sensitivity, ...]:
     """Sensitivities of candidates at a point; one whose simulation diverges is left out.
 
+    They come from the sensitivity equations, where these hold at the point, and else from a
+    simulation with each.
+
     Args:
         point: the plant, at which the sizes of the candidates are zero.
         candidates: the effects, each at a place and with shapes.
     """
+    found: dict[int, Sensitivity] = {}
+    if point.by_equations:
+        records = linearise_records(point.predictor, point.space.decode(point.q), points=FINE)
+        for group in _groups([*enumerate(candidates)]):
+            found |= _alone(partial(_solve, point, records), group)
     predicted = point.log.outputs - point.e
-    out: list[Sensitivity] = []
-    for group in _groups(candidates):
-        try:
-            out += _batch(point, group, predicted)
-        except (DivergenceError, InputError):
-            for candidate in group:
-                try:
-                    out += _batch(point, [candidate], predicted)
-                except (DivergenceError, InputError):
-                    continue
-    return tuple(out)
+    for group in _groups([(i, c) for i, c in enumerate(candidates) if i not in found]):
+        found |= _alone(partial(_simulate, point, predicted), group)
+    return tuple(found[i] for i in sorted(found))
 
 
-def _groups(candidates: Sequence[Candidate]) -> Iterator[list[Candidate]]:
-    group: list[Candidate] = []
-    for candidate in candidates:
-        if sum(len(c.sizes) for c in (*group, candidate)) > BATCH and group:
+def _alone(
+    compute: Callable[[list[Candidate]], Sequence[Sensitivity | None]],
+    group: list[tuple[int, Candidate]],
+) -> dict[int, Sensitivity]:
+    """What is computed of a group, or of each candidate alone where one of them diverges."""
+    try:
+        each = zip(group, compute([c for _, c in group]), strict=True)
+        return {i: s for (i, _), s in each if s is not None}
+    except (DivergenceError, InputError):
+        if len(group) == 1:
+            return {}
+    return {i: s for one in group for i, s in _alone(compute, [one]).items()}
+
+
+def _groups(candidates: Sequence[tuple[int, Candidate]]) -> Iterator[list[tuple[int, Candidate]]]:
+    group: list[tuple[int, Candidate]] = []
+    for i, candidate in candidates:
+        if sum(len(c.sizes) for _, c in (*group, (i, candidate))) > BATCH and group:
             yield group
             group = []
-        group.append(candidate)
+        group.append((i, candidate))
     if group:
         yield group
 
 
-def _batch(point: Point, group: list[Candidate], predicted: np.ndarray) -> list[Sensitivity]:
+def _solve(
+    point: Point, records: tuple[Linearisation, ...], group: list[Candidate]
+) -> list[Sensitivity | None]:
+    """Sensitivities by the equations; None of a candidate that they do not describe."""
+    predictor, values, rows, probes = _probe(point, group, SHORTER)
+    S = solve_sensitivities(predictor, records, values, rows, probes)
+    return [None if np.isnan(s.S).any() else s for s in _each(group, np.moveaxis(S, 2, 0))]
+
+
+def _simulate(point: Point, predicted: np.ndarray, group: list[Candidate]) -> list[Sensitivity]:
+    """Sensitivities by simulations with each candidate."""
+    predictor, _, rows, probes = _probe(point, group, 1.0)
+    return _each(group, (predictor.predict(rows) - predicted) / probes[:, None, None])
+
+
+def _probe(
+    point: Point, group: list[Candidate], shorter: float
+) -> tuple[Predictor, np.ndarray, np.ndarray, np.ndarray]:
+    """A predictor, its values, and the values with each size of each candidate as a probe.
+
+    Args:
+        point: the plant.
+        group: the candidates.
+        shorter: factor of the probes of effects whose outputs are linear in their sizes.
+
+    Returns:
+        The predictor, shape (p,), shape (m, p), and the probes, shape (m,).
+    """
     own = point.values
     names = list(dict.fromkeys([*own, *(n for c in group for n in (*c.sizes, *c.fixed))]))
     parameters = point.predictor.plant.parameters
     nominal = [own.get(name, parameters[name].value) for name in names]
     rows, probes = [], []
     for c in group:
+        factor = c.probe * (shorter if len(c.effect.probes) == 1 else 1.0)
         for name, size in zip(c.sizes, c.effect.sizes, strict=True):
             row = dict(zip(names, nominal, strict=True))
-            probe = (-size.probe if size.sign < 0 else size.probe) * c.probe
+            probe = (-size.probe if size.sign < 0 else size.probe) * factor
             rows.append([*{**row, **c.fixed, name: row[name] + probe}.values()])
             probes.append(probe)
-    moved = Predictor(point.predictor.plant, point.log, tuple(names)).predict(np.array(rows))
-    S = (moved - predicted) / np.array(probes)[:, None, None]
+    predictor = Predictor(point.predictor.plant, point.log, tuple(names))
+    return predictor, np.array(nominal), np.array(rows), np.array(probes)
+
+
+def _each(group: list[Candidate], S: np.ndarray) -> list[Sensitivity]:
+    """The sensitivities of each candidate, from those of all sizes, shape (m, N, ny)."""
     ends = np.cumsum([len(c.sizes) for c in group])
     return [
         Sensitivity(c, np.moveaxis(S[end - len(c.sizes) : end], 0, -1))

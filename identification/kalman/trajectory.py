@@ -1,0 +1,166 @@
+"""The trajectory that a plant predicts, at points between the samples, and means over intervals.
+
+    t_m = t_k + (i + 1/2) T_s/P,  i = 0 … P - 1      x(t_m), and the mean of u about t_m
+
+What varies along a trajectory is averaged over intervals, of which a sample has a few. Their
+midpoints are enough for what varies as the state does. A torque that turns with the angle of a
+motor varies faster, and takes more points.
+"""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass, replace
+
+import mujoco
+import numpy as np
+
+from identification.model.predictor import Numbers, Predictor
+from identification.model.rollout import UNDERIVED, hold, rollout, substeps, without_sensors
+
+# Intervals of a sample, where the step of the simulation allows as many: a state of the rate
+# 100 1/s that is sampled at 100 Hz changes by half over one of them.
+INTERVALS = 2
+COARSE, FINE = INTERVALS, 3 * INTERVALS  # P, likewise
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trajectory:
+    """One record's trajectory at M points, P of them for each of its N samples but the last.
+
+    Attributes:
+        model: with the numbers of the value set, without its sensors.
+        qpos: positions, shape (M, nq).
+        qvel: velocities, shape (M, nv).
+        act: activations, shape (M, na).
+        inputs: that reach the model, shape (M, nu).
+        time: of the points in the record [s], shape (M,).
+        steps: of the simulation, between which the points lie, shape (M + 1,).
+        timestep: of the simulation [s].
+        begins: first point of each interval, shape (L,).
+        states: fields of the state at the samples, each (N, size).
+    """
+
+    model: mujoco.MjModel
+    qpos: np.ndarray
+    qvel: np.ndarray
+    act: np.ndarray
+    inputs: np.ndarray
+    time: np.ndarray
+    steps: np.ndarray
+    timestep: float
+    begins: np.ndarray
+    states: dict[str, np.ndarray]
+
+    @property
+    def intervals(self) -> int:
+        """Intervals of a sample."""
+        return len(self.begins) // (len(self.states["qpos"]) - 1)
+
+    @property
+    def duration(self) -> np.ndarray:
+        """Of each interval [s], shape (L,)."""
+        return self.timestep * np.add.reduceat(np.diff(self.steps), self.begins)
+
+    def average(self, values: np.ndarray) -> np.ndarray:
+        """Means over the intervals of values at the points, shape (M, …)."""
+        each = (-1, *[1] * (values.ndim - 1))
+        length = self.timestep * np.diff(self.steps)
+        total = np.add.reduceat(values * length.reshape(each), self.begins)
+        return np.asarray(total / self.duration.reshape(each))
+
+    def some(self, most: int) -> Trajectory:
+        """The same at no more than `most` of its points, which stand for no intervals."""
+        every = slice(None, None, -(-len(self.time) // most))
+        few = {f: getattr(self, f)[every] for f in ("qpos", "qvel", "act", "inputs", "time")}
+        return replace(self, begins=self.begins[:0], **few)
+
+
+def follow(predictor: Predictor, values: np.ndarray, points: int) -> Trajectory:
+    """Simulate one value set over one record.
+
+    Args:
+        predictor: plant and log.
+        values: shape (p,), in the parameters' units.
+        points: P, if the simulation has as many steps in a sample.
+
+    Raises:
+        DivergenceError: the simulation left the finite numbers.
+    """
+    model, log = predictor.plant.model, predictor.log
+    step = model.opt.timestep
+    every = substeps(log.sampling_time, step)
+    held = hold(log.inputs, every, log.hold)
+    start, numbers = predictor.settings(values)
+    run = rollout(
+        model, start, np.vstack([held, held[-1:]]), step, numbers=numbers,
+        record=("qpos", "qvel", "act") if model.na else ("qpos", "qvel"),
+        before=predictor.inputs(values), time=log.begun,
+    )  # fmt: skip
+    states = {field: each[0] for field, each in run.items()}
+    steps = _divide(every, points, len(log))
+    middle = (steps[1:] + steps[:-1]) / 2
+    at = {field: _between(x, middle) for field, x in states.items()}
+    return Trajectory(
+        model=with_numbers(model, numbers, 0),
+        qpos=at["qpos"],
+        qvel=at["qvel"],
+        act=at.get("act", np.empty((len(middle), 0))),
+        inputs=average_inputs(predictor.inputs(values)(held), steps, model.nu)[0],
+        time=log.begun + middle * step,
+        steps=steps,
+        timestep=step,
+        begins=np.searchsorted(steps, _divide(every, INTERVALS, len(log))[:-1]),
+        states={field: x[::every] for field, x in states.items()},
+    )
+
+
+def _divide(every: int, parts: int, samples: int) -> np.ndarray:
+    """The steps at which the parts of all samples begin, and that at which the last one ends."""
+    own = np.round(np.linspace(0, every, min(every, parts) + 1)).astype(int)
+    begins = every * np.arange(samples - 1)[:, None] + own[:-1]
+    return np.append(begins.ravel(), every * (samples - 1))
+
+
+def _between(x: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Rows of x (n, size) at places between them, shape (M, size)."""
+    below = np.floor(at).astype(int)
+    share = (at - below)[:, None]
+    return x[below] * (1 - share) + x[np.ceil(at).astype(int)] * share
+
+
+def average_inputs(held: np.ndarray, steps: np.ndarray, nu: int) -> np.ndarray:
+    """Means of the inputs about points.
+
+    Args:
+        held: at the steps of the simulation, shape (steps, inputs) or (n, steps, inputs).
+        steps: between which the points lie, shape (M + 1,).
+        nu: inputs of the model; those beyond the log's are zero.
+
+    Returns:
+        Shape (n, M, nu).
+    """
+    each = held if held.ndim == 3 else held[None]
+    mean = np.add.reduceat(each, steps[:-1], axis=1) / np.diff(steps)[:, None]
+    rest = np.zeros((*mean.shape[:2], nu - mean.shape[2]))
+    return np.concatenate([mean, rest], axis=2)
+
+
+def with_numbers(
+    model: mujoco.MjModel, numbers: Numbers, row: int, like: int | None = None
+) -> mujoco.MjModel:
+    """A copy of a model with the numbers of one value set, without its sensors.
+
+    Args:
+        model: the model.
+        numbers: slots and their values, one for each value set.
+        row: which value set.
+        like: a value set that the model has already; only what differs from it is written.
+    """
+    new = [(slot, v[row]) for slot, v in numbers if like is None or v[row] != v[like]]
+    out = copy.copy(without_sensors(model))
+    for slot, value in new:
+        getattr(out, slot.field)[slot.index()] = value
+    if not all(slot.field in UNDERIVED for slot, _ in new):
+        mujoco.mj_setConst(out, mujoco.MjData(out))
+    return out

@@ -1,0 +1,212 @@
+"""The sensitivity equations against simulations with each parameter moved."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+from effect_cases import full
+from estimation_plants import SLIDER_PARAMETERS, slider
+
+from identification import Log, Parameter, ParameterSet, Predictor
+from identification.discovery.scoring.sensitivities import (
+    compute_sensitivities,
+    list_common,
+)
+from identification.kalman.derivatives import shift_position, state_derivatives
+from identification.kalman.linear import linearise_records
+from identification.kalman.point import evaluate_point, shift_point
+from identification.kalman.sensitivity_equations import can_solve, solve_sensitivities
+from identification.kalman.trajectory import COARSE, FINE, follow
+from identification.logs.joined import join_logs
+from identification.model.coordinates import coordinates
+from identification.model.own import with_own
+from identification.model.plant import ModelPlant
+from inca_mj.effects.catalogue import CATALOGUE
+from inca_mj.robot.inputs import make_input
+from inca_mj.twin.logs import ANGLES, CURRENTS
+
+H = 0.02
+
+
+def solve(predictor, values, moves, points=COARSE):
+    records = linearise_records(predictor, values, points=points)
+    assert can_solve(predictor, records)
+    return solve_sensitivities(
+        predictor, records, values, values + np.diag(moves), np.asarray(moves)
+    )
+
+
+def simulate(predictor, values, moves):
+    """Central differences, shape (N, ny, p)."""
+    each = [predictor.predict(values + sign * np.diag(moves)) for sign in (1, -1)]
+    return np.moveaxis((each[0] - each[1]) / (2 * np.asarray(moves)[:, None, None]), 0, -1)
+
+
+def miss(S, expected):
+    """Share of each column that is missed, shape (p,)."""
+    return np.linalg.norm(S - expected, axis=(0, 1)) / np.linalg.norm(expected, axis=(0, 1))
+
+
+def slider_log(n, seed, hold="zoh", h=H):
+    u = np.random.default_rng(seed).standard_normal((n, 1))
+    return Log(time=h * np.arange(n), inputs=u, outputs=np.zeros((n, 2)), name=f"{seed}",
+               hold=hold, input_names=("force",), output_names=("position", "rate"))  # fmt: skip
+
+
+@pytest.mark.parametrize("hold", ["zoh", "foh"])
+def test_of_a_slider_they_are_those_of_the_simulation(hold):
+    names = ("mass", "damping", "x0", "v0")
+    predictor = Predictor(slider(), slider_log(80, 0, hold), names)
+    values = np.array([slider().parameters[n].value for n in names])
+    moves = np.full(len(names), 1e-5)
+    S = solve(predictor, values, moves)
+    assert miss(S, simulate(predictor, values, moves)).max() < 2e-3
+
+
+def test_the_error_falls_with_the_square_of_the_interval():
+    """The midpoint rule: a friction that turns with the position varies within an interval."""
+    model = """<mujoco><option timestep="0.0005" integrator="RK4"/><worldbody>
+      <body name="bob"><joint name="swing" axis="0 1 0" damping="0.05"/>
+        <inertial pos="0 0 -0.5" mass="0.5" diaginertia="0.01 0.01 0.01"/></body></worldbody>
+      <actuator><motor name="torque" joint="swing"/></actuator>
+      <sensor><jointpos name="angle" joint="swing"/></sensor></mujoco>"""
+    mass = Parameter(name="mass", value=0.5, unit="kg", where="body/bob.mass", lower=0)
+    plant = ModelPlant(mujoco.MjModel.from_xml_string(model), ParameterSet("pendulum", (mass,)))
+    missed = []
+    for h in (0.04, 0.02, 0.01):
+        t = h * np.arange(round(4 / h))
+        u = np.sin(3 * t)[:, None]
+        log = Log(time=t, inputs=u, outputs=np.zeros_like(u), hold="foh",
+                  input_names=("torque",), output_names=("angle",))  # fmt: skip
+        predictor, at, move = Predictor(plant, log, ("mass",)), np.array([0.5]), [1e-5]
+        missed.append(miss(solve(predictor, at, move), simulate(predictor, at, move))[0])
+    rates = np.log2(np.array(missed[:-1]) / missed[1:])
+    assert np.all(rates > 1.6), missed
+
+
+def test_records_have_columns_of_their_own():
+    plant = replace(slider(), parameters=with_own(SLIDER_PARAMETERS, ("x0",), 2))
+    names = ("mass", "x0", "x0 [2]")
+    both = Predictor(plant, join_logs([slider_log(60, 1), slider_log(45, 2)]), names)
+    values, moves = np.array([2.0, 0.1, -0.2]), np.full(3, 1e-5)
+    S = solve(both, values, moves)
+    assert miss(S, simulate(both, values, moves)).max() < 2e-3
+    assert not S[:60, :, 2].any()
+    assert not S[60:, :, 1].any()
+
+
+def test_where_a_joint_hits_its_limit_they_are_not_believed():
+    """A stop acts for less time than lies between two points."""
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><option timestep="0.002"/><worldbody><body name="b">
+        <joint name="j" type="slide" axis="1 0 0" limited="true" range="-0.05 0.05"
+          solreflimit="-100000 -1"/>
+        <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody>
+        <actuator><motor name="force" joint="j"/></actuator>
+        <sensor><jointpos name="position" joint="j"/></sensor></mujoco>"""
+    )
+    mass = Parameter(name="mass", value=1.0, unit="kg", where="body/b.mass", lower=0)
+    plant = ModelPlant(model, ParameterSet("stopped", (mass,)))
+    log = slider_log(200, 3)
+    log = Log(time=log.time, inputs=log.inputs, outputs=log.outputs[:, :1],
+              input_names=("force",), output_names=("position",))  # fmt: skip
+    predictor = Predictor(plant, log, ("mass",))
+    space = coordinates(plant.parameters, ("mass",), np.array([1.0]))
+    point = evaluate_point(predictor, space, space.encode(np.array([1.0])))
+    assert not point.by_equations
+    moved = predictor.predict(np.array([[1.0], [np.exp(1e-4)]]))
+    np.testing.assert_allclose(point.J[..., 0], (moved[1] - moved[0]) / 1e-4, atol=1e-9)
+
+
+def inca_log(seconds=2.0):
+    u = make_input("prbs", seconds)
+    return Log(time=0.01 * np.arange(len(u)), inputs=u, outputs=np.zeros_like(u),
+               input_names=CURRENTS, output_names=ANGLES)  # fmt: skip
+
+
+NAMES = ("R", "k_s", "lambda", "J", "b_v", "b_c", "K_t", "m", "x", "pitch")
+
+
+@pytest.fixture(scope="module")
+def robot():
+    """A point of the cable robot with all its candidate effects absent."""
+    plant = full()
+    first = np.array([plant.parameters[name].value for name in NAMES])
+    space = coordinates(plant.parameters, NAMES, first)
+    return evaluate_point(Predictor(plant, inca_log(), NAMES), space, space.encode(first))
+
+
+def test_of_the_cable_robot_they_are_those_of_the_simulation(robot):
+    assert robot.by_equations
+    predictor, space = robot.predictor, robot.space
+    h = 1e-4 * np.eye(len(NAMES))
+    ahead, behind = (predictor.predict(space.decode(robot.q + s * h)) for s in (1, -1))
+    expected = np.moveaxis((ahead - behind) / 2e-4, 0, -1)
+    missed = dict(zip(NAMES, miss(robot.J, expected), strict=True))
+    # The stiffness of the cables acts through oscillations of 100 Hz, which a sample cannot follow.
+    assert missed.pop("lambda") < 0.3
+    assert max(missed.values()) < 0.02
+
+
+def test_the_derivatives_are_those_of_mujoco(robot):
+    along = follow(robot.predictor, robot.space.decode(robot.q), FINE).some(4)
+    along = replace(along, steps=np.arange(5), begins=np.arange(4))
+    F = state_derivatives(along)[0]
+    model = along.model
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
+    model.opt.timestep = h = 1e-6
+    data, nx, moved = mujoco.MjData(model), F.shape[1], 2 * model.nv
+    for k in range(4):
+        data.time, data.qpos, data.qvel = along.time[k], along.qpos[k], along.qvel[k]
+        data.act, data.ctrl = along.act[k], along.inputs[k]
+        A = np.zeros((nx, nx))
+        mujoco.mjd_transitionFD(model, data, 1e-6, 1, A, None, None, None)
+        expected = (A - np.eye(nx)) / h
+        # MuJoCo moves positions with the new velocities: these rows err by h times the others.
+        expected[: model.nv] -= h * expected[model.nv : moved]
+        scale = np.abs(expected).max(axis=1, keepdims=True) + 1
+        missed = np.abs((F[k] - expected) / scale)[:, :moved]
+        assert missed.max() < 2e-3
+
+
+def test_an_orientation_is_shifted_as_mujoco_shifts_it(robot):
+    model = robot.predictor.plant.model
+    along = follow(robot.predictor, robot.space.decode(robot.q), COARSE)
+    qpos = along.states["qpos"][::50]
+    for dof in range(model.nv):
+        expected = qpos.copy()
+        for row in expected:
+            mujoco.mj_integratePos(model, row, np.eye(model.nv)[dof], 1e-5)
+        np.testing.assert_allclose(
+            shift_position(model, qpos, dof, 1e-5), expected, rtol=0, atol=1e-10
+        )
+
+
+def test_candidates_are_those_of_simulations(robot):
+    """Those with states that the nominal robot does not feel are simulated, to the bit."""
+    simulated = replace(robot, by_equations=False)
+    names = {"cogging", "anchor_offset", "encoder_lag", "current_lag", "cable_creep",
+             "drum_spring_drift", "load_dependent_friction"}  # fmt: skip
+    candidates = [c for c in list_common([e for e in CATALOGUE if e.name in names])
+                  if c.probe == 1 and c.shape.get("n", 6) == 6]  # fmt: skip
+    solved = compute_sensitivities(robot, candidates)
+    expected = compute_sensitivities(simulated, candidates)
+    assert {s.candidate.effect.name for s in solved} == names
+    for one, other in zip(solved, expected, strict=True):
+        assert one.candidate is other.candidate
+        if one.candidate.effect.name == "cable_creep":
+            np.testing.assert_array_equal(one.S, other.S)
+        else:
+            assert miss(one.S, other.S).max() < 0.1, one.candidate
+
+
+def test_a_short_step_keeps_the_columns_and_a_long_one_does_not(robot):
+    short = shift_point(robot, robot.q + 1e-3)
+    assert short.J is robot.J
+    predicted = robot.predictor.predict(robot.space.decode(short.q))[0]
+    np.testing.assert_array_equal(short.e, robot.log.outputs - predicted)
+    long = robot.q.copy()
+    long[NAMES.index("b_c")] -= 2
+    assert shift_point(robot, long) is None
