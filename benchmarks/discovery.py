@@ -71,9 +71,11 @@ def study(task: dict[str, Any]) -> dict[str, Any]:
     try:
         log, truth = log_of(task)
         from inca_mj.workflows.discovery import discover
+        from inca_mj.workflows.spread import spread_of
 
         # a world stands at rest with what it lacks, as a robot that was let go; practice was held
-        answer = answer_of(discover(log, settled="seed" in task))
+        spread = spread_of(task["spread"])
+        answer = answer_of(discover(log, settled="seed" in task, spread=spread))
     except Exception as error:
         return {"key": task["key"], "error": f"{type(error).__name__}: {error}",
                 "trace": traceback.format_exc(limit=-3)}  # fmt: skip
@@ -145,6 +147,7 @@ def main() -> None:
     add("--duration", type=float, default=20.0, help="of a world [s]")
     for flag in ("--coloured", "--wrong-shapes", "--pairs", "--null", "--resume"):
         add(flag, action="store_true")
+    add("--spread", default="usual", help="none, usual, or a file")
     add("--limit", type=int, default=None, help="logs at most")
     add("--jobs", type=int, default=1)
     add("--out", type=Path, default=Path("out/discovery.jsonl"))
@@ -155,7 +158,7 @@ def main() -> None:
     if options.null_study:
         work, draws = null_task, max(1, options.null_study // options.robots)
         tasks = null_tasks(options, draws)
-    tasks = tasks[: options.limit]
+    tasks = [{**task, "spread": options.spread} for task in tasks[: options.limit]]
     options.out.parent.mkdir(parents=True, exist_ok=True)
     if not options.resume:
         options.out.unlink(missing_ok=True)

@@ -22,6 +22,8 @@ PROJECT_MODELS = Path(__file__).parents[2] / "models"
 # windows are those of `identification.windows.windows`.
 Errors = Callable[[Log, float], np.ndarray]
 
+ENDS = 0.01  # how far off the ends of its range a search begins, as a share
+
 
 @dataclass(frozen=True, kw_only=True)
 class Free:
@@ -44,6 +46,14 @@ class Free:
     unit: str = ""
     scale: float | None = None
     bounds: tuple[float, float] | None = None
+
+    def inside(self, value: float) -> float:
+        """The value, moved off the ends of the range: a search that begins there stays there."""
+        if self.bounds is None:
+            return value
+        lower, upper = self.bounds
+        off = min(ENDS * (upper - lower), ENDS * abs(value) + ENDS)
+        return min(max(value, lower + off), upper - off)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -173,8 +183,8 @@ class MeasuredRobot:
         return replace(self, fit=self.fit[:count], confirm=self.confirm[:count])
 
     def started(self, values: Mapping[str, float]) -> MeasuredRobot:
-        """The robot with other values at which the search begins."""
-        free = (replace(p, value=values.get(p.name, p.value)) for p in self.free)
+        """The robot with other values at which the search begins, off the ends of their ranges."""
+        free = (replace(p, value=p.inside(values.get(p.name, p.value))) for p in self.free)
         return replace(self, free=tuple(free))
 
     def poorer(self, names: Sequence[str]) -> MeasuredRobot:

@@ -116,6 +116,13 @@ class NamedEffect:
     retuned: Retuned
     advice: str = ""
 
+    @property
+    def odds(self) -> float:
+        """Probability that the name is right, or one of the set's names where it is one of them."""
+        left = 1.0 - self.confidence
+        others = sum(rival.confidence for rival in self.rivals) if self.one_of else 0.0
+        return self.confidence + min(left, others)
+
 
 @dataclass(frozen=True)
 class Detectable:

@@ -38,8 +38,9 @@ class DiscoveryOptions(PredictionOptions):
         "judgement", least=50,
     )  # fmt: skip
     max_effects: int = option(
-        3, "effects",
-        "Largest number of effects that are named; each further one costs a round of refits.",
+        8, "effects",
+        "Largest number of effects that are named. The search ends before, where unseen samples"
+        " gain nothing by a further one.",
         "judgement", least=1,
     )  # fmt: skip
     nominal_factor: float = option(
@@ -147,6 +148,11 @@ class DiscoveryOptions(PredictionOptions):
         0.5, "of the gap on unseen samples",
         "Effects are named although something is left only when they close more than this.",
         "judgement", most=1.0,
+    )  # fmt: skip
+    min_confidence: float = option(
+        0.5, "probability",
+        "An effect is named when its name is at least as likely as not, or one of the set's names.",
+        "even odds", most=1.0,
     )  # fmt: skip
     max_named_input_error: float = option(
         1.0, "of the inputs' own motion",

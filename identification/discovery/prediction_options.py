@@ -17,6 +17,12 @@ class PredictionOptions(KalmanOptions):
         InputError: a value is no number, or lies outside the range that makes sense.
     """
 
+    max_horizon_effects: int = option(
+        3, "effects",
+        "Over a horizon: largest number of effects that are named; each further one costs minutes"
+        " of an arm, all places of which are refitted.",
+        "judgement", least=1,
+    )  # fmt: skip
     max_begun: int = option(
         6, "candidates",
         "Over a horizon: largest number of candidates that are fitted to some of the windows in a"

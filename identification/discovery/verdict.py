@@ -101,13 +101,16 @@ def conclude(state: SearchState) -> Discovery:
     findings = find_remaining(state)
     explained = compute_explained_share(nominal, model, findings, options)
     share = explained if findings else 1.0
-    named = name_effects(task, state.accepted, model, state.sensitivities, share)
+    every = name_effects(task, state.accepted, model, state.sensitivities, share)
+    named = tuple(n for n in every if n.odds >= options.min_confidence)
     verdict = decide(named, findings, explained, model, options)
-    rejected = state.rejected
+    if every and not named:
+        verdict = "unknown effect"
     if verdict == "unknown effect":
-        refused = (RejectedEffect(n.candidate, n.parameters, n.gain, n.proof) for n in named)
-        rejected = (*refused, *rejected)
         named, model, scores = (), nominal, state.nominal_scores
+    unnamed = [n for n in every if n not in named]
+    refused = (RejectedEffect(n.candidate, n.parameters, n.gain, n.proof) for n in unnamed)
+    rejected = (*refused, *state.rejected)
     is_missing = verdict != "nothing missing"
     forces = estimate_missing_forces(nominal.refit, options) if is_missing else ()
     located = locate_error(nominal.refit, forces, options) if is_missing else ()
@@ -118,7 +121,7 @@ def conclude(state: SearchState) -> Discovery:
         verdict=verdict,
         named=named,
         rejected=rejected,
-        unexplained=bool(findings),
+        unexplained=bool(findings or unnamed),
         noise_rms=model.refit.level.sigma,
         disturbance_rms=model.validation.disturbance if is_random else 0.0,
         before=nominal.validation.gap,

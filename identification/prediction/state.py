@@ -177,7 +177,7 @@ def next_state(state: RecordsState, progress: Progress) -> RecordsState:
     others = find_rivals(tried[1:], state.model, state.scores, best.model, scores, task.options)
     watch.stop("scores")
     accepted = (*state.accepted, best)
-    is_last = len(accepted) >= task.options.max_effects
+    is_last = len(accepted) >= min(task.options.max_effects, task.options.max_horizon_effects)
     state = replace(
         state, is_finished=is_last, model=model,
         accepted=accepted, alternatives=(*state.alternatives, others), scores=scores, rejected=(),

@@ -39,7 +39,7 @@ class Discover:
         tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")
     ] = ()
     """Logs for the proof, of which a fit sees the first two seconds; the flag may be repeated."""
-    spread: str = "none"
+    spread: str = "usual"
     """How much the drives and points of one robot differ: none, usual, or a TOML file."""
     film: bool = True
     """Film the final twin against the log; only with --out."""

@@ -2,7 +2,7 @@
 
 from identification.effects.effect import Effect
 from inca_mj.effects.cable import CABLE_CREEP, CABLE_HARDENING, CABLE_WEIGHT
-from inca_mj.effects.change import DRIFTS, MISMATCHES
+from inca_mj.effects.change import DRIFTS, JUMPS, MISMATCHES
 from inca_mj.effects.drum import (
     BACKLASH,
     DRUM_ECCENTRICITY,
@@ -19,6 +19,7 @@ from inca_mj.effects.friction import (
 from inca_mj.effects.motor import (
     COGGING,
     CURRENT_LAG,
+    CURRENT_OFFSET,
     CURRENT_SATURATION,
     DELAY,
     TORQUE_CONSTANT_DRIFT,
@@ -41,6 +42,7 @@ CATALOGUE: tuple[Effect, ...] = (
     CURRENT_LAG,
     DELAY,
     CURRENT_SATURATION,
+    CURRENT_OFFSET,
     TORQUE_CONSTANT_DRIFT,
     DRUM_ECCENTRICITY,
     DRUM_LAYERING,
@@ -57,5 +59,6 @@ CATALOGUE: tuple[Effect, ...] = (
     AIR_DRAG,
     *MISMATCHES,
     *DRIFTS,
+    *JUMPS,
     *SENSORS,
 )

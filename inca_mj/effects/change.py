@@ -1,9 +1,10 @@
-"""Effects by rule: any parameter of a drive may differ at one drive, or drift with time.
+"""Effects by rule: any parameter of a drive may differ at one drive, drift with time, or jump.
 
-    p (1 + δ)          mismatch: δ at one drive
-    p (1 - α t)        drift: of one drive or of all; t is the time of the record
+    p (1 + δ)              mismatch: δ at one drive
+    p (1 - α t)            drift: of one drive or of all; t is the time of the record
+    p (1 + δ)  at t ≥ t_s  jump: at one drive, within a tenth of a second about t_s
 
-A law says what a relative change c of a parameter adds; mismatch and drift follow from it:
+A law says what a relative change c of a parameter adds; the three follow from it:
 
     λ      ΔT = c λ ε                             cable_elasticity
     b      ΔT = c b (ḋ - ḋ₀)                      cable_damping
@@ -24,11 +25,15 @@ from typing import Any
 
 from numba import njit
 
-from identification.effects.effect import Effect, Size
+from identification.effects.effect import Effect, Shape, Size
 from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES
 
+LASTS = 0.1  # of a jump [s]: a step of the integrator that a jump divides would lose its order
+# At which jumps are tried [s], by a factor of 1.3: a jump that is taken for one that is 15 % of the
+# time away still shows most of what it does.
+TIMES = (1.0, 1.4, 1.8, 2.4, 3.1, 4.0, 5.2, 6.8, 8.8, 11.5, 15.0, 19.5, 25.0)
 PROBE = 0.1  # of the largest plausible size: a cable that is 3 % softer moves an angle by 0.1 mrad
 
 
@@ -114,6 +119,23 @@ def _drift(law: Any, hook: str, letter: str, phrase: str, largest: float) -> Eff
     )
 
 
+def _jump(law: Any, hook: str, letter: str, phrase: str, largest: float) -> Effect:
+    @njit
+    def jump(s, p):  # type: ignore[no-untyped-def]
+        return law(s, p[0] * min(1.0, max(0.0, 0.5 + (s.time - p[1]) / LASTS)))
+
+    return Effect(
+        f"{law.__name__}_jump",
+        f"{letter} (1 + δ) on one drive from t_s on",
+        (Size("delta", "", largest, PROBE * largest, about=f"relative change of {letter}"),),
+        (Shape("t_s", "s", TIMES, 0.1, 600.0, about="time of the jump in the record"),),
+        places=ONE_DRIVE,
+        phrase=f"{phrase} jumps",
+        reference="thesis Table 3.2",
+        hooks={hook: jump},
+    )
+
+
 # law, hook, letter, phrase, largest plausible deviation of one drive
 _RULES: tuple[tuple[Any, str, str, str, float], ...] = (
     (cable_elasticity, "tension", "λ", "cable: elasticity", 0.3),
@@ -152,3 +174,5 @@ DRIFTS = tuple(
     for law, hook, letter, phrase, largest in _RULES
     if law not in (drum_radius, torque_constant)
 )
+# So do jumps: a cable that slips on its roller, a screw that comes loose.
+JUMPS = tuple(_jump(*rule) for rule in _RULES)

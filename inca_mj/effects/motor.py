@@ -4,6 +4,7 @@
     current lag                τ i̇ = u - i                      the current loop is a filter
     delay                      i(t) = u(t - τ)                  the current arrives late
     saturation                 i clipped at ±i_max, or i_max tanh(i/i_max)
+    current offset             i + c                            its measurement has another zero
     torque constant drift      K_t (1 - α t)                    kind 0: warms with time
                                K_t (1 - α ∫(i/1 A)² dt)         kind 1: warms with its losses
 
@@ -19,7 +20,7 @@ from numba import njit
 from identification.effects.effect import BEFORE, Effect, Shape, Size
 from identification.effects.input_laws import DELAY as DELAYED
 from identification.effects.input_laws import LAG as LAGGED
-from inca_mj.effects.hooks import DRIVES_EACH
+from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
 
 # Limits to try [A]: dense where a log of the thesis has its currents, then by a factor of 1.4.
 GRID = (0.55, 0.65, 0.75, 0.85, 0.95, 1.2, 1.7, 2.4, 3.4, 4.8)
@@ -38,6 +39,12 @@ def current_saturation(s, p):  # type: ignore[no-untyped-def]
     c, i_max, soft = p
     limited = i_max * tanh(s.i / i_max) if soft else max(-i_max, min(i_max, s.i))
     return c * (limited - s.i)
+
+
+@njit
+def current_offset(s, p):  # type: ignore[no-untyped-def]
+    """Δi = c [A]."""
+    return p[0]
 
 
 @njit
@@ -105,6 +112,15 @@ CURRENT_SATURATION = Effect(
     reference="data sheet of the amplifier",
     hooks={"current": current_saturation},
 )  # fmt: skip
+CURRENT_OFFSET = Effect(
+    "current_offset",
+    "i + c on one drive",
+    (Size("c", "A", 0.1, 1e-3, about="what the motor gets beyond the logged current"),),
+    places=ONE_DRIVE,
+    phrase="current: its measurement has an offset",
+    reference="data sheet of the amplifier",
+    hooks={"current": current_offset},
+)
 TORQUE_CONSTANT_DRIFT = Effect(
     "torque_constant_drift",
     "K_t (1 - α t), or with heat ∫i² dt for t",

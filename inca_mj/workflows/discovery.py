@@ -21,7 +21,7 @@ from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.calibration import nominal_model
 from inca_mj.workflows.comparison import timestep_for
-from inca_mj.workflows.spread import NONE, Spread
+from inca_mj.workflows.spread import Spread, spread_of
 
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery
@@ -36,7 +36,7 @@ def discover(
     geometry: Geometry = INCA,
     *,
     confirm: Sequence[Log] = (),
-    spread: Spread = NONE,
+    spread: Spread | None = None,
     effects: Sequence[Effect] = CATALOGUE,
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
@@ -51,10 +51,11 @@ def discover(
         confirm: records for the proof, of which a fit sees the first two seconds only, which tell
             where they begin; `log` is then fitted whole.
         spread: how much the drives and points of one robot usually differ (`spread_of`): each has
-            then values of its own, held by what is usual. By default all drives are alike.
+            then values of its own, held by what is usual (the default, None) or by a table.
+            `spread_of("none")` takes all drives for alike.
         parameters: nominal values; the thesis' Table 3.2 when None.
         geometry: anchors of the cables.
-        effects: candidates; the catalogue of 25 by default.
+        effects: candidates; the whole catalogue by default.
         progress: is told a line per stage.
         timestep: largest step of the integrator [s].
         settled: True if the robot stood by itself for a while before the log began, so that it
@@ -79,7 +80,7 @@ def discover(
     from identification.discovery.search import refuse_unfit
     from inca_mj.workflows.look_alikes import told
 
-    options = options or DiscoveryOptions()
+    options, spread = options or DiscoveryOptions(), spread or spread_of("usual")
     refuse_unfit(every, options)
     if progress is not None:
         progress(f"preparing the law of the cables with {len(effects)} effects")

@@ -37,6 +37,8 @@ CHANGING = ("cable_elasticity", "cable_damping", "drum_spring", "viscous_frictio
 RULE = [
     *(f"{name}_mismatch" for name in CHANGING),
     *(f"{name}_drift" for name in CHANGING),
+    *(f"{name}_jump" for name in (*CHANGING, "drum_radius", "torque_constant")),
+    "current_offset",
     "encoder_scale",
     "encoder_eccentricity",
     "encoder_lag",
@@ -66,7 +68,8 @@ def test_a_probe_shows_and_is_nearly_linear(effect):
     shapes = {"current_saturation.i_max": 0.75} if effect.name == "current_saturation" else {}
     names = [*shapes, *probes(effect)]
     values = [[*shapes.values(), *(f * p for p in probes(effect).values())] for f in (0, 0.5, 1)]
-    seconds = 4 if effect.name.endswith("_drift") else 1  # a drift begins at nothing
+    # A drift begins at nothing, and a jump comes after a while.
+    seconds = 4 if effect.name.endswith(("_drift", "_jump")) else 1
     none, half, whole = simulate(full(), names, values, seconds=seconds)
     size = np.sqrt(np.mean((whole - none) ** 2))
     assert size > 1e-4

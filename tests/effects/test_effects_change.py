@@ -57,3 +57,24 @@ def test_readings_of_encoders_follow_their_laws_and_leave_the_motion_alone():
     np.testing.assert_array_equal(np.delete(late, 4, axis=1), np.delete(none, 4, axis=1))
     rate = np.gradient(none[:, 4], 0.01)
     np.testing.assert_allclose(late[5:-5, 4], (none[:, 4] - 1e-3 * rate)[5:-5], atol=5e-4)
+
+
+@pytest.mark.parametrize("name", [*PARAMETERS, "drum_spring"])
+def test_a_jump_is_nothing_before_its_time_and_a_mismatch_when_it_comes_first(name):
+    jump = [f"{name}_jump.delta@3", f"{name}_jump.t_s"]
+    none, late, first = simulate(full(), jump, [[0.0, 1.0], [0.05, 0.5], [0.05, 0.1]], 0.8)
+    np.testing.assert_array_equal(late[:45], none[:45])
+    assert np.abs(late[60:] - none[60:]).max() > 1e-7
+    differs = simulate(full(), [f"{name}_mismatch.delta@3"], [[0.0], [0.05]], 0.8)[1]
+    moved = np.abs(differs - none)[40:].max()
+    # What was missed in the first tenth of a second fades, as the drum springs bring it back.
+    assert np.abs(first - differs)[40:].max() < moved
+
+
+def test_an_offset_of_a_current_is_that_current():
+    none, ours = simulate(full(), ["current_offset.c@4"], [[0.0], [0.02]], 0.3)
+    _, doubled = simulate(full(), ["current_offset.c@4"], [[0.0], [0.04]], 0.3)
+    assert np.abs(ours - none)[:, 3].max() > 1e-5
+    np.testing.assert_allclose(
+        doubled - none, 2 * (ours - none), atol=0.05 * np.abs(doubled - none).max()
+    )
