@@ -22,7 +22,7 @@ PROJECT_MODELS = Path(__file__).parents[2] / "models"
 # windows are those of `identification.windows.windows`.
 Errors = Callable[[Log, float], np.ndarray]
 
-ENDS = 0.01  # how far off the ends of its range a search begins, as a share
+BACK = 0.01  # share of the way back to where a search began before
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,14 +46,6 @@ class Free:
     unit: str = ""
     scale: float | None = None
     bounds: tuple[float, float] | None = None
-
-    def inside(self, value: float) -> float:
-        """The value, moved off the ends of the range: a search that begins there stays there."""
-        if self.bounds is None:
-            return value
-        lower, upper = self.bounds
-        off = min(ENDS * (upper - lower), ENDS * abs(value) + ENDS)
-        return min(max(value, lower + off), upper - off)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,8 +175,12 @@ class MeasuredRobot:
         return replace(self, fit=self.fit[:count], confirm=self.confirm[:count])
 
     def started(self, values: Mapping[str, float]) -> MeasuredRobot:
-        """The robot with other values at which the search begins, off the ends of their ranges."""
-        free = (replace(p, value=p.inside(values.get(p.name, p.value))) for p in self.free)
+        """The robot with other values at which the search begins.
+
+        They are moved a little back to where it began before, off the ends of their ranges.
+        """
+        near = {p.name: values.get(p.name, p.value) for p in self.free}
+        free = (replace(p, value=near[p.name] + BACK * (p.value - near[p.name])) for p in self.free)
         return replace(self, free=tuple(free))
 
     def poorer(self, names: Sequence[str]) -> MeasuredRobot:
