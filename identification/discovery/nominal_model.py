@@ -145,7 +145,19 @@ def fit_with_effects(
     if level is not None:
         # The correlation time that was found without the effect may have been the effect's own.
         level = replace(level, noise=level.noise.lasting(options.start_correlation_time))
-    return refit(point, mean, weight, options, steps, level, progress)
+    found = refit(point, mean, weight, options, steps, level, progress)
+    if near is None or not _is_less_likely(found, near) or nominal_model.is_bounded:
+        return found
+    # A model is at least as likely as the one that it contains: the search, which believes no large
+    # errors of the inputs at first, went another way.
+    again = refit(point, mean, weight, options, steps, near.level, progress, is_near=True)
+    return max(found, again, key=lambda fit: fit.log_posterior)
+
+
+def _is_less_likely(found: Refit, near: Refit) -> bool:
+    """Whether a fit is less likely than another one whose parameters are among its own."""
+    contained = {*near.point.space.names} <= {*found.point.space.names}
+    return contained and found.log_posterior < near.log_posterior
 
 
 def _within_factor(

@@ -77,6 +77,7 @@ def refit(
     steps: int = 20,
     near: NoiseLevel | None = None,
     progress: Progress | None = None,
+    is_near: bool = False,
 ) -> Refit:
     """Estimate the free parameters of a point, beginning where it is.
 
@@ -88,8 +89,9 @@ def refit(
         steps: largest number of steps.
         near: a noise to begin at, where one is known.
         progress: is told one line per step.
+        is_near: whether the point is near the optimum, so that only the likelihood counts.
     """
-    for step in enumerate(descend(point, mean, prior, options, near, steps)):
+    for step in enumerate(descend(point, mean, prior, options, near, steps, is_near)):
         taken, (end, level) = step
         if progress is not None:
             off = float(np.sqrt(np.mean(end.e**2)))
@@ -104,6 +106,7 @@ def descend(
     options: KalmanOptions,
     near: NoiseLevel | None = None,
     steps: int = 20,
+    is_near: bool = False,
 ) -> Generator[tuple[Point, NoiseLevel], None, bool]:
     """The points of a search, each with its noise, from the first to the likeliest.
 
@@ -119,14 +122,15 @@ def descend(
         options: which noise is believed.
         near: a noise to begin at, where one is known.
         steps: largest number of steps.
+        is_near: whether the point is near the optimum: the first part is left out.
 
     Returns:
         Whether the search ended before it had used all steps.
     """
-    believed = options.allowed_input_error * point.motion
+    believed = np.inf if is_near else options.allowed_input_error * point.motion
     level = estimate_noise(point, prior, options, near, largest=believed)
     yield point, level
-    for fine in (False, True):
+    for fine in (True,) if is_near else (False, True):
         if fine:
             level = estimate_noise(point, prior, options, level, fine)
             yield point, level

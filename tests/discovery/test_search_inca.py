@@ -7,16 +7,18 @@ import pytest
 
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.workflows.discovery import discover
+from inca_mj.workflows.spread import spread_of
 from inca_mj.worlds import HiddenSetting, effect, world
 
 FEW = ("load_dependent_friction", "stribeck_friction", "air_drag", "external_force", "com_offset")
 FIVE = tuple(e for e in CATALOGUE if e.name in FEW)
 SHORT = HiddenSetting(duration=6.0)
+ALIKE = spread_of("none")
 
 
 def test_load_dependent_friction_is_named():
     log, truth = world(3, [effect("load_dependent_friction")], ratio=6.0, setting=SHORT)
-    answer = discover(log, effects=FIVE)
+    answer = discover(log, effects=FIVE, spread=ALIKE)
     assert answer.verdict == "named"
     named = answer.named[0]
     assert named.candidate.effect.name == "load_dependent_friction"
@@ -27,6 +29,6 @@ def test_load_dependent_friction_is_named():
 
 
 def test_where_nothing_is_missing_nothing_is_named():
-    answer = discover(world(4, setting=SHORT).log, effects=FIVE)
+    answer = discover(world(4, setting=SHORT).log, effects=FIVE, spread=ALIKE)
     assert answer.verdict == "nothing missing"
     assert {d.candidate.effect.name for d in answer.detectable} == set(FEW)

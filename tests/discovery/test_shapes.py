@@ -12,6 +12,7 @@ from identification.discovery.selection.shapes import improve_shape
 from identification.effects.effect import Candidate, Effect, Shape, Size
 from inca_mj.effects.motor import CURRENT_SATURATION
 from inca_mj.workflows.discovery import discover
+from inca_mj.workflows.spread import spread_of
 from inca_mj.worlds import HiddenSetting, effect, world
 
 BARE = OPTIONS.bare_bic
@@ -76,7 +77,7 @@ def test_a_limit_that_two_levels_of_current_reach_alike_is_a_hard_one():
     setting = HiddenSetting(duration=4.5)  # PRBS: 0.5 and 1 A
     log, truth = world(71, [replace(effect("current_saturation"), i_max=0.9)], setting=setting)
     assert np.unique(log.inputs).size == 2
-    answer = discover(log, effects=(CURRENT_SATURATION,))
+    answer = discover(log, effects=(CURRENT_SATURATION,), spread=spread_of("none"))
     (named,) = answer.named
     assert named.candidate.shape["soft"] == 0.0
     assert named.parameters["i_max"][0] == pytest.approx(truth.sizes[0]["i_max"], rel=0.02)
