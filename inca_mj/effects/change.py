@@ -31,9 +31,9 @@ from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES
 
 LASTS = 0.1  # of a jump [s]: a step of the integrator that a jump divides would lose its order
-# At which jumps are tried [s], by a factor of 1.3: a jump that is taken for one that is 15 % of the
-# time away still shows most of what it does.
-TIMES = (1.0, 1.4, 1.8, 2.4, 3.1, 4.0, 5.2, 6.8, 8.8, 11.5, 15.0, 19.5, 25.0)
+# At which jumps are tried [s], by a factor of 1.7: the nearest one still shows most of what a jump
+# between two of them does, and a refit finds its time.
+TIMES = (1.0, 1.7, 2.9, 4.9, 8.4, 14.0, 24.0)
 PROBE = 0.1  # of the largest plausible size: a cable that is 3 % softer moves an angle by 0.1 mrad
 
 
