@@ -4,6 +4,7 @@
     offset          c                       its zero is not the joint's
     eccentricity    a cos q + b sin q       its disc turns about another centre
     lag             -τ v                    it is read or sent too late: y(t - τ) ≈ y - τ v
+    jump            c where t ≥ t_s         counts are lost, within a tenth of a second about t_s
 
 Each function takes the state of a sensor (see `identification.native.reading.Reading`) and the
 effect's parameters, sizes first.
@@ -14,6 +15,8 @@ from __future__ import annotations
 from math import cos, sin
 
 from numba import njit
+
+LASTS = 0.1  # of a jump [s]: the outputs are to change smoothly with its time
 
 
 @njit
@@ -38,3 +41,9 @@ def encoder_eccentricity(s, p):  # type: ignore[no-untyped-def]
 def encoder_lag(s, p):  # type: ignore[no-untyped-def]
     """-τ v."""
     return -p[0] * s.v
+
+
+@njit
+def encoder_jump(s, p):  # type: ignore[no-untyped-def]
+    """c from the time t_s on."""
+    return p[0] * min(1.0, max(0.0, 0.5 + (s.time - p[1]) / LASTS))

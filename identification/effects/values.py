@@ -120,8 +120,8 @@ def changed_outputs(
         effects: a set; those that act on other things are passed over.
         things: names of the ny sensors.
         values: of all parameters, one or n of each.
-        readings: y, q and v of each sensor, shape (3, m, samples, ny); each value set has m/n
-            neighbouring rows.
+        readings: y, q, v and time of each sensor, shape (4, m, samples, ny); each value set has
+            m/n neighbouring rows.
         n: how many value sets.
 
     Returns:
@@ -135,13 +135,13 @@ def changed_outputs(
     if not any(is_present(e, things, values) for e in acting):
         return y
     run, y = sensor_filter(terms_of(acting, SENSOR)), y.copy()
-    signals = np.empty((4, len(y) // n, y.shape[1]))
+    signals = np.empty((5, len(y) // n, y.shape[1]))
     for i, thing in enumerate(things):
         if not any(is_present(e, [thing], values) for e in acting):
             continue
         for k, row in enumerate(table_at(acting, thing, values, n)):
             own = slice(k * signals.shape[1], (k + 1) * signals.shape[1])
-            signals[:3] = readings[:, own, :, i]
+            signals[:4] = readings[:, own, :, i]
             run(signals.ctypes.data, signals[0].size, row.ctypes.data)
-            y[own, :, i] = signals[3]
+            y[own, :, i] = signals[4]
     return y

@@ -25,6 +25,7 @@ from identification.model.protocol import with_states
 from identification.model.rollout import hold, substeps
 
 SHIFT = 1e-3  # of states that no output feels, to see whether a candidate reads them
+_NO_TIME = ((0, 1), (0, 0), (0, 0), (0, 0))  # the time of a reading does not change
 FEW = 50  # points at which this is seen
 
 
@@ -152,7 +153,7 @@ def _outputs(
     δx = np.zeros((*x.shape[::2], len(linear.felt)))
     δx[..., linear.felt] = np.moveaxis(x, 1, 2)
     δ = np.stack([np.stack([δx[..., i] for i in of], axis=-1) for of in _indices(predictor)])
-    there = here + np.swapaxes(δ, 1, 2) * change[:, None, None]
+    there = here + np.pad(np.swapaxes(δ, 1, 2), _NO_TIME) * change[:, None, None]
     said = predictor.said(rows[1:], there) - predictor.said(rows[:1], here)
     return np.moveaxis(said / change[:, None, None], 0, -1)
 

@@ -139,13 +139,17 @@ class Predictor:
             left -= here
         return np.concatenate(out, axis=1)
 
-    def outputs(self, values: np.ndarray, states: Mapping[str, np.ndarray]) -> np.ndarray:
+    def outputs(
+        self, values: np.ndarray, states: Mapping[str, np.ndarray], begun: np.ndarray | None = None
+    ) -> np.ndarray:
         """What the sensors say of simulated states, for n value sets (n, p).
 
         Args:
             values: shape (n, p), in the parameters' units.
             states: what `recorded` names, of m simulations, shape (m, samples, size); each value
                 set has m/n neighbouring ones.
+            begun: time of the record at which each begins, shape (m,) [s]; where the log begins
+                when None.
 
         Returns:
             Shape (m, samples, ny).
@@ -153,23 +157,29 @@ class Predictor:
         plant = with_states(self.plant)
         if plant is not None:
             states = plant.shown(*self._every(values), states)
-        return self.said(values, self.readings(states))
+        return self.said(values, self.readings(states, begun))
 
-    def readings(self, states: Mapping[str, np.ndarray]) -> np.ndarray:
+    def readings(
+        self, states: Mapping[str, np.ndarray], begun: np.ndarray | None = None
+    ) -> np.ndarray:
         """What perfect sensors would say of simulated states; see `Plant.outputs`.
 
         Args:
             states: of m simulations, each field (m, samples, size).
+            begun: as above.
 
         Returns:
-            Shape (3, m, samples, ny).
+            Shape (4, m, samples, ny).
         """
         model, sensors = self.plant.model, self.log.output_names
         joints = [int(model.sensor(name).objid[0]) for name in sensors]
         y = [states[field][:, :, i] for field, i in output_columns(model, sensors)]
         q = [states["qpos"][:, :, int(model.jnt_qposadr[j])] for j in joints]
         v = [states["qvel"][:, :, int(model.jnt_dofadr[j])] for j in joints]
-        return np.stack([np.stack(part, axis=-1) for part in (y, q, v)])
+        first = np.atleast_1d(self.log.begun if begun is None else begun)[:, None]
+        time = first + self.log.sampling_time * np.arange(y[0].shape[1])
+        times = [np.broadcast_to(time, y[0].shape)] * len(y)
+        return np.stack([np.stack(part, axis=-1) for part in (y, q, v, times)])
 
     def said(self, values: np.ndarray, readings: np.ndarray) -> np.ndarray:
         """What the plant's sensors say, for n value sets (n, p); see `Plant.outputs`."""

@@ -61,8 +61,8 @@ class Plant(Protocol):
             names: as above.
             values: as above.
             sensors: names of the ny sensors.
-            readings: what a perfect sensor would say, and position and rate of its joint, shape
-                (3, m, samples, ny); each value set has m/n neighbouring rows.
+            readings: what a perfect sensor would say, position and rate of its joint, and the time
+                of the record, shape (4, m, samples, ny); each value set has m/n neighbouring rows.
 
         Returns:
             Shape (m, samples, ny).

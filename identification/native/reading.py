@@ -23,7 +23,8 @@ from identification.native.memory import load_double, store_double
 # What an effect sees of a sensor at a sample.
 #   y: what a perfect sensor would say [rad, m, rad/s or m/s]
 #   q, v: position [rad or m] and rate [rad/s or m/s] of the joint that it measures
-Reading: Any = namedtuple("Reading", "y q v")
+#   time: of the record [s]
+Reading: Any = namedtuple("Reading", "y q v time")
 
 SENSOR = Element(
     "sensor", Reading, (Hook("reading", ("what is added to the reading, in its unit",)),)
@@ -41,7 +42,7 @@ def sensor_filter(terms: Sequence[Term]) -> Any:
 
     Returns:
         (signals, samples, row): a ctypes function. `signals` is the address of an array of shape
-        (4, samples): y, q, v, and y', which is written. `row` is the address of the effects'
+        (5, samples): y, q, v, time, and y', which is written. `row` is the address of the effects'
         parameters.
 
     Raises:
@@ -50,10 +51,15 @@ def sensor_filter(terms: Sequence[Term]) -> Any:
     reading = total(SENSOR, terms, "reading")
 
     def sensor(signals, samples, row):  # type: ignore[no-untyped-def]
-        q, v, out = signals + 8 * samples, signals + 16 * samples, signals + 24 * samples
+        q, v, time, out = [signals + 8 * samples * i for i in (1, 2, 3, 4)]
         for k in range(samples):
             y = load_double(signals + 8 * k)
-            s = Reading(y=y, q=load_double(q + 8 * k), v=load_double(v + 8 * k))
+            s = Reading(
+                y=y,
+                q=load_double(q + 8 * k),
+                v=load_double(v + 8 * k),
+                time=load_double(time + 8 * k),
+            )
             store_double(out + 8 * k, y + reading(s, row, 0))
 
     try:

@@ -118,7 +118,8 @@ class HeldWindows:
         y = np.empty((k * W, *self.outputs.shape[1:]))
         for predictor, own in parts:
             if own.any():
-                y[own] = predictor.outputs(_NONE, {f: x[own] for f, x in run.items()})
+                mine = {f: x[own] for f, x in run.items()}
+                y[own] = predictor.outputs(_NONE, mine, np.tile(self.times, k)[own])
         return y.reshape(k, W, *y.shape[1:])
 
 

@@ -124,7 +124,7 @@ class Shooting:
             record=predictor.recorded, hold_kind=hold_kind, time=np.tile(self.times, len(q)),
         )  # fmt: skip
         run = {field: states[:, ::every] for field, states in run.items()}
-        y = predictor.outputs(self.space.decode(q), run)
+        y = predictor.outputs(self.space.decode(q), run, np.tile(self.times, len(q)))
         return y.reshape(len(q), W, *y.shape[1:])
 
     def held_inputs(self, values: np.ndarray) -> tuple[np.ndarray, int, str]:

@@ -3,14 +3,16 @@
     scale           (1 + s) φ               counts a turn are not what they are taken for
     eccentricity    φ + a cos φ + b sin φ   the disc turns about another centre
     lag             φ - τ ω                 read too late, one encoder behind the others or all
+    jump            φ + c from t_s on       counts are lost
 
 They act on what is measured; the robot moves as if they were not there. Their laws are those of any
 robot (`identification.effects.sensor_laws`).
 """
 
 from identification.effects import sensor_laws as laws
-from identification.effects.effect import Effect, Size
-from inca_mj.effects.hooks import DRIVES_EACH
+from identification.effects.effect import Effect, Shape, Size
+from inca_mj.effects.change import TIMES
+from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
 
 ENCODER_SCALE = Effect(
     "encoder_scale",
@@ -42,4 +44,14 @@ ENCODER_LAG = Effect(
     reference="data sheet of the encoder",
     hooks={"reading": laws.encoder_lag},
 )
-SENSORS = (ENCODER_SCALE, ENCODER_ECCENTRICITY, ENCODER_LAG)
+ENCODER_JUMP = Effect(
+    "encoder_jump",
+    "φ + c from t_s on",
+    (Size("c", "rad", 0.5, 1e-3, about="what the reading jumps by"),),
+    (Shape("t_s", "s", TIMES, 0.1, 600.0, about="time of the jump in the record"),),
+    places=ONE_DRIVE,
+    phrase="encoder: its reading jumps",
+    reference="data sheet of the encoder",
+    hooks={"reading": laws.encoder_jump},
+)
+SENSORS = (ENCODER_SCALE, ENCODER_ECCENTRICITY, ENCODER_LAG, ENCODER_JUMP)

@@ -39,6 +39,7 @@ RULE = [
     *(f"{name}_drift" for name in CHANGING),
     *(f"{name}_jump" for name in (*CHANGING, "drum_radius", "torque_constant")),
     "current_offset",
+    "encoder_jump",
     "encoder_scale",
     "encoder_eccentricity",
     "encoder_lag",

@@ -15,7 +15,7 @@ from identification.windows.window_error import window_error
 from identification.windows.window_estimate import estimate_windows
 
 BOTH = SLIDER.replace("</sensor>", '<jointvel name="rate" joint="slide"/></sensor>')
-S = Reading(y=2.0, q=0.7, v=-3.0)
+S = Reading(y=2.0, q=0.7, v=-3.0, time=1.2)
 LAWS = [
     ("encoder_scale", (0.1,), 0.2),
     ("encoder_offset", (0.1,), 0.1),
