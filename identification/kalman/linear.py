@@ -2,9 +2,9 @@
 
     δẋ = F(t) δx + G(t) δu,    δx_{k+1} = A_k δx_k + B_k δu_k,    δy_k = C δx_k
 
-    A = exp(F Δt),  Γ = ∫ exp(F τ) dτ over Δt:  exp([F I; 0 0] Δt) = [A Γ; 0 I]     (Van Loan 1978)
+    A = exp(F Δt),  Γ = ∫ exp(F τ) E dτ over Δt:  exp([F E; 0 0] Δt) = [A Γ; 0 I]   (Van Loan 1978)
 
-x is MuJoCo's state in tangent space: position (nv), velocity (nv), activation (na). F and G are
+E are the columns of the identity of velocities and activations: nothing else is forced. x is MuJoCo's state in tangent space: position (nv), velocity (nv), activation (na). F and G are
 means over an interval, of which a sample has a few.
 """
 
@@ -46,7 +46,7 @@ class Linearisation:
     Attributes:
         along: the trajectory.
         A: transition over each interval, shape (L, nx, nx).
-        Γ: effect of a constant rate of change of the state, shape (L, nx, nx).
+        Γ: effect of a constant rate of change of each velocity and activation, shape (L, nx, nf).
         B: effect of a constant input, shape (L, nx, nu).
         C: outputs from the state, shape (ny, nx).
         felt: which entries of the state are x: those that outputs feel, shape (2 nv + na,).
@@ -123,13 +123,14 @@ def _of_record(predictor: Predictor, along: Trajectory, forces: Sequence[int]) -
         C[row, tangent_index(along.model, field, i)] = 1
     felt = _felt(F, C)
     F, G, C = F[:, felt][:, :, felt], G[:, felt], C[:, felt]
-    nx = F.shape[1]
-    block = np.zeros((len(F), 2 * nx, 2 * nx))
-    block[:, :nx] = np.concatenate([F, np.broadcast_to(np.eye(nx), F.shape)], axis=2)
+    nx, positions = F.shape[1], int(felt[: along.model.nv].sum())
+    whole = 2 * nx - positions
+    block = np.zeros((len(F), whole, whole))
+    block[:, :nx, :nx], block[:, positions:nx, nx:] = F, np.eye(nx - positions)
     with threadpool_limits(1, "blas"):  # the matrices are small, so threads would only wait
         block = expm(block * along.duration[:, None, None])
     Γ = block[:, :nx, nx:]
-    return Linearisation(along, block[:, :nx, :nx], Γ, Γ @ G, C, felt)
+    return Linearisation(along, block[:, :nx, :nx], Γ, Γ @ G[:, positions:], C, felt)
 
 
 def _felt(F: np.ndarray, C: np.ndarray) -> np.ndarray:

@@ -130,8 +130,7 @@ def _first(
 
 def _respond(linear: Linearisation, first: np.ndarray, g: np.ndarray) -> np.ndarray:
     """δx at the samples, shape (N, nx, m), of velocities and activations that are forced by g."""
-    parts, nx = linear.along.intervals, len(first)
-    forced = linear.Γ[..., nx - g.shape[1] :] @ g
+    parts, forced = linear.along.intervals, linear.Γ @ g
     x = np.empty((len(forced) // parts + 1, *first.shape))
     x[0] = now = first
     for k, (A, b) in enumerate(zip(linear.A, forced, strict=True)):
