@@ -99,10 +99,11 @@ def try_fit(
     candidates: tuple[Candidate, ...],
     start: Mapping[str, float],
     near: FittedModel | None = None,
+    steps: int = STEPS,
 ) -> FittedModel | None:
     """The same as `fit_model`; None where that raises an error."""
     try:
-        return fit_model(task, candidates, start, near)
+        return fit_model(task, candidates, start, near, steps)
     except (DivergenceError, InputError):
         return None
 

@@ -155,8 +155,10 @@ def fit_with_effects(
 
 
 def _is_less_likely(found: Refit, near: Refit) -> bool:
-    """Whether a fit is less likely than another one whose parameters are among its own."""
-    contained = {*near.point.space.names} <= {*found.point.space.names}
+    """Whether a fit is less likely than one with fewer parameters and the same priors."""
+    prior = dict(zip(found.point.space.names, found.prior, strict=True))
+    fewer = dict(zip(near.point.space.names, near.prior, strict=True))
+    contained = len(fewer) < len(prior) and all(prior.get(n) == s for n, s in fewer.items())
     return contained and found.log_posterior < near.log_posterior
 
 

@@ -4,8 +4,9 @@
 
     A = exp(F Δt),  Γ = ∫ exp(F τ) E dτ over Δt:  exp([F E; 0 0] Δt) = [A Γ; 0 I]   (Van Loan 1978)
 
-E are the columns of the identity of velocities and activations: nothing else is forced. x is MuJoCo's state in tangent space: position (nv), velocity (nv), activation (na). F and G are
-means over an interval, of which a sample has a few.
+E are the columns of the identity of velocities and activations: nothing else is forced. x is
+MuJoCo's state in tangent space: position (nv), velocity (nv), activation (na). F and G are means
+over an interval, of which a sample has a few.
 """
 
 from __future__ import annotations

@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from identification.discovery.fitted_model import (
     AcceptedEffect,
     FittedModel,
@@ -18,10 +20,14 @@ from identification.discovery.fitted_model import (
     try_fit,
 )
 from identification.discovery.proof import prove
+from identification.discovery.retuning import retune
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.discovery.scoring.significance import select_significant
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
+
+FAR = 10.0  # times what BIC asks for the sizes of an effect, beyond which it is needed
+FEW = 5  # steps of a fit that only says what else could explain the log: its scores are linear
 
 
 def prune(
@@ -50,11 +56,24 @@ def eliminate(
     """Drop effects that later ones have made needless; the last one was just proven."""
     kept = list(accepted)
     for old in accepted[:-1]:
+        if _is_needed(task, model, old.candidate):
+            continue
         rest = tuple(c for c in model.candidates if c is not old.candidate)
         without = try_fit(task, rest, model.refit.point.values, model)
         if without is not None and without.negative_bic > model.negative_bic:
             kept, model = [a for a in kept if a is not old], without
     return tuple(kept), model
+
+
+def _is_needed(task: DiscoveryTask, model: FittedModel, candidate: Candidate) -> bool:
+    """Whether the model would be far less likely without an effect, however all else is re-tuned.
+
+    To first order: `FAR` times what BIC asks leaves room for what is not linear. Of a limit, whose
+    size is not estimated, this says nothing.
+    """
+    loss, _ = retune(model.refit, task.nominal_model.names, candidate, task.options)
+    asked = len(candidate.free) * np.log(len(model.refit.point.log))
+    return bool(np.isfinite(loss) and loss > FAR * asked)
 
 
 def exchange(
@@ -99,7 +118,7 @@ def _list_rivals(
         for m in old.alternatives
         if old.model.negative_bic - m.negative_bic <= options.retry_share * old.gain
     }
-    without = try_fit(task, rest, model.refit.point.values, model)
+    without = try_fit(task, rest, model.refit.point.values, model, FEW)
     scores = []
     if without is not None:
         scores = select_significant(score_candidates(without, sensitivities, options), options)
