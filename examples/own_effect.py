@@ -33,6 +33,7 @@ from inca_mj import (
     make_input,
     run_to_log,
     simulate,
+    spread_of,
 )
 
 # ----------------------------------------------------------------- of INCA's drives
@@ -69,8 +70,8 @@ def log_with_it(seconds=10.0, c=5e-4, noise=5e-4):
 
 
 def find(log, effects=(*CATALOGUE, WINDING_FRICTION)):
-    """What the nominal model lacks of a log, the own effect among the candidates."""
-    return discover(log, effects=effects)
+    """What the nominal model lacks of a log of a robot whose drives are all alike."""
+    return discover(log, effects=effects, spread=spread_of("none"))
 
 
 # ----------------------------------------------------------------- of a joint of any MJCF

@@ -27,6 +27,9 @@ STEP = 1e-4  # of q, for forward differences of simulations
 # as those of an anchor that moves and of the cable that is longer at rest for it.
 SHORTER = 1e-2
 HOLDS = 0.1  # share by which outputs may miss what the columns of a point say of a short step
+# Columns for each state, beyond which the equations are worth it: their linearisation costs as much
+# as a column for each state, and simulations are exact.
+MANY = 2
 WRONG = 0.1  # share by which a simulation may differ from the sensitivity equations
 
 
@@ -43,7 +46,7 @@ class Point:
         linear: the plant linearised along its trajectory.
         small: free parameters that stay small, such as deviations of single drives: the outputs
             are nearly linear in them, and their columns of J hold at points nearby as well.
-        by_equations: whether the sensitivity equations hold here, and J comes from them.
+        by_equations: whether the sensitivity equations hold here.
     """
 
     predictor: Predictor
@@ -103,6 +106,11 @@ def evaluate_point(
     )
 
 
+def is_costly(point: Point) -> bool:
+    """Whether a point has so many columns that they are kept after a short step."""
+    return len(point.q) > MANY * point.linear.A.shape[-1]
+
+
 def shift_point(point: Point, q: np.ndarray) -> Point | None:
     """The point after a short step, with the columns and the linearisation from before it.
 
@@ -143,45 +151,60 @@ def _sensitivities(
     predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
     known: Mapping[str, np.ndarray],
 ) -> tuple[np.ndarray, np.ndarray, bool]:  # fmt: skip
-    """ŷ at q (N, ny), J (N, ny, p) of which some columns may be known, `Point.by_equations`."""
+    """ŷ at q (N, ny), J (N, ny, p) of which some columns may be known, `Point.by_equations`.
+
+    Where many columns are asked, they come from the sensitivity equations, and else from
+    simulations. Either way, one column along all of them at once says whether the two agree here.
+    They do not where a joint hits its limit.
+    """
     asked = np.array([name not in known for name in space.names])
     J = np.empty((*predictor.log.outputs.shape, len(q)))
     for j in np.flatnonzero(~asked):
         J[..., j] = known[space.names[j]]
     moves = np.diag(np.where(q + STEP > space.upper, -STEP, STEP))[asked]
-    if can_solve(predictor, records):
-        predicted, solved = _by_equations(predictor, space, q, records, moves)
-        if solved is not None:
-            J[..., asked] = solved
+    solves = bool(asked.any()) and can_solve(predictor, records)
+    if solves and len(moves) > MANY * len(records[0].felt):
+        short = SHORTER * moves
+        S = _solve(predictor, space, q, records, short, short.sum(axis=1))
+        to = space.inside(q + STEP * _along(S, asked))
+        predicted, ahead = predictor.predict(space.decode(np.vstack([q, to])))
+        if _agree(S @ (to - q)[asked], ahead - predicted):
+            J[..., asked] = S
             return predicted, J, True
+        solves = False
     runs = predictor.predict(space.decode(np.vstack([q, q + moves])))
     moved = (runs[1:] - runs[0]) / moves.sum(axis=1)[:, None, None]
     J[..., asked] = np.moveaxis(moved, 0, -1)
-    return runs[0], J, False
+    if solves:
+        to = space.inside(q + SHORTER * STEP * _along(J[..., asked], asked))
+        step = np.array([SHORTER * STEP])
+        solved = _solve(predictor, space, q, records, (to - q)[None], step)[..., 0]
+        solves = _agree(solved * step, J @ (to - q))
+    return runs[0], J, solves
 
 
-def _by_equations(
+def _solve(
     predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
-    moves: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray | None]:  # fmt: skip
-    """ŷ at q and the columns of J from the sensitivity equations; None where they do not hold.
+    moves: np.ndarray, size: np.ndarray,
+) -> np.ndarray:  # fmt: skip
+    """Columns of the sensitivity equations for m moves of q (m, p) of some sizes, (N, ny, m)."""
+    there = space.decode(q + moves)
+    return solve_sensitivities(predictor, records, space.decode(q), there, size)
 
-    A simulation along all columns at once, each with the same weight, says whether they hold. They
-    do not where a joint hits its limit.
-    """
-    small = SHORTER * moves
-    S = solve_sensitivities(
-        predictor, records, space.decode(q), space.decode(q + small), small.sum(axis=1)
-    )
-    size = np.sqrt(np.mean(S**2, axis=(0, 1)))
+
+def _along(columns: np.ndarray, asked: np.ndarray) -> np.ndarray:
+    """A direction of q of length 1 at most in each, to which all columns add alike, shape (p,)."""
+    size = np.sqrt(np.mean(columns**2, axis=(0, 1)))
     signs = np.random.default_rng(0).choice([-1.0, 1.0], len(size))
     weight = np.where(size > 0, signs / np.where(size > 0, size, 1.0), 0.0)
-    weight *= STEP / np.abs(weight).max(initial=STEP)
-    there = space.inside(q + weight @ (moves != 0))
-    predicted, ahead = predictor.predict(space.decode(np.vstack([q, there])))
-    expected, found = S @ ((there - q) @ (moves != 0).T), ahead - predicted
-    wrong = np.linalg.norm(found - expected) > WRONG * np.linalg.norm(found)
-    return predicted, None if wrong else S
+    out = np.zeros(len(asked))
+    out[asked] = weight / np.abs(weight).max(initial=1e-300)
+    return out
+
+
+def _agree(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two changes of the outputs are the same to `WRONG`."""
+    return bool(np.linalg.norm(one - other) <= WRONG * np.linalg.norm(other))
 
 
 def extend_point(point: Point, whole: Log) -> Point:

@@ -22,7 +22,7 @@ from identification.estimation.options import Progress
 from identification.kalman.innovations import innovation_tests
 from identification.kalman.noise_fit import NoiseLevel, fit_noise
 from identification.kalman.options import KalmanOptions
-from identification.kalman.point import Point, evaluate_point, shift_point
+from identification.kalman.point import Point, evaluate_point, is_costly, shift_point
 from identification.kalman.problem import Problem, linearise_criterion
 
 NEAR = 0.02  # relative change of the parameters after which columns and linearisation may hold
@@ -168,7 +168,8 @@ def _move(
     """The criterion about the point after a step, with the noise of that point."""
     point = problem.point
     change = np.abs(step[point.space.logarithmic]).max(initial=0.0)
-    there = shift_point(point, point.q + step) if change < NEAR else None
+    is_short = change < NEAR and is_costly(point)
+    there = shift_point(point, point.q + step) if is_short else None
     if there is None:
         near = point if change < SIMILAR else None
         there = evaluate_point(point.predictor, point.space, point.q + step, near, point.small)

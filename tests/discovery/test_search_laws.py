@@ -88,9 +88,8 @@ def test_twice_the_records_halve_the_variance():
 
 
 @pytest.mark.parametrize("candidate", EFFECTS, ids=lambda e: e.name)
-@pytest.mark.parametrize("hidden", [0.0, 5.0])
-def test_a_child_is_never_less_likely_than_its_parent(candidate, hidden):
-    log = record(slider(**{**HIDDEN, "spring.k": hidden}), 500, seed=5)
+def test_a_child_is_never_less_likely_than_its_parent(candidate):
+    log = record(slider(**HIDDEN), 500, seed=5)
     task = task_of(log)
     parent = fit_model(task, (), {})
     child = fit_model(task, (Candidate(candidate, "joint", {}),), {}, parent)

@@ -20,7 +20,7 @@ from identification.report.records_json import records_to_json
 from identification.report.records_text import records_text
 
 FREE = ("J", "d", COULOMB.name)
-OTHERS = ("lag", "stribeck_friction")
+OTHERS = ("stribeck_friction",)
 NAMES = ("joint_elasticity", "gear_backlash", "presliding")
 CASES = {
     ELASTIC: (Truth(c=0.05, f_c=F_C), 0.05),
