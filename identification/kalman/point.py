@@ -27,9 +27,7 @@ STEP = 1e-4  # of q, for forward differences of simulations
 # as those of an anchor that moves and of the cable that is longer at rest for it.
 SHORTER = 1e-2
 HOLDS = 0.1  # share by which outputs may miss what the columns of a point say of a short step
-# Columns for each state, beyond which the equations are worth it: their linearisation costs as much
-# as a column for each state, and simulations are exact.
-MANY = 2
+MANY = 30  # columns, beyond which the equations are worth it: fewer are simulated, which is exact
 WRONG = 0.1  # share by which a simulation may differ from the sensitivity equations
 
 
@@ -108,7 +106,7 @@ def evaluate_point(
 
 def is_costly(point: Point) -> bool:
     """Whether a point has so many columns that they are kept after a short step."""
-    return len(point.q) > MANY * point.linear.A.shape[-1]
+    return len(point.q) > MANY
 
 
 def shift_point(point: Point, q: np.ndarray) -> Point | None:
@@ -163,7 +161,7 @@ def _sensitivities(
         J[..., j] = known[space.names[j]]
     moves = np.diag(np.where(q + STEP > space.upper, -STEP, STEP))[asked]
     solves = bool(asked.any()) and can_solve(predictor, records)
-    if solves and len(moves) > MANY * len(records[0].felt):
+    if solves and len(moves) > MANY:
         short = SHORTER * moves
         S = _solve(predictor, space, q, records, short, short.sum(axis=1))
         to = space.inside(q + STEP * _along(S, asked))

@@ -66,7 +66,7 @@ def test_the_twin_has_the_values_that_are_told(one):
 
 def test_drives_that_are_alike_have_no_scatter():
     found = calibrate([log_as_built(4.0, alike=True)], spread=SPREAD)
-    assert found.scatter["K_t"] < 0.2 * SPREAD.drives["K_t"]
+    assert found.scatter["K_t"] < 0.3 * SPREAD.drives["K_t"]
     assert max(abs(found.values[f"K_t@{k}"]) for k in range(1, 9)) < 4e-3
 
 
