@@ -16,10 +16,16 @@ from identification.effects.effect import Candidate
 
 def select_significant(scores: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
     """Scores beyond chance with plausible sizes: the best shape of each effect at each place."""
+    count = len(scores)
+    likely = [s for s in scores if correct_p_value(s, count) < options.significance]
+    return select_plausible(likely, options)
+
+
+def select_plausible(scores: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
+    """Scores with plausible sizes, of chance or not: the best shape of each effect at each place."""
     each: dict[tuple[str, str], Score] = {}
     for s in sorted(scores, key=_gain_of_whole, reverse=True):
-        likely = correct_p_value(s, len(scores)) < options.significance
-        if likely and is_plausible(s.candidate, s.size, options) and s.gain > 0:
+        if is_plausible(s.candidate, s.size, options) and s.gain > 0:
             each.setdefault((s.candidate.effect.name, s.candidate.where), s)
     return sorted(each.values(), key=lambda s: -s.gain)
 

@@ -22,7 +22,7 @@ from identification.discovery.fitted_model import (
 from identification.discovery.proof import prove
 from identification.discovery.retuning import retune
 from identification.discovery.scoring.sensitivities import Sensitivity
-from identification.discovery.scoring.significance import select_significant
+from identification.discovery.scoring.significance import select_plausible
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
 
@@ -111,7 +111,10 @@ def _list_rivals(
     model: FittedModel,
     sensitivities: Sequence[Sensitivity],
 ) -> list[tuple[Candidate, Mapping[str, float]]]:
-    """Candidates that may stand in an effect's place, each with values to begin at."""
+    """Candidates that may stand in an effect's place, each with values to begin at.
+
+    They need not be beyond chance, only as good as the effect itself: a refit and its proof decide.
+    """
     options = task.options
     out: dict[tuple[str, str], tuple[Candidate, Mapping[str, float]]] = {
         _key(m.candidates[-1]): (m.candidates[-1], m.refit.point.values)
@@ -121,7 +124,7 @@ def _list_rivals(
     without = try_fit(task, rest, model.refit.point.values, model, FEW)
     scores = []
     if without is not None:
-        scores = select_significant(score_candidates(without, sensitivities, options), options)
+        scores = select_plausible(score_candidates(without, sensitivities, options), options)
     mine = _key(old.candidate)
     own = next((s.gain for s in scores if _key(s.candidate) == mine), 0.0)
     for s in scores:
