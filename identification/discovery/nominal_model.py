@@ -145,7 +145,8 @@ def fit_with_effects(
     if level is not None:
         # The correlation time that was found without the effect may have been the effect's own.
         level = replace(level, noise=level.noise.lasting(options.start_correlation_time))
-    found = refit(point, mean, weight, options, steps, level, progress)
+    is_near = near is not None and near.point.space.names == names
+    found = refit(point, mean, weight, options, steps, level, progress, is_near)
     if near is None or not _is_less_likely(found, near) or nominal_model.is_bounded:
         return found
     # A model is at least as likely as the one that it contains: the search, which believes no large

@@ -68,6 +68,8 @@ class Shape:
         free: whether it is estimated once the effect is named; False for an integer.
         about: what it is, in words.
         usual: the value where nothing is said; the grid's middle when None.
+        step: how far apart values are tried beside the best of the grid, where the likelihood has
+            so many maxima that a refit does not find the way; 0 where it does [unit].
     """
 
     name: str
@@ -78,6 +80,7 @@ class Shape:
     free: bool = True
     about: str = ""
     usual: float | None = None
+    step: float = 0.0
 
 
 # of an input that comes late: none of it, or its first value, before the log

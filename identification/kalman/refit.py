@@ -29,7 +29,10 @@ NEAR = 0.02  # relative change of the parameters after which columns and lineari
 # Relative change of the parameters after which columns of small ones still hold: columns that are a
 # tenth off cost a Gauss-Newton step a hundredth of its gain, which is quadratic about the optimum.
 SIMILAR = 0.1
-ENDED = 0.1  # expected fall of the criterion, in units of the noise, below which a search ends
+# Expected fall of the criterion for each parameter, in units of the noise, below which a search ends:
+# the parameters are then, as a root mean square, within a tenth of their std of the optimum.
+ENDED = 0.01
+APPROACHED = 0.1  # the same of the first part of a search, which only comes near: within a third
 # Gauss-Newton steps until one fails; the columns of the rows are scaled to length 1
 DAMPING = Damping(first=0.0, raised=10.0, lowered=10.0, least=1e-4, floor=0.0)
 TRIES = 6  # attempts at a step, each damped ten times as much as the one before
@@ -131,6 +134,7 @@ def descend(
     level = estimate_noise(point, prior, options, near, largest=believed)
     yield point, level
     for fine in (True,) if is_near else (False, True):
+        ended = (ENDED if fine else APPROACHED) * len(point.q)
         if fine:
             level = estimate_noise(point, prior, options, level, fine)
             yield point, level
@@ -140,7 +144,7 @@ def descend(
         move = partial(_move, options=options, largest=largest)
         trials = levenberg_marquardt(problem, move, DAMPING)
         while steps and idle < PATIENCE and not (fine and _is_refuted(problem, options)):
-            if problem.expected_fall(problem.step(0.0)) < ENDED:
+            if problem.expected_fall(problem.step(0.0)) < ended:
                 break
             trial = next((t for t in islice(trials, TRIES) if t.taken), None)
             if trial is None:
@@ -151,7 +155,7 @@ def descend(
             yield point, level
             # Every point has its own linearisation and noise, so the likelihood may also fall.
             likely, off = problem.log_posterior, _rms(point)
-            gain = ENDED if fine else -point.e.size * float(np.log(options.approach_factor))
+            gain = ended if fine else -point.e.size * float(np.log(options.approach_factor))
             better = likely > most + gain or (not fine and off < options.approach_factor * least)
             if better or likely > most:
                 best = point, level

@@ -31,8 +31,8 @@ from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES
 
 LASTS = 0.1  # of a jump [s]: a step of the integrator that a jump divides would lose its order
-# At which jumps are tried [s], by a factor of 1.7: the nearest one still shows most of what a jump
-# between two of them does, and a refit finds its time.
+# At which jumps are tried [s], by a factor of 1.7: the nearest one still shows some of what a jump
+# between two of them does. Before a refit all times between its neighbours are tried.
 TIMES = (1.0, 1.7, 2.9, 4.9, 8.4, 14.0, 24.0)
 PROBE = 0.1  # of the largest plausible size: a cable that is 3 % softer moves an angle by 0.1 mrad
 
@@ -128,7 +128,7 @@ def _jump(law: Any, hook: str, letter: str, phrase: str, largest: float) -> Effe
         f"{law.__name__}_jump",
         f"{letter} (1 + δ) on one drive from t_s on",
         (Size("delta", "", largest, PROBE * largest, about=f"relative change of {letter}"),),
-        (Shape("t_s", "s", TIMES, 0.1, 600.0, about="time of the jump in the record"),),
+        (Shape("t_s", "s", TIMES, 0.1, 600.0, about="time of the jump in the record", step=LASTS),),
         places=ONE_DRIVE,
         phrase=f"{phrase} jumps",
         reference="thesis Table 3.2",

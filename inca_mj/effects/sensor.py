@@ -11,7 +11,7 @@ robot (`identification.effects.sensor_laws`).
 
 from identification.effects import sensor_laws as laws
 from identification.effects.effect import Effect, Shape, Size
-from inca_mj.effects.change import TIMES
+from inca_mj.effects.change import LASTS, TIMES
 from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
 
 ENCODER_SCALE = Effect(
@@ -48,7 +48,7 @@ ENCODER_JUMP = Effect(
     "encoder_jump",
     "φ + c from t_s on",
     (Size("c", "rad", 0.5, 1e-3, about="what the reading jumps by"),),
-    (Shape("t_s", "s", TIMES, 0.1, 600.0, about="time of the jump in the record"),),
+    (Shape("t_s", "s", TIMES, 0.1, 600.0, about="time of the jump in the record", step=LASTS),),
     places=ONE_DRIVE,
     phrase="encoder: its reading jumps",
     reference="data sheet of the encoder",

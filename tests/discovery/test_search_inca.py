@@ -3,6 +3,9 @@
 Logs of 6 s and five candidates: enough to name what is large, at a tenth of the price.
 """
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from inca_mj.effects.catalogue import CATALOGUE
@@ -26,6 +29,20 @@ def test_load_dependent_friction_is_named():
     value, std, _ = named.parameters["mu"]
     assert value == pytest.approx(truth.sizes[0]["mu"], abs=max(4 * std, 0.01))
     assert answer.after.rms < 0.7 * answer.before.rms
+
+
+def test_a_jump_between_the_times_that_are_scored_is_named_with_its_time():
+    still = world(4, setting=HiddenSetting(duration=4.0)).log
+    jump = np.zeros_like(still.outputs)
+    jump[:, 2] = 0.02 * np.clip(0.5 + (still.time - 1.3) / 0.1, 0.0, 1.0)
+    log = replace(still, outputs=still.outputs + jump)
+    effects = tuple(e for e in CATALOGUE if e.name in ("encoder_jump", "external_force"))
+    answer = discover(log, effects=effects, spread=ALIKE)
+    (named,) = answer.named
+    assert (named.candidate.effect.name, named.candidate.where) == ("encoder_jump", "drive 3")
+    value, std, _ = named.parameters["c"]
+    assert value == pytest.approx(0.02, abs=4 * std)
+    assert named.parameters["t_s"][0] == pytest.approx(1.3, abs=0.05)
 
 
 def test_where_nothing_is_missing_nothing_is_named():

@@ -6,7 +6,7 @@ S_j = (ŷ(θ, η_j = h_j) - ŷ(θ, 0))/h_j          h_j: a probe, a size that a 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
 
@@ -65,6 +65,20 @@ def list_single(common: Sequence[Candidate]) -> tuple[Candidate, ...]:
         for where, suffix in c.effect.places.items()
         if suffix
     )
+
+
+def list_between(candidate: Candidate) -> tuple[Candidate, ...]:
+    """A candidate with the values of its stepped shapes between the neighbours in their grids."""
+    out: tuple[Candidate, ...] = ()
+    for shape in candidate.effect.shapes:
+        if not shape.step:
+            continue
+        grid, here = sorted(shape.grid), candidate.shape[shape.name]
+        first = max((v for v in grid if v < here), default=here)
+        last = min((v for v in grid if v > here), default=here)
+        values = np.arange(first + shape.step, last, shape.step)
+        out += tuple(replace(candidate, shape={**candidate.shape, shape.name: v}) for v in values)
+    return out
 
 
 def iterate_shapes(effect: Effect) -> Iterator[dict[str, float]]:

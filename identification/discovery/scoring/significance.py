@@ -22,7 +22,7 @@ def select_significant(scores: Sequence[Score], options: DiscoveryOptions) -> li
 
 
 def select_plausible(scores: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
-    """Scores with plausible sizes, of chance or not: the best shape of each effect at each place."""
+    """Scores with plausible sizes: the best shape of each effect at each place."""
     each: dict[tuple[str, str], Score] = {}
     for s in sorted(scores, key=_gain_of_whole, reverse=True):
         if is_plausible(s.candidate, s.size, options) and s.gain > 0:

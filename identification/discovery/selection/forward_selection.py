@@ -25,11 +25,17 @@ from identification.discovery.fitted_model import (
     fit_model,
     is_confirmed,
     is_proven,
+    score_candidates,
 )
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import prove
 from identification.discovery.scoring.scores import Score
-from identification.discovery.scoring.significance import is_plausible, select_significant
+from identification.discovery.scoring.sensitivities import compute_sensitivities, list_between
+from identification.discovery.scoring.significance import (
+    is_plausible,
+    select_plausible,
+    select_significant,
+)
 from identification.discovery.selection.shapes import improve_shape
 from identification.discovery.task import DiscoveryTask
 from identification.errors import DivergenceError, InputError
@@ -96,6 +102,7 @@ def _refit_candidates(
 ) -> list[FittedModel]:
     """The model with each of the best candidates in turn, the most likely one first."""
     chosen = _select_contenders(select_significant(scores, task.options), task.options)
+    chosen = _try_between(model, chosen, task.options)
     is_hidden = not chosen and not model.candidates and bool(model.refit.level.noise.ratio)
     if is_hidden:
         chosen = _select_likeliest(scores, task.options)
@@ -113,6 +120,15 @@ def _refit_candidates(
         if not is_hidden or _is_beyond_chance(new, model, len(scores), task.options):
             refitted.append(new)
     return sorted(refitted, key=lambda new: new.negative_bic, reverse=True)
+
+
+def _try_between(model: FittedModel, chosen: list[Score], options: DiscoveryOptions) -> list[Score]:
+    """The chosen scores with the best of more values of their shapes, as finely as a refit asks."""
+    finer = [c for s in chosen for c in list_between(s.candidate)]
+    if not finer:
+        return chosen
+    found = score_candidates(model, compute_sensitivities(model.refit.point, finer), options)
+    return _select_contenders(select_plausible((*chosen, *found), options), options)
 
 
 def _select_likeliest(scores: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
