@@ -30,7 +30,7 @@ from identification.logs.log import Log
 SHORTEST = 5  # samples of a block at least
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Validation:
     """The prediction of a whole log by a model that was fitted on a part of it.
 

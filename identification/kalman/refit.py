@@ -29,8 +29,8 @@ NEAR = 0.02  # relative change of the parameters after which columns and lineari
 # Relative change of the parameters after which columns of small ones still hold: columns that are a
 # tenth off cost a Gauss-Newton step a hundredth of its gain, which is quadratic about the optimum.
 SIMILAR = 0.1
-# Expected fall of the criterion for each parameter, in units of the noise, below which a search ends:
-# the parameters are then, as a root mean square, within a tenth of their std of the optimum.
+# Expected fall of the criterion for each parameter, in units of the noise, below which a search
+# ends: the parameters are then, as a root mean square, within a tenth of their std of the optimum.
 ENDED = 0.01
 APPROACHED = 0.1  # the same of the first part of a search, which only comes near: within a third
 # Gauss-Newton steps until one fails; the columns of the rows are scaled to length 1

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from discovery_cases import OPTIONS
 
+from identification.discovery.scoring.sensitivities import list_between
 from identification.discovery.selection import shapes
 from identification.discovery.selection.shapes import improve_shape
 from identification.effects.effect import Candidate, Effect, Shape, Size
@@ -81,3 +82,11 @@ def test_a_limit_that_two_levels_of_current_reach_alike_is_a_hard_one():
     (named,) = answer.named
     assert named.candidate.shape["soft"] == 0.0
     assert named.parameters["i_max"][0] == pytest.approx(truth.sizes[0]["i_max"], rel=0.02)
+
+
+@pytest.mark.parametrize(("here", "first", "last"), [(1.0, 1.25, 1.75), (2.0, 1.25, 3.75)])
+def test_between_the_neighbours_of_a_value_all_steps_are_tried(here, first, last):
+    late = replace(KINDS, shapes=(Shape("at", "s", (1.0, 2.0, 4.0), 0.1, 9.0, step=0.25),))
+    tried = [c.shape["at"] for c in list_between(Candidate(late, "joint", {"at": here}))]
+    assert tried == pytest.approx(np.arange(first, last + 0.1, 0.25))
+    assert list_between(candidate(0.0)) == ()

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.stats import ttest_1samp
@@ -87,6 +88,7 @@ def find_input_error(validation: Validation, options: DiscoveryOptions) -> tuple
     return (Finding(FindingKind.STRUCTURED_INPUT_ERROR, evidence),)
 
 
+@lru_cache(maxsize=4)  # the model that is tested for structure is often judged again at the end
 def fit_families(validation: Validation, options: DiscoveryOptions) -> tuple[FamilyFit, ...]:
     """How well each family predicts; none where the noise model has no error of the inputs.
 
