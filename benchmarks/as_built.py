@@ -171,7 +171,7 @@ def main() -> int:
                 with path.open("a") as file:
                     file.write(json.dumps(row) + "\n")
                 note(f"{row['key']}: {row.get('verdict') or row.get('error') or 'calibrated'}")
-    rows = [rows_of(given.out / f"{verb}.jsonl") for verb in ("calibrate", "discover")]
+    rows = [rows_of(given.out / f"{verb}.jsonl") for verb in ("calibrate", "discover", "worlds")]
     given.page.write_text(page(*rows), encoding="utf-8")
     return 0
 

@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from discovery_statistics import rate
+from discovery_statistics import in_set, rate, right, size_errors
 
 Row = Mapping[str, Any]
+CLOSE = 0.15  # relative error of a size that is called right
 HEAD = """# Robots as they are built
 
 No drive of a real robot is like another, and no exit point is where the drawing has it. This page
@@ -22,9 +23,12 @@ coordinate), inertias by up to 10 %. What is known of this before a fit is
 """
 
 
-def page(calibrations: Sequence[Row], discoveries: Sequence[Row]) -> str:
-    """The page, from all rows."""
-    return "\n".join([HEAD, *_calibrations(calibrations), *_discoveries(discoveries)])
+def page(
+    calibrations: Sequence[Row], discoveries: Sequence[Row], worlds: Sequence[Row] = ()
+) -> str:
+    """The page, from all rows: those of labelled robots, and those of `benchmarks/discovery.py`."""
+    parts = _calibrations(calibrations), _discoveries(discoveries), _worlds(worlds)
+    return "\n".join([HEAD, *(line for part in parts for line in part)])
 
 
 def _calibrations(rows: Sequence[Row]) -> list[str]:
@@ -89,6 +93,40 @@ def _discoveries(rows: Sequence[Row]) -> list[str]:
         lines += [_line(row) for row in sorted(mine, key=lambda row: row["robot"])] + [""]
     failed = [f"{row['key']}: {row['error']}" for row in rows if "error" in row]
     return [*lines, *(f"- failed: {line}" for line in failed)]
+
+
+def _worlds(rows: Sequence[Row]) -> list[str]:
+    done = [row for row in rows if "answer" in row]
+    if not done:
+        return []
+    lines = [
+        "## Worlds of our own, as built", "",
+        "    python benchmarks/discovery.py --worlds N --as-built --ratio 20 --spread usual", "",
+        "Robots, inputs and effects are drawn by chance; one in six has nothing hidden, and one in"
+        " six an effect that no catalogue lists.", "",
+    ]  # fmt: skip
+    tests: dict[str, dict[str, Any]] = {
+        "null": {'"nothing missing"': lambda r: r["answer"]["verdict"] == "nothing missing",
+                 "a false name": lambda r: bool(r["answer"]["named"])},
+        "single": {"the right name first": right, "right or in the set": in_set,
+                   "a wrong name": lambda r: bool(r["answer"]["named"]) and not right(r)},
+        "unknown": {"a name": lambda r: bool(r["answer"]["named"])},
+    }  # fmt: skip
+    for kind, title in {**_KINDS, "unknown": "an unlisted effect"}.items():
+        some = [row for row in done if row["truth"]["kind"] == kind]
+        if some and kind in tests:
+            rates = (f"{what} {_rate(some, test)}" for what, test in tests[kind].items())
+            lines.append(f"- {title}: {'; '.join(rates)}.")
+    close = [error <= CLOSE for error in size_errors(done)]
+    if close:
+        lines.append(f"- sizes of right names within {CLOSE:.0%}: {sum(close)} of {len(close)}.")
+    lines += ["", "| world | truth | answer |", "|---|---|---|"]
+    for row in sorted(done, key=lambda row: row["key"]):
+        truth = " + ".join(e["name"] for e in row["truth"]["effects"]) or "nothing"
+        answer = row["answer"]
+        names = "; ".join(f"{n['name']}, {n['where']}" for n in answer["named"])
+        lines.append(f"| {row['key'].split('/')[1]} | {truth} | {names or answer['verdict']} |")
+    return [*lines, ""]
 
 
 _KINDS = {

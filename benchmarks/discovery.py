@@ -145,7 +145,7 @@ def main() -> None:
     add("--seed", type=int, default=1000)
     add("--ratio", type=float, default=None, help="1, 3 or 10 by chance when not given")
     add("--duration", type=float, default=20.0, help="of a world [s]")
-    for flag in ("--coloured", "--wrong-shapes", "--pairs", "--null", "--resume"):
+    for flag in ("--coloured", "--wrong-shapes", "--pairs", "--null", "--as-built", "--resume"):
         add(flag, action="store_true")
     add("--spread", default="usual", help="none, usual, or a file")
     add("--limit", type=int, default=None, help="logs at most")

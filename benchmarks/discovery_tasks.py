@@ -83,10 +83,11 @@ def world_tasks(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
         count = {"null": 0, "pair": 2}.get(kind, 1)
         names = [str(n) for n in rng.choice(known, count, replace=False)]
         yield {
-            "key": f"world/{seed}/{kind}/{options.ratio}/{options.coloured}/{options.wrong_shapes}",
+            "key": f"world/{seed}/{kind}/{options.ratio}/{options.coloured}/{options.wrong_shapes}"
+            + "/as built" * options.as_built,
             "seed": seed, "kind": kind, "names": names,
             "ratio": float(options.ratio or rng.choice(RATIOS)),
-            "coloured": options.coloured,
+            "coloured": options.coloured, "as_built": options.as_built,
             "other_shape": [options.wrong_shapes and n in SHAPES for n in names],
             "duration": options.duration,
         }  # fmt: skip
@@ -98,7 +99,7 @@ def log_of(task: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         from inca_mj.twin.logs import read_inca_log
 
         return read_inca_log(task["practice"]), task["truth"]
-    from inca_mj.worlds import HiddenSetting, draw_effect, world
+    from inca_mj.worlds import AS_BUILT, EXACT, HiddenSetting, draw_effect, world
 
     effects = [
         draw_effect(name, task["seed"], other_shape=other)
@@ -107,7 +108,8 @@ def log_of(task: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
     effects = [replace(e, balanced=True) if hasattr(e, "balanced") else e for e in effects]
     setting = HiddenSetting(
         input="multisine" if task["seed"] % 2 else "prbs", duration=task["duration"],
-        error_rms=5e-4 if task["coloured"] else 0.0,
+        error_rms=5e-4 if task["coloured"] or task["as_built"] else 0.0,
+        tolerances=AS_BUILT if task["as_built"] else EXACT,
     )  # fmt: skip
     log, truth = world(
         task["seed"], effects, ratio=task["ratio"] if effects else None, setting=setting
