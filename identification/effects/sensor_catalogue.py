@@ -79,7 +79,7 @@ def _of_positions(own: dict[str, Axis], kind: Kind, prefix: str) -> list[Effect]
 
 def _lag(prefix: str, own: dict[str, Axis]) -> Effect:
     sizes = (_size("tau", "s", LAG, "lag behind the other sensors"),)
-    made = _effect(prefix, laws.encoder_lag, "y - τ v", sizes, (*own,), "sensor: lags")
+    made = _effect(prefix, laws.encoder_lag, "q(t - τ)", sizes, (*own,), "sensor: lags")
     return replace(made, places={where: at for where, at in made.places.items() if at})
 
 

@@ -3,7 +3,7 @@
     scale           s y                     its counts are not what they are taken for
     offset          c                       its zero is not the joint's
     eccentricity    a cos q + b sin q       its disc turns about another centre
-    lag             -τ v                    it is read or sent too late: y(t - τ) ≈ y - τ v
+    lag             q(t - τ) - q            it is read or sent too late
     jump            c where t ≥ t_s         counts are lost, within a tenth of a second about t_s
 
 Each function takes the state of a sensor (see `identification.native.reading.Reading`) and the
@@ -15,6 +15,8 @@ from __future__ import annotations
 from math import cos, sin
 
 from numba import njit
+
+from identification.native.reading import position_at
 
 LASTS = 0.1  # of a jump [s]: the outputs are to change smoothly with its time
 
@@ -39,8 +41,8 @@ def encoder_eccentricity(s, p):  # type: ignore[no-untyped-def]
 
 @njit
 def encoder_lag(s, p):  # type: ignore[no-untyped-def]
-    """-τ v."""
-    return -p[0] * s.v
+    """q(t - τ) - q."""
+    return position_at(s, s.time - p[0]) - s.q
 
 
 @njit

@@ -135,13 +135,15 @@ def changed_outputs(
     if not any(is_present(e, things, values) for e in acting):
         return y
     run, y = sensor_filter(terms_of(acting, SENSOR)), y.copy()
-    signals = np.empty((5, len(y) // n, y.shape[1]))
+    signals = np.empty((len(y) // n, 5, y.shape[1]))
+    first, apart = signals.ctypes.data, signals.strides[0]
     for i, thing in enumerate(things):
         if not any(is_present(e, [thing], values) for e in acting):
             continue
         for k, row in enumerate(table_at(acting, thing, values, n)):
-            own = slice(k * signals.shape[1], (k + 1) * signals.shape[1])
-            signals[:4] = readings[:, own, :, i]
-            run(signals.ctypes.data, signals[0].size, row.ctypes.data)
-            y[own, :, i] = signals[4]
+            own = slice(k * len(signals), (k + 1) * len(signals))
+            signals[:, :4] = np.moveaxis(readings[:, own, :, i], 0, 1)
+            for one in range(len(signals)):  # an effect may read earlier samples of the same row
+                run(first + one * apart, y.shape[1], row.ctypes.data)
+            y[own, :, i] = signals[:, 4]
     return y

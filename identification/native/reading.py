@@ -3,6 +3,11 @@
     y' = y + Σ_e reading_e(s, p_e)                        s: the `Reading` state of a sensor
 
 They act on the predicted outputs, after the simulation: the robot moves as if they were not there.
+Between two samples at t_0 and t_1 = t_0 + h the joint is at
+
+    q(t_0 + u h) = (1 + 2u)(1 - u)² q_0 + u (1 - u)² h v_0 + u² (3 - 2u) q_1 - u² (1 - u) h v_1
+
+which is the cubic with the positions and rates of both (Hermite).
 """
 
 from __future__ import annotations
@@ -16,6 +21,7 @@ from numba import types
 
 from identification.native.cache import compile_once
 from identification.native.compose import total
+from identification.native.decorators import internal
 from identification.native.element import Element, Hook, Term
 from identification.native.hook_checks import refuse_unfit_functions
 from identification.native.memory import load_double, store_double
@@ -24,13 +30,36 @@ from identification.native.memory import load_double, store_double
 #   y: what a perfect sensor would say [rad, m, rad/s or m/s]
 #   q, v: position [rad or m] and rate [rad/s or m/s] of the joint that it measures
 #   time: of the record [s]
-Reading: Any = namedtuple("Reading", "y q v time")
+#   k: number of the sample; signals: address of y, q, v and time of all samples, which
+#   `position_at` reads; samples: their number
+Reading: Any = namedtuple("Reading", "y q v time k signals samples")
 
 SENSOR = Element(
-    "sensor", Reading, (Hook("reading", ("what is added to the reading, in its unit",)),)
+    "sensor",
+    Reading,
+    (Hook("reading", ("what is added to the reading, in its unit",)),),
+    integers=("k", "signals", "samples"),
 )
 
 _SIGNATURE = types.void(types.int64, types.int64, types.int64)
+
+
+@internal
+def position_at(s, time):  # type: ignore[no-untyped-def]
+    """The position of the joint at a time of the record; beyond its ends it moves on steadily."""
+    q, v, t = [s.signals + 8 * s.samples * i for i in (1, 2, 3)]
+    k = s.k
+    while k > 0 and time < load_double(t + 8 * k):
+        k -= 1
+    while k + 1 < s.samples and time >= load_double(t + 8 * (k + 1)):
+        k += 1
+    t_0, q_0, v_0 = load_double(t + 8 * k), load_double(q + 8 * k), load_double(v + 8 * k)
+    if k + 1 == s.samples or time < t_0:
+        return q_0 + v_0 * (time - t_0)
+    h, q_1 = load_double(t + 8 * (k + 1)) - t_0, load_double(q + 8 * (k + 1))
+    v_1, u = load_double(v + 8 * (k + 1)), (time - t_0) / h
+    here = (1 + 2 * u) * (1 - u) ** 2 * q_0 + u * (1 - u) ** 2 * h * v_0
+    return here + u**2 * (3 - 2 * u) * q_1 - u**2 * (1 - u) * h * v_1
 
 
 @cache
@@ -59,6 +88,9 @@ def sensor_filter(terms: Sequence[Term]) -> Any:
                 q=load_double(q + 8 * k),
                 v=load_double(v + 8 * k),
                 time=load_double(time + 8 * k),
+                k=k,
+                signals=signals,
+                samples=samples,
             )
             store_double(out + 8 * k, y + reading(s, row, 0))
 

@@ -37,7 +37,7 @@ ENCODER_ECCENTRICITY = Effect(
 )
 ENCODER_LAG = Effect(
     "encoder_lag",
-    "φ - τ ω",
+    "φ(t - τ)",
     (Size("tau", "s", 0.02, 4e-4, about="lag"),),
     places=DRIVES_EACH,
     phrase="encoder: lags",

@@ -1,9 +1,10 @@
 """Effects of sensors: readings by hand, in runs and in windows."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from joint_cases import ARM, DAMPING, MASS, SLIDER, arm, arm_log, run, slider_log, steps
-from scipy.interpolate import CubicSpline
 
 from identification import InputError, Log
 from identification.effects.axes import Axis
@@ -15,12 +16,11 @@ from identification.windows.window_error import window_error
 from identification.windows.window_estimate import estimate_windows
 
 BOTH = SLIDER.replace("</sensor>", '<jointvel name="rate" joint="slide"/></sensor>')
-S = Reading(y=2.0, q=0.7, v=-3.0, time=1.2)
+S = Reading(y=2.0, q=0.7, v=-3.0, time=1.2, k=0, signals=0, samples=1)
 LAWS = [
     ("encoder_scale", (0.1,), 0.2),
     ("encoder_offset", (0.1,), 0.1),
     ("encoder_eccentricity", (0.2, 0.3), 0.2 * np.cos(0.7) + 0.3 * np.sin(0.7)),
-    ("encoder_lag", (0.1,), 0.3),
 ]
 
 
@@ -35,7 +35,7 @@ def test_a_reading_is_what_the_equation_says(name, p, expected):
 
 
 def test_every_effect_of_a_sensor_is_held_against_its_equation():
-    assert {name for name, *_ in LAWS} == effects().keys()
+    assert {name for name, *_ in LAWS} | {"encoder_lag"} == effects().keys()
 
 
 def test_the_readings_of_an_arm_are_those_by_hand():
@@ -48,15 +48,28 @@ def test_the_readings_of_an_arm_are_those_by_hand():
     np.testing.assert_allclose(run(arm(), log, **both), np.stack([a, b], axis=1), rtol=1e-14)
 
 
-def test_a_lag_is_the_reading_a_little_earlier():
-    log = arm_log(steps(100, 2))
-    late = run(arm(), log, **{"encoder_lag.tau@a": 1e-3, "encoder_lag.tau@b": 1e-3})
+@pytest.mark.parametrize("tau", [3, 10, 44, -14])
+def test_a_lag_is_the_reading_so_many_milliseconds_earlier(tau):
+    u = steps(100, 2)
+    late = run(
+        arm(), arm_log(u), **{"encoder_lag.tau@a": 1e-3 * tau, "encoder_lag.tau@b": 1e-3 * tau}
+    )
+    each = replace(arm_log(np.repeat(u, 10, axis=0)), time=1e-3 * np.arange(1000))
+    q = run(arm(), each)
+    k = np.arange(10, 90)
+    error, moved = late[k] - q[10 * k - tau], q[10 * k] - q[10 * k - tau]
+    assert np.abs(error).max() < 1e-4 * np.abs(moved).max()
+
+
+def test_a_lag_of_whole_samples_is_exact_and_ends_go_on_steadily():
+    log = arm_log(steps(50, 2))
     q = run(arm(), log)
-    t = np.arange(100) * 0.01
-    for k in range(2):
-        earlier = CubicSpline(t, q[:, k])(t - 1e-3)
-        error, moved = np.abs(late[5:, k] - earlier[5:]), np.abs(q[5:, k] - earlier[5:])
-        assert error.max() < 0.05 * moved.max()  # of second order: τ a/(2 v) of the way
+    for n in (1, 3):
+        late = run(arm(), log, **{"encoder_lag.tau@a": 0.01 * n})
+        np.testing.assert_allclose(late[n:, 0], q[:-n, 0], atol=1e-12)
+        early = run(arm(), log, **{"encoder_lag.tau@a": -0.01 * n})
+        np.testing.assert_allclose(early[:-n, 0], q[n:, 0], atol=1e-12)
+        assert np.ptp(np.diff(early[-n - 1 :, 0])) < 1e-12 or n == 1
 
 
 def test_each_value_set_of_a_batch_has_its_readings_and_a_rate_is_scaled_only():

@@ -27,7 +27,7 @@ from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
 
 FAR = 10.0  # times what BIC asks for the sizes of an effect, beyond which it is needed
-FEW = 5  # steps of a fit that only says what else could explain the log: its scores are linear
+FEW = 5  # steps of a fit that only says what else could explain the log, or whether a rival may
 
 
 def prune(
@@ -91,7 +91,8 @@ def exchange(
             if any(rival.effect.name == c.effect.name for c in rest):
                 continue
             begin = {**model.refit.point.values, **start}
-            new = try_fit(task, (*rest, rival), begin, model)
+            margin = task.options.retry_share * old.gain
+            new = _fit_rival(task, (*rest, rival), begin, model, margin)
             if new is None:
                 continue
             proof = prove(nominal.validation, new.validation, task.options)
@@ -102,6 +103,20 @@ def exchange(
                 model = new
                 break
     return tuple(kept), model
+
+
+def _fit_rival(
+    task: DiscoveryTask,
+    candidates: tuple[Candidate, ...],
+    begin: Mapping[str, float],
+    model: FittedModel,
+    margin: float,
+) -> FittedModel | None:
+    """A model with a rival; None where its BIC is behind by more than a margin after few steps."""
+    new = try_fit(task, candidates, begin, model, FEW)
+    if new is None or new.negative_bic < model.negative_bic - margin:
+        return None
+    return try_fit(task, candidates, new.refit.point.values, new)
 
 
 def _list_rivals(
