@@ -13,7 +13,7 @@ import mujoco
 
 from identification.effects import sensor_laws as laws
 from identification.effects.axes import Axis, Kind
-from identification.effects.effect import Effect, Size
+from identification.effects.effect import Effect, Shape, Size
 from identification.effects.places import places
 from identification.native.element import Function
 
@@ -22,6 +22,8 @@ OFFSET = 0.1  # of the travel
 ECCENTRICITY = 0.02  # [rad]
 LAG = 0.02  # [s]
 PROBE = 0.02  # of the largest plausible size
+LAGS = "q through a first-order lag τ, or q(t - τ)"
+KIND = Shape("kind", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0, about="0 a lag, 1 a delay")
 
 
 def sensor_effects(
@@ -79,8 +81,9 @@ def _of_positions(own: dict[str, Axis], kind: Kind, prefix: str) -> list[Effect]
 
 def _lag(prefix: str, own: dict[str, Axis]) -> Effect:
     sizes = (_size("tau", "s", LAG, "lag behind the other sensors"),)
-    made = _effect(prefix, laws.encoder_lag, "q(t - τ)", sizes, (*own,), "sensor: lags")
-    return replace(made, places={where: at for where, at in made.places.items() if at})
+    made = _effect(prefix, laws.encoder_lag, LAGS, sizes, (*own,), "sensor: lags")
+    some = {where: at for where, at in made.places.items() if at}
+    return replace(made, shapes=(KIND,), places=some)
 
 
 def _size(name: str, unit: str, largest: float, about: str) -> Size:

@@ -3,7 +3,8 @@
     scale           s y                     its counts are not what they are taken for
     offset          c                       its zero is not the joint's
     eccentricity    a cos q + b sin q       its disc turns about another centre
-    lag             q(t - τ) - q            it is read or sent too late
+    lag             x - q, τ ẋ = q - x      kind 0: it is filtered
+                    q(t - τ) - q            kind 1: it is read or sent too late
     jump            c where t ≥ t_s         counts are lost, within a tenth of a second about t_s
 
 Each function takes the state of a sensor (see `identification.native.reading.Reading`) and the
@@ -16,7 +17,7 @@ from math import cos, sin
 
 from numba import njit
 
-from identification.native.reading import position_at
+from identification.native.reading import lagged_position, position_at
 
 LASTS = 0.1  # of a jump [s]: the outputs are to change smoothly with its time
 
@@ -41,8 +42,11 @@ def encoder_eccentricity(s, p):  # type: ignore[no-untyped-def]
 
 @njit
 def encoder_lag(s, p):  # type: ignore[no-untyped-def]
-    """q(t - τ) - q."""
-    return position_at(s, s.time - p[0]) - s.q
+    """x - q with τ ẋ = q - x, or q(t - τ) - q; a negative τ is always a time."""
+    tau, kind = p
+    if kind == 0.0 and tau > 0.0:
+        return lagged_position(s, tau) - s.q
+    return position_at(s, s.time - tau) - s.q
 
 
 @njit

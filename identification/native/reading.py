@@ -7,7 +7,10 @@ Between two samples at t_0 and t_1 = t_0 + h the joint is at
 
     q(t_0 + u h) = (1 + 2u)(1 - u)² q_0 + u (1 - u)² h v_0 + u² (3 - 2u) q_1 - u² (1 - u) h v_1
 
-which is the cubic with the positions and rates of both (Hermite).
+which is the cubic with the positions and rates of both (Hermite). A first-order lag of it,
+τ ẋ = q - x, is over that interval
+
+    x(t) = p(t) + (x(t_0) - p(t_0)) e^(-(t - t_0)/τ),    p = q - τ q' + τ² q'' - τ³ q'''
 """
 
 from __future__ import annotations
@@ -15,6 +18,7 @@ from __future__ import annotations
 from collections import namedtuple
 from collections.abc import Sequence
 from functools import cache
+from math import exp
 from typing import Any
 
 from numba import types
@@ -41,6 +45,7 @@ SENSOR = Element(
     integers=("k", "signals", "samples"),
 )
 
+FORGOTTEN = 25.0  # time constants after which a lag has forgotten: e^-25 is 1e-11
 _SIGNATURE = types.void(types.int64, types.int64, types.int64)
 
 
@@ -60,6 +65,28 @@ def position_at(s, time):  # type: ignore[no-untyped-def]
     v_1, u = load_double(v + 8 * (k + 1)), (time - t_0) / h
     here = (1 + 2 * u) * (1 - u) ** 2 * q_0 + u * (1 - u) ** 2 * h * v_0
     return here + u**2 * (3 - 2 * u) * q_1 - u**2 * (1 - u) * h * v_1
+
+
+@internal
+def lagged_position(s, tau):  # type: ignore[no-untyped-def]
+    """The position of the joint through a first-order lag; before the record it moved steadily."""
+    q, v, t = [s.signals + 8 * s.samples * i for i in (1, 2, 3)]
+    k, now = s.k, load_double(t + 8 * s.k)
+    while k > 0 and now - load_double(t + 8 * k) < FORGOTTEN * tau:
+        k -= 1
+    x = load_double(q + 8 * k) - tau * load_double(v + 8 * k)
+    while k < s.k:
+        h = load_double(t + 8 * (k + 1)) - load_double(t + 8 * k)
+        q_0, q_1 = load_double(q + 8 * k), load_double(q + 8 * (k + 1))
+        v_0, v_1 = load_double(v + 8 * k), load_double(v + 8 * (k + 1))
+        mean = (q_1 - q_0) / h
+        a_0, a_1 = (6 * mean - 4 * v_0 - 2 * v_1) / h, (2 * v_0 + 4 * v_1 - 6 * mean) / h
+        jerk = (a_1 - a_0) / h
+        begin = q_0 - tau * (v_0 - tau * (a_0 - tau * jerk))
+        end = q_1 - tau * (v_1 - tau * (a_1 - tau * jerk))
+        x = end + (x - begin) * exp(-h / tau)
+        k += 1
+    return x
 
 
 @cache

@@ -2,7 +2,7 @@
 
     scale           (1 + s) φ               counts a turn are not what they are taken for
     eccentricity    φ + a cos φ + b sin φ   the disc turns about another centre
-    lag             φ - τ ω                 read too late, one encoder behind the others or all
+    lag             τ ẋ = φ - x, or φ(t-τ)  read too late, one encoder behind the others or all
     jump            φ + c from t_s on       counts are lost
 
 They act on what is measured; the robot moves as if they were not there. Their laws are those of any
@@ -11,6 +11,7 @@ robot (`identification.effects.sensor_laws`).
 
 from identification.effects import sensor_laws as laws
 from identification.effects.effect import Effect, Shape, Size
+from identification.effects.sensor_catalogue import KIND
 from inca_mj.effects.change import LASTS, TIMES
 from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
 
@@ -37,8 +38,9 @@ ENCODER_ECCENTRICITY = Effect(
 )
 ENCODER_LAG = Effect(
     "encoder_lag",
-    "φ(t - τ)",
-    (Size("tau", "s", 0.02, 4e-4, about="lag"),),
+    "φ through a first-order lag τ, or φ(t - τ)",
+    (Size("tau", "s", 0.02, 4e-4, sign=1, about="lag, or delay"),),
+    (KIND,),
     places=DRIVES_EACH,
     phrase="encoder: lags",
     reference="data sheet of the encoder",

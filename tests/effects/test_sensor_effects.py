@@ -17,6 +17,7 @@ from identification.windows.window_estimate import estimate_windows
 
 BOTH = SLIDER.replace("</sensor>", '<jointvel name="rate" joint="slide"/></sensor>')
 S = Reading(y=2.0, q=0.7, v=-3.0, time=1.2, k=0, signals=0, samples=1)
+DELAY = {"encoder_lag.kind": 1.0}
 LAWS = [
     ("encoder_scale", (0.1,), 0.2),
     ("encoder_offset", (0.1,), 0.1),
@@ -52,7 +53,10 @@ def test_the_readings_of_an_arm_are_those_by_hand():
 def test_a_lag_is_the_reading_so_many_milliseconds_earlier(tau):
     u = steps(100, 2)
     late = run(
-        arm(), arm_log(u), **{"encoder_lag.tau@a": 1e-3 * tau, "encoder_lag.tau@b": 1e-3 * tau}
+        arm(),
+        arm_log(u),
+        **DELAY,
+        **{"encoder_lag.tau@a": 1e-3 * tau, "encoder_lag.tau@b": 1e-3 * tau},
     )
     each = replace(arm_log(np.repeat(u, 10, axis=0)), time=1e-3 * np.arange(1000))
     q = run(arm(), each)
@@ -61,13 +65,27 @@ def test_a_lag_is_the_reading_so_many_milliseconds_earlier(tau):
     assert np.abs(error).max() < 1e-4 * np.abs(moved).max()
 
 
+@pytest.mark.parametrize("tau", [2e-3, 0.03])
+def test_a_first_order_lag_is_that_of_the_motion_between_samples(tau):
+    """Its equation, solved in steps of a millisecond along the motion."""
+    u = steps(100, 2)
+    late = run(arm(), arm_log(u), **{"encoder_lag.tau@a": tau, "encoder_lag.tau@b": tau})
+    each = replace(arm_log(np.repeat(u, 10, axis=0)), time=1e-3 * np.arange(1000))
+    q = run(arm(), each)
+    x, keep, mean = q.copy(), np.exp(-1e-3 / tau), tau / 1e-3 * (1 - np.exp(-1e-3 / tau))
+    for k in range(999):  # the input moves straight from q_k to q_(k+1)
+        x[k + 1] = q[k + 1] + keep * (x[k] - q[k]) - mean * (q[k + 1] - q[k])
+    error, moved = late - x[::10], x[::10] - q[::10]
+    assert np.abs(error).max() < 2e-3 * np.abs(moved).max()
+
+
 def test_a_lag_of_whole_samples_is_exact_and_ends_go_on_steadily():
     log = arm_log(steps(50, 2))
     q = run(arm(), log)
     for n in (1, 3):
-        late = run(arm(), log, **{"encoder_lag.tau@a": 0.01 * n})
+        late = run(arm(), log, **DELAY, **{"encoder_lag.tau@a": 0.01 * n})
         np.testing.assert_allclose(late[n:, 0], q[:-n, 0], atol=1e-12)
-        early = run(arm(), log, **{"encoder_lag.tau@a": -0.01 * n})
+        early = run(arm(), log, **DELAY, **{"encoder_lag.tau@a": -0.01 * n})
         np.testing.assert_allclose(early[:-n, 0], q[n:, 0], atol=1e-12)
         assert np.ptp(np.diff(early[-n - 1 :, 0])) < 1e-12 or n == 1
 
