@@ -20,6 +20,8 @@ class Proof:
         share: of the mean square above sensors' noise and input errors, the share that it closes.
         fall: relative fall of the mean square of the judged error.
         above: of the mean square above the sensors' noise, the share that it closes.
+        agrees: names of the records whose unseen samples it makes likelier.
+        disagrees: names of the records whose unseen samples it makes less likely, beyond chance.
     """
 
     gain: float
@@ -27,6 +29,8 @@ class Proof:
     share: float
     fall: float
     above: float
+    agrees: tuple[str, ...] = ()
+    disagrees: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ it. (A robot that is judged over a horizon has a proof of its own: `identificati
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,7 +25,7 @@ from identification.estimation.metrics import fit_percent
 from identification.kalman.noise_model import Whitener, build_whitener
 from identification.kalman.point import extend_point
 from identification.kalman.refit import Refit
-from identification.logs.joined import rows_of
+from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
 
 SHORTEST = 5  # samples of a block at least
@@ -105,19 +106,34 @@ def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -
         E = without.filter(with_it.e) / without.refit.level.sigma
     fewer = np.sum(without.innovations**2 - E**2, axis=1) / 2
     gain = fewer[~with_it.seen]
-    count = min(options.proof_blocks, len(gain) // SHORTEST)
-    starts = np.linspace(0, len(gain), count, endpoint=False).astype(int)
-    blocks = np.add.reduceat(gain, starts)
-    scatter = blocks.std(ddof=1) / np.sqrt(len(blocks))
-    t = float(blocks.mean() / scatter) if scatter > 0 else 0.0
+    each = [(name, part) for name, part in _by_record(with_it, fewer) if len(part) >= 2 * SHORTEST]
     floor = with_it.refit.level.sigma**2 + with_it.disturbance**2
     above = without.rms**2 - min(floor, with_it.rms**2)
     closed = without.rms**2 - with_it.rms**2
     sensed = without.rms**2 - min(with_it.refit.level.sigma, with_it.rms) ** 2
     return Proof(
         gain=float(gain.sum()),
-        t=t,
+        t=_t(gain, options),
         share=float(closed / above) if above > 0 else 0.0,
         fall=float(closed / without.rms**2),
         above=float(closed / sensed) if sensed > 0 else 0.0,
+        agrees=tuple(name for name, part in each if part.sum() > 0),
+        disagrees=tuple(name for name, part in each if _t(part, options) < -options.min_proof_t),
     )
+
+
+def _by_record(validation: Validation, gain: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
+    """The gains of the unseen samples of each record."""
+    begun = 0
+    for _, record in records_of(validation.log):
+        rows = slice(begun, begun := begun + len(record))
+        yield record.name, gain[rows][~validation.seen[rows]]
+
+
+def _t(gain: np.ndarray, options: DiscoveryOptions) -> float:
+    """Student's t of the gain by blocks."""
+    count = min(options.proof_blocks, len(gain) // SHORTEST)
+    starts = np.linspace(0, len(gain), count, endpoint=False).astype(int)
+    blocks = np.add.reduceat(gain, starts)
+    scatter = blocks.std(ddof=1) / np.sqrt(len(blocks))
+    return float(blocks.mean() / scatter) if scatter > 0 else 0.0

@@ -5,30 +5,17 @@ e = y - ŷ(q),   Φ = ∂ŷ/∂q,   δx_{k+1} = A_k δx_k + B_k δu_k
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.kalman.linear import (
-    Linearisation,
-    LinearPlant,
-    join,
-    linearise,
-    linearise_records,
-)
-from identification.kalman.sensitivity_equations import can_solve, solve_sensitivities
+from identification.kalman.columns import MANY, compute_columns
+from identification.kalman.linear import LinearPlant, join, linearise, linearise_records
 from identification.logs.log import Log
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
 
-STEP = 1e-4  # of q, for forward differences of simulations
-# The same for differences of accelerations, as a share: large ones nearly cancel each other, such
-# as those of an anchor that moves and of the cable that is longer at rest for it.
-SHORTER = 1e-2
 HOLDS = 0.1  # share by which outputs may miss what the columns of a point say of a short step
-MANY = 30  # columns, beyond which the equations are worth it: fewer are simulated, which is exact
-WRONG = 0.1  # share by which a simulation may differ from the sensitivity equations
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +31,7 @@ class Point:
         linear: the plant linearised along its trajectory.
         small: free parameters that stay small, such as deviations of single drives: the outputs
             are nearly linear in them, and their columns of J hold at points nearby as well.
-        by_equations: whether the sensitivity equations hold here.
+        is_borrowed: whether columns of J are those of a point nearby.
     """
 
     predictor: Predictor
@@ -54,7 +41,7 @@ class Point:
     J: np.ndarray
     linear: LinearPlant
     small: frozenset[str] = frozenset()
-    by_equations: bool = False
+    is_borrowed: bool = False
 
     @property
     def log(self) -> Log:
@@ -91,7 +78,8 @@ def evaluate_point(
     """
     inside = space.inside(q)
     records = linearise_records(predictor, space.decode(inside))
-    predicted, J, solved = _sensitivities(predictor, space, inside, records, _known(near, small))
+    known = _known(near, small)
+    predicted, J = compute_columns(predictor, space, inside, records, known)
     return Point(
         predictor=predictor,
         space=space,
@@ -100,7 +88,7 @@ def evaluate_point(
         J=J,
         linear=join(records),
         small=small,
-        by_equations=solved,
+        is_borrowed=bool(known),
     )
 
 
@@ -127,7 +115,7 @@ def shift_point(point: Point, q: np.ndarray) -> Point | None:
     expected, found = point.J @ (inside - point.q), point.e - e
     if np.linalg.norm(found - expected) > HOLDS * np.linalg.norm(found):
         return None
-    return replace(point, q=inside, e=e)
+    return replace(point, q=inside, e=e, is_borrowed=True)
 
 
 def _known(near: Point | None, small: frozenset[str]) -> dict[str, np.ndarray]:
@@ -142,67 +130,7 @@ def evaluate_sensitivities(point: Point, whole: Log) -> np.ndarray:
     """J of the same point on a longer log, shape (N, ny, p)."""
     predictor = replace(point.predictor, log=whole)
     records = linearise_records(predictor, point.space.decode(point.q))
-    return _sensitivities(predictor, point.space, point.q, records, {})[1]
-
-
-def _sensitivities(
-    predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
-    known: Mapping[str, np.ndarray],
-) -> tuple[np.ndarray, np.ndarray, bool]:  # fmt: skip
-    """ŷ at q (N, ny), J (N, ny, p) of which some columns may be known, `Point.by_equations`.
-
-    Where many columns are asked, they come from the sensitivity equations, and else from
-    simulations. Either way, one column along all of them at once says whether the two agree here.
-    They do not where a joint hits its limit.
-    """
-    asked = np.array([name not in known for name in space.names])
-    J = np.empty((*predictor.log.outputs.shape, len(q)))
-    for j in np.flatnonzero(~asked):
-        J[..., j] = known[space.names[j]]
-    moves = np.diag(np.where(q + STEP > space.upper, -STEP, STEP))[asked]
-    solves = bool(asked.any()) and can_solve(predictor, records)
-    if solves and len(moves) > MANY:
-        short = SHORTER * moves
-        S = _solve(predictor, space, q, records, short, short.sum(axis=1))
-        to = space.inside(q + STEP * _along(S, asked))
-        predicted, ahead = predictor.predict(space.decode(np.vstack([q, to])))
-        if _agree(S @ (to - q)[asked], ahead - predicted):
-            J[..., asked] = S
-            return predicted, J, True
-        solves = False
-    runs = predictor.predict(space.decode(np.vstack([q, q + moves])))
-    moved = (runs[1:] - runs[0]) / moves.sum(axis=1)[:, None, None]
-    J[..., asked] = np.moveaxis(moved, 0, -1)
-    if solves:
-        to = space.inside(q + SHORTER * STEP * _along(J[..., asked], asked))
-        step = np.array([SHORTER * STEP])
-        solved = _solve(predictor, space, q, records, (to - q)[None], step)[..., 0]
-        solves = _agree(solved * step, J @ (to - q))
-    return runs[0], J, solves
-
-
-def _solve(
-    predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
-    moves: np.ndarray, size: np.ndarray,
-) -> np.ndarray:  # fmt: skip
-    """Columns of the sensitivity equations for m moves of q (m, p) of some sizes, (N, ny, m)."""
-    there = space.decode(q + moves)
-    return solve_sensitivities(predictor, records, space.decode(q), there, size)
-
-
-def _along(columns: np.ndarray, asked: np.ndarray) -> np.ndarray:
-    """A direction of q of length 1 at most in each, to which all columns add alike, shape (p,)."""
-    size = np.sqrt(np.mean(columns**2, axis=(0, 1)))
-    signs = np.random.default_rng(0).choice([-1.0, 1.0], len(size))
-    weight = np.where(size > 0, signs / np.where(size > 0, size, 1.0), 0.0)
-    out = np.zeros(len(asked))
-    out[asked] = weight / np.abs(weight).max(initial=1e-300)
-    return out
-
-
-def _agree(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two changes of the outputs are the same to `WRONG`."""
-    return bool(np.linalg.norm(one - other) <= WRONG * np.linalg.norm(other))
+    return compute_columns(predictor, point.space, point.q, records, {})[1]
 
 
 def extend_point(point: Point, whole: Log) -> Point:

@@ -36,6 +36,7 @@ APPROACHED = 0.1  # the same of the first part of a search, which only comes nea
 # Gauss-Newton steps until one fails; the columns of the rows are scaled to length 1
 DAMPING = Damping(first=0.0, raised=10.0, lowered=10.0, least=1e-4, floor=0.0)
 TRIES = 6  # attempts at a step, each damped ten times as much as the one before
+FEWER = 2  # the same where columns are borrowed, which are then computed anew
 PATIENCE = 2  # successive steps without progress after which a search ends
 
 
@@ -146,7 +147,13 @@ def descend(
         while steps and idle < PATIENCE and not (fine and _is_refuted(problem, options)):
             if problem.expected_fall(problem.step(0.0)) < ended:
                 break
-            trial = next((t for t in islice(trials, TRIES) if t.taken), None)
+            tries = FEWER if point.is_borrowed else TRIES
+            trial = next((t for t in islice(trials, tries) if t.taken), None)
+            if trial is None and point.is_borrowed:
+                point = evaluate_point(point.predictor, point.space, point.q, None, point.small)
+                problem = linearise_criterion(point, level, mean, prior)
+                trials = levenberg_marquardt(problem, move, DAMPING)
+                continue
             if trial is None:
                 break
             problem, steps = trial.criterion, steps - 1

@@ -79,4 +79,5 @@ def _named_to_json(named: NamedEffect) -> dict[str, Any]:
         },
         "advice": named.advice or None,
         "proof": {"gain": named.proof.gain, "t": named.proof.t, "share": named.proof.share},
+        "agrees": list(named.proof.agrees), "disagrees": list(named.proof.disagrees),
     }  # fmt: skip

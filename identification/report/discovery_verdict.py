@@ -21,7 +21,7 @@ def discovery_verdict(found: Discovery) -> list[str]:
         return [nothing(found)]
     if found.verdict == "unknown effect":
         return [unknown(found)]
-    said = [f"{_named(found, named)}{_retuned(named)}" for named in found.named]
+    said = [f"{_named(found, named)}{_retuned(named)}{_agreement(named)}" for named in found.named]
     said.append(_proof(found))
     if found.unexplained:
         said.append(unexplained(found))
@@ -122,6 +122,15 @@ def _retuned(named: NamedEffect) -> str:
         f" {abs(other.distance):.2g} std {'above' if other.distance > 0 else 'below'} what was said"
         " to be known of it, the model explains the same. Measure it, or record another motion."
     )
+
+
+def _agreement(named: NamedEffect) -> str:
+    """On which of several records the effect holds."""
+    proof = named.proof
+    said = f" It holds on {', '.join(proof.agrees)}." if len(proof.agrees) > 1 else ""
+    if proof.disagrees:
+        said += f" It raises the error on {', '.join(proof.disagrees)}, beyond chance."
+    return said
 
 
 def _proof(found: Discovery) -> str:

@@ -1,5 +1,7 @@
 """What unseen data say of a model, and what they say of two that are the same."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from discovery_cases import EFFECTS, OPTIONS, SENSOR, STEP, record, slider, task, wander
@@ -7,6 +9,7 @@ from discovery_cases import EFFECTS, OPTIONS, SENSOR, STEP, record, slider, task
 from identification.discovery.fitted_model import fit_model
 from identification.discovery.proof import prove
 from identification.effects.effect import Candidate
+from identification.logs.joined import join_logs
 
 SPRING = Candidate(EFFECTS[0], "joint", {})
 
@@ -36,6 +39,21 @@ def test_what_is_there_is_proved_and_what_is_proved_can_be_disproved(sprung):
     assert back.t < -2
     assert back.gain < 0
     assert back.share <= 0
+
+
+def test_each_record_is_told_on_which_an_effect_does_not_hold():
+    """Of three records two have the spring; a model with one harms the third."""
+    springs = {"first": 6.0, "second": 6.0, "slack": 0.0}
+    each = [
+        replace(record(slider(**{"spring.k": k}), 300, seed=n), name=name)
+        for n, (name, k) in enumerate(springs.items())
+    ]
+    both = join_logs(each)
+    fits = [fit_model(task(both), c, v) for c, v in (((), {}), ((SPRING,), {"spring.k": 4.0}))]
+    proof = prove(*(fit.validation for fit in fits), OPTIONS)
+    assert "slack" not in proof.agrees
+    assert proof.disagrees == ("slack",)
+    assert {"first", "second"} == {*proof.agrees}
 
 
 def test_the_unseen_samples_are_those_after_the_fitted_ones(sprung):

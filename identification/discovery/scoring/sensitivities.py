@@ -14,6 +14,7 @@ import numpy as np
 
 from identification.effects.effect import Candidate, Effect
 from identification.errors import DivergenceError, InputError
+from identification.kalman.columns import do_equations_hold
 from identification.kalman.linear import Linearisation, linearise_records
 from identification.kalman.point import Point
 from identification.kalman.sensitivity_equations import solve_sensitivities
@@ -98,8 +99,8 @@ def compute_sensitivities(point: Point, candidates: Sequence[Candidate]) -> tupl
         candidates: the effects, each at a place and with shapes.
     """
     found: dict[int, Sensitivity] = {}
-    if point.by_equations:
-        records = linearise_records(point.predictor, point.space.decode(point.q), points=FINE)
+    records = linearise_records(point.predictor, point.space.decode(point.q), points=FINE)
+    if do_equations_hold(point.predictor, point.space, point.q, records, point.J):
         for group in _groups([*enumerate(candidates)]):
             found |= _alone(partial(_solve, point, records), group)
     predicted = point.log.outputs - point.e

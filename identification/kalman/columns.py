@@ -1,0 +1,110 @@
+"""The columns of J: sensitivities of the outputs to the free parameters at one point.
+
+    S_j = (ŷ(q + h e_j) - ŷ(q))/h        by simulations, or by the sensitivity equations
+
+Few columns are simulated, which is exact. Where many are asked, they come from the sensitivity
+equations if these agree with a simulation along all of them at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from identification.kalman.linear import Linearisation
+from identification.kalman.sensitivity_equations import can_solve, solve_sensitivities
+from identification.model.coordinates import Coordinates
+from identification.model.predictor import Predictor
+
+STEP = 1e-4  # of q, for forward differences of simulations
+# The same for differences of accelerations, as a share: large ones nearly cancel each other, such
+# as those of an anchor that moves and of the cable that is longer at rest for it.
+SHORTER = 1e-2
+MANY = 30  # columns, beyond which the equations are worth it
+WRONG = 0.1  # share by which a simulation may differ from the sensitivity equations
+
+
+def compute_columns(
+    predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
+    known: Mapping[str, np.ndarray],
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """Outputs and their sensitivities to the free parameters.
+
+    Args:
+        predictor: plant, log and free parameters.
+        space: coordinates of the free parameters.
+        q: shape (p,).
+        records: the linearisation of each record there.
+        known: columns that need not be computed, by name, each (N, ny).
+
+    Returns:
+        ŷ, shape (N, ny), and J, shape (N, ny, p).
+
+    Raises:
+        DivergenceError: a simulation left the finite numbers.
+    """
+    asked = np.array([name not in known for name in space.names])
+    J = np.empty((*predictor.log.outputs.shape, len(q)))
+    for j in np.flatnonzero(~asked):
+        J[..., j] = known[space.names[j]]
+    moves = np.diag(np.where(q + STEP > space.upper, -STEP, STEP))[asked]
+    if len(moves) > MANY and can_solve(predictor, records):
+        short = SHORTER * moves
+        S = _solve(predictor, space, q, records, short, short.sum(axis=1))
+        to = space.inside(q + STEP * _along(S, asked))
+        predicted, ahead = predictor.predict(space.decode(np.vstack([q, to])))
+        if _agree(S @ (to - q)[asked], ahead - predicted):
+            J[..., asked] = S
+            return predicted, J
+    runs = predictor.predict(space.decode(np.vstack([q, q + moves])))
+    moved = (runs[1:] - runs[0]) / moves.sum(axis=1)[:, None, None]
+    J[..., asked] = np.moveaxis(moved, 0, -1)
+    return runs[0], J
+
+
+def _solve(
+    predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
+    moves: np.ndarray, size: np.ndarray,
+) -> np.ndarray:  # fmt: skip
+    """Columns of the sensitivity equations for m moves of q (m, p) of some sizes, (N, ny, m)."""
+    there = space.decode(q + moves)
+    return solve_sensitivities(predictor, records, space.decode(q), there, size)
+
+
+def _along(columns: np.ndarray, asked: np.ndarray) -> np.ndarray:
+    """A direction of q of length 1 at most in each, to which all columns add alike, shape (p,)."""
+    size = np.sqrt(np.mean(columns**2, axis=(0, 1)))
+    signs = np.random.default_rng(0).choice([-1.0, 1.0], len(size))
+    weight = np.where(size > 0, signs / np.where(size > 0, size, 1.0), 0.0)
+    out = np.zeros(len(asked))
+    out[asked] = weight / np.abs(weight).max(initial=1e-300)
+    return out
+
+
+def _agree(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two changes of the outputs are the same to `WRONG`."""
+    return bool(np.linalg.norm(one - other) <= WRONG * np.linalg.norm(other))
+
+
+def do_equations_hold(
+    predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
+    J: np.ndarray,
+) -> bool:  # fmt: skip
+    """Whether the sensitivity equations say what the columns J say, along all of them at once.
+
+    They do not where a joint hits its limit.
+
+    Args:
+        predictor: plant, log and free parameters.
+        space: coordinates of the free parameters.
+        q: shape (p,).
+        records: the linearisation of each record there.
+        J: shape (N, ny, p).
+    """
+    if not J.size or not can_solve(predictor, records):
+        return False
+    to = space.inside(q + SHORTER * STEP * _along(J, np.ones(len(q), bool)))
+    size = np.array([SHORTER * STEP])
+    solved = _solve(predictor, space, q, records, (to - q)[None], size)[..., 0]
+    return _agree(solved * size, J @ (to - q))
