@@ -92,6 +92,7 @@ def discovered(logs: list[Any], confirm: list[Any], spread: str) -> dict[str, An
         ],
         "scores": [[s.candidate.effect.name, s.candidate.where, s.gain] for s in found.scores[:5]],
         "before": found.before.rms, "after": found.after.rms, "noise": found.noise_rms,
+        "stages": dict(found.seconds),
     }  # fmt: skip
 
 

@@ -73,6 +73,7 @@ def fit_model(
     start: Mapping[str, float],
     near: FittedModel | None = None,
     steps: int = STEPS,
+    least: float = -np.inf,
 ) -> FittedModel:
     """Fit the nominal model with some effects, and validate it.
 
@@ -82,6 +83,7 @@ def fit_model(
         start: values to begin at by name.
         near: a model whose linearisation and noise are good enough to begin with.
         steps: largest number of steps.
+        least: log posterior that the fit must come to, to matter; one that does not ends early.
 
     Raises:
         DivergenceError: the start cannot be simulated.
@@ -90,7 +92,7 @@ def fit_model(
     model, log, options = task.nominal_model, task.log, task.options
     nearby = None if near is None else near.refit
     part = log.part("estimation")
-    fit = fit_with_effects(model, part, candidates, start, options, steps, nearby)
+    fit = fit_with_effects(model, part, candidates, start, options, steps, nearby, least=least)
     return FittedModel(candidates, fit, validate(fit, log))
 
 

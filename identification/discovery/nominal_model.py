@@ -97,6 +97,7 @@ def fit_with_effects(
     steps: int = STEPS,
     near: Refit | None = None,
     progress: Progress | None = None,
+    least: float = -np.inf,
 ) -> Refit:
     """Fit the nominal model's parameters together with the sizes and free shapes of some effects.
 
@@ -109,6 +110,7 @@ def fit_with_effects(
         steps: largest number of steps.
         near: a fit whose noise, and columns of small parameters, are good enough to begin with.
         progress: is told one line per step.
+        least: log posterior that the fit must come to, to matter; one that does not ends early.
 
     Raises:
         DivergenceError: the start cannot be simulated.
@@ -146,12 +148,12 @@ def fit_with_effects(
         # The correlation time that was found without the effect may have been the effect's own.
         level = replace(level, noise=level.noise.lasting(options.start_correlation_time))
     is_near = near is not None and near.point.space.names == names
-    found = refit(point, mean, weight, options, steps, level, progress, is_near)
+    found = refit(point, mean, weight, options, steps, level, progress, is_near, least)
     if near is None or not _is_less_likely(found, near) or nominal_model.is_bounded:
         return found
     # A model is at least as likely as the one that it contains: the search, which believes no large
     # errors of the inputs at first, went another way.
-    again = refit(point, mean, weight, options, steps, near.level, progress, is_near=True)
+    again = refit(point, mean, weight, options, steps, near.level, progress, True, least)
     return max(found, again, key=lambda fit: fit.log_posterior)
 
 

@@ -215,6 +215,12 @@ class Candidate:
         return tuple(name for name, size in own if size.present is None)
 
     @property
+    def estimated(self) -> tuple[str, ...]:
+        """The plant's parameters that a fit with it estimates: free sizes, and free shapes."""
+        shapes = (self.effect.parameter(s.name, self.where) for s in self.effect.shapes if s.free)
+        return (*self.free, *shapes)
+
+    @property
     def whole(self) -> dict[str, float]:
         """Values of those that can have but one."""
         own = zip(self.sizes, self.effect.sizes, strict=True)

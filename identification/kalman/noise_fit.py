@@ -20,7 +20,8 @@ from identification.kalman.noise_model import Noise, Whitener, augment, build_wh
 from identification.kalman.options import KalmanOptions
 
 FIRST, LAST = 1.6, 1.15  # factors with which the pattern search begins and ends
-AROUND = (1.0, 0.3, 0.05, 0.0)  # multiples of the ρ of a point nearby that are tried
+# Multiples of the ρ of a point nearby that are tried; the last two where the second beats the first
+AROUND = (1.0, 0.3, 0.05, 0.0)
 ROUGH = (0.0, 0.1, 1.0)  # ρ/ρ₀ that are tried where a point nearby had no error of the inputs
 LEVELS = (0.0, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # ρ/ρ₀ that are tried at first
 
@@ -123,7 +124,9 @@ def fit_noise(
 
         found: list[NoiseLevel] = []
         if near is not None and near.noise.ratio:
-            found = believed(near.noise, AROUND)
+            found = believed(near.noise, AROUND[:2])
+            if len(found) < 2 or found[1].log_likelihood > found[0].log_likelihood:
+                found += believed(near.noise, AROUND[2:])
         if len(found) < 2:  # no noise is known nearby, or only that of ρ = 0 is believed
             unit = Noise(compute_unit_ratio(plant, sampling_time, time), time)
             silent = near is not None and not near.noise.ratio

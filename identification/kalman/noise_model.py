@@ -15,6 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg.lapack import dpotrf, dtrtri
 
 from identification.kalman.linear import LinearPlant
 
@@ -109,8 +110,8 @@ def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Wh
     for k in range(n + 1):
         PC = P @ C.T
         S = C @ PC + np.eye(ny)
-        factor = np.linalg.cholesky(S)
-        L[k] = np.linalg.inv(factor)
+        factor = dpotrf(S, lower=1)[0]  # numpy's own takes ten times as long for 8 outputs
+        L[k] = dtrtri(factor, lower=1)[0]
         K[k] = PC @ L[k].T @ L[k]
         log_determinant += 2 * np.log(np.diag(factor)).sum()
         if k < n:

@@ -18,7 +18,7 @@ from identification.model.predictor import Predictor
 HOLDS = 0.1  # share by which outputs may miss what the columns of a point say of a short step
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Point:
     """A plant evaluated at the coordinates q of its free parameters.
 

@@ -63,8 +63,7 @@ class Refit:
     @property
     def log_posterior(self) -> float:
         """Log likelihood plus log density of the priors, up to a constant."""
-        against = float(np.sum(((self.point.q - self.mean) * self.prior) ** 2))
-        return self.level.log_likelihood - against / 2
+        return _posterior(self.point, self.level, self.mean, self.prior)
 
     @property
     def relative_input_error(self) -> float:
@@ -82,6 +81,7 @@ def refit(
     near: NoiseLevel | None = None,
     progress: Progress | None = None,
     is_near: bool = False,
+    least: float = -np.inf,
 ) -> Refit:
     """Estimate the free parameters of a point, beginning where it is.
 
@@ -94,8 +94,9 @@ def refit(
         near: a noise to begin at, where one is known.
         progress: is told one line per step.
         is_near: whether the point is near the optimum, so that only the likelihood counts.
+        least: log posterior that an estimate must come to, to matter.
     """
-    for step in enumerate(descend(point, mean, prior, options, near, steps, is_near)):
+    for step in enumerate(descend(point, mean, prior, options, near, steps, is_near, least)):
         taken, (end, level) = step
         if progress is not None:
             off = float(np.sqrt(np.mean(end.e**2)))
@@ -111,6 +112,7 @@ def descend(
     near: NoiseLevel | None = None,
     steps: int = 20,
     is_near: bool = False,
+    least: float = -np.inf,
 ) -> Generator[tuple[Point, NoiseLevel], None, bool]:
     """The points of a search, each with its noise, from the first to the likeliest.
 
@@ -127,6 +129,8 @@ def descend(
         near: a noise to begin at, where one is known.
         steps: largest number of steps.
         is_near: whether the point is near the optimum: the first part is left out.
+        least: log posterior that an estimate must come to, to matter: the second part ends where a
+            point, after the best small change of its parameters, stays below.
 
     Returns:
         Whether the search ended before it had used all steps.
@@ -141,11 +145,13 @@ def descend(
             yield point, level
         last, largest = point, np.inf if fine else believed
         problem = linearise_criterion(point, level, mean, prior)
-        best, most, least, idle = (point, level), problem.log_posterior, _rms(point), 0
+        best, most, nearest, idle = (point, level), problem.log_posterior, _rms(point), 0
         move = partial(_move, options=options, largest=largest)
         trials = levenberg_marquardt(problem, move, DAMPING)
         while steps and idle < PATIENCE and not (fine and _is_refuted(problem, options)):
             if problem.expected_fall(problem.step(0.0)) < ended:
+                break
+            if fine and _posterior(point, level, mean, prior) < least:
                 break
             tries = FEWER if point.is_borrowed else TRIES
             trial = next((t for t in islice(trials, tries) if t.taken), None)
@@ -163,10 +169,10 @@ def descend(
             # Every point has its own linearisation and noise, so the likelihood may also fall.
             likely, off = problem.log_posterior, _rms(point)
             gain = ended if fine else -point.e.size * float(np.log(options.approach_factor))
-            better = likely > most + gain or (not fine and off < options.approach_factor * least)
+            better = likely > most + gain or (not fine and off < options.approach_factor * nearest)
             if better or likely > most:
                 best = point, level
-            most, least, idle = max(likely, most), min(off, least), 0 if better else idle + 1
+            most, nearest, idle = max(likely, most), min(off, nearest), 0 if better else idle + 1
         point, level = best
     if point is not last:
         yield point, level
@@ -187,6 +193,11 @@ def _move(
     point = there
     level = estimate_noise(point, problem.prior, options, problem.level, largest=largest)
     return linearise_criterion(point, level, problem.mean, problem.prior)
+
+
+def _posterior(point: Point, level: NoiseLevel, mean: np.ndarray, prior: np.ndarray) -> float:
+    """Log likelihood plus log density of the priors, up to a constant."""
+    return level.log_likelihood - float(np.sum(((point.q - mean) * prior) ** 2)) / 2
 
 
 def _is_refuted(problem: Problem, options: KalmanOptions) -> bool:

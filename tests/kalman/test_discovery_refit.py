@@ -95,6 +95,19 @@ def test_a_search_ends_at_the_likeliest_point_since_its_noise_was_sharpened(monk
     assert likely[-1] == max(likely[sharpened.index(True) :])
 
 
+def test_a_fit_that_cannot_come_to_what_matters_ends_early_and_says_so():
+    log = record(slider(**TRUE), 300, seed=3, error=wander(300, 0.1, 0.1, seed=3))
+    far = {"mass": 5.0, "damping": 6.0}
+    whole = fitted(log, far)
+    below, above = (
+        fit_with_effects(nominal_model(), log, (), far, OPTIONS, least=whole.log_posterior + more)
+        for more in (-1.0, 10.0)
+    )
+    np.testing.assert_array_equal(below.point.q, whole.point.q)
+    assert above.steps < whole.steps
+    assert above.log_posterior < whole.log_posterior + 10.0
+
+
 def test_likelihood_does_not_lead_where_inputs_err_beyond_belief_and_not_by_chance():
     t = 0.02 * np.arange(300)[:, None]
     log = record(slider(**TRUE), 300, seed=1, error=3.0 * np.sin(2 * np.pi * 4.1 * t))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from itertools import product
 
 import numpy as np
@@ -99,14 +99,22 @@ def compute_sensitivities(point: Point, candidates: Sequence[Candidate]) -> tupl
         candidates: the effects, each at a place and with shapes.
     """
     found: dict[int, Sensitivity] = {}
-    records = linearise_records(point.predictor, point.space.decode(point.q), points=FINE)
-    if do_equations_hold(point.predictor, point.space, point.q, records, point.J):
+    records = _fine_records(point)
+    if records:
         for group in _groups([*enumerate(candidates)]):
             found |= _alone(partial(_solve, point, records), group)
     predicted = point.log.outputs - point.e
     for group in _groups([(i, c) for i, c in enumerate(candidates) if i not in found]):
         found |= _alone(partial(_simulate, point, predicted), group)
     return tuple(found[i] for i in sorted(found))
+
+
+@lru_cache(maxsize=1)
+def _fine_records(point: Point) -> tuple[Linearisation, ...]:
+    """The linearisation at a point as finely as candidates need; none where it does not hold."""
+    records = linearise_records(point.predictor, point.space.decode(point.q), points=FINE)
+    holds = do_equations_hold(point.predictor, point.space, point.q, records, point.J)
+    return records if holds else ()
 
 
 def _alone(

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from scipy.stats import chi2
 
 from identification.discovery.effect_results import RejectedEffect
@@ -38,6 +39,7 @@ from identification.discovery.scoring.significance import (
 )
 from identification.discovery.selection.shapes import improve_shape
 from identification.discovery.task import DiscoveryTask
+from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
 from identification.estimation.options import Progress
 
@@ -112,12 +114,15 @@ def _refit_candidates(
         sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
         more = (*model.candidates, s.candidate)
         try:
-            new = fit_model(task, more, {**model.refit.point.values, **sizes}, model)
+            start = {**model.refit.point.values, **sizes}
+            asked = _ask(s.candidate, model, len(scores) if is_hidden else 0, task.options)
+            least = model.refit.log_posterior + asked / 2
+            new = fit_model(task, more, start, model, least=least)
         except (DivergenceError, InputError) as error:
             progress(f"{name}: left out, {error}")
             continue
         progress(f"{name}: gain {new.negative_bic - model.negative_bic:.0f}")
-        if not is_hidden or _is_beyond_chance(new, model, len(scores), task.options):
+        if not is_hidden or new.refit.log_posterior > least:
             refitted.append(new)
     return sorted(refitted, key=lambda new: new.negative_bic, reverse=True)
 
@@ -144,13 +149,16 @@ def _select_likeliest(scores: Sequence[Score], options: DiscoveryOptions) -> lis
     return [*best.values()][: options.max_refits]
 
 
-def _is_beyond_chance(
-    new: FittedModel, model: FittedModel, count: int, options: DiscoveryOptions
-) -> bool:
-    """Whether a refit gains more than the best of `count` candidates does by luck."""
-    more = len(new.refit.point.q) - len(model.refit.point.q)
-    gain = 2 * (new.refit.log_posterior - model.refit.log_posterior)
-    return bool(chi2.sf(gain, more) * count < options.significance)
+def _ask(candidate: Candidate, model: FittedModel, count: int, options: DiscoveryOptions) -> float:
+    """What a refit must gain, in twice the log posterior, to matter.
+
+    It is what the best of `count` candidates gains by luck, or where this is zero what BIC asks.
+    """
+    known = {*model.refit.point.space.names}
+    more = sum(name not in known for name in candidate.estimated)
+    if count:
+        return float(chi2.isf(options.significance / count, more)) if more else np.inf
+    return more * float(np.log(len(model.refit.point.log)))
 
 
 def _select_contenders(significant: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
