@@ -1,7 +1,8 @@
 """How sure a name is, against its rivals and against what it leaves unexplained.
 
     P_j ∝ exp(-ΔBIC_j/(2 T))        over the models that were refitted in its place, and over the
-                                    nominal model with other parameters (`retuning`)
+                                    nominal model with other parameters (`retuning`), and over
+                                    curves that no law gives (`free_curves`)
 
 T, the temperature, is above 1 because the likelihood believes its noise model. The confidence has
 an upper limit because no effect is certain that was confirmed under one kind of input only. Both
@@ -16,12 +17,14 @@ from dataclasses import replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.effect_results import NamedEffect, Rival
+from identification.discovery.effect_results import NamedEffect, Outside, Rival
 from identification.discovery.fitted_model import AcceptedEffect, FittedModel, collect_parameters
+from identification.discovery.free_curves import NODES, Curve, compare_with_curve, find_curves
+from identification.discovery.options import DiscoveryOptions
 from identification.discovery.retuning import retune
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.discovery.task import DiscoveryTask
-from identification.effects.effect import Candidate
+from identification.effects.effect import CURVE, Candidate
 from identification.kalman.noise_model import build_whitener
 
 
@@ -42,7 +45,8 @@ def name_effects(
         explained: share of the gap that they close together, 0 to 1.
     """
     names = {_key(a.candidate) for a in accepted}
-    return tuple(_name(task, a, names, final, sensitivities, explained) for a in accepted)
+    curves = find_curves(final.refit, task.options) if accepted else ()
+    return tuple(_name(task, a, names, final, sensitivities, curves, explained) for a in accepted)
 
 
 def _name(
@@ -51,15 +55,17 @@ def _name(
     names: set[tuple[str, str]],
     final: FittedModel,
     sensitivities: Sequence[Sensitivity],
+    curves: Sequence[Curve],
     explained: float,
 ) -> NamedEffect:
     options, mine = task.options, effect.candidate
     # An effect that is named itself is no rival of another named effect.
     others = [m for m in effect.alternatives if _key(m.candidates[-1]) not in names]
     loss, retuned = retune(final.refit, task.nominal_model.names, mine, options)
-    spared = len(mine.free) * np.log(len(final.refit.point.log))
+    spared = len(mine.free) * float(np.log(len(final.refit.point.log)))
     bic = [m.negative_bic for m in (effect.model, *others)]
-    worth = np.array([*bic, effect.model.negative_bic - loss + spared])
+    drawn = [_worth_of_curve(final, mine, c, options) for c in curves]
+    worth = np.array([*bic, bic[0] + max(drawn, default=-np.inf), bic[0] + spared - loss])
     weights = np.exp((worth - worth.max()) / (2 * options.temperature))
     probability = weights / weights.sum()
     rivals = [m.candidates[-1] for m in others]
@@ -67,19 +73,43 @@ def _name(
     values = final.refit.point.values
     shape = {s.name: values[mine.effect.parameter(s.name, mine.where)] for s in mine.effect.shapes}
     own = min(options.max_confidence, probability[0])
+    of_rivals = probability[1:-2]
     return NamedEffect(
         candidate=replace(mine, shape=shape),
         parameters=collect_parameters(task, final, mine),
         confidence=float(own * min(1.0, max(0.0, explained))),
         rivals=tuple(
             Rival(r, float(p), cosine)
-            for r, p, cosine in zip(rivals, probability[1:-1], cosines, strict=True)
+            for r, p, cosine in zip(rivals, of_rivals, cosines, strict=True)
         ),
-        one_of=bool(others and probability[1:-1].max() > options.set_confidence),
+        one_of=bool(others and of_rivals.max() > options.set_confidence),
         gain=effect.gain,
         proof=effect.proof,
         retuned=replace(retuned, confidence=float(probability[-1])),
+        outside=_outside(curves[int(np.argmax(drawn))], probability[-2]) if curves else None,
     )
+
+
+def _worth_of_curve(
+    final: FittedModel, mine: Candidate, curve: Curve, options: DiscoveryOptions
+) -> float:
+    """How much larger the negative BIC is with a curve instead of an effect.
+
+    A law that takes nearly all of what the curve takes may have something small beside it: the
+    curve is then at most half as likely.
+    """
+    loss, share = compare_with_curve(final.refit, mine, curve)
+    more = NODES - len(mine.free)
+    worth = -loss - more * float(np.log(len(final.refit.point.log)))
+    most = -2 * options.temperature * np.log(2) if share > options.equal_share else np.inf
+    return min(worth, most)
+
+
+def _outside(curve: Curve, probability: float) -> Outside:
+    """A curve that may explain the same."""
+    drawn = curve.sensitivity.candidate
+    along = drawn.effect.name.removeprefix(f"{CURVE}_")
+    return Outside(along, drawn.where, float(probability))
 
 
 def _key(candidate: Candidate) -> tuple[str, str]:

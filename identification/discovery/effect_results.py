@@ -78,6 +78,21 @@ class Retuned:
 
 
 @dataclass(frozen=True)
+class Outside:
+    """What no catalogue lists: a curve, drawn from the data, that may explain the same.
+
+    Attributes:
+        along: what it follows: "rate", "position", "input" or "time".
+        where: the joint on which it acts, or all actuated joints.
+        confidence: probability that this is right and the effect is not, of those considered.
+    """
+
+    along: str
+    where: str
+    confidence: float
+
+
+@dataclass(frozen=True)
 class RejectedEffect:
     """An effect that was refitted and not accepted.
 
@@ -86,12 +101,14 @@ class RejectedEffect:
         parameters: its sizes and shapes by name: value, std, unit.
         gain: by how much it raises the negative BIC on the fitted samples.
         proof: what it does for unseen samples.
+        outside: something like it that no catalogue lists and that is likelier, where it was.
     """
 
     candidate: Candidate
     parameters: Mapping[str, tuple[float, float, str]]
     gain: float
     proof: Proof
+    outside: Outside | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,6 +125,8 @@ class NamedEffect:
         proof: what it does for unseen samples.
         retuned: the explanation without an effect.
         advice: the experiment that would tell it from its first rival, in a sentence.
+        outside: something like it that no catalogue lists; None where no curve explains anything
+            beside the named effects.
     """
 
     candidate: Candidate
@@ -119,6 +138,7 @@ class NamedEffect:
     proof: Proof
     retuned: Retuned
     advice: str = ""
+    outside: Outside | None = None
 
     @property
     def odds(self) -> float:

@@ -88,16 +88,22 @@ def estimate_missing_forces(fit: Refit, options: KalmanOptions) -> tuple[Missing
     return tuple(out)
 
 
+def list_actuated_joints(model: mujoco.MjModel) -> dict[int, int]:
+    """Joints that actuators act on directly, but for free bodies: each with its first actuator."""
+    transmission = int(mujoco.mjtTrn.mjTRN_JOINT)
+    out: dict[int, int] = {}
+    for i in range(model.nu):
+        joint = int(model.actuator_trnid[i, 0])
+        if model.actuator_trntype[i] == transmission and model.jnt_type[joint] != FREE:
+            out.setdefault(joint, i)
+    return out
+
+
 def _groups(
     model: mujoco.MjModel,
 ) -> list[tuple[str, list[int], tuple[str, ...], tuple[str, ...]]]:
     """Name, degrees of freedom, their names and units: actuated joints first, then free bodies."""
-    transmission = int(mujoco.mjtTrn.mjTRN_JOINT)
-    actuated = [
-        int(model.actuator_trnid[i, 0]) for i in range(model.nu)
-        if model.actuator_trntype[i] == transmission
-    ]  # fmt: skip
-    joints = [j for j in dict.fromkeys(actuated) if model.jnt_type[j] != FREE]
+    joints = [*list_actuated_joints(model)]
     out = []
     if joints:
         out.append((

@@ -109,7 +109,9 @@ def conclude(state: SearchState) -> Discovery:
     if verdict == "unknown effect":
         named, model, scores = (), nominal, state.nominal_scores
     unnamed = [n for n in every if n not in named]
-    refused = (RejectedEffect(n.candidate, n.parameters, n.gain, n.proof) for n in unnamed)
+    refused = (
+        RejectedEffect(n.candidate, n.parameters, n.gain, n.proof, n.outside) for n in unnamed
+    )
     rejected = (*refused, *state.rejected)
     is_missing = verdict != "nothing missing"
     forces = estimate_missing_forces(nominal.refit, options) if is_missing else ()

@@ -13,6 +13,7 @@ from identification.prediction.result import RecordsDiscovery
 from identification.report.finding_json import (
     finding_to_json,
     finite,
+    outside_to_json,
     parameters_to_json,
     rejected_to_json,
 )
@@ -77,6 +78,7 @@ def _named_to_json(named: NamedEffect) -> dict[str, Any]:
             "parameter": named.retuned.parameter, "distance": named.retuned.distance,
             "confidence": named.retuned.confidence,
         },
+        "outside": outside_to_json(named.outside),
         "advice": named.advice or None,
         "proof": {"gain": named.proof.gain, "t": named.proof.t, "share": named.proof.share},
         "agrees": list(named.proof.agrees), "disagrees": list(named.proof.disagrees),

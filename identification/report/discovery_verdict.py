@@ -8,7 +8,7 @@ from math import hypot, isfinite
 from identification.discovery.effect_results import Detectable, NamedEffect
 from identification.discovery.result import Discovery
 from identification.quantities import alike, quantity
-from identification.report.effect_words import describe_effect, describe_sizes
+from identification.report.effect_words import describe_effect, describe_outside, describe_sizes
 from identification.report.finding_words import describe_finding, sentence
 
 RETUNED = 0.05  # the explanation without an effect gets a sentence above this confidence
@@ -21,7 +21,10 @@ def discovery_verdict(found: Discovery) -> list[str]:
         return [nothing(found)]
     if found.verdict == "unknown effect":
         return [unknown(found)]
-    said = [f"{_named(found, named)}{_retuned(named)}{_agreement(named)}" for named in found.named]
+    said = [
+        f"{_named(found, named)}{_retuned(named)}{_outside(named)}{_agreement(named)}"
+        for named in found.named
+    ]
     said.append(_proof(found))
     if found.unexplained:
         said.append(unexplained(found))
@@ -122,6 +125,13 @@ def _retuned(named: NamedEffect) -> str:
         f" {abs(other.distance):.2g} std {'above' if other.distance > 0 else 'below'} what was said"
         " to be known of it, the model explains the same. Measure it, or record another motion."
     )
+
+
+def _outside(named: NamedEffect) -> str:
+    """A sentence where a law that no catalogue lists may explain the same."""
+    if named.outside is None or named.outside.confidence < RETUNED:
+        return ""
+    return f" Or it is {describe_outside(named.outside)}."
 
 
 def _agreement(named: NamedEffect) -> str:

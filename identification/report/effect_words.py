@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from identification.discovery.effect_results import NamedEffect, RejectedEffect
+from identification.discovery.effect_results import NamedEffect, Outside, RejectedEffect
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
 from identification.discovery.scoring.scores import Score
@@ -58,8 +58,19 @@ def _describe_next(scores: Sequence[Score], options: DiscoveryOptions) -> str:
 
 def _describe_proof(rejected: RejectedEffect) -> str:
     """What a rejected effect would do on fitted and on unseen samples."""
-    proof = rejected.proof
+    proof, outside = rejected.proof, rejected.outside
+    instead = f"; instead of it, {describe_outside(outside)}" if outside is not None else ""
     return (
         f"gain {rejected.gain:.4g} on fitted samples; on unseen ones t = {proof.t:.1f}, and the"
         f" mean square {'falls' if proof.fall >= 0 else 'rises'} by {100 * abs(proof.fall):.3g} %"
+        f"{instead}"
+    )
+
+
+def describe_outside(outside: Outside) -> str:
+    """A curve that no catalogue lists, and how likely it is."""
+    link = "at" if outside.along == "time" else "of"
+    return (
+        f"some force that follows the {outside.along} {link} {outside.where}, by a law that is in"
+        f" no catalogue ({100 * outside.confidence:.0f} %)"
     )

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from math import isfinite
 from typing import Any
 
-from identification.discovery.effect_results import RejectedEffect
+from identification.discovery.effect_results import Outside, RejectedEffect
 from identification.discovery.findings.evidence import DoubtfulEffect, OversizedEffect
 from identification.discovery.findings.finding import Finding
 
@@ -40,7 +40,13 @@ def rejected_to_json(rejected: RejectedEffect) -> dict[str, Any]:
         "name": rejected.candidate.effect.name, "where": rejected.candidate.where,
         "parameters": parameters_to_json(rejected.parameters), "gain": rejected.gain,
         "proof": {"gain": proof.gain, "t": proof.t, "fall": proof.fall},
+        "outside": outside_to_json(rejected.outside),
     }  # fmt: skip
+
+
+def outside_to_json(outside: Outside | None) -> dict[str, Any] | None:
+    """A curve that no catalogue lists, as plain values."""
+    return None if outside is None else asdict(outside)
 
 
 def _oversized_to_json(evidence: OversizedEffect) -> dict[str, Any]:

@@ -1,0 +1,173 @@
+"""Curves that no law gives: does what an effect explains follow one of them instead?
+
+    f_i = Σ_j c_j h_j(s_i)        h_j: hats with eight nodes; s_i: of joint i the rate, the position
+                                  or the input, or the time
+
+The nearest neighbour in the catalogue of an effect that is not in it explains a part, and leaves a
+pattern that a curve takes. Only where a curve explains more than chance beside all named effects is
+it compared with each of them, to first order about the final fit and under the noise with both:
+
+    loss = min_δ,c C(q̂ + δ, c | η = 0) - min_δ C(q̂ + δ),      C: the criterion
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from identification.discovery.missing_forces import list_actuated_joints
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.scoring.scores import score
+from identification.discovery.scoring.sensitivities import Sensitivity
+from identification.discovery.scoring.significance import correct_p_value
+from identification.effects.effect import CURVE, Candidate, Effect, Size
+from identification.kalman.linear import Linearisation, linearise_records
+from identification.kalman.noise_fit import NoiseLevel
+from identification.kalman.problem import linearise_criterion
+from identification.kalman.refit import Refit
+from identification.logs.log import Log
+
+NODES = 8  # as many as curves over a horizon have
+ALL = "the actuated joints"
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve that explains a part of what a fit leaves.
+
+    Attributes:
+        sensitivity: of the outputs, to the force at each of its nodes.
+        level: the noise of the fit with the curve beside all that it has.
+    """
+
+    sensitivity: Sensitivity
+    level: NoiseLevel
+
+
+def find_curves(fit: Refit, options: DiscoveryOptions) -> tuple[Curve, ...]:
+    """Curves that explain more than chance of what a fit leaves, the best first.
+
+    The noise is that of the fit, which takes for an error of the inputs a part of what a law
+    leaves: a curve takes errors of the inputs as well, so that no smaller noise is believed.
+
+    Args:
+        fit: the fit with all named effects.
+        options: what is beyond chance.
+
+    Raises:
+        DivergenceError: the model cannot be simulated.
+    """
+    curves = list_curves(fit)
+    scores = score(fit, curves, options) if curves else ()
+    every = {s.candidate.key: s for s in curves}
+    return tuple(
+        Curve(every[s.candidate.key], s.level)
+        for s in scores
+        if correct_p_value(s, len(scores)) < options.significance
+    )
+
+
+def list_curves(fit: Refit) -> tuple[Sensitivity, ...]:
+    """Sensitivities to the nodes of every curve: one of all actuated joints, and one of each."""
+    predictor, space, q = fit.point.predictor, fit.point.space, fit.point.q
+    model = predictor.plant.model
+    joints = list_actuated_joints(model)
+    if not joints:
+        return ()
+    dofs = [int(model.jnt_dofadr[j]) for j in joints]
+    records = linearise_records(predictor, space.decode(q), forces=dofs)
+    logs = [record.log for record, _ in predictor.records()]
+    each = [_regressors(r, log, joints) for r, log in zip(records, logs, strict=True)]
+    out = []
+    for along in each[0]:
+        nodes = _place_nodes(np.concatenate([of[along].ravel() for of in each]))
+        hats = [_hats(of[along], nodes) for of in each]
+        S = np.concatenate([_respond(r, h) for r, h in zip(records, hats, strict=True)])
+        out.append(Sensitivity(_curve(along, ALL), S.sum(axis=2)))
+        for i, j in enumerate(joints if len(joints) > 1 else ()):
+            out.append(Sensitivity(_curve(along, model.joint(j).name), S[:, :, i]))
+    return tuple(out)
+
+
+def compare_with_curve(fit: Refit, candidate: Candidate, curve: Curve) -> tuple[float, float]:
+    """What a fit loses with a curve instead of an effect, and what the effect takes of the curve.
+
+    Args:
+        fit: the fit with the effect.
+        candidate: the effect.
+        curve: the curve.
+
+    Returns:
+        The loss, of twice the log likelihood, below zero where the curve explains more; and the
+        gain of the effect as a share of that of the curve. An effect whose size is not estimated (a
+        limit) cannot be taken out by setting the size to zero: the loss is infinite.
+    """
+    point, names = fit.point, np.array(fit.point.space.names)
+    mine = np.isin(names, candidate.free)
+    if not mine.any():
+        return np.inf, np.inf
+    with threadpool_limits(1, "blas"):
+        problem = linearise_criterion(point, curve.level, fit.mean, fit.prior)
+        S = curve.sensitivity.S
+        W = problem.filter(S).reshape(point.e.size, -1) / curve.level.sigma
+    added = np.vstack([W, np.zeros((len(names), W.shape[1]))])
+    others = problem.rows[:, ~np.isin(names, candidate.estimated)]
+    target = problem.target + problem.rows[:, mine] @ point.q[mine]
+    neither, drawn = _least(others, target), _least(np.hstack([others, added]), target)
+    law = _least(problem.rows, problem.target)
+    return drawn - law, (neither - law) / max(neither - drawn, 1e-300)
+
+
+def _least(rows: np.ndarray, target: np.ndarray) -> float:
+    """The minimum of ‖target - rows move‖²."""
+    scaled = rows / (np.linalg.norm(rows, axis=0) + 1e-300)
+    move = np.linalg.lstsq(scaled, target, rcond=1e-12)[0]
+    return float(np.sum((target - scaled @ move) ** 2))
+
+
+def _curve(along: str, where: str) -> Candidate:
+    sizes = tuple(Size(f"c_{j}", "", np.inf, 1.0) for j in range(1, NODES + 1))
+    places = {where: "" if where == ALL else f"@{where}"}
+    return Candidate(Effect(f"{CURVE}_{along}", f"f({along})", sizes, places=places), where, {})
+
+
+def _regressors(
+    linear: Linearisation, log: Log, joints: Mapping[int, int]
+) -> dict[str, np.ndarray]:
+    """What a force may follow, at the samples of one record but the last, shape (N-1, n) each."""
+    along, of = linear.along, list(joints)
+    out = {
+        "rate": along.states["qvel"][:-1, along.model.jnt_dofadr[of]],
+        "position": along.states["qpos"][:-1, along.model.jnt_qposadr[of]],
+        "time": np.repeat(log.time[:-1, None], len(of), axis=1),
+    }
+    if max(joints.values()) < log.inputs.shape[1]:
+        out["input"] = log.inputs[:-1, list(joints.values())]
+    return out
+
+
+def _place_nodes(s: np.ndarray) -> np.ndarray:
+    """Nodes between which there are equally many samples, shape (m,); fewer where values repeat."""
+    return np.unique(np.quantile(s, np.linspace(0, 1, NODES)))
+
+
+def _hats(s: np.ndarray, nodes: np.ndarray) -> np.ndarray:
+    """Hats about the nodes, which add up to one, shape (*s.shape, NODES); zero where missing."""
+    out = np.zeros((*s.shape, NODES))
+    for j in range(len(nodes)):
+        out[..., j] = np.interp(s, nodes, np.eye(len(nodes))[j])
+    return out
+
+
+def _respond(linear: Linearisation, hats: np.ndarray) -> np.ndarray:
+    """Outputs of unit forces that follow hats (N-1, n, m), shape (N, ny, n, m)."""
+    plant = linear.at_samples()
+    x = np.zeros((plant.A.shape[1], *hats.shape[1:]))
+    out = np.zeros((len(hats) + 1, len(plant.C), *hats.shape[1:]))
+    for k, (A, B, h) in enumerate(zip(plant.A, plant.B, hats, strict=True)):
+        x = np.tensordot(A, x, 1) + B[..., None] * h
+        out[k + 1] = np.tensordot(plant.C, x, 1)
+    return out

@@ -1,0 +1,161 @@
+"""What is in no catalogue is not named with certainty after its nearest neighbour."""
+
+import numpy as np
+import pytest
+from discovery_cases import (
+    EFFECTS,
+    OPTIONS,
+    SENSOR,
+    STEP,
+    nominal_model,
+    record,
+    slider,
+    steps,
+    task,
+    wander,
+)  # fmt: skip
+from scipy.integrate import solve_ivp
+
+from identification import Log
+from identification.discovery.fitted_model import fit_model
+from identification.discovery.free_curves import (
+    NODES,
+    Curve,
+    compare_with_curve,
+    find_curves,
+    list_curves,
+)
+from identification.discovery.search import discover
+from identification.effects.effect import Candidate
+from identification.kalman.problem import linearise_criterion
+from identification.model.predictor import Predictor
+from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_text import discovery_text
+
+N = 1000
+ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02}
+GAIN = 5.0  # force per input of the slider [N]
+
+
+def recorded(force, seed=4):
+    """What the slider does with a force(x, v) [N] beside its own, by another integrator."""
+    u = steps(N) + wander(N, 0.003, 0.1, seed=8)
+
+    def rate(_, state, held):
+        x, v = state
+        return v, (GAIN * held - ROBOT["damping"] * v + force(x, v)) / ROBOT["mass"]
+
+    state, y = np.array([ROBOT["x0"], ROBOT["v0"]]), []
+    for held in u[:, 0]:
+        y.append(state[0])
+        state = solve_ivp(rate, (0, STEP), state, args=(held,), rtol=1e-8, atol=1e-10).y[:, -1]
+    noise = SENSOR * np.random.default_rng(seed).standard_normal(N)
+    return Log(
+        time=STEP * np.arange(N), inputs=steps(N), outputs=(np.array(y) + noise)[:, None],
+        input_names=("force",), output_names=("position",),
+        units={"force": "N", "position": "m"},
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def springy():
+    """A fit of a slider with a spring that has one."""
+    log = record(slider(**ROBOT, **{"spring.k": 5.0}), N, seed=11, error=wander(N, 0.03, 0.1, 8))
+    asked = task(log)
+    (spring,) = (c for c in EFFECTS if c.name == "spring")
+    candidate = Candidate(spring, "joint", {})
+    return fit_model(asked, (candidate,), {"spring.k": 4.0}), candidate
+
+
+def test_a_curve_along_time_moves_the_outputs_as_that_force_does(springy):
+    fit = springy[0].refit
+    point = fit.point
+    every = {s.candidate.effect.name: s.S for s in list_curves(fit)}
+    assert every.keys() == {"curve_rate", "curve_position", "curve_input", "curve_time"}
+    log, j = point.log, 3
+    nodes = np.quantile(log.time[:-1], np.linspace(0, 1, NODES))
+    hat = np.interp(log.time, nodes, np.eye(NODES)[j])[:, None]
+    values = point.space.decode(point.q)[None]
+    pushed = Predictor(
+        point.predictor.plant,
+        Log(time=log.time, inputs=log.inputs + 1e-3 * hat / GAIN, outputs=log.outputs,
+            input_names=log.input_names, output_names=log.output_names),
+        point.predictor.names, point.predictor.fixed,
+    )  # fmt: skip
+    moved = (pushed.predict(values) - point.predictor.predict(values))[0] / 1e-3
+    np.testing.assert_allclose(every["curve_time"][..., j], moved, atol=2e-3 * np.abs(moved).max())
+    for S in every.values():  # hats add up to one: a constant force
+        total = every["curve_time"].sum(axis=2)
+        np.testing.assert_allclose(S.sum(axis=2), total, atol=1e-6 * np.abs(total).max())
+
+
+def test_no_curve_is_left_where_the_law_is_right(springy):
+    model, spring = springy
+    assert find_curves(model.refit, OPTIONS) == ()
+    along = {s.candidate.effect.name: s for s in list_curves(model.refit)}
+    # A curve of the position explains what a spring does, one of the input does not.
+    losses = {
+        name: compare_with_curve(model.refit, spring, Curve(s, model.refit.level))[0]
+        for name, s in along.items()
+    }
+    assert losses["curve_position"] < 0.02 * losses["curve_input"]
+    assert losses["curve_input"] > 10
+
+
+def test_the_loss_is_that_of_two_fits_of_least_squares(springy):
+    model, spring = springy
+    fit = model.refit
+    curve = Curve(list_curves(fit)[0], fit.level)
+    problem = linearise_criterion(fit.point, fit.level, fit.mean, fit.prior)
+    mine = fit.point.space.names.index("spring.k")
+    W = problem.filter(curve.sensitivity.S).reshape(fit.point.e.size, -1) / fit.level.sigma
+    rows = np.delete(problem.rows, mine, axis=1)
+    rows = np.hstack([rows, np.vstack([W, np.zeros((len(fit.point.q), NODES))])])
+    target = problem.target + problem.rows[:, mine] * fit.point.q[mine]
+    without = target - rows @ np.linalg.pinv(rows) @ target
+    having = problem.target - problem.rows @ np.linalg.pinv(problem.rows) @ problem.target
+    none = np.delete(problem.rows, mine, axis=1)
+    neither = target - none @ np.linalg.pinv(none) @ target
+    drawn, law, nothing = (x @ x for x in (without, having, neither))
+    loss, share = compare_with_curve(fit, spring, curve)
+    assert loss == pytest.approx(drawn - law, rel=1e-4)
+    assert share == pytest.approx((nothing - law) / (nothing - drawn), rel=1e-4)
+
+
+def found(force):
+    return discover(nominal_model(), recorded(force), EFFECTS, options=OPTIONS)
+
+
+def test_a_right_name_stays_as_sure_as_it_was():
+    (named,) = found(lambda x, v: -5 * x).named
+    assert named.candidate.effect.name == "spring"
+    assert named.outside is None
+    assert named.confidence == OPTIONS.max_confidence
+
+
+def hardening(x, v):
+    """A cubic spring, of which the catalogue knows the linear one [N]."""
+    return -20 * x**3
+
+
+def creeping(x, v):
+    """A friction that falls where it barely moves; the catalogue knows a constant one [N]."""
+    return -0.6 * np.tanh(v / 0.3) - 0.6 * np.tanh(v / 0.01) * np.exp(-((v / 0.05) ** 2))
+
+
+@pytest.mark.parametrize(
+    ("force", "neighbour", "along"),
+    [(hardening, "spring", "position"), (creeping, "rubbing", "rate")],
+)
+def test_the_nearest_neighbour_of_an_unlisted_law_is_not_named_with_certainty(
+    force, neighbour, along
+):
+    answer = found(force)
+    (named,) = answer.named
+    assert named.candidate.effect.name == neighbour
+    assert named.outside.along == along
+    assert named.outside.confidence > 0.2
+    assert named.confidence < 0.75
+    (said,) = discovery_to_json(answer)["effects"]
+    assert said["outside"]["along"] == along
+    assert f"follows the {along} of the actuated joints" in discovery_text(answer)
