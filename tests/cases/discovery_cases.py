@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from types import SimpleNamespace
 
 import mujoco
@@ -12,6 +13,7 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import score
 from identification.discovery.scoring.sensitivities import Sensitivity
+from identification.discovery.state import SearchState, first_state, next_state
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate, Effect, Size
 from identification.kalman.linear import LinearPlant
@@ -178,3 +180,23 @@ def wander(samples, rms, time, seed):
     for k in range(1, samples):
         w[k] = a * w[k - 1] + np.sqrt(1 - a**2) * w[k]
     return w
+
+
+def disturbed(error=0.0, **values):
+    """A log of a slider whose values are not the model's, and whose force wanders a little."""
+    robot = slider(**{"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02, **values})
+    return record(robot, 500, seed=11, error=error + wander(500, 0.03, 0.1, seed=8))
+
+
+def stepped(state: SearchState) -> list[SearchState]:
+    """A state and all that follow it, the finished one last."""
+    seen = [state]
+    while not seen[-1].is_finished:
+        seen.append(next_state(seen[-1], print))
+    return seen
+
+
+@cache
+def searched(**values) -> list[SearchState]:
+    """Every state of a search in a disturbed log."""
+    return stepped(first_state(task(disturbed(**values)), print))

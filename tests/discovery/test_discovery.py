@@ -3,30 +3,40 @@
 import subprocess
 import sys
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
-from discovery_cases import EFFECTS, OPTIONS, STEP, nominal_model, record, slider, wander
+from discovery_cases import (
+    EFFECTS,
+    OPTIONS,
+    STEP,
+    disturbed,
+    nominal_model,
+    record,
+    searched,
+    slider,
+    wander,
+)
 
 from identification import InputError
-from identification.discovery.confidence import name_effects
 from identification.discovery.findings.evidence import StructuredInputError
 from identification.discovery.findings.finding import Finding, FindingKind
-from identification.discovery.fitted_model import fit_model
 from identification.discovery.search import discover
-from identification.discovery.selection.forward_selection import select_effect
-from identification.discovery.selection.pruning import exchange, prune
-from identification.discovery.verdict import compute_explained_share
+from identification.discovery.verdict import compute_explained_share, conclude
 
 ROOT = Path(__file__).parents[2]
-ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02}
+OFFSET = {"offset.f": -0.8}
 
 
-def found(error=0.0, options=OPTIONS, **sizes):
-    error = error + wander(500, 0.03, 0.1, seed=8)
-    log = record(slider(**{**ROBOT, **sizes}), 500, seed=11, error=error)
-    return discover(nominal_model(), log, EFFECTS, options=options)
+def found(error=0.0, options=OPTIONS, **values):
+    return discover(nominal_model(), disturbed(error, **values), EFFECTS, options=options)
+
+
+@cache
+def found_offset():
+    return found(**OFFSET)
 
 
 def evidence_of(answer, kind):
@@ -54,21 +64,9 @@ sys.exit(wrong)
     )  # fmt: skip
 
 
-def spied(monkeypatch, module, function):
-    """The arguments of every call that a module of discovery makes of a function."""
-    seen = []
-
-    def spy(*arguments):
-        seen.append(arguments)
-        return function(*arguments)
-
-    monkeypatch.setattr(f"identification.discovery.{module}.{function.__name__}", spy)
-    return seen
-
-
-@pytest.mark.parametrize(("name", "size"), [("offset.f", -0.8), ("rubbing.c", 1.0)])
+@pytest.mark.parametrize(("name", "size"), [*OFFSET.items(), ("rubbing.c", 1.0)])
 def test_what_is_hidden_is_named_with_its_size(name, size):
-    answer = found(**{name: size})
+    answer = found_offset() if name in OFFSET else found(**{name: size})
     assert answer.verdict == "named"
     (named,) = answer.named
     assert named.candidate.effect.name == name.split(".")[0]
@@ -79,9 +77,15 @@ def test_what_is_hidden_is_named_with_its_size(name, size):
     assert answer.after.rms < answer.before.rms
 
 
-@pytest.mark.parametrize("k", [9.0, 15.0])
-def test_what_is_too_strong_for_a_linear_score_is_at_least_not_misnamed(k):
-    answer = found(**{"spring.k": k})
+def test_the_verdict_is_that_of_a_search_that_is_stepped():
+    whole, answer = found_offset(), conclude(searched(**OFFSET)[-1])
+    assert answer.verdict == whole.verdict == "named"
+    assert [n.parameters for n in answer.named] == [n.parameters for n in whole.named]
+    assert [n.confidence for n in answer.named] == [n.confidence for n in whole.named]
+
+
+def test_what_is_too_strong_for_a_linear_score_is_at_least_not_misnamed():
+    answer = found(**{"spring.k": 15.0})
     assert answer.verdict in ("named", "unknown effect")
     assert {n.candidate.effect.name for n in answer.named} <= {"spring"}
 
@@ -96,34 +100,8 @@ def test_where_nothing_is_missing_it_says_so_and_what_it_would_have_seen():
     np.testing.assert_array_equal(answer.predicted_before, answer.predicted_after)
 
 
-def test_of_two_effects_neither_is_the_others_rival(monkeypatch):
-    seen = spied(monkeypatch, "verdict", name_effects)
-    answer = found(**{"offset.f": -0.8, "rubbing.c": 1.0})
-    assert {n.candidate.effect.name for n in answer.named} == {"offset", "rubbing"}
-    ((task, (first, second), *rest),) = seen
-    there = replace(first.model, candidates=second.model.candidates[-1:])
-    again = name_effects(task, (replace(first, alternatives=(there,)), second), *rest)
-    assert not again[0].rivals
-    assert again[0].confidence > 0.5
-
-
-def test_an_effect_gives_way_to_one_that_was_never_refitted_but_explains_more(monkeypatch):
-    seen = spied(monkeypatch, "state", prune)
-    found(**{"offset.f": -0.8, "rubbing.c": 1.5})
-    ((task, nominal, kept, model, sensitivities),) = seen
-    right = {c.effect.name: c for c in model.candidates}
-    spring = next(s.candidate for s in sensitivities if s.candidate.effect.name == "spring")
-    wrong = fit_model(task, (right["rubbing"], spring), model.refit.point.values)
-    alone = replace(kept[0].model, candidates=(spring,))
-    first = replace(kept[0], model=alone, alternatives=(), gain=10.0)
-    second = next(a for a in kept if a.candidate.effect.name == "rubbing")
-    _, better = exchange(task, nominal, [first, second], wrong, sensitivities)
-    assert {c.effect.name for c in better.candidates} == {"offset", "rubbing"}
-    assert better.negative_bic > wrong.negative_bic
-
-
 def test_what_fitted_samples_want_and_unseen_ones_do_not_prove_is_neither_named_nor_nothing():
-    answer = found(options=replace(OPTIONS, min_proof_t=1e9), **{"offset.f": -0.8})
+    answer = found(options=replace(OPTIONS, min_proof_t=1e9), **OFFSET)
     assert answer.verdict == "unknown effect"
     assert not answer.named
     (doubt,) = evidence_of(answer, FindingKind.DOUBTFUL_EFFECT)
@@ -147,21 +125,6 @@ def test_an_effect_that_hides_as_an_error_of_the_inputs_is_refitted_although_its
     assert answer.verdict == ("named" if sizes else "nothing missing")
 
 
-def test_what_was_refitted_beside_a_name_and_not_believed_is_kept(monkeypatch):
-    def spy(task, model, *rest):
-        if model.candidates:  # beside a first name nothing is proven
-            task = replace(task, options=replace(OPTIONS, min_proof_t=1e9))
-        return select_effect(task, model, *rest)
-
-    monkeypatch.setattr("identification.discovery.state.select_effect", spy)
-    answer = found(**{"offset.f": -0.8, "rubbing.c": 1.0})
-    rejected = {r.candidate.effect.name: r for r in answer.rejected}
-    assert "rubbing" in rejected
-    assert rejected["rubbing"].gain > 0
-    named = {n.candidate.effect.name for n in answer.named}
-    assert "offset" in (named if answer.verdict == "named" else rejected)
-
-
 @pytest.mark.parametrize("vibration", [0.0, 0.1])
 def test_what_is_proven_and_too_small_to_matter_is_named_where_nothing_else_is_left(vibration):
     error = vibration * np.sin(2 * np.pi * 2.3 * STEP * np.arange(500)[:, None])
@@ -170,10 +133,9 @@ def test_what_is_proven_and_too_small_to_matter_is_named_where_nothing_else_is_l
     assert {n.candidate.effect.name for n in answer.named} == (set() if vibration else {"offset"})
 
 
-def test_a_gap_ends_at_the_sensors_where_input_errors_cannot_be_believed(monkeypatch):
-    seen = spied(monkeypatch, "state", prune)
-    found(**{"offset.f": -0.8})
-    ((_, nominal, _, model, _),) = seen
+def test_a_gap_ends_at_the_sensors_where_input_errors_cannot_be_believed():
+    end = searched(**OFFSET)[-1]
+    nominal, model = end.nominal, end.model
     level = model.refit.level
     loud = replace(level, noise=level.noise.scaled(100.0))
     more = replace(model.validation, disturbance=10 * nominal.validation.rms)

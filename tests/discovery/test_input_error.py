@@ -1,5 +1,7 @@
 """Errors of the inputs that follow from what was logged are told from those that are random."""
 
+from functools import cache
+
 import mujoco
 import numpy as np
 import pytest
@@ -92,6 +94,12 @@ def carts_task(crosstalk, seed):
     return task(log, model=nominal_model)
 
 
+@cache
+def crossed(seed):
+    """The nominal model that is fitted to a log of carts with crosstalk."""
+    return fit_model(carts_task(0.1, seed), (), {})
+
+
 def test_the_response_is_that_of_the_dense_plant():
     rng = np.random.default_rng(3)
     plant = linear_plant(rng)
@@ -112,7 +120,7 @@ def test_curves_sum_to_one_and_each_is_of_one_input():
         np.testing.assert_allclose(r[:, i, i].mean(axis=0), 0, atol=1e-12)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, 1])
 def test_a_random_error_goes_along_with_nothing(seed):
     error = wander(N, 0.05, 0.1, seed=seed)
     model = fit_model(task(record(slider(mass=2.2, damping=2.7), N, seed, error)), (), {})
@@ -125,7 +133,7 @@ def test_a_random_error_goes_along_with_nothing(seed):
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_crosstalk_is_told_with_its_size_and_the_input_that_feels_it(seed):
-    model = fit_model(carts_task(0.1, seed), (), {})
+    model = crossed(seed)
     (finding,) = find_input_error(model.validation, OPTIONS)
     assert finding.evidence.regressor == "other inputs"
     assert finding.evidence.input == "g"
@@ -163,7 +171,7 @@ def test_an_error_along_the_rate_is_told_as_that():
 
 
 def test_a_robot_that_a_small_change_of_a_parameter_loses_is_not_asked(monkeypatch):
-    model = fit_model(carts_task(0.1, 2), (), {})
+    model = fit_model(carts_task(0.1, 2), (), {})  # its own: what is found once is kept
 
     def lost(*_):
         raise DivergenceError("lost")

@@ -49,7 +49,7 @@ def changes(log):
     return find_robot_change(fit_model(task(log), (), {}).validation, OPTIONS)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, 1])
 def test_a_robot_that_stays_as_it_is_has_not_changed(seed):
     error = wander(N, 0.03 * (seed % 2), 0.1, seed=seed)
     log = record(slider(mass=2.2, damping=2.7), N, seed=seed, error=error)

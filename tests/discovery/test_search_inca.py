@@ -1,6 +1,6 @@
 """The robot's own discovery on logs of the independent reference; some seconds each.
 
-Logs of 6 s and five candidates: enough to name what is large, at a tenth of the price.
+Logs of 4 s and five candidates: enough to name what is large, at a tenth of the price.
 """
 
 from dataclasses import replace
@@ -15,7 +15,7 @@ from inca_mj.worlds import HiddenSetting, effect, world
 
 FEW = ("load_dependent_friction", "stribeck_friction", "air_drag", "external_force", "com_offset")
 FIVE = tuple(e for e in CATALOGUE if e.name in FEW)
-SHORT = HiddenSetting(duration=6.0)
+SHORT = HiddenSetting(duration=4.0)
 ALIKE = spread_of("none")
 
 
@@ -32,7 +32,7 @@ def test_load_dependent_friction_is_named():
 
 
 def test_a_jump_between_the_times_that_are_scored_is_named_with_its_time():
-    still = world(4, setting=HiddenSetting(duration=4.0)).log
+    still = world(4, setting=SHORT).log
     jump = np.zeros_like(still.outputs)
     jump[:, 2] = 0.02 * np.clip(0.5 + (still.time - 1.3) / 0.1, 0.0, 1.0)
     log = replace(still, outputs=still.outputs + jump)

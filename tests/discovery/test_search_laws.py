@@ -1,6 +1,7 @@
 """Laws of a search: what must change nothing, what must halve a variance, who is never likelier."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -87,10 +88,15 @@ def test_twice_the_records_halve_the_variance():
         assert std[0][name] / std[1][name] == pytest.approx(2**0.5, rel=0.05), name
 
 
+@cache
+def parent():
+    """A task, and the nominal model that is fitted to its log."""
+    task = task_of(record(slider(**HIDDEN), 500, seed=5))
+    return task, fit_model(task, (), {})
+
+
 @pytest.mark.parametrize("candidate", EFFECTS, ids=lambda e: e.name)
 def test_a_child_is_never_less_likely_than_its_parent(candidate):
-    log = record(slider(**HIDDEN), 500, seed=5)
-    task = task_of(log)
-    parent = fit_model(task, (), {})
-    child = fit_model(task, (Candidate(candidate, "joint", {}),), {}, parent)
-    assert child.refit.log_posterior > parent.refit.log_posterior - OPTIONS.bare_bic / 2
+    task, model = parent()
+    child = fit_model(task, (Candidate(candidate, "joint", {}),), {}, model)
+    assert child.refit.log_posterior > model.refit.log_posterior - OPTIONS.bare_bic / 2

@@ -1,20 +1,16 @@
-"""A search is a state that is stepped until it is finished."""
+"""A search is a state that is stepped until it is finished; here it is one for two effects."""
 
 from dataclasses import replace
 
 import pytest
-from discovery_cases import EFFECTS, OPTIONS, nominal_model, record, slider, task, wander
+from discovery_cases import EFFECTS, OPTIONS, searched, stepped
 
-from identification.discovery.search import discover
-from identification.discovery.state import first_state, next_state
+from identification.discovery.confidence import name_effects
+from identification.discovery.fitted_model import fit_model
+from identification.discovery.selection.forward_selection import select_effect
+from identification.discovery.selection.pruning import exchange
+from identification.discovery.state import next_state
 from identification.discovery.verdict import conclude
-
-ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02}
-
-
-def log(**sizes):
-    error = wander(500, 0.03, 0.1, seed=8)
-    return record(slider(**ROBOT, **sizes), 500, seed=11, error=error)
 
 
 def names(state):
@@ -23,11 +19,7 @@ def names(state):
 
 @pytest.fixture(scope="module")
 def states():
-    """Every state of a search for two effects, the finished one last."""
-    seen = [first_state(task(log(**{"offset.f": -0.8, "rubbing.c": 1.0})), print)]
-    while not seen[-1].is_finished:
-        seen.append(next_state(seen[-1], print))
-    return seen
+    return searched(**{"offset.f": -0.8, "rubbing.c": 1.0})
 
 
 def test_each_step_accepts_an_effect_or_ends_the_selection(states):
@@ -53,16 +45,47 @@ def test_a_finished_state_stays_as_it_is(states):
     assert next_state(states[-1], print) is states[-1]
 
 
-def test_the_verdict_is_that_of_the_whole_discovery(states):
-    answer, whole = conclude(states[-1]), discover(nominal_model(), states[0].task.log, EFFECTS)
-    assert answer.verdict == whole.verdict == "named"
-    assert [n.parameters for n in answer.named] == [n.parameters for n in whole.named]
-    assert [n.confidence for n in answer.named] == [n.confidence for n in whole.named]
-
-
 def test_no_more_effects_are_accepted_than_the_options_admit(states):
     one = replace(OPTIONS, max_effects=1)
     state = replace(states[0], task=replace(states[0].task, options=one))
     state = next_state(state, print)
     assert state.stage == "pruning"
     assert names(state) == names(states[1])
+
+
+def test_of_two_effects_neither_is_the_others_rival(states):
+    end = states[-1]
+    assert {n.candidate.effect.name for n in conclude(end).named} == {"offset", "rubbing"}
+    first, second = end.accepted
+    there = replace(first.model, candidates=second.model.candidates[-1:])
+    accepted = (replace(first, alternatives=(there,)), second)
+    again = name_effects(end.task, accepted, end.model, end.sensitivities, 1.0)
+    assert not again[0].rivals
+    assert again[0].confidence > 0.5
+
+
+def test_an_effect_gives_way_to_one_that_was_never_refitted_but_explains_more(states):
+    end = states[-2]
+    kept = {a.candidate.effect.name: a for a in end.accepted}
+    spring = next(s.candidate for s in end.sensitivities if s.candidate.effect.name == "spring")
+    values = end.model.refit.point.values
+    wrong = fit_model(end.task, (kept["rubbing"].candidate, spring), values)
+    alone = replace(kept["offset"].model, candidates=(spring,))
+    first = replace(kept["offset"], model=alone, alternatives=(), gain=10.0)
+    accepted = [first, kept["rubbing"]]
+    _, better = exchange(end.task, end.nominal, accepted, wrong, end.sensitivities)
+    assert {c.effect.name for c in better.candidates} == {"offset", "rubbing"}
+    assert better.negative_bic > wrong.negative_bic
+
+
+def test_what_was_refitted_beside_a_name_and_not_believed_is_kept(states, monkeypatch):
+    def doubtful(task, *rest):  # beside a first name nothing is proven
+        return select_effect(replace(task, options=replace(OPTIONS, min_proof_t=1e9)), *rest)
+
+    monkeypatch.setattr("identification.discovery.state.select_effect", doubtful)
+    answer = conclude(stepped(states[1])[-1])
+    rejected = {r.candidate.effect.name: r for r in answer.rejected}
+    assert "rubbing" in rejected
+    assert rejected["rubbing"].gain > 0
+    named = {n.candidate.effect.name for n in answer.named}
+    assert "offset" in (named if answer.verdict == "named" else rejected)

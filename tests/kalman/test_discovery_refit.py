@@ -1,5 +1,7 @@
 """The fit by innovations finds a slider's parameters, from afar, under noise of the input."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from discovery_cases import EFFECTS, FREE, OPTIONS, nominal_model, record, slider, wander
@@ -25,14 +27,28 @@ def begun_at(log, start):
     return fit_with_effects(nominal_model(), log, (), start, OPTIONS, steps=0)
 
 
+@cache
+def near():
+    """A log whose input errs, and the fit from the truth."""
+    log = record(slider(**TRUE), 300, seed=1, error=wander(300, 0.05, 0.1, seed=1))
+    return log, fitted(log, TRUE)
+
+
+@cache
+def shaken():
+    """A fit of no step to a log of a vibration, which no noise of the inputs is like."""
+    t = 0.02 * np.arange(300)[:, None]
+    log = record(slider(**TRUE), 300, seed=1, error=3.0 * np.sin(2 * np.pi * 4.1 * t))
+    return begun_at(log, {})
+
+
 @pytest.mark.parametrize("factors", [(2.0, 0.5), (0.5, 2.0), (2.5, 2.5)])
 def test_it_finds_the_truth_from_far_starts_under_coloured_input_noise(factors):
-    log = record(slider(**TRUE), 300, seed=1, error=wander(300, 0.05, 0.1, seed=1))
-    near = fitted(log, TRUE)
+    log, end = near()
     mass, damping = factors
     far = fitted(log, {"mass": 2.0 * mass, "damping": 3.0 * damping, "x0": 0.1, "v0": 0.1})
     # A search ends where the criterion would fall by less than the noise lets it.
-    assert np.abs((far.point.q - near.point.q) / near.std).max() < 1
+    assert np.abs((far.point.q - end.point.q) / end.std).max() < 1
     assert far.point.values["mass"] == pytest.approx(2.4, rel=0.15)
 
 
@@ -76,11 +92,9 @@ def test_base_parameters_stay_within_a_factor_of_their_nominal_values():
     assert fitted(log, {}).point.values["mass"] >= 2.0 / 3 - 1e-9
 
 
-@pytest.mark.parametrize("steps", [0, 1, 3, 20])
+@pytest.mark.parametrize("steps", [0, 3, 20])
 def test_a_search_ends_at_the_likeliest_point_since_its_noise_was_sharpened(monkeypatch, steps):
-    t = 0.02 * np.arange(300)[:, None]  # a vibration, which no noise of the inputs is like
-    log = record(slider(**TRUE), 300, seed=1, error=3.0 * np.sin(2 * np.pi * 4.1 * t))
-    begun = begun_at(log, {})
+    begun = shaken()
     sharpened = []
 
     def spy(point, prior, options, near, fine=False, largest=np.inf):
@@ -109,9 +123,7 @@ def test_a_fit_that_cannot_come_to_what_matters_ends_early_and_says_so():
 
 
 def test_likelihood_does_not_lead_where_inputs_err_beyond_belief_and_not_by_chance():
-    t = 0.02 * np.arange(300)[:, None]
-    log = record(slider(**TRUE), 300, seed=1, error=3.0 * np.sin(2 * np.pi * 4.1 * t))
-    begun = begun_at(log, {})
+    begun = shaken()
     points = [*descend(begun.point, begun.mean, begun.prior, OPTIONS)]
     (end, level), levels = points[-1], [lv for _, lv in points]
     assert level.input_std > ALLOWED * end.motion  # which the vibration needs

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import cache
 
 import pytest
 from pendulum_robot import TOML, make_folder, written
@@ -29,14 +30,15 @@ def rows(log, count):
 FEW = ("transmitted_load_friction", "gravity_load_friction", "quadratic_friction", "offset")
 
 
-def found(values, names=FEW, count=4):
-    logs = records(count, values)
+@cache
+def found(mu=0.15, names=FEW):
+    logs = records(4, {MU: mu} if mu else None)
     effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in names]
     return discover_records(nominal_model(), logs[:2], logs[2:], effects)
 
 
 def test_friction_under_the_transmitted_load_is_named_with_its_size():
-    answer = found({MU: 0.15})
+    answer = found()
     assert answer.verdict == "named"
     (named,) = answer.named
     assert named.effect.candidate.effect.name == "transmitted_load_friction"
@@ -46,6 +48,7 @@ def test_friction_under_the_transmitted_load_is_named_with_its_size():
     assert len(named.agrees) == 2
     assert named.disagrees == ()
     assert answer.share > 0.9
+    assert all(describe_finding(f) for f in answer.findings)
     said = records_text(answer)
     assert "grows with the transmitted load" in said
     assert "It lowers the error on 2 of 2 unseen records." in said
@@ -87,7 +90,7 @@ def test_records_too_short_to_confirm_are_refused():
 
 
 def test_shifts_of_records_stand_in_the_report(tmp_path):
-    answer = found({MU: 0.15}, names=FEW[:1])
+    answer = found()
     write_records_report(answer, tmp_path)
     assert "Shifts in time" not in (tmp_path / "report.html").read_text()
     late = ShiftedRecord(record="record 3", shift=0.02, std=0.002, fall=0.3, chance=1e-5)
@@ -97,7 +100,7 @@ def test_shifts_of_records_stand_in_the_report(tmp_path):
 
 
 def test_steps_that_are_longer_than_the_models_are_told(tmp_path):
-    answer = found({MU: 0.15}, names=FEW[:1])
+    answer = found()
     own = answer.nominal.plant
     own_step = own.bare.model.opt.timestep
     for steps in (1, 2):
@@ -117,14 +120,14 @@ def test_steps_that_are_longer_than_the_models_are_told(tmp_path):
 
 
 def test_records_without_an_effect_get_no_name():
-    answer = found(None)
+    answer = found(mu=0.0)
     assert answer.named == ()
     assert answer.verdict == "nothing missing"
     assert "Nothing is missing" in records_text(answer)
 
 
 def test_a_law_that_is_not_in_the_list_is_not_called_by_another_name():
-    answer = found({MU: 0.15}, names=("offset",))
+    answer = found(names=("offset",))
     assert answer.named == ()
 
 
@@ -156,11 +159,6 @@ def test_a_fit_that_is_worse_than_its_start_is_no_start_and_is_told():
     assert "as begun, without effects" in said
     begun = [r for r in said[said.index("fitted values:") :].splitlines() if r.startswith("  J ")]
     assert "±" not in begun[0].split("  ")[2]  # nobody fitted it
-
-
-def test_findings_have_words():
-    answer = found({MU: 0.15})
-    assert all(describe_finding(f) for f in answer.findings)
 
 
 def test_a_horizon_is_needed(refusal):

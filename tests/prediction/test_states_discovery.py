@@ -27,6 +27,8 @@ CASES = {
     BACKLASH: (Truth(c=1e-5, gap=0.012, zeta=1.0, f_c=F_C), 0.012),
     PRESLIDING: (Truth(slip=0.1, f_c=F_C), 0.1),
 }
+# of each record: a gap shows only where teeth part, what gives shows at all times
+SAMPLES = {BACKLASH: 200, ELASTIC: 160}
 
 
 def nominal():
@@ -37,7 +39,7 @@ def nominal():
 @cache
 def found(name):
     truth = CASES[name][0] if name else Truth(slip=3e-3, f_c=F_C)
-    logs = [measured(truth, k, samples=200) for k in range(4)]
+    logs = [measured(truth, k, samples=SAMPLES.get(name, 120)) for k in range(4)]
     model = nominal()
     effects = [e for e in candidates(model.plant, FREE) if e.name in (*OTHERS, *NAMES)]
     options = DiscoveryOptions(max_effects=1)

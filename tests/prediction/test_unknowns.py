@@ -76,13 +76,14 @@ def test_a_record_that_is_late_is_told_and_the_others_are_not():
         nominal_model=base, horizon=0.26, records=roles, effects=(effect,),
         options=DiscoveryOptions(),
     )  # fmt: skip
-    shifts = record_shifts(task, fit_nominal(base, roles))
+    model = fit_nominal(base, roles)
+    shifts = record_shifts(task, model)
     (told,) = told_shifts(shifts, len(roles), task.options)
     assert told.record == "record 4"
     assert told.shift == pytest.approx(0.02, abs=1e-3)
     assert told.std < 2e-3
     assert told.fall > 0.5
-    assert record_shifts(replace(task, effects=()), fit_nominal(base, roles)) == ()
+    assert record_shifts(replace(task, effects=()), model) == ()
 
 
 def with_offset(base):

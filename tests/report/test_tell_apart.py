@@ -35,11 +35,17 @@ def test_a_longer_record_tells_more(at) -> None:
     )
 
 
-def test_the_advice_names_the_best_input_and_stands_in_the_verdict() -> None:
-    outcome = found(one_of=True)
-    contrast = tell_apart(outcome, outcome.named[0])
-    assert contrast is not None
+def test_the_advice_names_the_best_input_and_stands_in_the_verdict(monkeypatch) -> None:
+    outcome, contrasts = found(one_of=True), []
+
+    def spy(*arguments):
+        contrasts.append(tell_apart(*arguments))
+        return contrasts[-1]
+
+    monkeypatch.setattr("inca_mj.workflows.look_alikes.tell_apart", spy)
     advised = told(outcome)
+    (contrast,) = contrasts
+    assert contrast is not None
     assert advised.named[0].advice == sentence(contrast)
     assert advised.named[0].advice in discovery_verdict(advised)[0]
     assert told(found()).named[0].advice == ""

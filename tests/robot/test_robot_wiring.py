@@ -40,7 +40,7 @@ def robot(folder, model, log, free, horizon=""):
 
 @pytest.fixture(scope="module")
 def cart(tmp_path_factory):
-    log = slider_log(steps(800))
+    log = slider_log(steps(400))
     y = run(slider(), log)
     log = replace(log, outputs=y + 1e-3 * RNG.standard_normal(y.shape), units={})
     return robot(tmp_path_factory.mktemp("cart"), SLIDER, log, "joint/slide.damping")
@@ -48,7 +48,7 @@ def cart(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def two_joints(tmp_path_factory):
-    u = steps(800, 2, hold=30)
+    u = steps(400, 2, hold=30)
     t = np.arange(len(u)) * 0.01
     log = Log(
         time=t,
@@ -86,7 +86,7 @@ def crane(z, feedback, samples=600):
 @pytest.fixture(scope="module")
 def hanging(tmp_path_factory):
     return robot(tmp_path_factory.mktemp("crane"), CRANE.format(z=-0.3),
-                 crane(-0.3, np.zeros(4)), "joint/x.damping")  # fmt: skip
+                 crane(-0.3, np.zeros(4), samples=400), "joint/x.damping")  # fmt: skip
 
 
 def refused(robot, log):

@@ -43,8 +43,12 @@ def scaled(log, factor):
 
 
 @pytest.mark.parametrize("xml", [PENDULUM, ARM], ids=["pendulum", "arm"])
-@pytest.mark.parametrize("world", [payload, no_gravity, friction, heavy], ids=lambda f: f.__name__)
-@pytest.mark.parametrize(("factor", "unit"), [(DEG, "deg"), (1e3, "mrad")])
+@pytest.mark.parametrize(
+    ("world", "factor", "unit"),
+    [*((world, DEG, "deg") for world in (payload, no_gravity, friction, heavy)),
+     (payload, 1e3, "mrad")],
+    ids=lambda x: getattr(x, "__name__", None),
+)  # fmt: skip
 def test_degrees_are_told_whatever_the_model_lacks(tmp_path, xml, world, factor, unit):
     wrong = scaled(log_of(xml, world), factor)
     own, read = robot(tmp_path, xml, wrong, "horizon = 0.2")
@@ -54,8 +58,9 @@ def test_degrees_are_told_whatever_the_model_lacks(tmp_path, xml, world, factor,
     refuse_miswired(replace(own, file=replace(own.file, trust=("units", "wiring"))), read)
 
 
-@pytest.mark.parametrize("step", [0.0, 1.5e-3, 2e-2])
-@pytest.mark.parametrize("late", [-3, 0, 6])
+@pytest.mark.parametrize(
+    ("late", "step"), [(0, 0.0), (0, 1.5e-3), (-3, 0.0), (-3, 2e-2), (6, 0.0), (6, 2e-2)]
+)
 @pytest.mark.parametrize("world", [nothing, payload, friction], ids=lambda f: f.__name__)
 def test_a_right_log_of_a_coarse_encoder_or_a_late_torque_passes(world, late, step):
     log = log_of(ARM, world)
