@@ -24,11 +24,38 @@ coordinate), inertias by up to 10 %. What is known of this before a fit is
 
 
 def page(
-    calibrations: Sequence[Row], discoveries: Sequence[Row], worlds: Sequence[Row] = ()
+    calibrations: Sequence[Row],
+    discoveries: Sequence[Row],
+    worlds: Sequence[Row] = (),
+    times: Sequence[Row] = (),
 ) -> str:
     """The page, from all rows: those of labelled robots, and those of `benchmarks/discovery.py`."""
-    parts = _calibrations(calibrations), _discoveries(discoveries), _worlds(worlds)
+    parts = (
+        _calibrations(calibrations), _discoveries(discoveries), _worlds(worlds), _times(times),
+    )  # fmt: skip
     return "\n".join([HEAD, *(line for part in parts for line in part)])
+
+
+def _times(rows: Sequence[Row]) -> list[str]:
+    """Times of whole searches on a machine that did nothing else."""
+    if not rows:
+        return []
+    lines = [
+        f"## Time on two quiet cores ({_commits(rows)})", "",
+        "    python benchmarks/as_built.py time --robot robot_00 [--records abc]", "",
+        "| robot | records | truth | whole search | processor time | nominal fit | sensitivities"
+        " | refits |",
+        "|---|---|---|---|---|---|---|---|",
+    ]  # fmt: skip
+    for row in rows:
+        s = row["stages"]
+        lines.append(
+            f"| {row['robot']} | {_records(row)[0]} |"
+            f" {' + '.join(row['truth']['effects']) or 'nothing'} | {row['seconds']:.0f} s |"
+            f" {row['processor_seconds']:.0f} s | {s['nominal fit']:.0f} s |"
+            f" {s['sensitivities']:.0f} s | {s['refits']:.0f} s |"
+        )
+    return [*lines, ""]
 
 
 def _calibrations(rows: Sequence[Row]) -> list[str]:
