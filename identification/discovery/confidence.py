@@ -19,8 +19,9 @@ from threadpoolctl import threadpool_limits
 
 from identification.discovery.effect_results import NamedEffect, Outside, Rival
 from identification.discovery.fitted_model import AcceptedEffect, FittedModel, collect_parameters
-from identification.discovery.free_curves import NODES, Curve, compare_with_curve, find_curves
+from identification.discovery.free_curves import NODES, Curve, find_curves
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.replacement import replace_effect
 from identification.discovery.retuning import retune
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.discovery.task import DiscoveryTask
@@ -98,11 +99,11 @@ def _worth_of_curve(
     A law that takes nearly all of what the curve takes may have something small beside it: the
     curve is then at most half as likely.
     """
-    loss, share = compare_with_curve(final.refit, mine, curve)
+    drawn = replace_effect(final.refit, mine, curve.sensitivity.S, curve.level)
     more = NODES - len(mine.free)
-    worth = -loss - more * float(np.log(len(final.refit.point.log)))
-    most = -2 * options.temperature * np.log(2) if share > options.equal_share else np.inf
-    return min(worth, most)
+    worth = -drawn.loss - more * float(np.log(len(final.refit.point.log)))
+    is_equal = drawn.share > options.equal_share
+    return min(worth, -2 * options.temperature * np.log(2)) if is_equal else worth
 
 
 def _outside(curve: Curve, probability: float) -> Outside:

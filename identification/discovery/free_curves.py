@@ -5,9 +5,7 @@
 
 The nearest neighbour in the catalogue of an effect that is not in it explains a part, and leaves a
 pattern that a curve takes. Only where a curve explains more than chance beside all named effects is
-it compared with each of them, to first order about the final fit and under the noise with both:
-
-    loss = min_δ,c C(q̂ + δ, c | η = 0) - min_δ C(q̂ + δ),      C: the criterion
+it compared with each of them (`replacement`), under the noise with both.
 """
 
 from __future__ import annotations
@@ -16,7 +14,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from identification.discovery.missing_forces import list_actuated_joints
 from identification.discovery.options import DiscoveryOptions
@@ -26,7 +23,6 @@ from identification.discovery.scoring.significance import correct_p_value
 from identification.effects.effect import CURVE, Candidate, Effect, Size
 from identification.kalman.linear import Linearisation, linearise_records
 from identification.kalman.noise_fit import NoiseLevel
-from identification.kalman.problem import linearise_criterion
 from identification.kalman.refit import Refit
 from identification.logs.log import Log
 
@@ -90,42 +86,6 @@ def list_curves(fit: Refit) -> tuple[Sensitivity, ...]:
         for i, j in enumerate(joints if len(joints) > 1 else ()):
             out.append(Sensitivity(_curve(along, model.joint(j).name), S[:, :, i]))
     return tuple(out)
-
-
-def compare_with_curve(fit: Refit, candidate: Candidate, curve: Curve) -> tuple[float, float]:
-    """What a fit loses with a curve instead of an effect, and what the effect takes of the curve.
-
-    Args:
-        fit: the fit with the effect.
-        candidate: the effect.
-        curve: the curve.
-
-    Returns:
-        The loss, of twice the log likelihood, below zero where the curve explains more; and the
-        gain of the effect as a share of that of the curve. An effect whose size is not estimated (a
-        limit) cannot be taken out by setting the size to zero: the loss is infinite.
-    """
-    point, names = fit.point, np.array(fit.point.space.names)
-    mine = np.isin(names, candidate.free)
-    if not mine.any():
-        return np.inf, np.inf
-    with threadpool_limits(1, "blas"):
-        problem = linearise_criterion(point, curve.level, fit.mean, fit.prior)
-        S = curve.sensitivity.S
-        W = problem.filter(S).reshape(point.e.size, -1) / curve.level.sigma
-    added = np.vstack([W, np.zeros((len(names), W.shape[1]))])
-    others = problem.rows[:, ~np.isin(names, candidate.estimated)]
-    target = problem.target + problem.rows[:, mine] @ point.q[mine]
-    neither, drawn = _least(others, target), _least(np.hstack([others, added]), target)
-    law = _least(problem.rows, problem.target)
-    return drawn - law, (neither - law) / max(neither - drawn, 1e-300)
-
-
-def _least(rows: np.ndarray, target: np.ndarray) -> float:
-    """The minimum of ‖target - rows move‖²."""
-    scaled = rows / (np.linalg.norm(rows, axis=0) + 1e-300)
-    move = np.linalg.lstsq(scaled, target, rcond=1e-12)[0]
-    return float(np.sum((target - scaled @ move) ** 2))
 
 
 def _curve(along: str, where: str) -> Candidate:

@@ -28,6 +28,7 @@ from identification.discovery.scoring.sensitivities import (
     list_single,
 )
 from identification.discovery.selection.forward_selection import select_effect
+from identification.discovery.selection.kinds import improve_kinds
 from identification.discovery.selection.pairs import find_pair
 from identification.discovery.selection.pruning import prune
 from identification.discovery.task import DiscoveryTask
@@ -139,12 +140,15 @@ def _select(state: SearchState, progress: Progress) -> SearchState:
     if not new:
         rejected = selection.rejected
         return replace(state, stage="deviants", rejected=rejected, seconds=watch.seconds)
-    model = new[-1].model
+    accepted, model = (*state.accepted, *new), new[-1].model
+    if len(accepted) > 1:
+        accepted, model = improve_kinds(task, accepted, model, state.sensitivities)
+        watch.stop("refits")
     scores = score_candidates(model, state.sensitivities, task.options)
     watch.stop("scores")
     return replace(
         state, stage="selection" if most > len(new) else "pruning", model=model,
-        accepted=(*state.accepted, *new), scores=scores, rejected=(), seconds=watch.seconds,
+        accepted=accepted, scores=scores, rejected=(), seconds=watch.seconds,
     )  # fmt: skip
 
 

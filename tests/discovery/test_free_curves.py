@@ -20,11 +20,10 @@ from identification import Log
 from identification.discovery.fitted_model import fit_model
 from identification.discovery.free_curves import (
     NODES,
-    Curve,
-    compare_with_curve,
     find_curves,
     list_curves,
 )
+from identification.discovery.replacement import replace_effect
 from identification.discovery.search import discover
 from identification.effects.effect import Candidate
 from identification.kalman.problem import linearise_criterion
@@ -95,7 +94,7 @@ def test_no_curve_is_left_where_the_law_is_right(springy):
     along = {s.candidate.effect.name: s for s in list_curves(model.refit)}
     # A curve of the position explains what a spring does, one of the input does not.
     losses = {
-        name: compare_with_curve(model.refit, spring, Curve(s, model.refit.level))[0]
+        name: replace_effect(model.refit, spring, s.S, model.refit.level).loss
         for name, s in along.items()
     }
     assert losses["curve_position"] < 0.02 * losses["curve_input"]
@@ -105,10 +104,10 @@ def test_no_curve_is_left_where_the_law_is_right(springy):
 def test_the_loss_is_that_of_two_fits_of_least_squares(springy):
     model, spring = springy
     fit = model.refit
-    curve = Curve(list_curves(fit)[0], fit.level)
+    S = list_curves(fit)[0].S
     problem = linearise_criterion(fit.point, fit.level, fit.mean, fit.prior)
     mine = fit.point.space.names.index("spring.k")
-    W = problem.filter(curve.sensitivity.S).reshape(fit.point.e.size, -1) / fit.level.sigma
+    W = problem.filter(S).reshape(fit.point.e.size, -1) / fit.level.sigma
     rows = np.delete(problem.rows, mine, axis=1)
     rows = np.hstack([rows, np.vstack([W, np.zeros((len(fit.point.q), NODES))])])
     target = problem.target + problem.rows[:, mine] * fit.point.q[mine]
@@ -117,9 +116,9 @@ def test_the_loss_is_that_of_two_fits_of_least_squares(springy):
     none = np.delete(problem.rows, mine, axis=1)
     neither = target - none @ np.linalg.pinv(none) @ target
     drawn, law, nothing = (x @ x for x in (without, having, neither))
-    loss, share = compare_with_curve(fit, spring, curve)
-    assert loss == pytest.approx(drawn - law, rel=1e-4)
-    assert share == pytest.approx((nothing - law) / (nothing - drawn), rel=1e-4)
+    other = replace_effect(fit, spring, S, fit.level)
+    assert other.loss == pytest.approx(drawn - law, rel=1e-4)
+    assert other.share == pytest.approx((nothing - law) / (nothing - drawn), rel=1e-4)
 
 
 def found(force):

@@ -1,0 +1,72 @@
+"""What a fit loses where something else stands in an effect's place, to first order.
+
+    loss = min_δ,c C(q̂ + δ, c | η = 0) - min_δ C(q̂ + δ)
+
+C is the criterion about the fit, η the sizes of the effect, and c those of what replaces it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from identification.effects.effect import Candidate
+from identification.kalman.noise_fit import NoiseLevel
+from identification.kalman.problem import linearise_criterion
+from identification.kalman.refit import Refit
+
+
+@dataclass(frozen=True)
+class Replacement:
+    """Something else in the place of an effect.
+
+    Attributes:
+        loss: of twice the log likelihood; below zero where it explains more.
+        share: gain of the effect as a share of its gain.
+        size: its most likely sizes, shape (m,).
+    """
+
+    loss: float
+    share: float
+    size: np.ndarray
+
+
+def replace_effect(
+    fit: Refit, candidate: Candidate, S: np.ndarray, level: NoiseLevel
+) -> Replacement:
+    """Replace an effect of a fit by something of which the sensitivities are known.
+
+    Args:
+        fit: the fit with the effect.
+        candidate: the effect.
+        S: sensitivities of the outputs to what replaces it, shape (N, ny, m).
+        level: the noise.
+
+    Returns:
+        An infinite loss for an effect whose size is not estimated (a limit): it cannot be taken out
+        by setting the size to zero.
+    """
+    point, names = fit.point, np.array(fit.point.space.names)
+    mine = np.isin(names, candidate.free)
+    m = S.shape[2]
+    if not mine.any():
+        return Replacement(np.inf, np.inf, np.zeros(m))
+    with threadpool_limits(1, "blas"):
+        problem = linearise_criterion(point, level, fit.mean, fit.prior)
+        W = problem.filter(S).reshape(point.e.size, m) / level.sigma
+    added = np.vstack([W, np.zeros((len(names), m))])
+    others = problem.rows[:, ~np.isin(names, candidate.estimated)]
+    target = problem.target + problem.rows[:, mine] @ point.q[mine]
+    neither = _least(others, target)[0]
+    other, move = _least(np.hstack([others, added]), target)
+    law = _least(problem.rows, problem.target)[0]
+    return Replacement(other - law, (neither - law) / max(neither - other, 1e-300), move[-m:])
+
+
+def _least(rows: np.ndarray, target: np.ndarray) -> tuple[float, np.ndarray]:
+    """The minimum of ‖target - rows move‖², and the move."""
+    scale = np.linalg.norm(rows, axis=0) + 1e-300
+    move = np.linalg.lstsq(rows / scale, target, rcond=1e-12)[0] / scale
+    return float(np.sum((target - rows @ move) ** 2)), move

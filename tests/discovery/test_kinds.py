@@ -1,0 +1,85 @@
+"""Accepted effects take the kind that explains more beside the others."""
+
+from dataclasses import replace
+
+import pytest
+from discovery_cases import EFFECTS, SENSOR, record, slider, task, wander
+
+from identification.discovery.effect_results import Proof
+from identification.discovery.fitted_model import AcceptedEffect, fit_model
+from identification.discovery.replacement import replace_effect
+from identification.discovery.scoring.sensitivities import Sensitivity, compute_sensitivities
+from identification.discovery.selection import kinds
+from identification.discovery.selection.kinds import improve_kinds
+from identification.effects.effect import Candidate, Effect, Shape
+
+ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02}
+K = 5.0
+KIND = Shape("kind", "", (0.0, 1.0), 0.0, 1.0, free=False)
+PROOF = Proof(gain=1.0, t=3.0, share=1.0, fall=0.5, above=0.5)
+
+
+def of_kinds(name: str) -> Effect:
+    """An effect of the slider as one that comes in two kinds."""
+    (effect,) = (e for e in EFFECTS if e.name == name)
+    return replace(effect, shapes=(KIND,))
+
+
+@pytest.fixture(scope="module")
+def asked():
+    log = record(slider(**ROBOT, **{"spring.k": K}), 500, 11, wander(500, 0.003, 0.1, 8), SENSOR)
+    return task(log)
+
+
+def fitted(asked, name, start):
+    """The slider with an effect, as accepted, and the same effect of two kinds."""
+    plain = Candidate(next(e for e in EFFECTS if e.name == name), "joint", {})
+    model = fit_model(asked, (plain,), start)
+    own = Candidate(of_kinds(name), "joint", {"kind": 0.0})
+    model = replace(model, candidates=(own,))
+    return model, AcceptedEffect(model, PROOF, 10.0, ())
+
+
+def sensed(model, name, effect):
+    """The sensitivity to an effect, as one of the second kind of another one."""
+    of = Candidate(next(e for e in EFFECTS if e.name == name), "joint", {})
+    (s,) = compute_sensitivities(model.refit.point, (of,))
+    return Sensitivity(Candidate(effect, "joint", {"kind": 1.0}), s.S)
+
+
+def test_a_kind_that_explains_more_is_refitted_from_its_own_size_and_kept(asked, monkeypatch):
+    model, accepted = fitted(asked, "offset", {"offset.f": 0.1})
+    other = sensed(model, "spring", accepted.candidate.effect)
+    tried = []
+
+    def fit(task, candidates, start, near):
+        tried.append((candidates, start))
+        level = replace(near.refit.level, log_likelihood=near.refit.level.log_likelihood + 50)
+        return replace(near, candidates=candidates, refit=replace(near.refit, level=level))
+
+    monkeypatch.setattr(kinds, "try_fit", fit)
+    (kept,), better = improve_kinds(asked, [accepted], model, [other])
+    (((candidate,), start),) = tried
+    assert candidate.shape == {"kind": 1.0}
+    found = replace_effect(model.refit, accepted.candidate, other.S, model.refit.level)
+    assert found.loss < 0
+    assert start["offset.f"] == pytest.approx(found.size[0])
+    assert better.candidates == (candidate,)
+    assert kept.candidate == candidate
+    assert kept.gain == accepted.gain
+
+    monkeypatch.setattr(kinds, "try_fit", lambda *_: None)  # it cannot be fitted
+    assert improve_kinds(asked, [accepted], model, [other]) == ((accepted,), model)
+
+
+def test_a_kind_that_explains_less_is_not_refitted(asked, monkeypatch):
+    model, accepted = fitted(asked, "spring", {"spring.k": 4.0})
+    other = sensed(model, "offset", accepted.candidate.effect)
+    assert replace_effect(model.refit, accepted.candidate, other.S, model.refit.level).loss > 100
+    monkeypatch.setattr(kinds, "try_fit", None)
+    assert improve_kinds(asked, [accepted], model, [other]) == ((accepted,), model)
+    # The size that replaces an effect by itself is its own.
+    same = sensed(model, "spring", accepted.candidate.effect)
+    found = replace_effect(model.refit, accepted.candidate, same.S, model.refit.level)
+    assert found.size[0] == pytest.approx(model.refit.point.values["spring.k"], rel=0.02)
+    assert abs(found.loss) < 0.5
