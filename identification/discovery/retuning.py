@@ -4,16 +4,18 @@
 
 about the final fit, linearised. A log that shows one kind of motion only may tell an effect from a
 wrong parameter by nothing but the prior of that parameter. A name that rests on a prior says so.
+
+An effect that says "this part deviates from its kind by more than parts do" is a statement about a
+prior. The deviations of that kind keep theirs: with wider ones such a part would be ordinary.
 """
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 import numpy as np
 from scipy.optimize import lsq_linear
 
 from identification.discovery.effect_results import Retuned
+from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.kalman.problem import linearise_criterion
@@ -21,13 +23,13 @@ from identification.kalman.refit import Refit
 
 
 def retune(
-    fit: Refit, nominal: Sequence[str], candidate: Candidate, options: DiscoveryOptions
+    fit: Refit, nominal: NominalModel, candidate: Candidate, options: DiscoveryOptions
 ) -> tuple[float, Retuned]:
     """What a fit loses without an effect when the nominal model's parameters may replace it.
 
     Args:
         fit: the fit with the effect.
-        nominal: names of the nominal model's free parameters.
+        nominal: the nominal model, whose parameters may move.
         candidate: the effect.
         options: how much wider the priors are.
 
@@ -38,10 +40,12 @@ def retune(
     """
     space, q = fit.point.space, fit.point.q
     names = np.array(space.names)
-    own, mine = np.isin(names, nominal), np.isin(names, candidate.free)
+    own, mine = np.isin(names, nominal.names), np.isin(names, candidate.free)
     if not mine.any():
-        return np.inf, Retuned(nominal[0], 0.0, 0.0)
-    prior = np.where(own, fit.prior / options.retuned_factor, fit.prior)
+        return np.inf, Retuned(nominal.names[0], 0.0, 0.0)
+    kind = [n for n, (effect, _) in nominal.deviants.items() if effect == candidate.effect.name]
+    wider = own & ~np.isin(names, kind)
+    prior = np.where(wider, fit.prior / options.retuned_factor, fit.prior)
     problem = linearise_criterion(fit.point, fit.level, fit.mean, prior)
     lower, upper = space.lower - q, space.upper - q
     _, with_it = _minimise(problem.rows, problem.target, lower, upper)

@@ -28,6 +28,12 @@ PRIOR, SIGMA = 0.2, 0.5  # std of what is known, of the noise
 CANDIDATE = Candidate(effect(), "joint", {})
 
 
+def _known(**more):
+    """A nominal model of which p0 is free."""
+    plant = linear_plant(np.random.default_rng(0))
+    return NominalModel(plant, ("p0",), np.array([PRIOR]), **more)
+
+
 def _fit(J, q):
     """A fit of a base parameter p0 and of an effect's size, where the noise is white."""
     plant = linear_plant(np.random.default_rng(0))
@@ -43,14 +49,14 @@ def _rows(seed):
 
 def test_what_nothing_imitates_loses_all_that_it_explains():
     J = 7 * _rows(1).reshape(40, 2, 2)
-    loss, _ = retune(_fit(J, [0.0, 0.3]), ("p0",), CANDIDATE, OPTIONS)
+    loss, _ = retune(_fit(J, [0.0, 0.3]), _known(), CANDIDATE, OPTIONS)
     assert loss == pytest.approx((7 * 0.3 / SIGMA) ** 2, rel=1e-9)
 
 
 def test_a_limit_has_no_size_that_could_go_to_zero():
     size = Size("c", "", 1.0, 0.02, 1, present=1.0)
     limit = Candidate(Effect("limit", "c", (size,), places={"joint": ""}), "joint", {})
-    loss, other = retune(_fit(7 * _rows(1).reshape(40, 2, 2), [0.0, 0.3]), ("p0",), limit, OPTIONS)
+    loss, other = retune(_fit(7 * _rows(1).reshape(40, 2, 2), [0.0, 0.3]), _known(), limit, OPTIONS)
     assert loss == np.inf
     assert other.distance == 0
 
@@ -58,11 +64,20 @@ def test_a_limit_has_no_size_that_could_go_to_zero():
 def test_what_a_base_parameter_imitates_loses_what_the_wider_prior_holds_against_it():
     column = 7 * _rows(2)[:, :1]
     J = np.hstack([column, column]).reshape(40, 2, 2)
-    loss, other = retune(_fit(J, [0.1, 0.3]), ("p0",), CANDIDATE, OPTIONS)
+    loss, other = retune(_fit(J, [0.1, 0.3]), _known(), CANDIDATE, OPTIONS)
     data, held, total = 49 / SIGMA**2, 1 / (OPTIONS.retuned_factor * PRIOR) ** 2, 0.1 + 0.3
     assert loss == pytest.approx(data * held / (data + held) * total**2, rel=1e-6)
     assert other.parameter == "p0"
     assert other.distance == pytest.approx(data / (data + held) * total / PRIOR, rel=1e-6)
+
+
+def test_a_part_that_deviates_is_not_made_ordinary_by_a_wider_prior_of_its_own_kind():
+    column = 7 * _rows(2)[:, :1]
+    fit = _fit(np.hstack([column, column]).reshape(40, 2, 2), [0.1, 0.3])
+    kind = {"p0": (CANDIDATE.effect.name, "another joint")}
+    loss, _ = retune(fit, _known(deviants=kind), CANDIDATE, OPTIONS)
+    data, held = 49 / SIGMA**2, 1 / PRIOR**2
+    assert loss == pytest.approx(data * held / (data + held) * (0.1 + 0.3) ** 2, rel=1e-6)
 
 
 def test_a_brake_is_no_more_than_damping_that_nobody_expected():
@@ -83,7 +98,7 @@ def test_a_brake_is_no_more_than_damping_that_nobody_expected():
     )  # damping to 6 %: it looks doubled
     candidate = Candidate(brake, "joint", {})
     fit = fit_with_effects(known, log, (candidate,), {"brake.b": -2.0}, OPTIONS)
-    loss, other = retune(fit, FREE, candidate, OPTIONS)
+    loss, other = retune(fit, known, candidate, OPTIONS)
     assert other.parameter == "damping"
     assert other.distance == pytest.approx(1 / 0.06, rel=0.05)  # linearised: Δd = d
     assert loss == pytest.approx((other.distance / OPTIONS.retuned_factor) ** 2, rel=0.05)

@@ -71,7 +71,7 @@ def _is_needed(task: DiscoveryTask, model: FittedModel, candidate: Candidate) ->
     To first order: `FAR` times what BIC asks leaves room for what is not linear. Of a limit, whose
     size is not estimated, this says nothing.
     """
-    loss, _ = retune(model.refit, task.nominal_model.names, candidate, task.options)
+    loss, _ = retune(model.refit, task.nominal_model, candidate, task.options)
     asked = len(candidate.free) * np.log(len(model.refit.point.log))
     return bool(np.isfinite(loss) and loss > FAR * asked)
 
