@@ -105,6 +105,8 @@ class Effect:
             follow its size only nearly in proportion; below zero the other way.
         needs: name of an effect that it changes, and without which it has no meaning: a level of
             friction that differs by direction needs a level. Searches over a horizon ask for it.
+        shares: whether its own state is one with that of every other effect that has the same rate,
+            which then reads no parameter: what happens to a thing whichever effect looks at it.
         own: whether its size is each record's own, such as a shift of that record's time stamps;
             one record cannot tell it from what is the same in all.
         hooks: where it adds to the law of a robot, e.g. "force", and the njit function (state,
@@ -124,6 +126,7 @@ class Effect:
     reference: str = ""
     probes: tuple[float, ...] = (1.0,)
     needs: str = ""
+    shares: bool = False
     own: bool = False
     hooks: Mapping[str, Callable[..., Any]] = field(default_factory=dict, hash=False)
 

@@ -27,11 +27,10 @@ def terms_of(
         own: the hook that an effect with a state of its own has, "" where none can have one.
     """
     out: list[Term] = []
-    column, states = first, 0
+    column, states = first, _states(effects, own)
     for effect in effects:
         if not _acts_on(effect, element):
             continue
-        states += own in effect.hooks
         out.append(
             Term(
                 effect=effect.name,
@@ -39,11 +38,19 @@ def terms_of(
                 names=effect.names,
                 sizes=len(effect.sizes),
                 column=column,
-                state=states if own in effect.hooks else 0,
+                state=states.get(effect.name, 0),
             )
         )
         column += len(effect.names)
     return tuple(out)
+
+
+def _states(effects: Sequence[Effect], own: str) -> dict[str, int]:
+    """Which state is whose, counted from 1, by the name of each effect that has one."""
+    numbers: dict[object, int] = {}
+    having = [e for e in effects if own in e.hooks]
+    keys = {e.name: e.hooks[own] if e.shares else e.name for e in having}
+    return {name: numbers.setdefault(key, len(numbers) + 1) for name, key in keys.items()}
 
 
 def key_of(effects: Sequence[Effect], of: str = "") -> float:

@@ -18,11 +18,11 @@ from inca_mj.effects.friction import (
 )
 from inca_mj.effects.motor import (
     COGGING,
+    CURRENT_CROSSTALK,
     CURRENT_LAG,
     CURRENT_OFFSET,
     CURRENT_SATURATION,
     DELAY,
-    TORQUE_CONSTANT_DRIFT,
 )
 from inca_mj.effects.place import (
     AIR_DRAG,
@@ -43,7 +43,7 @@ CATALOGUE: tuple[Effect, ...] = (
     DELAY,
     CURRENT_SATURATION,
     CURRENT_OFFSET,
-    TORQUE_CONSTANT_DRIFT,
+    CURRENT_CROSSTALK,
     DRUM_ECCENTRICITY,
     DRUM_LAYERING,
     BACKLASH,

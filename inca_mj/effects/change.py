@@ -2,6 +2,7 @@
 
     p (1 + δ)              mismatch: δ at one drive
     p (1 - α t)            drift: of one drive or of all; t is the time of the record
+    p (1 - α x), ẋ = i²    the same with heat: x is what the motor has lost, in seconds at 1 A
     p (1 + δ)  at t ≥ t_s  jump: at one drive, within a tenth of a second about t_s
 
 A law says what a relative change c of a parameter adds; the three follow from it:
@@ -15,11 +16,13 @@ A law says what a relative change c of a parameter adds; the three follow from i
     K_t    Δi = c i                               torque_constant
 
 A change of R_s acts as one of k_s: the torque of a drum spring depends on k_s R_s² alone. That of J
-would need the acceleration, of which a force must not depend.
+would need the acceleration, of which a force must not depend. Heat is not given off: a motor cools
+within minutes, which is longer than a log. All drifts of a drive see one heat.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import tanh
 from typing import Any
 
@@ -34,6 +37,9 @@ LASTS = 0.1  # of a jump [s]: a step of the integrator that a jump divides would
 # At which jumps are tried [s], by a factor of 1.7: the nearest one still shows some of what a jump
 # between two of them does. Before a refit all times between its neighbours are tried.
 TIMES = (1.0, 1.7, 2.9, 4.9, 8.4, 14.0, 24.0)
+DRIFTING = 20.0  # [s] in which a parameter may lose as much as one drive may deviate
+HEATED = Shape("kind", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
+               about="0 with time, 1 with heat")  # fmt: skip
 PROBE = 0.1  # of the largest plausible size: a cable that is 3 % softer moves an angle by 0.1 mrad
 
 
@@ -79,72 +85,110 @@ def torque_constant(s, c):  # type: ignore[no-untyped-def]
     return c * s.i
 
 
-def _mismatch(law: Any, hook: str, letter: str, phrase: str, largest: float) -> Effect:
+@njit
+def heat_rate(s, p):  # type: ignore[no-untyped-def]
+    """ẋ = i² [s at 1 A]."""
+    return s.i * s.i
+
+
+@dataclass(frozen=True)
+class _Rule:
+    """How a change of one parameter enters the law.
+
+    Attributes:
+        law: what a relative change c adds.
+        hook: where.
+        letter: the parameter.
+        phrase: what changes, in words.
+        largest: the largest plausible relative deviation of one drive.
+        probe: share of the largest plausible drift at which its sensitivity is taken.
+    """
+
+    law: Any
+    hook: str
+    letter: str
+    phrase: str
+    largest: float
+    probe: float = 1.0
+
+    @property
+    def name(self) -> str:
+        """The parameter's word in the names of effects."""
+        return str(self.law.__name__)
+
+
+def _mismatch(rule: _Rule) -> Effect:
+    law = rule.law
+
     @njit
     def mismatch(s, p):  # type: ignore[no-untyped-def]
         return law(s, p[0])
 
     return Effect(
-        f"{law.__name__}_mismatch",
-        f"{letter} (1 + δ) on one drive",
-        (Size("delta", "", largest, PROBE * largest, about=f"relative excess of {letter}"),),
+        f"{rule.name}_mismatch",
+        f"{rule.letter} (1 + δ) on one drive",
+        (_delta(rule, "excess"),),
         places=ONE_DRIVE,
-        phrase=f"{phrase} differs at one drive",
+        phrase=f"{rule.phrase} differs at one drive",
         reference="thesis Table 3.2",
-        hooks={hook: mismatch},
+        hooks={rule.hook: mismatch},
     )
 
 
-def _drift(law: Any, hook: str, letter: str, phrase: str, largest: float) -> Effect:
+def _drift(rule: _Rule) -> Effect:
+    law, largest = rule.law, rule.largest / DRIFTING
+
     @njit
     def drift(s, p):  # type: ignore[no-untyped-def]
-        return law(s, -p[0] * s.time)
+        return law(s, -p[0] * (s.time if p[1] == 0.0 else s.x))
 
+    about = f"relative loss of {rule.letter} a second, or a second at 1 A"
     return Effect(
-        f"{law.__name__}_drift",
-        f"{letter} (1 - α t)",
-        (
-            Size(
-                "alpha",
-                "1/s",
-                largest,
-                largest,
-                about=f"relative loss of {letter} a second",
-            ),
-        ),
+        f"{rule.name}_drift",
+        f"{rule.letter} (1 - α t), or with heat ∫(i/1 A)² dt for t",
+        (Size("alpha", "1/s", largest, rule.probe * largest, about=about),),
+        (HEATED,),
         places=DRIVES_EACH,
-        phrase=f"{phrase} drifts",
+        phrase=f"{rule.phrase} drifts",
         reference="thesis Table 3.2",
-        hooks={hook: drift},
+        shares=True,
+        hooks={rule.hook: drift, "rate": heat_rate},
     )
 
 
-def _jump(law: Any, hook: str, letter: str, phrase: str, largest: float) -> Effect:
+def _jump(rule: _Rule) -> Effect:
+    law = rule.law
+
     @njit
     def jump(s, p):  # type: ignore[no-untyped-def]
         return law(s, p[0] * min(1.0, max(0.0, 0.5 + (s.time - p[1]) / LASTS)))
 
     return Effect(
-        f"{law.__name__}_jump",
-        f"{letter} (1 + δ) on one drive from t_s on",
-        (Size("delta", "", largest, PROBE * largest, about=f"relative change of {letter}"),),
+        f"{rule.name}_jump",
+        f"{rule.letter} (1 + δ) on one drive from t_s on",
+        (_delta(rule, "change"),),
         (Shape("t_s", "s", TIMES, 0.1, 600.0, about="time of the jump in the record", step=LASTS),),
         places=ONE_DRIVE,
-        phrase=f"{phrase} jumps",
+        phrase=f"{rule.phrase} jumps",
         reference="thesis Table 3.2",
-        hooks={hook: jump},
+        hooks={rule.hook: jump},
     )
 
 
-# law, hook, letter, phrase, largest plausible deviation of one drive
-_RULES: tuple[tuple[Any, str, str, str, float], ...] = (
-    (cable_elasticity, "tension", "λ", "cable: elasticity", 0.3),
-    (cable_damping, "tension", "b", "cable: damping", 1.0),
-    (drum_spring, "torque", "k_s", "drum spring: stiffness", 0.3),
-    (viscous_friction, "torque", "b_v", "friction: viscous part", 1.0),
-    (friction, "torque", "b_c", "friction: Coulomb part", 0.5),
-    (drum_radius, "radius", "R", "roller: radius", 0.05),
-    (torque_constant, "current", "K_t", "motor: torque constant", 0.2),
+def _delta(rule: _Rule, what: str) -> Size:
+    about = f"relative {what} of {rule.letter}"
+    return Size("delta", "", rule.largest, PROBE * rule.largest, about=about)
+
+
+_RULES = (
+    _Rule(cable_elasticity, "tension", "λ", "cable: elasticity", 0.3),
+    _Rule(cable_damping, "tension", "b", "cable: damping", 1.0),
+    _Rule(drum_spring, "torque", "k_s", "drum spring: stiffness", 0.3),
+    _Rule(viscous_friction, "torque", "b_v", "friction: viscous part", 1.0),
+    _Rule(friction, "torque", "b_c", "friction: Coulomb part", 0.5),
+    _Rule(drum_radius, "radius", "R", "roller: radius", 0.05),
+    # A torque moves the robot far: a small drift is probed.
+    _Rule(torque_constant, "current", "K_t", "motor: torque constant", 0.2, probe=0.02),
 )
 _DEVIATING = {
     "lambda": "cable_elasticity", "b": "cable_damping", "k_s": "drum_spring",
@@ -164,15 +208,8 @@ DEVIANTS = {
     },
 }
 
-DRIFTING = 20.0  # [s] in which a parameter may lose as much as one drive may deviate
-
-MISMATCHES = tuple(_mismatch(*rule) for rule in _RULES)
-# A roller does not change its radius while it runs, but for the cable that piles up on it; and the
-# torque constant's drift may also follow heat.
-DRIFTS = tuple(
-    _drift(law, hook, letter, phrase, largest / DRIFTING)
-    for law, hook, letter, phrase, largest in _RULES
-    if law not in (drum_radius, torque_constant)
-)
-# So do jumps: a cable that slips on its roller, a screw that comes loose.
-JUMPS = tuple(_jump(*rule) for rule in _RULES)
+MISMATCHES = tuple(map(_mismatch, _RULES))
+# A roller does not change its radius while it runs, but for the cable that piles up on it.
+DRIFTS = tuple(_drift(rule) for rule in _RULES if rule.law is not drum_radius)
+# It may jump: a cable that slips on its roller, a screw that comes loose.
+JUMPS = tuple(map(_jump, _RULES))

@@ -22,13 +22,15 @@ from inca_mj.robot.geometry import DRIVES
 
 # What a hook sees of a drive; NaN where it comes before the quantity is known.
 #   time [s]; phi [rad], omega [rad/s] of the motor; i [A] as logged; x own state
+#   i_before, i_after [A] as logged, of the drives beside it, zero where there is none; for the hook
+#   `current` only
 #   rx, ry, rz [m] connector minus exit point, in O; d [m] path, d_0 [m] no-load length
 #   strain [-], strain_rate [1/s]; T [N], F_s [N]; R, R_s [m], k_s [N/m], b_v [N m s/rad],
 #   b_c [N m], beta [s/rad], K_t [N m/A], lambda_ [N], b [N s/m]: the model's numbers, without what
 #   effects add to them
 Drive: Any = namedtuple(
     "Drive",
-    "time phi omega i x rx ry rz d d_0 strain strain_rate T F_s"
+    "time phi omega i i_before i_after x rx ry rz d d_0 strain strain_rate T F_s"
     " R R_s k_s b_v b_c beta K_t lambda_ b",
 )
 

@@ -70,4 +70,4 @@ class Layout:
     @property
     def states(self) -> int:
         """Activations of a drive: d₀ and the effects' own."""
-        return 1 + sum(term.state > 0 for term in self.on_drives)
+        return 1 + max((term.state for term in self.on_drives), default=0)

@@ -5,8 +5,7 @@
     delay                      i(t) = u(t - τ)                  the current arrives late
     saturation                 i clipped at ±i_max, or i_max tanh(i/i_max)
     current offset             i + c                            its measurement has another zero
-    torque constant drift      K_t (1 - α t)                    kind 0: warms with time
-                               K_t (1 - α ∫(i/1 A)² dt)         kind 1: warms with its losses
+    current crosstalk          i_k + a i_(k-1) + b i_(k+1)      its cable lies beside others
 
 Lag and delay act on the currents before they reach the model; their laws are those of any robot
 (`identification.effects.input_laws`). A limit has no size that is zero when it is absent, so that
@@ -48,16 +47,9 @@ def current_offset(s, p):  # type: ignore[no-untyped-def]
 
 
 @njit
-def torque_constant_drift(s, p):  # type: ignore[no-untyped-def]
-    """Δi = -α t i, or -α x i with x the heat [A]."""
-    alpha, kind = p
-    return -alpha * (s.time if kind == 0.0 else s.x) * s.i
-
-
-@njit
-def heat_rate(s, p):  # type: ignore[no-untyped-def]
-    """ẋ = i²: heat, in seconds at 1 A."""
-    return s.i * s.i
+def current_crosstalk(s, p):  # type: ignore[no-untyped-def]
+    """Δi_k = a i_(k-1) + b i_(k+1) [A]."""
+    return p[0] * s.i_before + p[1] * s.i_after
 
 
 COGGING = Effect(
@@ -121,16 +113,15 @@ CURRENT_OFFSET = Effect(
     reference="data sheet of the amplifier",
     hooks={"current": current_offset},
 )
-TORQUE_CONSTANT_DRIFT = Effect(
-    "torque_constant_drift",
-    "K_t (1 - α t), or with heat ∫i² dt for t",
-    (Size("alpha", "1/s", 0.01, 2e-4, sign=1, about="relative loss a second, or at 1 A"),),
+CURRENT_CROSSTALK = Effect(
+    "current_crosstalk",
+    "i_k + a i_(k-1) + b i_(k+1)",
     (
-        Shape("kind", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
-              about="0 with time, 1 with heat"),
+        Size("a", "", 0.1, 2e-3, about="share of the current of the drive before it"),
+        Size("b", "", 0.1, 2e-3, about="share of the current of the drive behind it"),
     ),
     places=DRIVES_EACH,
-    phrase="motor: torque constant drifts",
-    reference="Krishnan 2010, -0.1 to -0.2 %/K of magnets",
-    hooks={"current": torque_constant_drift, "rate": heat_rate},
-)  # fmt: skip
+    phrase="current: its measurement has some of those beside it",
+    reference="data sheet of the amplifier",
+    hooks={"current": current_crosstalk},
+)

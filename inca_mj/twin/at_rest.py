@@ -134,13 +134,13 @@ def own_states(values: Mapping[str, float], strain: np.ndarray, layout: Layout) 
         layout: the effects.
     """
     by_name = {effect.name: effect for effect in layout.effects}
-    own = [by_name[term.effect] for term in layout.on_drives if term.state]
-    out = np.zeros((DRIVES, len(own)))
-    for j, effect in enumerate(own):
+    out = np.zeros((DRIVES, layout.states - 1))
+    for term in layout.on_drives:
+        effect = by_name[term.effect]
         start: Any = effect.hooks.get("start")
         p = drive_values(effect, values)
         for k in range(DRIVES if start is not None else 0):
-            out[k, j] = start.py_func(_drive(strain=strain[k], x=0.0), tuple(p[:, k]))
+            out[k, term.state - 1] = start.py_func(_drive(strain=strain[k], x=0.0), tuple(p[:, k]))
     return out
 
 

@@ -46,6 +46,7 @@ _STAGE_VEL = int(mujoco.mjtStage.mjSTAGE_VEL)
 #   R: radius of the roller with what effects add to it [m]; gx, gy, gz: ∂Δd/∂r
 Winding: Any = namedtuple("Winding", "drive d_0_dot R gx gy gz")
 
+_beside = replacer(Drive, "i_before i_after")
 _strained = replacer(Drive, "d strain strain_rate")
 _pulled = replacer(Drive, "d strain strain_rate T F_s")
 
@@ -104,7 +105,7 @@ def _begun(m, d, i):  # type: ignore[no-untyped-def]
         time=load_constant(d + 8 * D.time),
         phi=double(d, D.qpos, integer(m, M.jnt_qposadr, joint)),
         omega=double(d, D.qvel, integer(m, M.jnt_dofadr, joint)),
-        i=_current(m, d, i), x=0.0, rx=x, ry=y, rz=z,
+        i=_current(m, d, i), i_before=np.nan, i_after=np.nan, x=0.0, rx=x, ry=y, rz=z,
         d=double(d, D.ten_length, k), d_0=load_constant(_act(m, d, i)),
         strain=np.nan, strain_rate=np.nan, T=np.nan, F_s=np.nan,
         R=drive(m, i, law.R), R_s=drive(m, i, law.R_S), k_s=drive(m, i, law.K_S),
@@ -113,6 +114,14 @@ def _begun(m, d, i):  # type: ignore[no-untyped-def]
         K_t=double(m, M.actuator_gear, 6 * i),
         lambda_=cable(m, k, law.LAMBDA), b=cable(m, k, law.B),
     )  # fmt: skip
+
+
+@internal
+def _current_beside(m, d, i):  # type: ignore[no-untyped-def]
+    """Current of actuator i where that is a drive, else zero [A]."""
+    if i < 0 or i >= word(m, M.nactuator) or drive(m, i, law.ACTUATOR_TAG) != law.TAG:
+        return 0.0
+    return _current(m, d, i)
 
 
 def callbacks(
@@ -204,7 +213,9 @@ def callbacks(
             return 0.0
         current = _current(m, d, i)
         if some:
-            current += added_current(_begun(m, d, i), _row(m, i), _act(m, d, i))
+            beside = (_current_beside(m, d, i - 1), _current_beside(m, d, i + 1))
+            s = _beside(_begun(m, d, i), beside)
+            current += added_current(s, _row(m, i), _act(m, d, i))
         return current
 
     def sensor(m, d, stage):  # type: ignore[no-untyped-def]

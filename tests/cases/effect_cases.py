@@ -34,9 +34,9 @@ def probes(effect, where=None, factor=1.0) -> dict[str, float]:
     return {effect.parameter(s.name, where): factor * s.probe for s in effect.sizes}
 
 
-def simulate(twin, names=(), values=None, seconds=0.5) -> np.ndarray:
-    """Angles of n value sets under the thesis' input, shape (n, N, 8)."""
-    u = make_input("prbs", seconds)
+def simulate(twin, names=(), values=None, seconds=0.5, currents=None) -> np.ndarray:
+    """Angles of n value sets under the thesis' input, or some currents, shape (n, N, 8)."""
+    u = make_input("prbs", seconds) if currents is None else currents
     log = Log(
         time=np.arange(len(u)) * 0.01,
         inputs=u,
@@ -70,7 +70,8 @@ def drive(**known) -> Drive:
     """A drive of the thesis' robot, winding in at 3 rad/s, its cable at 4 N."""
     p = bare().parameters
     usual = dict(
-        time=2.0, phi=0.7, omega=3.0, i=0.8, x=0.0, rx=1.2, ry=-1.4, rz=1.3, d=2.257, d_0=2.2567,
+        time=2.0, phi=0.7, omega=3.0, i=0.8, i_before=0.0, i_after=0.0, x=0.0,
+        rx=1.2, ry=-1.4, rz=1.3, d=2.257, d_0=2.2567,
         strain=1.6e-4, strain_rate=0.01, T=4.0, F_s=11.0,
         R=p["R"].value, R_s=p["R_s"].value, k_s=p["k_s"].value, b_c=p["b_c"].value,
         beta=p["beta"].value, K_t=p["K_t"].value, lambda_=p["lambda"].value,

@@ -38,6 +38,7 @@ RULE = [
     *(f"{name}_mismatch" for name in CHANGING),
     *(f"{name}_drift" for name in CHANGING),
     *(f"{name}_jump" for name in (*CHANGING, "drum_radius", "torque_constant")),
+    "current_crosstalk",
     "current_offset",
     "encoder_jump",
     "encoder_scale",

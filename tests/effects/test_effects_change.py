@@ -46,6 +46,43 @@ def test_a_drift_begins_at_nothing_and_grows(name):
     assert 0 < early < 0.1 * late
 
 
+@pytest.mark.parametrize("name", [*(n for n in PARAMETERS if n != "drum_radius"), "drum_spring"])
+def test_a_second_at_one_ampere_warms_as_much_as_a_second_passes(name):
+    """With currents of ±1 A the two kinds of every drift are the same, one heat for all of them."""
+    currents = np.where(np.random.default_rng(5).integers(0, 2, (100, 8)), 1.0, -1.0)
+    names, values = [f"{name}_drift.kind", f"{name}_drift.alpha"], [[0, 0], [0, 0.01], [1, 0.01]]
+    none, aged, heated = simulate(full(), names, values, currents=currents)
+    moved = np.abs(aged - none).max()
+    assert moved > 1e-8
+    assert np.abs(heated - aged).max() < 1e-9 * moved + 1e-13
+
+
+def test_drifts_share_one_heat_and_other_effects_keep_states_of_their_own():
+    states = {term.effect: term.state for term in full().layout.on_drives}
+    heat = {state for name, state in states.items() if name.endswith("_drift")}
+    assert len(heat) == 1
+    assert heat.isdisjoint({states["cable_creep"], 0})
+    assert full().layout.states == 3  # with d_0
+
+
+def test_a_crosstalk_is_a_share_of_the_currents_beside_it():
+    """It is what the drive would do with that share added to its own logged current."""
+    rng = np.random.default_rng(6)
+    currents = rng.normal(0, 0.3, (40, 8))
+    a, b = 0.05, 0.02
+    added = currents.copy()
+    added[:, 1:] += a * currents[:, :-1]
+    added[:, :-1] += b * currents[:, 1:]
+    names = ["current_crosstalk.a", "current_crosstalk.b"]
+    _, ours = simulate(full(), names, [[0.0, 0.0], [a, b]], currents=currents)
+    (theirs,) = simulate(full(), currents=added)
+    np.testing.assert_allclose(ours, theirs, atol=1e-13)
+    one = currents.copy()
+    one[:, 2] += a * currents[:, 1]
+    _, ours = simulate(full(), ["current_crosstalk.a@3"], [[0.0], [a]], currents=currents)
+    np.testing.assert_allclose(ours, simulate(full(), currents=one)[0], atol=1e-13)
+
+
 def test_readings_of_encoders_follow_their_laws_and_leave_the_motion_alone():
     none, scaled = simulate(full(), ["encoder_scale.s@2"], [[0.0], [0.01]], 0.5)
     np.testing.assert_allclose(scaled[:, 1], 1.01 * none[:, 1], rtol=1e-12)

@@ -45,15 +45,18 @@ LAWS = [
     ("cable_creep", "tension", (0.5, 2.0), {"x": 1e-4}, CREEP),
     ("cable_creep", "rate", (0.5, 2.0), {"x": 1e-4}, (S.strain - 1e-4) / 2),
     ("cable_elasticity_mismatch", "tension", (0.1,), {}, 0.1 * S.lambda_ * S.strain),
-    ("cable_elasticity_drift", "tension", (0.1,), {}, -0.2 * S.lambda_ * S.strain),
+    ("cable_elasticity_drift", "tension", (0.1, 0.0), {"x": 9.0}, -0.2 * S.lambda_ * S.strain),
     ("cable_damping_mismatch", "tension", (0.1,), {}, 0.1 * S.b * S.strain_rate * S.d_0),
-    ("cable_damping_drift", "tension", (0.1,), {}, -0.2 * S.b * S.strain_rate * S.d_0),
+    ("cable_damping_drift", "tension", (0.1, 0.0), {"x": 9.0}, -0.2 * S.b * S.strain_rate * S.d_0),
     ("drum_spring_mismatch", "torque", (0.1,), {}, -0.1 * S.k_s * S.R_s * WAY),
     ("drum_spring_mismatch", "torque", (1e9,), {}, -S.R_s * S.F_s),
-    ("drum_spring_drift", "torque", (0.1,), {}, 0.2 * S.k_s * S.R_s * WAY),
+    ("drum_spring_drift", "torque", (0.1, 0.0), {"x": 9.0}, 0.2 * S.k_s * S.R_s * WAY),
     ("viscous_friction_mismatch", "torque", (0.1,), {}, -0.1 * S.b_v * S.omega),
-    ("viscous_friction_drift", "torque", (0.1,), {}, 0.2 * S.b_v * S.omega),
-    ("friction_drift", "torque", (0.1,), {}, 0.2 * S.b_c * BREAK),
+    ("viscous_friction_drift", "torque", (0.1, 0.0), {"x": 9.0}, 0.2 * S.b_v * S.omega),
+    ("friction_drift", "torque", (0.1, 0.0), {"x": 9.0}, 0.2 * S.b_c * BREAK),
+    ("friction_drift", "torque", (0.1, 1.0), {"x": 9.0}, 0.9 * S.b_c * BREAK),
+    ("friction_drift", "rate", (0.1, 1.0), {}, 0.64),
+    ("current_crosstalk", "current", (0.1, 0.2), {"i_before": 0.5, "i_after": 0.3}, 0.11),
 ]
 
 
