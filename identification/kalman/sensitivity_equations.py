@@ -7,7 +7,8 @@ evaluation of the accelerations at each point of the trajectory, where a simulat
 in each of its steps.
 
 The equations know a state only where the outputs feel it along the nominal trajectory. A candidate
-effect that reads another one, such as the slack of a backlash that is not there, is simulated.
+effect that reads another one takes its nominal course, such as that of a motor's heat. One that
+also changes that course, such as a creep with another time constant, is simulated.
 """
 
 from __future__ import annotations
@@ -88,7 +89,7 @@ def _of_record(
 def _forcing(
     predictor: Predictor, linear: Linearisation, rows: np.ndarray, change: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """∂f/∂θ of each change, shape (L, nx, m), and whether it reads felt states only, shape (m,)."""
+    """∂f/∂θ of each change, shape (L, nx, m), and whether that is all of it, shape (m,)."""
     along, log, model = linear.along, predictor.log, predictor.plant.model
     felt = linear.felt[model.nv :]
     every = substeps(log.sampling_time, model.opt.timestep)
@@ -102,8 +103,14 @@ def _forcing(
         own = with_numbers(along.model, numbers, 1 + j, like=0)
         moved = Points(along, own).rates(ctrl=inputs[1 + j if len(inputs) > 1 else 0])[:, felt]
         g[..., j] = along.average((moved - f) / size)
-        known[j] = felt.all() or not _reads(along.some(FEW), own, felt)
+        known[j] = felt.all() or not _reads_what_it_changes(along.some(FEW), own, felt)
     return g, known
+
+
+def _reads_what_it_changes(along: Trajectory, model: mujoco.MjModel, felt: np.ndarray) -> bool:
+    """Whether a model reads activations that no output felt, and that it makes run otherwise."""
+    runs, nominally = (Points(along, m).rates()[:, ~felt] for m in (model, along.model))
+    return not np.array_equal(runs, nominally) and _reads(along, model, felt)
 
 
 def _reads(along: Trajectory, model: mujoco.MjModel, felt: np.ndarray) -> bool:

@@ -187,10 +187,13 @@ def test_an_orientation_is_shifted_as_mujoco_shifts_it(robot):
         )
 
 
+USUAL = full().parameters["cable_creep.tau"].value
+
+
 def test_candidates_are_those_of_simulations(robot, monkeypatch):
-    """Those with states that the nominal robot does not feel are simulated, to the bit."""
+    """Those that change the course of a state which they alone read are simulated, to the bit."""
     names = {"cogging", "anchor_offset", "encoder_lag", "current_lag", "cable_creep",
-             "drum_spring_drift", "load_dependent_friction"}  # fmt: skip
+             "drum_spring_drift", "torque_constant_drift", "load_dependent_friction"}  # fmt: skip
     candidates = [c for c in list_common([e for e in CATALOGUE if e.name in names])
                   if c.probe == 1 and c.shape.get("n", 6) == 6]  # fmt: skip
     solved = compute_sensitivities(robot, candidates)
@@ -199,7 +202,7 @@ def test_candidates_are_those_of_simulations(robot, monkeypatch):
     assert {s.candidate.effect.name for s in solved} == names
     for one, other in zip(solved, expected, strict=True):
         assert one.candidate is other.candidate
-        if one.candidate.effect.name == "cable_creep":
+        if one.candidate.effect.name == "cable_creep" and one.candidate.shape["tau"] != USUAL:
             np.testing.assert_array_equal(one.S, other.S)
         else:
             assert miss(one.S, other.S).max() < 0.1, one.candidate
