@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from discovery_statistics import in_set, rate, right, size_errors
+from discovery_tasks import USUAL
 
 Row = Mapping[str, Any]
 CLOSE = 0.15  # relative error of a size that is called right
@@ -139,21 +140,32 @@ def _worlds(rows: Sequence[Row]) -> list[str]:
                    "a wrong name": lambda r: bool(r["answer"]["named"]) and not right(r)},
         "unknown": {"a name": lambda r: bool(r["answer"]["named"])},
     }  # fmt: skip
-    for kind, title in {**_KINDS, "unknown": "an unlisted effect"}.items():
-        some = [row for row in done if row["truth"]["kind"] == kind]
-        if some and kind in tests:
-            rates = (f"{what} {_rate(some, test)}" for what, test in tests[kind].items())
-            lines.append(f"- {title}: {'; '.join(rates)}.")
+    for seconds, rows in sorted(_by_duration(done).items()):
+        for kind, title in {**_KINDS, "unknown": "an unlisted effect"}.items():
+            some = [row for row in rows if row["truth"]["kind"] == kind]
+            if some and kind in tests:
+                rates = (f"{what} {_rate(some, test)}" for what, test in tests[kind].items())
+                lines.append(f"- logs of {seconds:g} s, {title}: {'; '.join(rates)}.")
     close = [error <= CLOSE for error in size_errors(done)]
     if close:
         lines.append(f"- sizes of right names within {CLOSE:.0%}: {sum(close)} of {len(close)}.")
-    lines += ["", "| world | truth | answer |", "|---|---|---|"]
-    for row in sorted(done, key=lambda row: row["key"]):
+    told = [row for row in done if row["truth"]["effects"] or row["answer"]["named"]]
+    if told:
+        lines += ["", "| world | truth | answer |", "|---|---|---|"]
+    for row in sorted(told, key=lambda row: row["key"]):
         truth = " + ".join(e["name"] for e in row["truth"]["effects"]) or "nothing"
         answer = row["answer"]
         names = "; ".join(f"{n['name']}, {n['where']}" for n in answer["named"])
         lines.append(f"| {row['key'].split('/')[1]} | {truth} | {names or answer['verdict']} |")
     return [*lines, ""]
+
+
+def _by_duration(rows: Sequence[Row]) -> dict[float, list[Row]]:
+    """The rows by the length of their logs [s]."""
+    out: dict[float, list[Row]] = {}
+    for row in rows:
+        out.setdefault(row["truth"].get("duration", USUAL), []).append(row)
+    return out
 
 
 _KINDS = {

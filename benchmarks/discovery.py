@@ -24,7 +24,7 @@ from typing import Any
 
 from discovery_null import null_summary, null_task, null_tasks
 from discovery_statistics import summary
-from discovery_tasks import log_of, practice_tasks, world_tasks
+from discovery_tasks import USUAL, log_of, practice_tasks, world_tasks
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
@@ -144,7 +144,7 @@ def main() -> None:
     add("--robots", type=int, default=10, help="of the null study")
     add("--seed", type=int, default=1000)
     add("--ratio", type=float, default=None, help="1, 3 or 10 by chance when not given")
-    add("--duration", type=float, default=20.0, help="of a world [s]")
+    add("--duration", type=float, default=USUAL, help="of a world [s]")
     for flag in ("--coloured", "--wrong-shapes", "--pairs", "--null", "--as-built", "--resume"):
         add(flag, action="store_true")
     add("--spread", default="usual", help="none, usual, or a file")

@@ -27,6 +27,7 @@ LABELS = {
        (("a", "anchor_offset"), ("c", "com_offset"), ("f", "external_force")) for x in "xyz"},
 }  # fmt: skip
 WORLDS = {"delay": "tau", "fraction": "c"}  # the same of the worlds
+USUAL = 20.0  # length of a world's log where nothing is said [s]
 RATIOS = (1.0, 3.0, 10.0)  # of what cannot be absorbed to the noise, drawn by chance
 
 
@@ -84,7 +85,8 @@ def world_tasks(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
         names = [str(n) for n in rng.choice(known, count, replace=False)]
         yield {
             "key": f"world/{seed}/{kind}/{options.ratio}/{options.coloured}/{options.wrong_shapes}"
-            + "/as built" * options.as_built,
+            + "/as built" * options.as_built
+            + f"/{options.duration:g} s" * (options.duration != USUAL),
             "seed": seed, "kind": kind, "names": names,
             "ratio": float(options.ratio or rng.choice(RATIOS)),
             "coloured": options.coloured, "as_built": options.as_built,
@@ -116,6 +118,7 @@ def log_of(task: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
     )
     return log, {
         "kind": task["kind"], "ratio": task["ratio"] if effects else 0.0,
+        "duration": task["duration"],
         "other_shape": any(task["other_shape"]),
         "effects": [
             {"name": e.name, "where": e.where,
