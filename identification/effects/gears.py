@@ -6,9 +6,9 @@ armature - J                     the motor's inertia is moved from the joint, no
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import mujoco
 import numpy as np
@@ -73,23 +73,39 @@ class Gears:
         return mobilities(self.spec.copy().compile() if self.joints else self.model, [*self.joints])
 
     @cached_property
-    def numbers(self) -> frozenset[str]:
+    def numbers(self) -> tuple[str, ...]:
         """The plant's parameters that effects with states have."""
-        return frozenset(
+        every = (
             name
             for effect in self.effects if effect.state
             for joint in self.joints
             for parts in effect.parameters_at(joint)
             for name in parts
         )  # fmt: skip
+        return tuple(dict.fromkeys(every))
 
     def of(self, joint: str, values: Values, n: int) -> GearNumbers:
         """What effects make of a joint's gear in n value sets."""
+        mine = tuple(x for name in self.numbers if isinstance(x := values[name], float))
+        if n == 1 and len(mine) == len(self.numbers):
+            return self._of_one(joint, mine)  # a search simulates windows of it again and again
         return gear_numbers(self.effects, joint, self.inertia[joint], values, n)
+
+    @cached_property
+    def _of_one(self) -> Callable[[str, tuple[float, ...]], GearNumbers]:
+        """The same of one value set, by the joint and the values of `numbers`."""
+
+        @lru_cache(maxsize=64)
+        def of_one(joint: str, mine: tuple[float, ...]) -> GearNumbers:
+            values = dict(zip(self.numbers, mine, strict=True))
+            with_states = [effect for effect in self.effects if effect.state]
+            return gear_numbers(with_states, joint, self.inertia[joint], values, 1)
+
+        return of_one
 
     def rows(self, names: Sequence[str], values: Values, n: int) -> Numbers:
         """Entries of the joints' rows that some parameters change."""
-        if not self.numbers & {*names}:
+        if not {*self.numbers} & {*names}:
             return []
         last = int(self.model.nuser_jnt) - LAST - GEARS
         out = []
