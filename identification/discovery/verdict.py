@@ -16,7 +16,7 @@ from identification.discovery.findings.input_hold import find_input_hold
 from identification.discovery.findings.location import locate_error
 from identification.discovery.findings.robot_change import find_robot_change
 from identification.discovery.findings.structure import find_structure
-from identification.discovery.fitted_model import FittedModel
+from identification.discovery.fitted_model import FittedModel, is_proven
 from identification.discovery.missing_forces import estimate_missing_forces
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import prove
@@ -109,6 +109,7 @@ def conclude(state: SearchState) -> Discovery:
     if verdict == "unknown effect":
         named, model, scores = (), nominal, state.nominal_scores
     unnamed = [n for n in every if n not in named]
+    beside = [r for r in state.rejected if named and r.gain > 0 and is_proven(r.proof, options)]
     refused = (
         RejectedEffect(n.candidate, n.parameters, n.gain, n.proof, n.outside) for n in unnamed
     )
@@ -123,7 +124,7 @@ def conclude(state: SearchState) -> Discovery:
         verdict=verdict,
         named=named,
         rejected=rejected,
-        unexplained=bool(findings or unnamed),
+        unexplained=bool(findings or unnamed or beside),
         noise_rms=model.refit.level.sigma,
         disturbance_rms=model.validation.disturbance if is_random else 0.0,
         before=nominal.validation.gap,

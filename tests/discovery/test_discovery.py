@@ -21,10 +21,12 @@ from discovery_cases import (
 )
 
 from identification import InputError
+from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.findings.evidence import StructuredInputError
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.search import discover
 from identification.discovery.verdict import compute_explained_share, conclude
+from identification.effects.effect import Candidate
 
 ROOT = Path(__file__).parents[2]
 OFFSET = {"offset.f": -0.8}
@@ -131,6 +133,19 @@ def test_what_is_proven_and_too_small_to_matter_is_named_where_nothing_else_is_l
     nothing_matters = replace(OPTIONS, min_fall=1.0)
     answer = found(error, nothing_matters, **{"offset.f": -0.3})
     assert {n.candidate.effect.name for n in answer.named} == (set() if vibration else {"offset"})
+
+
+@pytest.mark.parametrize(("gain", "t", "is_left"), [(50, 8, True), (50, 1, False), (-5, 8, False)])
+def test_what_is_proven_and_too_small_to_be_named_beside_another_effect_is_something_left(
+    gain, t, is_left
+):
+    end = searched(**OFFSET)[-1]
+    spring = Candidate(EFFECTS[0], "joint", {})
+    proof = replace(end.accepted[0].proof, t=float(t), fall=0.001)
+    refitted = RejectedEffect(spring, {"k": (0.1, 0.01, "N/m")}, float(gain), proof)
+    answer = conclude(replace(end, rejected=(refitted,)))
+    assert answer.verdict == "named"
+    assert answer.unexplained == is_left
 
 
 def test_a_gap_ends_at_the_sensors_where_input_errors_cannot_be_believed():

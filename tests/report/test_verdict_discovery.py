@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import hypot
 
 import pytest
-from fake_discovery import DRIVE_3, NOISE, SLOW, found
+from fake_discovery import DRIVE_3, NOISE, REJECTED, SLOW, found
 
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
@@ -12,6 +12,7 @@ from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_tables import parameters_section
 from identification.report.discovery_text import discovery_text
 from identification.report.discovery_verdict import diff_line, discovery_verdict, floor_rms
+from identification.report.effect_words import describe_effect
 from identification.report.finding_words import describe_finding, sentence
 
 
@@ -53,6 +54,11 @@ def test_what_is_left_is_said_last() -> None:
     said = discovery_verdict(found(unexplained=True))
     assert said[-1].startswith("Something is left beside what is named that no known effect")
     assert said[-1].endswith(sentence(describe_finding(DRIVE_3)))
+    proven = replace(REJECTED, gain=50.0, proof=replace(REJECTED.proof, t=8.3))
+    said = discovery_verdict(replace(found(unexplained=True), rejected=(proven,)))
+    nearest = f"Nearest comes {describe_effect(REJECTED.candidate)}: it predicts unseen samples"
+    assert nearest in said[-1]
+    assert "(t = 8.3)" in said[-1]
 
 
 def test_two_effects_are_two_sentences() -> None:
