@@ -39,6 +39,10 @@ class FittedModel:
         free = len(self.refit.point.q)
         return 2 * self.refit.log_posterior - free * float(np.log(len(self.refit.point.log)))
 
+    def log_posterior_of_equal(self, free: int) -> float:
+        """The log posterior with which a model of so many free parameters has the same BIC."""
+        return (self.negative_bic + free * float(np.log(len(self.refit.point.log)))) / 2
+
     @property
     def innovations(self) -> np.ndarray:
         """Innovations of the fitted samples, in units of σ, shape (n, ny)."""
@@ -102,10 +106,11 @@ def try_fit(
     start: Mapping[str, float],
     near: FittedModel | None = None,
     steps: int = STEPS,
+    least: float = -np.inf,
 ) -> FittedModel | None:
     """The same as `fit_model`; None where that raises an error."""
     try:
-        return fit_model(task, candidates, start, near, steps)
+        return fit_model(task, candidates, start, near, steps, least)
     except (DivergenceError, InputError):
         return None
 

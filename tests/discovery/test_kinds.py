@@ -40,27 +40,35 @@ def fitted(asked, name, start):
     return model, AcceptedEffect(model, PROOF, 10.0, ())
 
 
-def sensed(model, name, effect):
-    """The sensitivity to an effect, as one of the second kind of another one."""
-    of = Candidate(next(e for e in EFFECTS if e.name == name), "joint", {})
-    (s,) = compute_sensitivities(model.refit.point, (of,))
-    return Sensitivity(Candidate(effect, "joint", {"kind": 1.0}), s.S)
+def sense_as(monkeypatch, other):
+    """Make the second kind of an effect that of another effect of the slider."""
+    seen = []
+
+    def compute(point, candidates):
+        of = Candidate(next(e for e in EFFECTS if e.name == other), "joint", {})
+        seen.extend(compute_sensitivities(point, (of,)))
+        return [Sensitivity(c, seen[-1].S) for c in candidates]
+
+    monkeypatch.setattr(kinds, "compute_beside", compute)
+    return seen
 
 
 def test_a_kind_that_explains_more_is_refitted_from_its_own_size_and_kept(asked, monkeypatch):
     model, accepted = fitted(asked, "offset", {"offset.f": 0.1})
-    other = sensed(model, "spring", accepted.candidate.effect)
+    seen = sense_as(monkeypatch, "spring")
     tried = []
 
-    def fit(task, candidates, start, near):
+    def fit(task, candidates, start, near, least):
         tried.append((candidates, start))
+        assert least == near.refit.log_posterior
         level = replace(near.refit.level, log_likelihood=near.refit.level.log_likelihood + 50)
         return replace(near, candidates=candidates, refit=replace(near.refit, level=level))
 
     monkeypatch.setattr(kinds, "try_fit", fit)
-    (kept,), better = improve_kinds(asked, [accepted], model, [other])
+    (kept,), better = improve_kinds(asked, [accepted], model)
     (((candidate,), start),) = tried
     assert candidate.shape == {"kind": 1.0}
+    (other,) = seen
     found = replace_effect(model.refit, accepted.candidate, other.S, model.refit.level)
     assert found.loss < 0
     assert start["offset.f"] == pytest.approx(found.size[0])
@@ -68,18 +76,20 @@ def test_a_kind_that_explains_more_is_refitted_from_its_own_size_and_kept(asked,
     assert kept.candidate == candidate
     assert kept.gain == accepted.gain
 
-    monkeypatch.setattr(kinds, "try_fit", lambda *_: None)  # it cannot be fitted
-    assert improve_kinds(asked, [accepted], model, [other]) == ((accepted,), model)
+    monkeypatch.setattr(kinds, "try_fit", lambda *_, **__: None)  # it cannot be fitted
+    assert improve_kinds(asked, [accepted], model) == ((accepted,), model)
 
 
 def test_a_kind_that_explains_less_is_not_refitted(asked, monkeypatch):
     model, accepted = fitted(asked, "spring", {"spring.k": 4.0})
-    other = sensed(model, "offset", accepted.candidate.effect)
-    assert replace_effect(model.refit, accepted.candidate, other.S, model.refit.level).loss > 100
+    seen, level = sense_as(monkeypatch, "offset"), model.refit.level
     monkeypatch.setattr(kinds, "try_fit", None)
-    assert improve_kinds(asked, [accepted], model, [other]) == ((accepted,), model)
+    assert improve_kinds(asked, [accepted], model) == ((accepted,), model)
+    (other,) = seen
+    assert replace_effect(model.refit, accepted.candidate, other.S, level).loss > 100
     # The size that replaces an effect by itself is its own.
-    same = sensed(model, "spring", accepted.candidate.effect)
-    found = replace_effect(model.refit, accepted.candidate, same.S, model.refit.level)
+    own = Candidate(next(e for e in EFFECTS if e.name == "spring"), "joint", {})
+    (same,) = compute_sensitivities(model.refit.point, (own,))
+    found = replace_effect(model.refit, accepted.candidate, same.S, level)
     assert found.size[0] == pytest.approx(model.refit.point.values["spring.k"], rel=0.02)
     assert abs(found.loss) < 0.5

@@ -10,9 +10,11 @@ from estimation_plants import SLIDER_PARAMETERS, slider
 
 from identification import Log, Parameter, ParameterSet, Predictor
 from identification.discovery.scoring.sensitivities import (
+    compute_beside,
     compute_sensitivities,
     list_common,
 )
+from identification.effects.effect import Candidate
 from identification.kalman.columns import do_equations_hold
 from identification.kalman.derivatives import shift_position, state_derivatives
 from identification.kalman.linear import linearise_records
@@ -206,6 +208,22 @@ def test_candidates_are_those_of_simulations(robot, monkeypatch):
             np.testing.assert_array_equal(one.S, other.S)
         else:
             assert miss(one.S, other.S).max() < 0.1, one.candidate
+
+
+def test_of_another_kind_they_go_along_the_trajectory_with_the_effect():
+    """Under ±0.3 A a motor's heat is 0.09 of the time, and so is what a drift with heat does."""
+    plant, u = full(), np.where(np.random.default_rng(5).integers(0, 2, (100, 8)), 0.3, -0.3)
+    log = Log(time=0.01 * np.arange(100), inputs=u, outputs=np.zeros_like(u),
+              input_names=CURRENTS, output_names=ANGLES)  # fmt: skip
+    names, first = ("b_c", "torque_constant_drift.alpha"), np.array([0.02, 0.03])
+    space = coordinates(plant.parameters, names, first, linear=names[1:])
+    predictor = Predictor(plant, log, names, {"torque_constant_drift.kind": 0.0})
+    point = evaluate_point(predictor, space, space.encode(first))
+    (drift,) = (e for e in CATALOGUE if e.name == "torque_constant_drift")
+    kinds = [Candidate(drift, "all drives", {"kind": kind}) for kind in (0.0, 1.0)]
+    aged, heated = compute_beside(point, kinds)
+    assert miss(aged.S, point.J[..., 1:] / space.slope(point.q)[1:]).max() < 0.05
+    np.testing.assert_allclose(heated.S, 0.09 * aged.S, rtol=0, atol=1e-6 * np.abs(aged.S).max())
 
 
 def test_a_short_step_keeps_the_columns_and_a_long_one_does_not(robot):

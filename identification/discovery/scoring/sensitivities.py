@@ -109,6 +109,43 @@ def compute_sensitivities(point: Point, candidates: Sequence[Candidate]) -> tupl
     return tuple(found[i] for i in sorted(found))
 
 
+def compute_beside(point: Point, candidates: Sequence[Candidate]) -> tuple[Sensitivity, ...]:
+    """Sensitivities to an effect of other shapes, along the trajectory that it has with its own.
+
+    A plant has an effect in one shape only. So the response to another shape with a probe as its
+    size is compared with the response to no effect, both by the sensitivity equations.
+
+    Args:
+        point: the plant with the effect.
+        candidates: the same effect at the same place, with other shapes.
+
+    Returns:
+        Those that the equations describe; none where they do not hold at the point.
+
+    Raises:
+        DivergenceError: accelerations along the trajectory are not finite.
+    """
+    records = _fine_records(point) if candidates else ()
+    if not records:
+        return ()
+    sizes, own = candidates[0].effect.sizes, point.values
+    probes = np.array([-size.probe if size.sign < 0 else size.probe for size in sizes])
+    bare = [{**own, **c.fixed, **dict.fromkeys(c.sizes, 0.0)} for c in candidates]
+    rows = [
+        [*row.values()]
+        for c, none in zip(candidates, bare, strict=True)
+        for row in (none, *({**none, n: h} for n, h in zip(c.sizes, probes, strict=True)))
+    ]
+    predictor = Predictor(point.predictor.plant, point.log, tuple(bare[0]))
+    values = np.array([own[name] for name in bare[0]])
+    S = solve_sensitivities(predictor, records, values, np.array(rows), np.ones(len(rows)))
+    each = np.split(S, len(candidates), axis=2)
+    found = [(x[..., 1:] - x[..., :1]) / probes for x in each]
+    return tuple(
+        Sensitivity(c, s) for c, s in zip(candidates, found, strict=True) if np.isfinite(s).all()
+    )
+
+
 @lru_cache(maxsize=1)
 def _fine_records(point: Point) -> tuple[Linearisation, ...]:
     """The linearisation at a point as finely as candidates need; none where it does not hold."""

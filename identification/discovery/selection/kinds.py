@@ -10,10 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 
 from identification.discovery.fitted_model import AcceptedEffect, FittedModel, try_fit
 from identification.discovery.replacement import replace_effect
-from identification.discovery.scoring.sensitivities import Sensitivity
+from identification.discovery.scoring.sensitivities import compute_beside
 from identification.discovery.scoring.significance import is_plausible
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
@@ -23,7 +24,6 @@ def improve_kinds(
     task: DiscoveryTask,
     accepted: Sequence[AcceptedEffect],
     model: FittedModel,
-    sensitivities: Sequence[Sensitivity],
 ) -> tuple[tuple[AcceptedEffect, ...], FittedModel]:
     """The accepted effects, each of the kind that is the likeliest beside the others.
 
@@ -31,16 +31,16 @@ def improve_kinds(
         task: the nominal model, the log and the options.
         accepted: the effects in the order in which they were added.
         model: the model with all of them.
-        sensitivities: of all candidates.
 
     Returns:
         The effects, and the model with them.
     """
     kept = list(accepted)
     for i, old in enumerate(kept):
-        for other, sizes in _list_kinds(task, old.candidate, model, sensitivities):
+        for other, sizes in _list_kinds(task, old.candidate, model):
             candidates = tuple(other if c.key == other.key else c for c in model.candidates)
-            new = try_fit(task, candidates, {**model.refit.point.values, **sizes}, model)
+            begin, least = {**model.refit.point.values, **sizes}, model.refit.log_posterior
+            new = try_fit(task, candidates, begin, model, least=least)
             if new is not None and new.negative_bic > model.negative_bic:
                 # Gain and rivals stay those of the round in which it was accepted.
                 begun = replace(old.model, candidates=(*old.model.candidates[:-1], other))
@@ -49,25 +49,26 @@ def improve_kinds(
 
 
 def _list_kinds(
-    task: DiscoveryTask,
-    old: Candidate,
-    model: FittedModel,
-    sensitivities: Sequence[Sensitivity],
+    task: DiscoveryTask, old: Candidate, model: FittedModel
 ) -> list[tuple[Candidate, dict[str, float]]]:
     """An effect of each other kind that explains more, to first order, with its sizes."""
-    best: dict[tuple[float, ...], tuple[float, Candidate, dict[str, float]]] = {}
-    for s in sensitivities:
-        kind = _kind(s.candidate)
-        if s.candidate.key != old.key or kind == _kind(old):
-            continue
-        other = replace_effect(model.refit, old, s.S, model.refit.level)
-        least = best[kind][0] if kind in best else 0.0
-        if other.loss < least and is_plausible(s.candidate, other.size, task.options):
-            sizes = dict(zip(s.candidate.sizes, other.size.tolist(), strict=True))
-            best[kind] = other.loss, s.candidate, sizes
-    return [(candidate, sizes) for _, candidate, sizes in best.values()]
+    out, fit = [], model.refit
+    for s in compute_beside(fit.point, _other_kinds(old, model)):
+        other = replace_effect(fit, old, s.S, fit.level)
+        if other.loss < 0 and is_plausible(s.candidate, other.size, task.options):
+            out.append((s.candidate, dict(zip(old.sizes, other.size.tolist(), strict=True))))
+    return out
 
 
-def _kind(candidate: Candidate) -> tuple[float, ...]:
-    """The shapes that are not estimated."""
-    return tuple(candidate.shape[s.name] for s in candidate.effect.shapes if not s.free)
+def _other_kinds(old: Candidate, model: FittedModel) -> list[Candidate]:
+    """An effect with every other combination of its fixed shapes, and its fitted free ones."""
+    values, shapes = model.refit.point.values, old.effect.shapes
+    free = {s.name: values[old.effect.parameter(s.name, old.where)] for s in shapes if s.free}
+    fixed = [s for s in shapes if not s.free]
+    names = [s.name for s in fixed]
+    every = [dict(zip(names, each, strict=True)) for each in product(*(s.grid for s in fixed))]
+    return [
+        replace(old, shape={**free, **kind})
+        for kind in every
+        if any(kind[name] != old.shape[name] for name in names)
+    ]

@@ -59,7 +59,8 @@ def eliminate(
         if _is_needed(task, model, old.candidate):
             continue
         rest = tuple(c for c in model.candidates if c is not old.candidate)
-        without = try_fit(task, rest, model.refit.point.values, model)
+        least = model.log_posterior_of_equal(_count(model, old.candidate))
+        without = try_fit(task, rest, model.refit.point.values, model, least=least)
         if without is not None and without.negative_bic > model.negative_bic:
             kept, model = [a for a in kept if a is not old], without
     return tuple(kept), model
@@ -92,7 +93,8 @@ def exchange(
                 continue
             begin = {**model.refit.point.values, **start}
             margin = task.options.retry_share * old.gain
-            new = _fit_rival(task, (*rest, rival), begin, model, margin)
+            least = model.log_posterior_of_equal(_count(model, old.candidate, rival))
+            new = _fit_rival(task, (*rest, rival), begin, model, margin, least)
             if new is None:
                 continue
             proof = prove(nominal.validation, new.validation, task.options)
@@ -111,12 +113,25 @@ def _fit_rival(
     begin: Mapping[str, float],
     model: FittedModel,
     margin: float,
+    least: float,
 ) -> FittedModel | None:
-    """A model with a rival; None where its BIC is behind by more than a margin after few steps."""
-    new = try_fit(task, candidates, begin, model, FEW)
+    """A model with a rival; None where few steps show that it does not become likely enough.
+
+    Its BIC is then behind by more than a margin, or its fit has ended below the log posterior
+    `least`.
+    """
+    new = try_fit(task, candidates, begin, model, FEW, least)
     if new is None or new.negative_bic < model.negative_bic - margin:
         return None
-    return try_fit(task, candidates, new.refit.point.values, new)
+    if new.refit.steps < FEW and new.refit.log_posterior < least:
+        return None
+    return try_fit(task, candidates, new.refit.point.values, new, least=least)
+
+
+def _count(model: FittedModel, without: Candidate, with_it: Candidate | None = None) -> int:
+    """How many free parameters a model has without an effect, and with another one in its place."""
+    names = {*model.refit.point.space.names} - {*without.estimated}
+    return len(names | {*(() if with_it is None else with_it.estimated)})
 
 
 def _list_rivals(

@@ -50,7 +50,7 @@ def _try_from_nominal(task: DiscoveryTask, model: FittedModel, best: FittedModel
     """
     old = {n: model.refit.point.values[n] for c in model.candidates for n in c.free}
     new = {n: best.refit.point.values[n] for n in best.candidates[-1].free}
-    again = try_fit(task, best.candidates, {**old, **new})
+    again = try_fit(task, best.candidates, {**old, **new}, least=best.refit.log_posterior)
     return max(best, again or best, key=_negative_bic)
 
 
@@ -62,7 +62,8 @@ def _try_other_shape(
     fixed = [shape.name for shape in mine.effect.shapes if not shape.free]
     for s in _select_same(mine, scores):
         if any(s.candidate.shape[name] != mine.shape[name] for name in fixed):
-            return max(best, _fit_shape(task, model, s) or best, key=_negative_bic)
+            other = _fit_shape(task, model, s, best.refit.log_posterior)
+            return max(best, other or best, key=_negative_bic)
     return best
 
 
@@ -76,8 +77,9 @@ def _prefer_usual(
         return best
     for s in _select_same(mine, scores):
         if all(s.candidate.shape[name] == value for name, value in usual.items()):
-            other = _fit_shape(task, model, s)
-            if other and best.negative_bic - other.negative_bic < task.options.bare_bic:
+            margin = task.options.bare_bic
+            other = _fit_shape(task, model, s, best.refit.log_posterior - margin / 2)
+            if other and best.negative_bic - other.negative_bic < margin:
                 return other
             return best
     return best
@@ -90,11 +92,16 @@ def _select_same(mine: Candidate, scores: Sequence[Score]) -> Iterator[Score]:
             yield s
 
 
-def _fit_shape(task: DiscoveryTask, model: FittedModel, s: Score) -> FittedModel | None:
-    """The model with a candidate of another shape; None where it cannot be simulated."""
+def _fit_shape(
+    task: DiscoveryTask, model: FittedModel, s: Score, least: float
+) -> FittedModel | None:
+    """The model with a candidate of another shape; None where it cannot be simulated.
+
+    One that does not come to the log posterior `least` does not matter, and its fit ends early.
+    """
     sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
     more = (*model.candidates, s.candidate)
-    return try_fit(task, more, {**model.refit.point.values, **sizes}, model)
+    return try_fit(task, more, {**model.refit.point.values, **sizes}, model, least=least)
 
 
 def _negative_bic(model: FittedModel) -> float:
