@@ -34,15 +34,17 @@ def candidate(soft):
 
 
 def of(soft, negative_bic):
-    return SimpleNamespace(candidates=(candidate(soft),), negative_bic=negative_bic)
+    refit = SimpleNamespace(log_posterior=negative_bic / 2)
+    return SimpleNamespace(candidates=(candidate(soft),), negative_bic=negative_bic, refit=refit)
 
 
 def choose(monkeypatch, best, other, white=True):
     """What becomes of the best fit, and the kinds that were refitted."""
     asked = []
 
-    def fit_shape(asked_of, model, s):
+    def fit_shape(asked_of, model, s, least):
         asked.append(s.candidate.shape["soft"])
+        assert best.refit.log_posterior - BARE / 2 <= least <= best.refit.log_posterior
         return other
 
     monkeypatch.setattr(shapes, "is_structured", lambda model, options: not white)
