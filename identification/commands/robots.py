@@ -30,6 +30,8 @@ class OnRobot:
         tuple[tuple[str, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="WORD")
     ] = ()
     """What you know better than a check: sensors, start, steps, time, units, wiring."""
+    spread: str = "usual"
+    """How much values that are alike differ: usual (the robot's TOML), none, or a TOML file."""
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
     def read(self) -> Robot:
@@ -48,6 +50,7 @@ class OnRobot:
             self.logs,
             [path for group in self.confirm for path in group],
             [word for group in self.trust for word in group],
+            self.spread,
         )
         for remark in robot.remarks:
             note(remark)

@@ -9,6 +9,7 @@ from math import inf, isfinite
 from identification.errors import InputError, repeated, unknown_name
 
 RECORD = "record"  # where a value goes that one record of a joined log has for itself
+DEVIATION = "deviation"  # where one goes that multiplies what another parameter writes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,7 +21,8 @@ class Parameter:
         value: value in `unit`.
         unit: SI unit, "" when dimensionless.
         where: path in the MuJoCo model (see `identification.model.paths`), "start" for an initial
-            condition, or "record" for the value of one record (see `identification.model.own`).
+            condition, "record" for the value of one record (see `identification.model.own`), or
+            "deviation" for a relative deviation of what another parameter writes to its tie.
         lower: smallest admissible value [unit].
         upper: largest admissible value [unit].
         symbol: letter in the equations; `name` when not given.
@@ -68,7 +70,7 @@ class Parameter:
     @property
     def places(self) -> tuple[tuple[str, float], ...]:
         """Every path that it writes, with its factor: `where` with factor 1, then the ties."""
-        return () if self.where == RECORD else ((self.where, 1.0), *self.ties)
+        return () if self.where in (RECORD, DEVIATION) else ((self.where, 1.0), *self.ties)
 
 
 @dataclass(frozen=True)

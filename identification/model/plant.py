@@ -4,6 +4,7 @@
     θ_j -> spread of a body's mass     where = "body/link.spread[0]" (identification.model.spread)
     θ_j -> entry of x₀                where = "qpos[0]", "qvel[3]", "act[1]"
     c θ_j -> any of these             ties = (("joint/other.damping", c), …)
+    (1 + θ_k) times any of these      where = "deviation", ties = (("joint/other.damping", 1),)
 
 The values change nothing else. A plant whose start depends on its masses, or whose inertia depends
 on its shape, implements `identification.model.predictor.Plant` itself.
@@ -15,12 +16,13 @@ import copy
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import mujoco
 import numpy as np
 
 from identification.errors import InputError
-from identification.model.parameter import ParameterSet
+from identification.model.parameter import DEVIATION, ParameterSet
 from identification.model.paths import Slot, resolve, write
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
@@ -63,12 +65,13 @@ class ModelPlant:
         for parameter in self.parameters:
             for path, factor in parameter.places:
                 place, of_body = start_place(path, model), spread_place(path, model)
+                value = factor * parameter.value * (1 + self._deviation(path))
                 if of_body is not None:
-                    spread[of_body] = np.array([factor * parameter.value])
+                    spread[of_body] = np.array([value])
                 elif place is None:
-                    write(model, resolve(model, path), factor * parameter.value)
+                    write(model, resolve(model, path), value)
                 else:
-                    start[place[0]][place[1]] = factor * parameter.value
+                    start[place[0]][place[1]] = value
         for slot, inertia in with_spreads(model, spread, 1):
             write(model, slot, float(inertia[0]))
         mujoco.mj_setConst(model, mujoco.MjData(model))
@@ -89,16 +92,49 @@ class ModelPlant:
         rows = {f: np.tile(getattr(start, f), (len(values), 1)) for f in ("qpos", "qvel", "act")}
         numbers: list[tuple[Slot, np.ndarray]] = []
         spread: dict[tuple[int, int], np.ndarray] = {}
-        for name, column in zip(names, values.T, strict=True):
-            for path, factor in self.parameters[name].places:
-                place, of_body = start_place(path, self.model), spread_place(path, self.model)
-                if of_body is not None:
-                    spread[of_body] = factor * column
-                elif place is None:
-                    numbers.append((resolve(self.model, path), factor * column))
-                else:
-                    rows[place[0]][:, place[1]] = factor * column
+        every = dict(zip(names, values.T, strict=True))
+        for name, path, factor in self._written(names):
+            place, of_body = start_place(path, self.model), spread_place(path, self.model)
+            column = factor * every.get(name, np.full(len(values), self.parameters[name].value))
+            if path in self._deviations:
+                own = every.get(self._deviations[path])
+                column = column * (1 + (self._deviation(path) if own is None else own))
+            if of_body is not None:
+                spread[of_body] = column
+            elif place is None:
+                numbers.append((resolve(self.model, path), column))
+            else:
+                rows[place[0]][:, place[1]] = column
         return State(**rows), [*numbers, *with_spreads(self.model, spread, len(values))]
+
+    @cached_property
+    def _deviations(self) -> dict[str, str]:
+        """The deviation at each path that has one, by the path."""
+        return {p.ties[0][0]: p.name for p in self.parameters if p.where == DEVIATION}
+
+    @cached_property
+    def _owners(self) -> dict[str, tuple[str, str, float]]:
+        """Of each deviation, what is written to its path: parameter, path and factor."""
+        return {
+            self._deviations[path]: (p.name, path, factor)
+            for p in self.parameters
+            for path, factor in p.places
+            if path in self._deviations
+        }
+
+    def _written(self, names: Sequence[str]) -> list[tuple[str, str, float]]:
+        """What some parameters write, once each: the parameter, the path and its factor."""
+        out = []
+        for name in names:
+            parameter = self.parameters[name]
+            each = [(name, path, factor) for path, factor in parameter.places]
+            out += [self._owners[name]] if parameter.where == DEVIATION else each
+        return list(dict.fromkeys(out))
+
+    def _deviation(self, path: str) -> float:
+        """The relative deviation at a path in the plant's own values, zero where it has none."""
+        name = self._deviations.get(path)
+        return 0.0 if name is None else self.parameters[name].value
 
     def inputs(
         self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,

@@ -26,6 +26,9 @@ upper = 500.0
 scale = 1.0                          # a magnitude that matters, where it may be zero
 [own_values.log_1]                   # where the search begins in one log, of what is under own
 "coulomb_friction.f_c@slide" = 20.4
+[spread.damping]                     # values that are alike but for their spread: robot/alike.py
+of = ["joint/shoulder.damping", "joint/elbow.damping"]
+std = 0.1
 [effects]
 joints = ["slide"]                   # where they may act; the measured joints if not given
 turns = [1, 7, 14]                   # periods of a turn to try, where a motor's are known
@@ -38,13 +41,14 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from identification.errors import InputError
 from identification.files import read_bytes
 from identification.logs.names import quoted
+from identification.robot.alike import Alike, read_alike
 from identification.robot.file_checks import (
     Kinds,
     check_table,
@@ -70,6 +74,7 @@ _KINDS: Kinds = {
     "fixed": (dict, "a table of numbers"),
     "parameters": (dict, "a table of tables"),
     "own_values": (dict, "a table of tables, one for each log"),
+    "spread": (dict, "a table of tables"),
     "effects": (dict, "a table"),
 }
 _RECORD: Kinds = {
@@ -106,6 +111,7 @@ class RobotFile:
         joints: where effects may act; empty for the measured ones.
         only: candidates by name; empty for all.
         turns: periods of a turn to try; empty for the catalogue's.
+        spread: values that are alike; their parameters are free too, behind those that it frees.
     """
 
     path: Path
@@ -125,6 +131,12 @@ class RobotFile:
     joints: tuple[str, ...] = ()
     only: tuple[str, ...] = ()
     turns: tuple[float, ...] = ()
+    spread: tuple[Alike, ...] = ()
+
+    @property
+    def by_itself(self) -> tuple[str, ...]:
+        """The free parameters that belong to no spread."""
+        return tuple(n for n in self.free if n not in {m for a in self.spread for m in a.names})
 
 
 def read_robot_file(path: str | Path) -> RobotFile:
@@ -134,22 +146,19 @@ def read_robot_file(path: str | Path) -> RobotFile:
         InputError: it cannot be read, is not TOML, or has an unknown key or a wrong value.
     """
     path = Path(path)
-    try:
-        content = tomllib.loads(read_bytes(path, _LARGEST).decode("utf-8-sig"))
-    except (ValueError, RecursionError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{path} is not TOML ({quoted(str(error), 120)}); correct it") from error
+    content = _toml(path)
     check_table(content, _KINDS, str(path))
     for key in ("model", "free"):
         if not content.get(key):
             raise InputError(f"{path} does not say {key!r}; give {_KINDS[key][1]}")
+    alike = read_alike(content, path, content["free"])
+    free = (*texts(content["free"], "free", path), *(n for a in alike for n in a.names))
     records = content.get("parameters", {})
     for name, record in records.items():
         if not isinstance(record, dict):
             raise InputError(f"parameters.{name} in {path} must be a table")
         check_table(record, _RECORD, f"parameters.{name} in {path}")
-        if name not in content["free"]:
+        if name not in free:
             raise InputError(f"{path} tells of parameter {name!r}, which is not among its `free`")
     columns, fixed = content.get("columns", {}), content.get("fixed", {})
     start = content.get("start", {})
@@ -166,7 +175,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
     return RobotFile(
         path=path,
         model=model,
-        free=texts(content["free"], "free", path),
+        free=free,
         own=read_own(content, path),
         outputs=texts(content.get("outputs", []), "outputs", path),
         horizon=content.get("horizon"),
@@ -181,4 +190,38 @@ def read_robot_file(path: str | Path) -> RobotFile:
         joints=texts(effects.get("joints", []), "effects.joints", path),
         only=texts(effects.get("only", []), "effects.only", path),
         turns=numbers(effects.get("turns", []), "effects.turns", path),
+        spread=alike,
     )
+
+
+def with_spread(file: RobotFile, word: str) -> RobotFile:
+    """A robot's file with its own spread ("usual"), without deviations ("none"), or with another.
+
+    Args:
+        file: of the robot.
+        word: one of these words, or the path of a TOML with tables [spread.NAME].
+
+    Raises:
+        InputError: there is no such file, or it holds anything else.
+    """
+    if word == "usual":
+        return file
+    alike = tuple(replace(a, deviates=False) for a in file.spread)
+    if word != "none":
+        if not Path(word).is_file():
+            raise InputError(f"no spread {word!r}; give none, usual, or a TOML file")
+        content = _toml(Path(word))
+        check_table(content, {"spread": _KINDS["spread"]}, word)
+        alike = read_alike(content, Path(word), file.by_itself)
+    free = (*file.by_itself, *(n for a in alike for n in a.names))
+    records = {n: r for n, r in file.records.items() if n in free}
+    return replace(file, free=free, records=records, spread=alike)
+
+
+def _toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(read_bytes(path, _LARGEST).decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{path} is not TOML ({quoted(str(error), 120)}); correct it") from error

@@ -10,7 +10,7 @@ from typing import Any
 from identification.errors import InputError, unknown_name
 
 Kinds = Mapping[str, tuple[type | tuple[type, ...], str]]  # by key: the types, and what they are
-POSITIVE = ("every", "known", "scale")
+POSITIVE = ("every", "known", "scale", "std")
 
 
 def check_table(table: Mapping[str, Any], kinds: Kinds, where: str) -> None:

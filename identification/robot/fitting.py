@@ -129,7 +129,10 @@ def fit(robot: Robot, progress: Callable[[str], None] | None = None) -> RobotFit
         )
     model = robot.nominal_model
     if file.horizon is None:
-        estimated = estimate(model.plant, parts[0], file.free, progress=progress)
+        # A free run is fitted without priors: a common value cannot be told from its deviations.
+        common = {a.name for a in file.spread if a.deviates}
+        names = [name for name in file.free if name not in common]
+        estimated = estimate(model.plant, parts[0], names, progress=progress)
         return RobotFit(robot, assess(estimated, robot.log))
     for log in (*logs, *robot.records):
         refuse_horizon(file, log, is_whole)

@@ -24,6 +24,7 @@ from identification.model.paths import Slot, read, resolve
 from identification.model.plant import own_start, start_place
 from identification.model.predictor import output_columns
 from identification.model.spread import spread_place, spreads
+from identification.robot.alike import Alike
 from identification.robot.file import RobotFile
 from identification.robot.start import CLEAR, measured_begin
 
@@ -81,6 +82,9 @@ def free_parameter(
         InputError: it is neither a path nor the size of an effect, its value is missing, or its
             prior lies outside its bounds.
     """
+    for alike in file.spread:
+        if name in alike.names:
+            return _alike(file, alike, name, model)
     said = file.records.get(name, {})
     given: dict[str, Any] = {k: said[k] for k in ("unit", "about") if k in said}
     given |= {k: float(said[k]) for k in ("value", "lower", "upper", "scale") if k in said}
@@ -115,6 +119,15 @@ def free_parameter(
     if _is_positive(record, mean):
         return Free(record, mean, float(said.get("known", KNOWN)))
     return Free(record, mean, float(said.get("known", guess)) / record.scale)
+
+
+def _alike(file: RobotFile, alike: Alike, name: str, model: mujoco.MjModel) -> Free:
+    """The common value of a spread, or a deviation from it."""
+    record, std = alike.parameters(model, unit_of(model, alike.of[0]))[name]
+    said = file.records.get(name, {})
+    mean = float(said.get("prior", record.value))
+    std = float(said.get("known", std))
+    return Free(replace(record, value=float(said.get("value", record.value))), mean, std)
 
 
 def measured_start(model: mujoco.MjModel, path: str, log: Log, own: float) -> float:

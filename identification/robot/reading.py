@@ -9,7 +9,7 @@ from pathlib import Path
 from identification.effects.axes import axes
 from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
-from identification.robot.file import RobotFile, read_robot_file
+from identification.robot.file import RobotFile, read_robot_file, with_spread
 from identification.robot.free_inertias import inertias_sentence
 from identification.robot.robot import Robot, read_robot_log, robot_of
 from identification.robot.start import start_sentence
@@ -23,6 +23,7 @@ def read_robot(
     log: str | Path | Log | Sequence[str | Path | Log],
     confirm: Sequence[str | Path | Log] = (),
     trust: Sequence[str] = (),
+    spread: str = "usual",
 ) -> Robot:
     """Read a robot and the logs that it is to explain; refuse files that do not belong together.
 
@@ -34,6 +35,8 @@ def read_robot(
         confirm: records of the same robot to which nothing will be fitted.
         trust: judgements that are not to refuse a log, beside those of the file's key `trust`:
             words of `identification.robot.trust.TRUST`.
+        spread: of values that are alike: "usual" for that of the file's [spread] tables, "none" for
+            no deviations from their common values, or the path of a TOML with such tables.
 
     Raises:
         InputError: a file cannot be what it should be, a name is unknown, a sensor froze, the
@@ -46,6 +49,7 @@ def read_robot(
         _refuse_records(records, of)
     file = read_robot_file(path)
     file = replace(file, trust=(*file.trust, *trusted(trust, "what was called")))
+    file = with_spread(file, spread)
     records = tuple(_log(file, record) for record in confirm)
     first, *others = (
         _log(file, each) for each in ([log] if isinstance(log, str | Path | Log) else log)

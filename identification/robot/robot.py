@@ -69,9 +69,11 @@ class Robot:
         file, plant = self.file, self.plant
         if file.horizon is None:
             plant = plant.with_values(self.log.values)
+        groups = {a.name: tuple(a.deviations) for a in file.spread if a.deviates}
         return NominalModel(
-            plant, file.free, self.std, file.horizon, file.own, self.mean, file.own_values
-        )
+            plant, file.free, self.std, file.horizon, file.own, self.mean, file.own_values,
+            groups=groups, scattering=() if file.horizon else tuple(groups),
+        )  # fmt: skip
 
     @property
     def candidates(self) -> tuple[Effect, ...]:

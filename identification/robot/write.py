@@ -40,12 +40,14 @@ def write_robot(
     values = {**_means([n for n in own if n not in file.own], own_values), **values}
     shapes = {f"{e.name}.{s.name}" for e in robot.plant.effects for s in e.shapes}
     fixed = {**file.fixed, **{n: v for n, v in values.items() if n in shapes}}
-    names = [*file.free, *(n for n in values if n not in (*file.free, *shapes))]
+    alike = {n for a in file.spread for n in a.names}
+    found = [n for n in values if n not in (*file.free, *shapes)]
+    names = [*file.free, *found]
     lines = [f"# {remark}"] if remark else []
     lines += [
         f"model = {_text(os.path.relpath(file.model, place))}",
         f"outputs = {_list(robot.log.output_names)}",
-        f"free = {_list(names)}",
+        f"free = {_list([*file.by_itself, *found])}",
     ]
     lines += [f"own = {_list(own)}"] if own else []
     lines += [] if file.horizon is None else [f"horizon = {file.horizon!r}"]
@@ -58,7 +60,10 @@ def write_robot(
     for name in names:
         said = {**file.records.get(name, {}), "unit": at[name].unit}
         value = float(values.get(name, at[name].value))
-        tables[f"parameters.{_text(name)}"] = {**said, "value": value, **_known(robot, name, value)}
+        known = {} if name in alike else _known(robot, name, value)
+        tables[f"parameters.{_text(name)}"] = {**said, "value": value, **known}
+    for a in file.spread:
+        tables[f"spread.{_text(a.name)}"] = {"of": list(a.of), "std": a.std, "known": a.known}
     for record, each in own_values.items():
         tables[f"own_values.{_text(record)}"] = {n: float(v) for n, v in each.items()}
     tables["effects"] = {
