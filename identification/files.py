@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
 from pathlib import Path
-from shutil import rmtree
-from tempfile import mkdtemp
 from uuid import uuid4
 
 from identification.errors import InputError
@@ -70,31 +68,6 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
         ) from error
     finally:
         draft.unlink(missing_ok=True)
-
-
-@contextmanager
-def whole_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """A temporary folder whose files move to `path` when the block ends well; made when missing.
-
-    Files of `path` with other names stay.
-
-    Raises:
-        InputError: the folder cannot be made or written to.
-    """
-    path = Path(path)
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-        for old in path.glob(".draft-*"):  # of a program that was killed
-            rmtree(old, ignore_errors=True)
-        draft = Path(mkdtemp(prefix=".draft-", dir=path))
-    except OSError as error:
-        raise InputError(f"cannot make folder {path}: {error.strerror}; choose another") from None
-    try:
-        yield draft
-        for file in draft.iterdir():
-            file.replace(path / file.name)
-    finally:
-        rmtree(draft, ignore_errors=True)
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> Path:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, is_dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,33 +19,6 @@ class Output:
     """Print one JSON object on stdout and nothing else."""
     out: Path | None = None
     """Folder for the results, result.json among them; made when missing."""
-
-
-def refuse_folder(path: Path | None, robot: Path | None = None) -> None:
-    """Refuse a folder that could not be made, before there are results to lose; makes nothing.
-
-    Args:
-        path: of the folder.
-        robot: a robot's file, which results must not replace.
-
-    Raises:
-        InputError: it, or what is above it, is a file or cannot be written, or the robot's file
-            would be replaced.
-    """
-    from identification.errors import InputError
-
-    if path is None:
-        return
-    there = next(p for p in (path, *path.absolute().parents) if p.exists())
-    if not there.is_dir():
-        raise InputError(f"cannot make folder {path}: {there} is a file; choose another")
-    if not os.access(there, os.W_OK):
-        raise InputError(f"cannot make folder {path}: {there} cannot be written; choose another")
-    if robot is not None and robot.resolve() == (path / "robot.toml").resolve():
-        raise InputError(
-            f"--out {path} would replace the robot's file {robot}, from which the fit begins;"
-            " choose another folder"
-        )
 
 
 def say(text: str) -> None:
@@ -94,18 +67,41 @@ def conclude(
     Raises:
         InputError: the folder cannot be written.
     """
-    from identification.files import whole_folder
+    from identification.folders import whole_folder
 
     output: Output = command.output
     if output.out is not None:
         with whole_folder(output.out) as out:
-            if keep is not None:
-                keep(out)
             write_result(out / "result.json", command, record)
+            if keep is not None:
+                keep_if_possible("figures and report", partial(keep, out))
     if output.json:
         say_json(record)
     else:
         say(text)
+
+
+def keep_if_possible(what: str, write: Callable[[], object]) -> bool:
+    """Write more than the results, or say in one sentence why not: what was found is kept.
+
+    Args:
+        what: is written.
+        write: does so.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    from identification.errors import InputError
+
+    try:
+        write()
+    except InputError:
+        raise
+    except Exception as error:  # a drawing must not cost what took minutes to find
+        reason = (str(error).strip() or type(error).__name__).splitlines()[0]
+        note(f"no {what}: {reason}; the results are kept without")
+        return False
+    return True
 
 
 def _version(package: str) -> str:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from identification.commands.common import (
+    keep_if_possible,
     note,
-    refuse_folder,
     say,
     say_json,
     write_result,
@@ -33,7 +34,7 @@ class Discover(OnRobot):
         """Discover, confirm, say, keep."""
         from identification.discovery.final_values import collect_final_values
         from identification.discovery.options import read_options
-        from identification.files import whole_folder
+        from identification.folders import whole_folder
         from identification.prediction.result import RecordsDiscovery
         from identification.report.discovery_json import discovery_to_json
         from identification.report.discovery_report import write_discovery_report
@@ -43,7 +44,6 @@ class Discover(OnRobot):
         from identification.robot.repetition import find_repetitions
         from identification.robot.write import write_robot
 
-        refuse_folder(self.output.out, self.robot)
         options = None if self.options is None else read_options(self.options)
         robot = self.read()
         found = discover(robot, progress=note, options=options)
@@ -59,7 +59,6 @@ class Discover(OnRobot):
             say("\n".join([discovery_text(found), *map(str, (*pairs, *repeated))]))
         if self.output.out is not None:
             with whole_folder(self.output.out) as out:
-                write_discovery_report(found, out, sentences=[*map(str, (*pairs, *repeated))])
                 has = {
                     n
                     for named in found.named
@@ -72,11 +71,14 @@ class Discover(OnRobot):
                 }
                 write_robot(robot, values, out / "robot.toml", self.output.out)
                 write_result(out / "result.json", self, record)
+                told = [*map(str, (*pairs, *repeated))]
+                write = partial(write_discovery_report, found, out, sentences=told)
+                keep_if_possible("figures and report", write)
         return 0
 
     def _keep_records(self, robot: Robot, found: RecordsDiscovery) -> int:
         """Say and keep a discovery on several records."""
-        from identification.files import whole_folder
+        from identification.folders import whole_folder
         from identification.report.records_json import records_to_json
         from identification.report.records_report import write_records_report
         from identification.report.records_text import records_text
@@ -92,10 +94,11 @@ class Discover(OnRobot):
             say("\n".join([records_text(found), *map(str, repeated)]))
         if self.output.out is not None:
             with whole_folder(self.output.out) as out:
-                write_records_report(found, out)
                 values, own = found.final.values, found.final.own_values
                 write_robot(robot, values, out / "robot.toml", self.output.out, own_values=own)
                 write_result(out / "result.json", self, record)
+                write = partial(write_records_report, found, out)
+                keep_if_possible("figures and report", write)
         return 0
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from identification.commands.common import conclude, note, refuse_folder, table
+from identification.commands.common import conclude, note, table
 from identification.commands.robots import OnRobot
 
 WORSE = (
@@ -26,7 +26,6 @@ class Fit(OnRobot):
         from identification.robot.fitting import fit
         from identification.robot.write import write_robot
 
-        refuse_folder(self.output.out, self.robot)
         robot = self.read()
         found = fit(robot, note)
         record = robot_fit_to_json(found, confirm(robot, found))

@@ -11,6 +11,7 @@ from typing import Any
 
 import tyro
 
+from identification.commands.places import refuse_empty, refuse_place
 from identification.commands.repeated import gathered
 
 
@@ -25,14 +26,17 @@ def run_program(
         description: what it does.
         arguments: those of the process when None.
     """
+    given = sys.argv[1:] if arguments is None else arguments
     try:
+        refuse_empty(given)
         command = tyro.cli(
             commands,
             prog=name,
             description=description,
-            args=gathered(commands, sys.argv[1:] if arguments is None else arguments),
+            args=gathered(commands, given),
             config=(tyro.conf.AvoidSubcommands,),
         )
+        refuse_place(command)
         return int(command.run())
     except ValueError as error:
         from identification.errors import InputError

@@ -8,7 +8,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from identification.report.style import INK, SERIES, SIMULATED, STYLE
+from identification.report.style import INK, SERIES, SIMULATED, STYLE, literal
 
 
 def compare_figure(
@@ -50,10 +50,10 @@ def compare_figure(
             upper.plot(time, measured[:, k], color=INK, lw=2.2, alpha=0.45, label="measured")
             upper.plot(time, simulated[:, k], color=SIMULATED, lw=1.1, label="simulated")
             fit = f"{fit_percent[k]:.2f} %" if np.isfinite(fit_percent[k]) else "none: constant"
-            upper.set_title(f"{names[k]}   fit {fit}", loc="left", color=INK)
-            upper.set_ylabel(f"[{unit}]")
+            upper.set_title(literal(f"{names[k]}   fit {fit}"), loc="left", color=INK)
+            upper.set_ylabel(literal(f"[{unit}]"))
             lower.plot(time, measured[:, k] - simulated[:, k], color=SERIES[0], lw=0.8)
-            lower.set_ylabel(f"residual\n[{unit}]", fontsize=7)
+            lower.set_ylabel(literal(f"residual\n[{unit}]"), fontsize=7)
             lower.tick_params(labelsize=7)
             lower.locator_params(axis="y", nbins=3)
             lower.set_xlim(time[0], time[-1])

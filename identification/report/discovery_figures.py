@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from identification.report.style import GREY, INK, MEASURED, SIMULATED, STYLE
+from identification.report.style import GREY, INK, MEASURED, SIMULATED, STYLE, literal
 
 BEFORE, AFTER = SIMULATED, MEASURED
 BAND = "#C9CED6"
@@ -53,10 +53,10 @@ def gap_figure(
                 if e is not None:
                     ax.plot(shown, np.insert(e[:, k], cuts, np.nan), color=colour, lw=0.9,
                             label=label)  # fmt: skip
-            ax.set_title(names[k], loc="left", color=INK)
+            ax.set_title(literal(names[k]), loc="left", color=INK)
             ax.set_xlim(time[0], time[-1])
         for ax in axes[:, 0]:
-            ax.set_ylabel(f"error [{unit}]" if unit else "error")
+            ax.set_ylabel(literal(f"error [{unit}]") if unit else "error")
         for ax in axes[-1]:
             ax.set_xlabel("time [s]")
         figure.legend(
@@ -92,7 +92,7 @@ def force_figure(
             ax.plot(time, factor * force[:, k], color=SIMULATED, lw=0.9)
             ax.axhline(0, color=GREY, lw=0.6)
             ax.set_ylim(-factor * top, factor * top)
-            ax.set_title(f"{names[k].replace('_', ' ')} [{unit}]", loc="left", color=INK)
+            ax.set_title(literal(f"{names[k].replace('_', ' ')} [{unit}]"), loc="left", color=INK)
             ax.set_xlim(time[0], time[-1])
         for ax in axes[-1]:
             ax.set_xlabel("time [s]")
@@ -124,14 +124,14 @@ def rms_figure(
                    label=label)  # fmt: skip
         if floor > 0:
             ax.axhline(floor, color=INK, ls="--", lw=1, label="noise")
-        ax.set_xticks(place, [name.replace("_", " ") for name in names], fontsize=8)
+        ax.set_xticks(place, [literal(name.replace("_", " ")) for name in names], fontsize=8)
         ax.grid(axis="x", visible=False)
         least = min(float(np.min(height)) for height, _, _ in bars)
         if 0 < FAR * least < float(np.max(before)):
             ax.set_yscale("log")
             ax.set_ylim(bottom=0.3 * (min(least, floor) if floor > 0 else least))
             ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        ax.set_ylabel(f"rms of the error [{unit}]" if unit else "rms of the error")
+        ax.set_ylabel(literal(f"rms of the error [{unit}]") if unit else "rms of the error")
         figure.legend(loc="outside upper center", ncols=3)
     return figure
 
@@ -151,7 +151,7 @@ def gains_figure(labels: Sequence[str], gains: np.ndarray, named: Sequence[bool]
         shown = np.maximum(np.asarray(gains, float), 0.0)
         colours = [AFTER if is_named else GREY for is_named in named]
         ax.barh(place, shown, 0.7, color=colours)
-        ax.set_yticks(place, list(labels), fontsize=8)
+        ax.set_yticks(place, list(map(literal, labels)), fontsize=8)
         ax.grid(axis="y", visible=False)
         ax.set_xlabel("gain: twice the log likelihood that it adds, at once")
         if any(named):

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from identification.estimation.profiles import LEVEL, Profile
-from identification.report.style import SERIES, STYLE
+from identification.report.style import SERIES, STYLE, literal
 
 
 def profile_figure(known: Profile, unit: str) -> Figure:
@@ -19,7 +19,7 @@ def profile_figure(known: Profile, unit: str) -> Figure:
         ax.plot(known.values[seen], known.rise[seen], "o-", color=SERIES[0], label="profile")
         ax.axhline(LEVEL, color=SERIES[1], linestyle="--", label="95 %")
         ax.axvline(known.estimate, color=SERIES[2], linestyle=":", label="estimate")
-        ax.set_xlabel(f"{known.name} [{unit}]" if unit else known.name)
+        ax.set_xlabel(literal(f"{known.name} [{unit}]" if unit else known.name))
         ax.set_ylabel("rise of the cost, in s²")
         figure.legend(loc="outside upper center", ncols=3)
     return figure

@@ -40,6 +40,11 @@ STYLE: Any = {
 }
 
 
+def literal(text: str) -> str:
+    """A name as a figure shows it, letter by letter: `$` would begin a formula."""
+    return text.replace("$", r"\$")
+
+
 def save_png(figure: Figure, path: str | Path, dpi: float = 150) -> Path:
     """Write a figure as PNG, whole or not at all.
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from identification.logs.log import Log
 from identification.model.predictor import Plant
-from identification.report.style import INK, SERIES, STYLE
+from identification.report.style import INK, SERIES, STYLE, literal
 from identification.windows.window_error import window_error
 
 
@@ -45,11 +45,11 @@ def windows_figure(
             for axis, line in ((upper, y - error), (lower, error)):
                 axis.plot(
                     np.hstack([t, gap]).ravel(), np.hstack([line, gap]).ravel(),
-                    color=SERIES[k % len(SERIES)], lw=1, label=label,
+                    color=SERIES[k % len(SERIES)], lw=1, label=literal(label),
                 )  # fmt: skip
         of = f"{log.name}: predicted" if log.name else "Predicted"
-        upper.set(ylabel=f"{name} [{unit}]")
-        upper.set_title(f"{of} over {length:g} s", loc="left", color=INK)
-        lower.set(ylabel=f"error [{unit}]", xlabel="time [s]")
+        upper.set(ylabel=literal(f"{name} [{unit}]"))
+        upper.set_title(literal(f"{of} over {length:g} s"), loc="left", color=INK)
+        lower.set(ylabel=literal(f"error [{unit}]"), xlabel="time [s]")
         upper.legend(loc="upper left", fontsize=8)
     return figure

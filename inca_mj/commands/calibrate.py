@@ -13,7 +13,6 @@ from identification.commands.common import (
     conclude,
     note,
     output_field,
-    refuse_folder,
     table,
 )
 from inca_mj.commands.common import Values, do_not_draw, values_field
@@ -60,7 +59,6 @@ class Calibrate:
         spread, parameters, place = (
             spread_of(self.spread), self.robot.parameters(), self.robot.place()
         )  # fmt: skip
-        refuse_folder(self.output.out)
         found = calibrate(
             logs, parameters, place, confirm=confirm, spread=spread, progress=note
         )  # fmt: skip

@@ -11,9 +11,9 @@ import tyro
 from identification.commands.common import (
     Output,
     bar,
+    keep_if_possible,
     note,
     output_field,
-    refuse_folder,
     say,
     say_json,
     write_result,
@@ -59,7 +59,7 @@ class Discover:
             do_not_draw()
         from identification.discovery.options import read_options
         from identification.errors import InputError
-        from identification.files import whole_folder
+        from identification.folders import whole_folder
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.discovery import discover
         from inca_mj.workflows.spread import spread_of
@@ -72,7 +72,6 @@ class Discover:
         spread = spread_of(self.spread)
         options = None if self.options is None else read_options(self.options)
         out = self.output.out
-        refuse_folder(out)
         found = discover(
             logs,
             parameters,
@@ -117,12 +116,18 @@ def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, 
 
     robot = named_twin(found)
     model, effects = save_twin(robot, out)
-    drawn = _film(found, robot, rerun(robot, found.log), out) if film else None
-    more = [*([film_section(drawn)] if drawn else []), model_section(_without_zeros(robot))]
-    report = write_discovery_report(found, out, sections=more, files=FILES)
     write_result(out / "result.json", command, as_json(found, Path(model.name)))
-    files = {"report": report, "model": model, "effects": effects}
-    return {**files, "film": drawn} if drawn else files
+    files = {"model": model, "effects": effects}
+
+    def draw() -> None:
+        drawn = _film(found, robot, rerun(robot, found.log), out) if film else None
+        more = [*([film_section(drawn)] if drawn else []), model_section(_without_zeros(robot))]
+        files.update({"film": drawn} if drawn else {})
+        files["report"] = write_discovery_report(found, out, sections=more, files=FILES)
+
+    keep_if_possible("figures and report", draw)
+    order = ("report", "model", "effects", "film")
+    return {what: files[what] for what in order if what in files}
 
 
 def _without_zeros(robot: Twin) -> Twin:

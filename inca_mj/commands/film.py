@@ -44,7 +44,7 @@ class Film:
 
             raise GraphicsError(blind)
         from identification.errors import InputError
-        from identification.files import whole_folder
+        from identification.folders import whole_folder
         from inca_mj.rendering.film import film, stills
 
         scene = self._scene()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -11,9 +12,9 @@ import tyro
 
 from identification.commands.common import (
     Output,
+    keep_if_possible,
     note,
     output_field,
-    refuse_folder,
     say,
     say_json,
     table,
@@ -63,10 +64,9 @@ class Identify:
         """Identify, say, keep."""
         do_not_draw()
         from identification.estimation.profiles import profile
-        from identification.files import whole_folder
+        from identification.folders import whole_folder
         from inca_mj.report.identification_json import identification_json, profile_sentence
 
-        refuse_folder(self.output.out)
         result = self._identify()
         profiles = [profile(result.fit_of(name), name) for name in self.profile]
         best = identification_json(result, profiles, self.seed)
@@ -81,8 +81,9 @@ class Identify:
                 say(f"step {result.best + 1} predicts unseen data best.")
         if self.output.out is not None:  # last: drawing can fail, or be stopped
             with whole_folder(self.output.out) as out:
-                keep(result, profiles, out, self.robot)
                 write_result(out / "result.json", self, best)
+                write = partial(keep, result, profiles, out, self.robot)
+                keep_if_possible("figures and report", write)
         return STOPPED if result.stopped else 0
 
     def _identify(self) -> Identification:
@@ -184,8 +185,8 @@ def keep(result: Identification, profiles: Sequence[Profile], out: Path, robot: 
         compare_section(shown),
         model_section(shown.run.twin),
     ]
-    save_figures(sections, out)
     shown.run.twin.save(out / "model.xml")
+    save_figures(sections, out)
     write_report(
         out / "report.html",
         f"{result.log.name}: identified",

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from identification import Log, write_log
-from identification.files import whole_folder
+from identification.folders import whole_folder
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=30)
@@ -131,7 +131,7 @@ def test_a_folder_of_results_is_filled_whole_or_left_as_it_was(tmp_path):
     with whole_folder(out) as draft:
         (draft / "a.txt").write_text("first")
         assert [p for p in out.iterdir() if p != draft] == []
-    assert {p.name: p.read_text() for p in out.iterdir()} == {"a.txt": "first"}
+    assert {p.name: p.read_text() for p in out.glob("[!.]*")} == {"a.txt": "first"}
 
     def interrupted():
         with whole_folder(out) as draft:
@@ -140,7 +140,7 @@ def test_a_folder_of_results_is_filled_whole_or_left_as_it_was(tmp_path):
 
     with pytest.raises(KeyboardInterrupt):
         interrupted()
-    assert {p.name: p.read_text() for p in out.iterdir()} == {"a.txt": "first"}
+    assert {p.name: p.read_text() for p in out.glob("[!.]*")} == {"a.txt": "first"}
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path, refusal):

@@ -175,7 +175,7 @@ def test_the_robots_file_is_never_replaced_by_results(folder, capsys):
     for command in ("fit", "discover"):
         arguments = [command, str(folder / "robot.toml"), logs[0], "--confirm", logs[1]]
         assert main([*arguments, "--out", str(folder)]) == 2
-        assert "would replace the robot's file" in capsys.readouterr().err
+        assert "is read by this command and lies in" in capsys.readouterr().err
     assert (folder / "robot.toml").read_text() == before
 
 

@@ -1,0 +1,144 @@
+"""No command replaces a file that it did not make, or loses what it found."""
+
+import os
+
+import numpy as np
+import pytest
+
+from identification.__main__ import main as identification
+from identification.commands.common import keep_if_possible
+from identification.errors import InputError
+from identification.folders import MADE, list_foreign, whole_folder
+from identification.report.compare_figure import compare_figure
+from identification.report.discovery_figures import gap_figure, rms_figure
+from identification.report.style import svg
+from inca_mj.cli import main as inca
+
+LOG = "time,i1\n0,1\n"
+
+
+def made(out, **texts):
+    with whole_folder(out) as draft:
+        for name, text in texts.items():
+            (draft / name).write_text(text)
+
+
+def content(folder):
+    return {p.name: p.read_text() for p in folder.iterdir() if not p.name.startswith(".")}
+
+
+@pytest.fixture
+def mine(tmp_path):
+    """A folder of the user with a log that was measured."""
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    (folder / "log.csv").write_text(LOG)
+    return folder
+
+
+@pytest.mark.parametrize(("program", "arguments"), [
+    (inca, ["simulate", "--input", "{}/log.csv"]),
+    (inca, ["simulate", "--duration", "1"]),
+    (inca, ["identify", "{}/log.csv"]),
+    (inca, ["discover", "{}/log.csv", "--options", "{}/log.csv"]),
+    (inca, ["film", "{}/log.csv"]),
+    (inca, ["trials"]),
+    (identification, ["fit", "{}/robot.toml", "{}/log.csv"]),
+    (identification, ["discover", "robot.toml", "log.csv", "--confirm", "{}/log.csv"]),
+])  # fmt: skip
+def test_a_folder_with_files_of_the_user_is_refused_before_anything_is_done(
+    mine, capsys, program, arguments
+):
+    line = [a.format(mine) for a in arguments]
+    assert program([*line, "--out", str(mine)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "log.csv" in said
+    assert "--out" in said
+    assert {p.name: p.read_text() for p in mine.iterdir()} == {"log.csv": LOG}
+
+
+@pytest.mark.parametrize("empty", [["--out", ""], ["--out="]])
+def test_no_folder_at_all_is_refused(capsys, empty):
+    assert inca(["simulate", *empty]) == 2
+    assert "name a folder, such as --out out/run" in capsys.readouterr().err
+
+
+def test_what_was_made_is_made_again_and_what_the_user_changed_is_kept(tmp_path):
+    out = tmp_path / "out"
+    made(out, a="first", b="first")
+    made(out, a="second")
+    assert content(out) == {"a": "second", "b": "first"}
+    (out / "b").write_text("edited")
+    with pytest.raises(InputError, match=r"holds b, not made there by this program or changed"):
+        made(out, a="third")
+    assert content(out) == {"a": "second", "b": "edited"}
+    (out / "b").unlink()
+    (out / "notes").mkdir()  # no file, and never replaced
+    made(out, a="third")
+    assert content_of_files(out) == {"a": "third"}
+    (out / MADE).write_text("{")  # then nothing is known to be made by the program
+    assert list_foreign(out) == ["a"]
+
+
+def content_of_files(folder):
+    return {p.name: p.read_text() for p in folder.iterdir() if p.is_file() and p.name != MADE}
+
+
+def test_what_comes_into_the_folder_meanwhile_is_kept_and_so_are_the_results(tmp_path):
+    out, after = tmp_path / "out", tmp_path / "out-3"
+    (tmp_path / "out-2").mkdir()
+
+    def run():
+        with whole_folder(out) as draft:
+            (draft / "a").write_text("found")
+            (out / "a").write_text("of the user")
+
+    with pytest.raises(InputError, match=rf"nothing of it was replaced.*{after}"):
+        run()
+    assert content(out) == {"a": "of the user"}
+    assert content(after) == {"a": "found"}
+    made(after, a="found again")
+
+
+def test_two_runs_into_one_folder_keep_their_drafts_and_dead_ones_are_removed(tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    dead, old = out / ".draft-999999999-x", out / ".draft-x"
+    for left in (dead, old):
+        left.mkdir()
+    os.utime(old, (0, 0))
+    with whole_folder(out) as first:
+        (first / "a").write_text("1")
+        with whole_folder(out) as second:
+            assert first.is_dir()
+            (second / "b").write_text("2")
+        assert first.is_dir()
+    assert content(out) == {"a": "1", "b": "2"}
+    assert [p.name for p in out.iterdir() if p.name.startswith(".")] == [MADE]
+
+
+def test_a_name_that_looks_like_a_formula_is_drawn_letter_by_letter():
+    names, rng = ("$\\bad{$", "$5"), np.random.default_rng(0)
+    e, time = rng.normal(size=(50, 2)), 0.01 * np.arange(50)
+    for figure in (
+        gap_figure(time, e, 0.5 * e, 0.1, names, "$"),
+        rms_figure(np.ones(2), 0.5 * np.ones(2), 0.1, names, "$"),
+        compare_figure(time, e, 0.9 * e, np.array([90.0, 80.0]), names, "$"),
+    ):
+        assert "svg" in svg(figure)
+
+
+def test_what_cannot_be_drawn_costs_no_result(capsys):
+    def draw():
+        raise ValueError("no such colour\nin a long message")
+
+    assert not keep_if_possible("figures and report", draw)
+    said = capsys.readouterr().err
+    assert said == "no figures and report: no such colour; the results are kept without\n"
+
+    def full():
+        raise InputError("cannot write")
+
+    with pytest.raises(InputError, match="cannot write"):
+        keep_if_possible("figures", full)
