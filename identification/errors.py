@@ -25,6 +25,16 @@ def repeated(names: Sequence[str]) -> list[str]:
     return sorted({name for name in names if names.count(name) > 1})
 
 
+def refuse_negative(name: str, value: int) -> None:
+    """Refuse a whole number below zero.
+
+    Raises:
+        InputError: it is.
+    """
+    if value < 0:
+        raise InputError(f"{name} {value} is negative; give 0 or more")
+
+
 def refuse_kind(value: object, kinds: type | tuple[type, ...], what: str) -> None:
     """Refuse an argument of another type than a function takes.
 

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import os
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
 from pathlib import Path
+from typing import Any
 from uuid import uuid4
 
 from identification.errors import InputError
 
+_BY_HAND = 2**20  # bytes
+_SAID = 120  # letters of another library's message
 MAX_BYTES = 512 * 2**20  # hours at 1 kHz; more would fill the memory before it failed
 
 
@@ -37,6 +41,23 @@ def read_bytes(path: Path, largest: int = MAX_BYTES) -> bytes:
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise InputError(f"cannot read {path}: {reason}; check its name and permissions") from error
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """The content of a TOML file that was written by hand.
+
+    Raises:
+        InputError: there is no such file, it is too large for one that was written by hand, or it
+            is not TOML.
+    """
+    try:
+        return tomllib.loads(read_bytes(path, _BY_HAND).decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:  # digits without end are a ValueError too
+        if isinstance(error, InputError):
+            raise
+        letters = "".join(c if c.isprintable() else "?" for c in str(error))[:_SAID]
+        said = "nested too deeply" if isinstance(error, RecursionError) else letters
+        raise InputError(f"{path} is not TOML ({said}); correct it there") from error
 
 
 def _missing(path: Path) -> str:

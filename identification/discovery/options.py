@@ -6,18 +6,14 @@ is judgement. `docs/discovery.md` lists every option; a TOML file may set any of
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass, fields
 from pathlib import Path
 
 from identification.discovery.prediction_options import PredictionOptions
 from identification.effects.effect import FARTHEST
 from identification.errors import InputError, unknown_name
-from identification.files import read_bytes
+from identification.files import read_toml
 from identification.kalman.options import option
-from identification.logs.names import quoted
-
-MAX_FILE = 2**20  # bytes of a file of options
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -220,12 +216,7 @@ def read_options(path: str | Path) -> DiscoveryOptions:
             type or lies outside the range that makes sense.
     """
     path = Path(path)
-    try:
-        values = tomllib.loads(read_bytes(path, MAX_FILE).decode("utf-8-sig"))
-    except (ValueError, RecursionError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{path} is not TOML ({quoted(str(error), 120)}); correct it") from error
+    values = read_toml(path)
     known = {f.name for f in fields(DiscoveryOptions)}
     for name in values:
         if name not in known:

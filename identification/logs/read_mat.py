@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import io
-import warnings
+import subprocess
+import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from identification.errors import InputError
+from identification.logs import mat_child
 from identification.logs.names import listed
 from identification.logs.sampling import FloatArray, grid
 from identification.logs.table import Table
+
+SECONDS = 120.0  # of reading, after which a file is taken for damaged
 
 
 def parse_mat(
@@ -32,7 +35,7 @@ def parse_mat(
     """
     content = _loaded(raw, path)
     wanted = {"u": inputs, "y": outputs}
-    found = [k for k in content if not k.startswith("__")]
+    found = [*content]
     lacking = [k for k, names in wanted.items() if names and k not in content]
     if lacking:
         raise InputError(
@@ -60,30 +63,34 @@ def parse_mat(
     return Table(path, tuple(names), np.hstack(parts), lambda row: f"row {row + 1} of {path}")
 
 
-def _loaded(raw: bytes, path: Path) -> dict[str, Any]:
-    from scipy.io import loadmat  # slow to import, and only MATLAB users need it
-
+def _loaded(raw: bytes, path: Path) -> dict[str, np.ndarray | None]:
+    """The variables by name, None for one that is no full real matrix; read by another process."""
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # they are about variables that are not used
-            return loadmat(io.BytesIO(raw))
-    except NotImplementedError as error:
+        done = subprocess.run(
+            [sys.executable, "-I", mat_child.__file__], input=raw, capture_output=True,
+            timeout=SECONDS, check=False,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired:
         raise InputError(
-            f"{path} is a MATLAB 7.3 (HDF5) file; save it again with save(..., '-v7')"
-        ) from error
-    except Exception as error:  # a damaged file may raise any exception
+            f"{path} is not read within {SECONDS:g} s; save it again with save(..., '-v7')"
+        ) from None
+    if done.returncode == mat_child.NEWER:
+        raise InputError(f"{path} is a MATLAB 7.3 (HDF5) file; save it again with save(..., '-v7')")
+    if done.returncode:
         raise InputError(
             f"{path} cannot be read as a MATLAB file; save it again with save(..., '-v7')"
-        ) from error
+        )
+    with np.load(io.BytesIO(done.stdout)) as arrays:
+        return {n[1:]: arrays[n] if n.startswith(mat_child.MATRIX) else None for n in arrays}
 
 
-def _numeric(value: object, name: str, path: Path) -> FloatArray:
-    if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiub" or value.ndim != 2:
+def _numeric(value: np.ndarray | None, name: str, path: Path) -> FloatArray:
+    if value is None:
         raise InputError(f"{path}: {name} is not a full real matrix; save it as double({name})")
     return value.astype(np.float64)
 
 
-def _step(value: object, path: Path) -> float:
+def _step(value: np.ndarray | None, path: Path) -> float:
     array = _numeric(value, "Ts", path)
     if array.size != 1 or not (np.isfinite(array).all() and array.item() > 0):
         raise InputError(f"{path}: Ts is not one positive number; save the sampling time in s")

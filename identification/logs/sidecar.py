@@ -17,7 +17,6 @@ validation = [10, 20]
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import isfinite, isnan
@@ -25,11 +24,8 @@ from pathlib import Path
 from typing import Any
 
 from identification.errors import InputError, unknown_name
-from identification.files import read_bytes
+from identification.files import read_toml
 from identification.logs.log_checks import HOLDS
-from identification.logs.names import quoted
-
-_LARGEST = 2**20  # [bytes]; it is written by hand, so a larger file is a mistake
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,21 +61,12 @@ def read_sidecar(
     """
     values = _values(given or {}, given_in or path)
     if path.exists():
-        content = _content(path)
+        content = read_toml(path)
         inner = content.pop("log", {})
         if not isinstance(inner, dict):
             raise InputError(f"log in {path} must be a table; correct it there")
         values |= _values({**inner, **content}, path)
     return Sidecar(path=path, **values)
-
-
-def _content(path: Path) -> dict[str, Any]:
-    raw = read_bytes(path, _LARGEST)
-    try:
-        return tomllib.loads(raw.decode("utf-8-sig"))
-    except (ValueError, RecursionError) as error:
-        reason = quoted(str(error), 120) if str(error) else "nested too deeply"
-        raise InputError(f"{path} is not TOML ({reason}); correct it there") from error
 
 
 def _values(content: Mapping[str, Any], path: Path) -> dict[str, Any]:

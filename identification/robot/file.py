@@ -39,15 +39,13 @@ A free name is a key under `parameters`, a path into the model or its start, or 
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from identification.errors import InputError
-from identification.files import read_bytes
-from identification.logs.names import quoted
+from identification.files import read_toml
 from identification.robot.alike import Alike, read_alike
 from identification.robot.file_checks import (
     Kinds,
@@ -59,7 +57,6 @@ from identification.robot.file_checks import (
 )
 from identification.robot.trust import trusted
 
-_LARGEST = 2**20  # [bytes]; it is written by hand
 _KINDS: Kinds = {
     "model": (str, "a path in quotes"),
     "outputs": (list, "a list of sensors"),
@@ -146,7 +143,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
         InputError: it cannot be read, is not TOML, or has an unknown key or a wrong value.
     """
     path = Path(path)
-    content = _toml(path)
+    content = read_toml(path)
     check_table(content, _KINDS, str(path))
     for key in ("model", "free"):
         if not content.get(key):
@@ -210,18 +207,9 @@ def with_spread(file: RobotFile, word: str) -> RobotFile:
     if word != "none":
         if not Path(word).is_file():
             raise InputError(f"no spread {word!r}; give none, usual, or a TOML file")
-        content = _toml(Path(word))
+        content = read_toml(Path(word))
         check_table(content, {"spread": _KINDS["spread"]}, word)
         alike = read_alike(content, Path(word), file.by_itself)
     free = (*file.by_itself, *(n for a in alike for n in a.names))
     records = {n: r for n, r in file.records.items() if n in free}
     return replace(file, free=free, records=records, spread=alike)
-
-
-def _toml(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(read_bytes(path, _LARGEST).decode("utf-8-sig"))
-    except (ValueError, RecursionError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{path} is not TOML ({quoted(str(error), 120)}); correct it") from error

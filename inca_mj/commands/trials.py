@@ -31,9 +31,11 @@ class Trials:
     def run(self) -> int:
         """Run, say, keep."""
         do_not_draw()
+        from identification.errors import refuse_negative
         from identification.estimation.estimation import Options
         from inca_mj.workflows.trials import monte_carlo, trials
 
+        refuse_negative("--monte-carlo", self.monte_carlo)  # before trials that take minutes
         options = Options(horizons=(1.0,)) if self.single else None
         results = trials(self.trial, seed=self.seed, options=options, progress=note)
         record: dict[str, object] = {"trials": [r.to_json() for r in results]}

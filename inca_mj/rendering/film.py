@@ -22,6 +22,7 @@ from inca_mj.twin.run import Run
 
 Progress = Callable[[int, int], None]  # frames done, frames in all
 
+MOST_FRAMES = 108_000  # an hour of film at 30 frames a second
 # Radius that cables are drawn with [m]: their own millimetre would be less than a pixel.
 _CABLE_FAR, _CABLE_NEAR = 0.008, 0.0018
 
@@ -68,6 +69,12 @@ def film(
     scene = make_scene(source, seconds)
     run = scene.run
     duration = run.time[-1] - run.time[0]
+    count = duration * fps / speed + 1
+    if count > MOST_FRAMES:
+        raise InputError(
+            f"{duration:g} s at speed {speed:g} and {fps:g} frames a second are {count:.3g} frames,"
+            f" more than {MOST_FRAMES}; film fewer seconds, or at a higher speed"
+        )
     # The small part of a frame keeps the last one when the division is not exact.
     times = run.time[0] + np.arange(int(duration * fps / speed + 1e-6) + 1) * speed / fps
     with (

@@ -8,16 +8,16 @@ and a 4 N pretension rests it at z = 1.43 m. A file of the user's own replaces t
 from __future__ import annotations
 
 import json
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from identification.errors import InputError
-from identification.files import write_text
+from identification.files import read_toml, write_text
 
 DRIVES = 8
 FARTHEST = 100.0  # a frame of more is one in another unit [m]
@@ -46,8 +46,10 @@ class Geometry:
     def __post_init__(self) -> None:
         for name in ("exits", "connectors"):
             try:
-                rows = np.array(getattr(self, name), float)
-            except (TypeError, ValueError):
+                rows = np.array(getattr(self, name), dtype=object)
+                is_number = all(isinstance(x, Real) and not isinstance(x, bool) for x in rows.flat)
+                rows = rows.astype(float) if is_number else np.empty(0)
+            except (TypeError, ValueError, OverflowError):
                 rows = np.empty(0)
             if rows.shape != (DRIVES, 3) or not np.isfinite(rows).all():
                 raise InputError(
@@ -138,12 +140,9 @@ def read_geometry(path: str | Path) -> Geometry:
         InputError: the file is missing, is not TOML, or does not hold such rows.
     """
     path = Path(path)
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise InputError(f"no geometry file {path}; examples/geometry.toml shows one") from None
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"geometry file {path} is not TOML: {error}") from None
+    if not path.exists():
+        raise InputError(f"no geometry file {path}; examples/geometry.toml shows one")
+    table = read_toml(path)
     extra = sorted(set(table) - {"exits", "connectors", "assumed", "source"})
     if extra:
         raise InputError(

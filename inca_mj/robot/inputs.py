@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from identification.errors import InputError, unknown_name
+from identification.errors import InputError, refuse_negative, unknown_name
 from inca_mj.robot.geometry import DRIVES
 
 LONGEST = 3600.0  # an hour of all states at every step is a gigabyte [s]
@@ -28,8 +28,7 @@ def make_input(
     """
     if kind not in INPUTS:
         raise unknown_name("input", kind, INPUTS)
-    if seed < 0:
-        raise InputError(f"seed {seed} is negative; give 0 or more")
+    refuse_negative("seed", seed)
     if not 2 * sampling_time <= duration <= LONGEST:
         raise InputError(
             f"a duration of {duration:g} s is not between two samples of {sampling_time:g} s and"

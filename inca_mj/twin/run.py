@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,10 @@ from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import Twin, build_twin
 
 _STAGE = mujoco.mjtStage.mjSTAGE_VEL
+_WIDTHS = {"currents": 8, "qpos": 15, "qvel": 14, "act": 8, "tension": 8, "length": 8}
+FEWEST = 2  # samples
+UNEVEN = 1e-6  # of a step, by which steps may differ
+LONGEST = 86400.0  # [s]
 _ARRAYS = ("time", "currents", "qpos", "qvel", "act", "tension", "length")
 
 
@@ -174,6 +179,7 @@ def load_run(path: str | Path) -> Run:
         with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             header: dict[str, Any] = json.loads(str(file["header"]))
             arrays = {name: file[name] for name in _ARRAYS}
+        _refuse_damaged(arrays, Path(path))
         return Run(twin=_robot(header), **arrays)
     except FileNotFoundError:
         raise InputError(f"no run {path}; inca simulate --out DIR writes one") from None
@@ -184,6 +190,28 @@ def load_run(path: str | Path) -> Run:
             f"{path} is not a run of inca simulate, or is damaged ({type(error).__name__});"
             " write it again"
         ) from error
+
+
+def _refuse_damaged(arrays: Mapping[str, np.ndarray], path: Path) -> None:
+    """Refuse arrays that no simulation gives.
+
+    Raises:
+        InputError: one has another shape than N samples, or holds what is not a finite number; or
+            the times are not evenly apart, or last more than a day.
+    """
+    n = len(np.atleast_1d(arrays["time"]))
+    for name, array in arrays.items():
+        shape = (n, _WIDTHS[name]) if name in _WIDTHS else (n,)
+        real = array.dtype.kind in "fiu" and array.shape == shape and n >= FEWEST
+        if not (real and np.isfinite(array).all()):
+            raise InputError(
+                f"{path}: {name} is not {n} samples of finite numbers; write the run again"
+            )
+    steps = np.diff(arrays["time"])
+    if not (steps[0] > 0 and np.ptp(steps) < UNEVEN * steps[0] and n * steps[0] < LONGEST):
+        raise InputError(
+            f"{path}: its times are not evenly apart within a day; write the run again"
+        )
 
 
 def _robot(header: dict[str, Any]) -> Twin:

@@ -8,7 +8,7 @@ own.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
@@ -27,10 +27,10 @@ from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import with_spread
 from inca_mj.twin.twin import Twin, build_twin
 
-_ARRAYS = (
-    "actuator_user", "actuator_gear", "tendon_user", "body_user", "body_mass", "body_inertia",
-    "dof_damping", "dof_armature", "site_pos", "qpos0", "key_qpos", "key_act",
-)  # fmt: skip
+# What a file of a model says of its physics: fields of mjModel that begin so, but for the looks.
+_PHYSICS = ("body_", "jnt_", "dof_", "tendon_", "actuator_", "sensor_", "site_", "qpos", "key_")
+_LOOKS = ("_rgba", "_matid", "_group", "_width", "_size", "dof_length")
+ROUNDING = 1e-9  # relative: kernels of linear algebra differ in the last bits
 
 
 def save_twin(robot: Twin, folder: str | Path) -> tuple[Path, Path]:
@@ -59,7 +59,9 @@ def save_twin(robot: Twin, folder: str | Path) -> tuple[Path, Path]:
 
 
 def load_twin(path: str | Path, effects: Sequence[Effect] = CATALOGUE) -> Twin:
-    """Read a twin written by `save_twin`; it is the same to the last bit.
+    """Read a twin written by `save_twin`; it is the same to the last bit on the same processor.
+
+    Its model is computed from effects.json. model.xml must say the same physics, to rounding.
 
     Args:
         path: the folder, or one of the two files.
@@ -73,9 +75,11 @@ def load_twin(path: str | Path, effects: Sequence[Effect] = CATALOGUE) -> Twin:
     folder = Path(path).parent if own_file else Path(path)
     record = _read(folder / "effects.json")
     try:
-        geometry = geometry_of(record["geometry"])
+        geometry, model = geometry_of(record["geometry"]), folder / record["model"]
         wanted: list[dict[str, Any]] = record["effects"]
         own = _known(wanted, effects, folder)
+        if not isinstance(record["settled"], bool):
+            raise TypeError("settled is neither true nor false")
         values = {**record["values"], **{n: v for e in wanted for n, v in e["values"].items()}}
         robot = build_twin(
             _parameters(record["set"], values, own),
@@ -84,12 +88,14 @@ def load_twin(path: str | Path, effects: Sequence[Effect] = CATALOGUE) -> Twin:
             effects=own,
             settled=record["settled"],
         )
-    except (KeyError, TypeError, AttributeError) as error:
+    except InputError:
+        raise
+    except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as error:
         raise InputError(
             f"{folder / 'effects.json'} is damaged ({type(error).__name__}: {error}); save the"
             " twin again"
         ) from error
-    _same(robot.model, folder / record["model"])
+    _same(robot.model, model)
     return robot
 
 
@@ -113,8 +119,9 @@ def _read(path: Path) -> dict[str, Any]:
         record = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise InputError(f"no {path}; inca discover --out DIR writes one") from None
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise InputError(f"{path} cannot be read as JSON ({error}); save the twin again") from None
+    except (OSError, ValueError, RecursionError) as error:
+        reason = (str(error).splitlines() or [type(error).__name__])[0][:120]
+        raise InputError(f"{path} cannot be read as JSON ({reason}); save the twin again") from None
     if not isinstance(record, dict):
         raise InputError(f"{path} holds no object; save the twin again")
     return record
@@ -159,11 +166,24 @@ def _same(model: mujoco.MjModel, path: Path) -> None:
     try:
         other = mujoco.MjModel.from_xml_path(str(path))
     except ValueError as error:
-        raise InputError(f"{path} is not a model MuJoCo can read: {error}") from None
-    for name in _ARRAYS:
-        a, b = getattr(model, name), getattr(other, name)
-        if a.shape != b.shape or not np.array_equal(a, b):
+        said = " ".join(str(error).split())
+        raise InputError(f"{path} is not a model MuJoCo can read: {said}") from None
+    for name, a, b in _physics(model, other):
+        if a.shape != b.shape or not np.allclose(a, b, rtol=ROUNDING, atol=1e-12):
             raise InputError(
                 f"{path} is not the model of its effects.json: {name} differs; change values with"
                 " Twin.with_values, or save the twin again"
             )
+
+
+def _physics(one: mujoco.MjModel, other: mujoco.MjModel) -> Iterator[tuple[str, Any, Any]]:
+    """The physics of two models: the name of each field, and what it is in both."""
+    for name in dir(one):
+        if name.startswith(_PHYSICS) and not name.endswith(_LOOKS):
+            a, b = getattr(one, name), getattr(other, name)
+            if isinstance(a, np.ndarray):
+                yield name, a, b
+    for name in dir(one.opt):
+        a, b = getattr(one.opt, name), getattr(other.opt, name)
+        if isinstance(a, np.ndarray | float | int):
+            yield name, np.asarray(a), np.asarray(b)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from math import isfinite
 
 from identification.errors import InputError
 from identification.model.parameter import ParameterSet
 from identification.model.rollout import substeps
 from inca_mj.robot.geometry import INCA, Geometry
+from inca_mj.robot.inputs import LONGEST
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.verification.derivatives import compare_derivatives
 from inca_mj.verification.result import CrossCheck
@@ -55,10 +55,10 @@ def crosscheck(
     parameters = parameters or parameter_set()
     if states < 1:
         raise InputError(f"cannot compare at {states} states; give 1 or more")
-    if not isfinite(duration) or duration < 2 * SAMPLING_TIME:
+    if not 2 * SAMPLING_TIME <= duration <= LONGEST:
         raise InputError(
-            f"a duration of {duration:g} s is less than two samples of {SAMPLING_TIME:g} s;"
-            " give a longer one"
+            f"a duration of {duration:g} s is not between two samples of {SAMPLING_TIME:g} s and"
+            f" {LONGEST:g} s; give one that is"
         )
     for step in steps:
         substeps(SAMPLING_TIME, step)

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from identification.errors import InputError
+from identification.errors import InputError, refuse_negative
 from identification.estimation.information import determinable
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import Twin, build_twin
@@ -89,12 +89,13 @@ def excite(
         progress: is told of each improvement.
 
     Raises:
-        InputError: a name, the noise, the duration or a limit is bad, or no input that was tried
+        InputError: a name, noise, duration, seed or limit is bad, or no input that was tried
             keeps the limits.
         DivergenceError: the twin cannot be simulated under the thesis' PRBS.
     """
     robot, limits = robot or build_twin(), limits or Limits()
     n = _samples(duration)
+    refuse_negative("seed", seed)
     if budget < 1:
         raise InputError(f"a budget of {budget} evaluations finds nothing; give at least 1")
     _refuse_start(robot, limits)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from identification import Log
+from identification.errors import refuse_negative
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import Fit, assess
 from identification.estimation.multistart import estimate_from
@@ -104,10 +105,11 @@ def identify(
         seed: of the starts after the first.
 
     Raises:
-        InputError: a name is unknown or has no effect, a start has no pretension, or fewer than
-            one start is asked for.
+        InputError: a name is unknown or has no effect, a start has no pretension, the seed is
+            negative, or fewer than one start is asked for.
         DivergenceError: the nominal values cannot be simulated.
     """
+    refuse_negative("seed", seed)
     timestep = timestep_for(log.sampling_time, timestep)
     plant = build_twin(parameters, geometry, timestep=timestep, visual=False)
     refuse_miswired(log, plant)

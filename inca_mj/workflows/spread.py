@@ -9,13 +9,13 @@ The deviations of one kind are a group: a fit may find that they scatter less th
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from identification.errors import InputError, unknown_name
+from identification.files import read_toml
 from inca_mj.files import model_path
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES, EACH_DRIVE, POINTS
@@ -91,10 +91,7 @@ def read_spread(path: Path) -> Spread:
     Raises:
         InputError: the file is no TOML, names what a robot has not, or a std is no positive number.
     """
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"spread file {path} cannot be read as TOML: {error}") from None
+    table = read_toml(path)
     for name in table:
         if name not in ("drives", "points", "platform", "source"):
             raise unknown_name(f"table in {path}", name, ("drives", "points", "platform", "source"))

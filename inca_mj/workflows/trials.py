@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import norm
 
-from identification.errors import unknown_name
+from identification.errors import refuse_negative, unknown_name
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import Fit, assess
 from identification.estimation.metrics import fit_percent, loss
@@ -114,8 +114,9 @@ def trials(
         progress: is told which trial is run, and one line per accepted step.
 
     Raises:
-        InputError: there is no trial of a number.
+        InputError: there is no trial of a number, or the seed is negative.
     """
+    refuse_negative("seed", seed)
     for number in numbers:
         if number not in range(1, len(TRIALS) + 1):
             raise unknown_name("trial", str(number), map(str, range(1, len(TRIALS) + 1)))
@@ -139,9 +140,11 @@ def monte_carlo(seeds: int, progress: Callable[[str], None] | None = None) -> di
         gave, and the share of seeds whose 95 % interval contains the true value.
 
     Raises:
-        InputError: a search ends at values with which the robot cannot start.
+        InputError: the number is negative, or a search ends at values with which the robot cannot
+            start.
         DivergenceError: a search ends at values that cannot be simulated.
     """
+    refuse_negative("number of seeds", seeds)
     true = parameter_set("trial").values()
     trial = TRIALS[3]
     names = tuple(trial.start)
