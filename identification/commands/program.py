@@ -9,10 +9,8 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-import tyro
-
 from identification.commands.places import refuse_empty, refuse_place
-from identification.commands.repeated import gathered
+from identification.commands.refusals import parsed
 
 
 def run_program(
@@ -29,13 +27,10 @@ def run_program(
     given = sys.argv[1:] if arguments is None else arguments
     try:
         refuse_empty(given)
-        command = tyro.cli(
-            commands,
-            prog=name,
-            description=description,
-            args=gathered(commands, given),
-            config=(tyro.conf.AvoidSubcommands,),
-        )
+        if [*given] == ["--version"]:
+            sys.stdout.write(f"{name} {versions()}\n")
+            return 0
+        command = parsed(commands, name, description, given)
         refuse_place(command)
         return int(command.run())
     except ValueError as error:
@@ -54,3 +49,11 @@ def run_program(
     except KeyboardInterrupt:
         sys.stderr.write(f"{name}: stopped\n")
         return 130
+
+
+def versions() -> str:
+    """The versions of the package, of MuJoCo and of Python."""
+    from importlib.metadata import version
+
+    python = sys.version.split()[0]
+    return f"{version('inca-mj')}, MuJoCo {version('mujoco')}, Python {python}"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class OnRobot:
     """A command on a robot and a log of it."""
 
-    robot: Annotated[Path, tyro.conf.Positional]
+    robot: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
     """TOML that names model, columns, free parameters and candidates."""
     logs: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts; several are fitted together."""

@@ -79,11 +79,22 @@ def evaluate_noise(
     sigma = np.sqrt(E @ E / E.size)
     for _ in range(2):  # the weight of the prior depends on σ
         H = F.T @ F + np.diag((prior * sigma) ** 2)
-        c = np.linalg.solve(H, F.T @ E)
+        c = _solve(H, F.T @ E)
         sigma = np.sqrt(np.sum((E - F @ c) ** 2) / E.size)
     return NoiseLevel(
         noise, float(sigma), float(-0.5 * (2 * E.size * np.log(sigma) + filter_.log_determinant))
     )
+
+
+def _solve(H: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """The solution of H c = b; the shortest one where outputs do not feel every direction of c.
+
+    Such is an effect without a prior that would begin after the log has ended.
+    """
+    try:
+        return np.linalg.solve(H, b)
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.lstsq(H, b, rcond=1e-14)[0])
 
 
 def fit_noise(

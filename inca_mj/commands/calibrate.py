@@ -31,7 +31,7 @@ POINTS = ("point", "x", "y", "z")
 class Calibrate:
     """Calibrate drives, geometry and platform from logs, and tell what the logs cannot say."""
 
-    log: Annotated[tuple[Path, ...], tyro.conf.Positional]
+    log: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """Logs of one robot; without --confirm the second half of each is kept unseen."""
     confirm: Annotated[
         tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")

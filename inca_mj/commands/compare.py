@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class Compare:
     """Lay a measured log over the twin's prediction from the same currents."""
 
-    log: Annotated[Path, tyro.conf.Positional]
+    log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """Log to explain: CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts."""
     robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field

@@ -17,7 +17,9 @@ from inca_mj.commands.discover import Discover
 class Demo:
     """Find what the model lacks of the robot in a log, prove it, film it, write one report."""
 
-    log: Annotated[Path, tyro.conf.Positional] = Path("examples/log.csv")
+    log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")] = Path(
+        "examples/log.csv"
+    )
     """The log."""
     film: bool = True
     """Film the final twin against the log."""

@@ -33,7 +33,7 @@ FILES = "The model with it is in model.xml and effects.json; inca_mj.load_twin r
 class Discover:
     """Find what the model lacks and prove it on unseen data, or say that it is unknown."""
 
-    log: Annotated[tuple[Path, ...], tyro.conf.Positional]
+    log: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """Logs to explain; the TOML of each may name the splits estimation and validation."""
     confirm: Annotated[
         tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class Film:
     """Film a log (measured as ghost, simulated in colour) or a saved run."""
 
-    source: Annotated[Path, tyro.conf.Positional]
+    source: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG|RUN")]
     """A log (.csv, .mat), or a run (.npz) that inca simulate or inca compare saved."""
     seconds: float | None = None
     """Film only so many seconds from the start."""

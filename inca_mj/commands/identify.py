@@ -35,7 +35,7 @@ STOPPED = 130  # exit code after Ctrl-C, as a shell gives it
 class Identify:
     """Estimate parameters and start pose on the first half of a log, confirm on the second."""
 
-    log: Annotated[Path, tyro.conf.Positional]
+    log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """Log to learn from; its TOML may name the splits estimation and validation."""
     free: Annotated[tuple[str, ...] | None, tyro.conf.arg(metavar="NAME")] = None
     """Parameters to estimate in one step; the thesis' two-step procedure when none is named."""

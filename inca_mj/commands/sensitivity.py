@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class Sensitivity:
     """Which parameters the angles can tell, how well, and which only together."""
 
-    log: Annotated[Path | None, tyro.conf.Positional] = None
+    log: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")] = None
     """Log whose currents are taken; the thesis' PRBS when none is given."""
     free: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME")] = (
         "lambda", "b", "J", "b_v", "b_c", "beta",

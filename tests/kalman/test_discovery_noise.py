@@ -121,6 +121,19 @@ def test_the_likelihood_is_the_dense_gaussian_with_the_parameters_at_their_best(
     assert found.log_likelihood == pytest.approx(dense, rel=1e-9)
 
 
+@pytest.mark.parametrize("useless", ["unfelt", "twice"])
+def test_what_no_output_feels_and_no_prior_holds_changes_nothing(useless):
+    """Such as an effect that would begin after the log has ended."""
+    rng = np.random.default_rng(5)
+    plant, noise = linear_plant(rng), Noise(0.5, 0.1)
+    e, J = rng.standard_normal((40, 2)), rng.standard_normal((40, 2, 3))
+    more = np.zeros((40, 2, 1)) if useless == "unfelt" else J[..., :1]
+    filter_ = build_whitener(plant, noise, STEP)
+    one = evaluate_noise(filter_, noise, e, J, np.zeros(3))
+    other = evaluate_noise(filter_, noise, e, np.concatenate([J, more], axis=2), np.zeros(4))
+    assert other.log_likelihood == pytest.approx(one.log_likelihood, rel=1e-9)
+
+
 def test_at_the_unit_ratio_input_errors_move_the_outputs_by_sigma():
     plant = linear_plant(np.random.default_rng(6))
     unit = compute_unit_ratio(plant, STEP, 0.1)

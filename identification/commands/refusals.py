@@ -1,0 +1,109 @@
+"""What is wrong with a command line, in one sentence instead of the parser's page."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import redirect_stderr
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
+
+import tyro
+
+from identification.commands.repeated import gathered
+
+_FRAME = "│╭╮╰╯─|+ "  # of a box, also where a terminal knows no lines
+_KINDS = {"FLOAT": "a number", "INT": "a whole number", "PATH": "a path"}
+
+
+def parsed(commands: Any, name: str, description: str, arguments: Sequence[str]) -> Any:
+    """The command that some arguments name.
+
+    Args:
+        commands: a union of dataclasses, as tyro takes it.
+        name: of the program.
+        description: what it does.
+        arguments: those of the command line.
+
+    Raises:
+        InputError: they name no command, or one that cannot be had with them.
+        SystemExit: they ask for help, which is then printed.
+    """
+    from identification.errors import InputError
+
+    said = io.StringIO()
+    try:
+        with redirect_stderr(said):
+            return tyro.cli(
+                commands, prog=name, description=description, args=gathered(commands, arguments),
+                config=(tyro.conf.AvoidSubcommands,),
+            )  # fmt: skip
+    except SystemExit as end:
+        if end.code in (0, None):
+            raise
+        at_hand = dict(_commands(commands))
+        raise InputError(_sentence(_unboxed(said.getvalue()), name, arguments, at_hand)) from None
+
+
+def _sentence(text: str, name: str, arguments: Sequence[str], commands: dict[str, type]) -> str:
+    """One sentence on what the parser said."""
+    from identification.errors import unknown_name
+
+    command = arguments[0] if arguments else ""
+    if command not in commands:
+        return (
+            str(unknown_name("command", command, commands))
+            if command
+            else (f"no command is given; give one of {', '.join(commands)}")
+        )
+    see = f"; {name} {command} --help tells more"
+    if found := re.search(r"Unrecognized (?:or misplaced )?options: ([^\s,]+)", text):
+        options = [f"--{option}" for option in _options(commands[command])]
+        if found[1].startswith("-"):
+            return str(unknown_name(f"option of {name} {command}:", found[1], options))
+        return f"{found[1]} is one argument too many{see}"
+    if found := re.search(r"Error parsing (\S+?):", text):
+        kind = re.search(rf"\b({'|'.join(_KINDS)})\b", text)
+        wanted = _KINDS[kind[1]] if kind else "another value"
+        return f"{found[1]} is {_given(found[1], arguments)!r}; give {wanted}{see}"
+    if found := re.search(r"invalid choice (.+) for argument '([^']+)'.*\((.+)\)", text):
+        words = ", ".join(re.findall(r"'([^']*)'", found[3]))
+        return f"{found[2]} is {found[1]}; give one of {words}"
+    if found := re.search(r"Missing value for argument '([^']+)'", text):
+        return f"{found[1]} has no value; give one behind it{see}"
+    if found := re.search(r"Missing from [^:]+: (\S+)", text):
+        return f"{found[1]} is missing; write {name} {command} {found[1]}{see}"
+    return f"{text.partition('. ')[0].rstrip('.')}{see}"
+
+
+def _unboxed(text: str) -> str:
+    """The words of a box, without its frame."""
+    lines = (line.strip(_FRAME) for line in text.splitlines())
+    return " ".join(line for line in lines if line)
+
+
+def _given(option: str, arguments: Sequence[str]) -> str:
+    """What stands behind an option."""
+    for k, argument in enumerate(arguments):
+        one, equals, value = argument.partition("=")
+        if one == option:
+            return value if equals else " ".join(arguments[k + 1 : k + 2])
+    return ""
+
+
+def _commands(kind: Any) -> Iterator[tuple[str, type]]:
+    """The commands of a program by name."""
+    for each in get_args(kind):
+        if get_origin(each) is Annotated:
+            one, *marks = get_args(each)
+            yield from ((str(m.name), one) for m in marks if getattr(m, "name", None))
+
+
+def _options(command: type) -> Iterator[str]:
+    """The names of a command's options, those of its parts among them."""
+    for field, hint in get_type_hints(command).items():
+        if dataclasses.is_dataclass(hint):
+            yield from _options(hint)  # type: ignore[arg-type]
+        else:
+            yield field.replace("_", "-")

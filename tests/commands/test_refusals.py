@@ -1,0 +1,54 @@
+"""A wrong command line is told in one sentence, with what would be right."""
+
+from importlib.metadata import version
+
+import pytest
+
+from identification.__main__ import main as identification
+from inca_mj.cli import main as inca
+
+WRONG = [
+    (inca, "", "no command is given; give one of simulate, compare"),
+    (inca, "simulat", "unknown command 'simulat'; did you mean 'simulate'?"),
+    (inca, "--verbose", "unknown command '--verbose'; known: calibrate"),
+    (inca, "simulate --durration 3", "'--durration'; did you mean '--duration'? known: --duration"),
+    (inca, "simulate --duration fast", "--duration is 'fast'; give a number; inca simulate --help"),
+    (inca, "simulate --duration=fast", "--duration is 'fast'; give a number"),
+    (inca, "simulate --seed 1.5", "--seed is '1.5'; give a whole number"),
+    (inca, "simulate --set none", "--set is 'none'; give one of trial, simulation"),
+    (inca, "film log.csv --still x", "--still is 'x'; give a number"),
+    (inca, "film", "LOG|RUN is missing; write inca film LOG|RUN"),
+    (inca, "identify", "LOG is missing; write inca identify LOG"),
+    (inca, "compare a.csv b.csv", "b.csv is one argument too many"),
+    (inca, "discover a.csv --spread", "--spread has no value; give one behind it"),
+    (inca, "crosscheck --step 0.001", "unknown option of inca crosscheck: '--step'; did you mean"),
+    (identification, "fit", "ROBOT is missing; write identification fit ROBOT"),
+    (identification, "find", "unknown command 'find'"),
+    (identification, "fit robot.toml a.csv --horizon 1", "unknown option of identification fit:"),
+]
+
+
+@pytest.mark.parametrize(("program", "line", "said"), WRONG, ids=[w[1] or "none" for w in WRONG])
+def test_a_wrong_line_is_told_in_one_sentence(capsys, program, line, said):
+    assert program(line.split()) == 2
+    out, error = capsys.readouterr()
+    assert out == ""
+    assert error.count("\n") == 1
+    assert said in error
+
+
+@pytest.mark.parametrize(("program", "name"), [(inca, "inca"), (identification, "identification")])
+def test_the_version_is_one_line(capsys, program, name):
+    assert program(["--version"]) == 0
+    said = capsys.readouterr().out
+    assert said.startswith(f"{name} {version('inca-mj')}, MuJoCo {version('mujoco')}, Python 3.")
+    assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", ["compare", "identify", "discover", "calibrate", "film"])
+def test_help_calls_a_log_a_log(capsys, command):
+    with pytest.raises(SystemExit) as end:
+        inca([command, "--help"])
+    assert not end.value.code
+    said = capsys.readouterr().out
+    assert "LOG" in said.split("options", 1)[0]
