@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Sequence
-from typing import Annotated
-
-import tyro
-
-from identification.commands.discover import Discover
-from identification.commands.fit import Fit
-from identification.commands.program import run_program
-
-Command = (
-    Annotated[Fit, tyro.conf.subcommand("fit")]
-    | Annotated[Discover, tyro.conf.subcommand("discover")]
-)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
-    os.environ.setdefault("MUJOCO_GL", "disable")  # nothing here draws with OpenGL
-    what = "Fit the parameters of any MJCF to a log, and find what it lacks."
-    return run_program(Command, "identification", what, arguments)
+    try:
+        from identification.commands.cli import main as run  # takes a fifth of a second
+
+        return run(arguments)
+    except KeyboardInterrupt:  # while that is imported
+        sys.stderr.write("identification: stopped\n")
+        return 130
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ from typing import Any
 
 from identification.commands.places import refuse_empty, refuse_place
 from identification.commands.refusals import parsed
+from identification.commands.stopping import STOPPED, stoppable
 
 
 def run_program(
@@ -26,13 +27,8 @@ def run_program(
     """
     given = sys.argv[1:] if arguments is None else arguments
     try:
-        refuse_empty(given)
-        if [*given] == ["--version"]:
-            sys.stdout.write(f"{name} {versions()}\n")
-            return 0
-        command = parsed(commands, name, description, given)
-        refuse_place(command)
-        return int(command.run())
+        with stoppable(name):
+            return _run(commands, name, description, given)
     except ValueError as error:
         from identification.errors import InputError
 
@@ -47,8 +43,17 @@ def run_program(
         sys.stderr.write(f"{name}: {error.strerror or error}; make room or choose another place\n")
         return 2
     except KeyboardInterrupt:
-        sys.stderr.write(f"{name}: stopped\n")
-        return 130
+        return STOPPED
+
+
+def _run(commands: Any, name: str, description: str, arguments: Sequence[str]) -> int:
+    if [*arguments] == ["--version"]:
+        sys.stdout.write(f"{name} {versions()}\n")
+        return 0
+    refuse_empty(arguments)
+    command = parsed(commands, name, description, arguments)
+    refuse_place(command)
+    return int(command.run())
 
 
 def versions() -> str:

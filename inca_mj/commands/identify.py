@@ -20,15 +20,13 @@ from identification.commands.common import (
     table,
     write_result,
 )
+from identification.commands.stopping import STOPPED
 from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
     from identification.estimation.profiles import Profile
     from inca_mj.workflows.identification import Identification
-
-
-STOPPED = 130  # exit code after Ctrl-C, as a shell gives it
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,8 +80,9 @@ class Identify:
         if self.output.out is not None:  # last: drawing can fail, or be stopped
             with whole_folder(self.output.out) as out:
                 write_result(out / "result.json", self, best)
-                write = partial(keep, result, profiles, out, self.robot)
-                keep_if_possible("figures and report", write)
+                if not result.stopped:  # whoever stopped it does not wait for figures
+                    write = partial(keep, result, profiles, out, self.robot)
+                    keep_if_possible("figures and report", write)
         return STOPPED if result.stopped else 0
 
     def _identify(self) -> Identification:

@@ -1,0 +1,25 @@
+"""python -m identification: fit any robot, and find what its model lacks."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Annotated
+
+import tyro
+
+from identification.commands.discover import Discover
+from identification.commands.fit import Fit
+from identification.commands.program import run_program
+
+Command = (
+    Annotated[Fit, tyro.conf.subcommand("fit")]
+    | Annotated[Discover, tyro.conf.subcommand("discover")]
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit code."""
+    os.environ.setdefault("MUJOCO_GL", "disable")  # nothing here draws with OpenGL
+    what = "Fit the parameters of any MJCF to a log, and find what it lacks."
+    return run_program(Command, "identification", what, arguments)

@@ -1,0 +1,21 @@
+"""The program `inca`, also as `python -m inca_mj`; it imports nothing before it can be stopped."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit code."""
+    try:
+        from inca_mj.cli import main as run  # takes a fifth of a second
+
+        return run(arguments)
+    except KeyboardInterrupt:  # while that is imported
+        sys.stderr.write("inca: stopped\n")
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

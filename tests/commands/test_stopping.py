@@ -1,0 +1,73 @@
+"""Ctrl-C ends the program within two seconds with exit code 130, whatever it is doing."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from identification.commands.stopping import GRACE, STOPPED, stoppable
+
+WITHIN = 5.0  # [s]; two are promised, on a machine that does nothing else
+BUSY = {
+    "python": "while True: pass",
+    "waiting": "time.sleep(60)",
+    "native": "hashlib.pbkdf2_hmac('sha256', b'', b'', 2**31 - 1)",  # takes minutes
+}
+PROGRAM = """
+import hashlib, sys, time
+from identification.commands.stopping import STOPPED, stoppable
+try:
+    with stoppable("robot"):
+        print("ready", flush=True)
+        {}
+except KeyboardInterrupt:
+    sys.exit(STOPPED)
+"""
+
+
+def started(busy):
+    process = subprocess.Popen(
+        [sys.executable, "-c", PROGRAM.format(busy)], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    assert process.stdout.readline() == b"ready\n"
+    return process
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("busy", BUSY)
+def test_it_says_so_and_ends(busy):
+    process = started(BUSY[busy])
+    time.sleep(0.1)
+    begun = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=60)[1].decode()
+    assert process.returncode == STOPPED
+    assert time.monotonic() - begun < WITHIN
+    assert said == "robot: stopping …\n"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_a_second_one_ends_it_at_once():
+    process = started(BUSY["native"])
+    begun = time.monotonic()
+    for _ in range(2):
+        time.sleep(0.1)
+        process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
+    assert process.returncode == STOPPED
+    assert time.monotonic() - begun < WITHIN
+
+
+def test_what_was_there_before_is_put_back():
+    before = signal.getsignal(signal.SIGINT)
+    with stoppable("robot"):
+        assert signal.getsignal(signal.SIGINT) is not before
+    assert signal.getsignal(signal.SIGINT) is before
+    woken = signal.set_wakeup_fd(-1)
+    signal.set_wakeup_fd(woken)
+    with stoppable("robot"):
+        pass
+    assert signal.set_wakeup_fd(woken) == woken
