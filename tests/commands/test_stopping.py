@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from identification.commands.stopping import GRACE, STOPPED, stoppable
+from identification.commands.stopping import STOPPED, stoppable
 
 WITHIN = 5.0  # [s]; two are promised, on a machine that does nothing else
 BUSY = {
