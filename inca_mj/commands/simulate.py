@@ -26,6 +26,8 @@ class Simulate:
     """Currents: 2 A in motor 1 (step), the thesis' PRBS, a multisine, none, or those of a log."""
     duration: float = 10.0
     """Length of the run [s]; a FILE has its own."""
+    rate: float = 100.0
+    """Samples a second of the input and of what is written [Hz]; a FILE has its own."""
     seed: int = 0
     """Seed of the PRBS' and the multisine's phases."""
     robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
@@ -61,11 +63,13 @@ class Simulate:
 
     def _currents(self) -> tuple[np.ndarray, float, str]:
         from identification.errors import InputError
-        from inca_mj.robot.inputs import INPUTS, make_input
+        from inca_mj.robot.inputs import INPUTS, make_input, sampling_time_of
         from inca_mj.twin.logs import read_inca_log
 
         if self.input in INPUTS:
-            return make_input(self.input, self.duration, seed=self.seed), 0.01, "zoh"
+            sampling_time = sampling_time_of(self.rate)
+            currents = make_input(self.input, self.duration, sampling_time, seed=self.seed)
+            return currents, sampling_time, "zoh"
         if not Path(self.input).suffix:
             raise InputError(
                 f"unknown input {self.input!r}; known: {', '.join(INPUTS)}, or a log file"

@@ -8,6 +8,7 @@ from identification.errors import InputError, refuse_negative, unknown_name
 from inca_mj.robot.geometry import DRIVES
 
 LONGEST = 3600.0  # an hour of all states at every step is a gigabyte [s]
+SLOWEST, FASTEST = 10.0, 2000.0  # [Hz]: below, a cable's swing is lost; above, so is the memory
 INPUTS = ("zero", "step", "prbs", "multisine")
 
 
@@ -42,6 +43,22 @@ def make_input(
     if kind == "prbs":
         return prbs(n, sampling_time, seed=seed)
     return multisine(n, sampling_time, seed=seed)
+
+
+def sampling_time_of(rate: float) -> float:
+    """The sampling time of a rate [s].
+
+    Args:
+        rate: [Hz].
+
+    Raises:
+        InputError: it is none at which this robot is sampled.
+    """
+    if not SLOWEST <= rate <= FASTEST:
+        raise InputError(
+            f"a rate of {rate:g} Hz is not between {SLOWEST:g} and {FASTEST:g} Hz; give one that is"
+        )
+    return 1 / rate
 
 
 def step(n: int, level: float = 2.0) -> np.ndarray:

@@ -12,6 +12,7 @@ from identification import read_log
 from inca_mj.cli import main
 from inca_mj.twin.logs import ANGLES, CURRENTS, OPTIONAL, read_inca_log
 from inca_mj.twin.run import load_run, simulate
+from inca_mj.twin.twin import build_twin
 
 LOG = Path(__file__).parents[2] / "examples" / "log.csv"
 PRACTICE = Path(__file__).parents[3] / "shared" / "data" / "practice_prbs"
@@ -65,6 +66,22 @@ def test_simulate_keeps_states_tensions_figures_model_and_report(tmp_path: Path)
     record = json.loads((out / "result.json").read_text())
     assert record["configuration"]["input"] == "prbs"
     assert {"mujoco", "numpy", "inca-mj"} <= set(record["versions"])
+
+
+def test_simulate_samples_as_often_as_is_asked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = ("simulate", "--duration", 0.2, "--out", tmp_path / "out")
+    assert run(*asked, "--rate", 250) == 0
+    log = read_inca_log(tmp_path / "out" / "log.csv")
+    assert log.sampling_time == pytest.approx(0.004)
+    assert len(log) == 51
+    usual = simulate(build_twin(), np.repeat([[2.0] + 7 * [0.0]], 21, axis=0))
+    np.testing.assert_allclose(log.outputs[::5], usual.motor_angle[::2], atol=1e-9)
+    capsys.readouterr()
+    for rate in (0, -1, "nan", "inf", 1e9):
+        assert run(*asked, "--rate", rate) == 2
+        assert "is not between 10 and 2000 Hz" in capsys.readouterr().err
 
 
 def test_simulate_takes_the_currents_of_a_log(tmp_path: Path) -> None:

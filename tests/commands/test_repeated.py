@@ -2,7 +2,7 @@
 
 import pytest
 
-from identification.__main__ import Command
+from identification.commands.cli import Command
 from identification.commands.repeated import gathered
 from identification.native.cache import VARIABLE, enabled
 from inca_mj.cli import Command as IncaCommand

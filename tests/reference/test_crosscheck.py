@@ -116,8 +116,8 @@ def test_the_order_tells_two_terms_apart():
     [
         ({"cases": ("prsb",)}, "unknown case 'prsb'; did you mean 'prbs'"),
         ({"steps": (3e-3,)}, "does not divide"),
-        ({"duration": 0.001}, "less than two samples"),
-        ({"duration": float("nan")}, "less than two samples"),
+        ({"duration": 0.001}, "is not between two samples"),
+        ({"duration": float("nan")}, "is not between two samples"),
         ({"states": 0}, "give 1 or more"),
     ],
 )
