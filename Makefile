@@ -4,7 +4,7 @@
 PYTHON_OF_VENV := .venv/bin/python
 INSTALL := -m pip install -qq --disable-pip-version-check --no-input --no-deps --no-build-isolation
 
-.PHONY: help setup demo test test-mujoco4 lint bench lock clean system-packages
+.PHONY: help setup demo test test-mujoco4 lint bench fuzz lock clean system-packages
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1|\2/p' Makefile | awk -F'|' '{printf "%-20s %s\n", $$1, $$2}'
@@ -29,6 +29,9 @@ lint: .venv/.complete  ## check style, format, types and layers
 
 bench: .venv/.complete  ## measure the speed of the twin
 	@$(PYTHON_OF_VENV) benchmarks/twin.py $(ARGS)
+
+fuzz: .venv/.complete  ## read 200 000 damaged files; ARGS="--cases 5000 --reader robot" for fewer
+	@$(PYTHON_OF_VENV) tests/fuzz $(ARGS)
 
 lock:  ## write the lock files anew; ARGS=--upgrade takes the newest packages
 	@sh scripts/lock.sh $(ARGS)

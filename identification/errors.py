@@ -6,10 +6,19 @@ from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 _LONGEST = 60  # of an argument in a message
+_WORD = 240  # letters of a word in a message, such as a path
+_ENDS = 80  # letters of a longer one that are shown, at each end
 
 
 class InputError(ValueError):
-    """Bad input: the message names the bad thing, lists the good ones, says the next step."""
+    """Bad input: the message names the bad thing, lists the good ones, says the next step.
+
+    A message is one line whatever it quotes: letters that cannot be printed are escaped, and words
+    without end are shortened.
+    """
+
+    def __init__(self, message: object = "") -> None:
+        super().__init__(_one_line(str(message)))
 
 
 class DivergenceError(InputError):
@@ -18,6 +27,15 @@ class DivergenceError(InputError):
 
 class GraphicsError(InputError):
     """No OpenGL context could be made; everything that does not draw still works."""
+
+
+def _one_line(text: str) -> str:
+    words = ("".join(map(_printable, word)) for word in text.split())
+    return " ".join(w if len(w) <= _WORD else f"{w[:_ENDS]}...{w[-_ENDS:]}" for w in words)
+
+
+def _printable(letter: str) -> str:
+    return letter if letter.isprintable() else repr(letter)[1:-1]
 
 
 def repeated(names: Sequence[str]) -> list[str]:

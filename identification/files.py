@@ -43,6 +43,15 @@ def read_bytes(path: Path, largest: int = MAX_BYTES) -> bytes:
         raise InputError(f"cannot read {path}: {reason}; check its name and permissions") from error
 
 
+def _refuse_long(value: Any) -> None:
+    """Refuse whole numbers beyond the 64 bits that TOML has."""
+    if isinstance(value, dict | list):
+        for part in value.values() if isinstance(value, dict) else value:
+            _refuse_long(part)
+    elif isinstance(value, int) and not -(2**63) <= value < 2**63:
+        raise ValueError("a whole number has more than 64 bits")
+
+
 def read_toml(path: Path) -> dict[str, Any]:
     """The content of a TOML file that was written by hand.
 
@@ -51,7 +60,9 @@ def read_toml(path: Path) -> dict[str, Any]:
             is not TOML.
     """
     try:
-        return tomllib.loads(read_bytes(path, _BY_HAND).decode("utf-8-sig"))
+        content = tomllib.loads(read_bytes(path, _BY_HAND).decode("utf-8-sig"))
+        _refuse_long(content)
+        return content
     except (ValueError, RecursionError) as error:  # digits without end are a ValueError too
         if isinstance(error, InputError):
             raise

@@ -34,12 +34,13 @@ Command = (
     | Annotated[Film, tyro.conf.subcommand("film")]
     | Annotated[Demo, tyro.conf.subcommand("demo")]
 )
+EXAMPLES = ("inca demo", "inca discover examples/log.csv --spread none --out out/discover")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
     what = "The digital twin of the INCA 6D cable robot, and what it lacks."
-    return run_program(Command, "inca", what, arguments)
+    return run_program(Command, "inca", what, arguments, EXAMPLES)
 
 
 if __name__ == "__main__":

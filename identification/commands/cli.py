@@ -16,10 +16,14 @@ Command = (
     Annotated[Fit, tyro.conf.subcommand("fit")]
     | Annotated[Discover, tyro.conf.subcommand("discover")]
 )
+EXAMPLES = (
+    "python -m identification fit robot.toml log.csv",
+    "python -m identification discover models/emps.toml log.csv --out out/emps",
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
     os.environ.setdefault("MUJOCO_GL", "disable")  # nothing here draws with OpenGL
     what = "Fit the parameters of any MJCF to a log, and find what it lacks."
-    return run_program(Command, "identification", what, arguments)
+    return run_program(Command, "identification", what, arguments, EXAMPLES)

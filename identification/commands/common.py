@@ -19,6 +19,13 @@ class Output:
     """Print one JSON object on stdout and nothing else."""
     out: Path | None = None
     """Folder for the results, result.json among them; made when missing."""
+    quiet: bool = False
+    """Say nothing of the progress."""
+
+    def tell(self, text: str) -> None:
+        """One line about progress on stderr, unless it shall be quiet."""
+        if not self.quiet:
+            note(text)
 
 
 def say(text: str) -> None:
@@ -28,8 +35,11 @@ def say(text: str) -> None:
 
 
 def note(text: str) -> None:
-    """One line about progress on stderr."""
-    sys.stderr.write(text + "\n")
+    """One line on stderr, above the bars of progress if there are some."""
+    if "tqdm" in sys.modules:
+        sys.modules["tqdm"].tqdm.write(text, file=sys.stderr)
+    else:
+        sys.stderr.write(text + "\n")
 
 
 def say_json(result: Mapping[str, Any]) -> None:
@@ -129,21 +139,6 @@ def table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
         "  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True))
         for line in lines
     )
-
-
-def bar(what: str) -> Callable[[int, int], None]:
-    """A progress bar on stderr, silent where stderr is no terminal: call it with done, total."""
-    from tqdm import tqdm
-
-    meter = tqdm(desc=what, disable=None, leave=False)
-
-    def update(done: int, total: int) -> None:
-        meter.total = total
-        meter.update(done - meter.n)
-        if done >= total:
-            meter.close()
-
-    return update
 
 
 output_field: Any = field(default_factory=Output)

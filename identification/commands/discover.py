@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from identification.commands.common import (
     keep_if_possible,
-    note,
     say,
     say_json,
     write_result,
@@ -25,7 +24,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Discover(OnRobot):
-    """Find what the model lacks and prove it on unseen data, or say that it is unknown."""
+    """Find what the model lacks and prove it on unseen data, or say that it is unknown.
+
+    Examples:
+        python -m identification discover models/emps.toml log.csv --out out/emps
+        python -m identification discover robot.toml a.csv b.csv --confirm c.csv --out out/mine
+    """
 
     options: Path | None = None
     """TOML file with judgement constants, such as min_proof_t = 3.0 (docs/discovery.md)."""
@@ -46,7 +50,7 @@ class Discover(OnRobot):
 
         options = None if self.options is None else read_options(self.options)
         robot = self.read()
-        found = discover(robot, progress=note, options=options)
+        found = discover(robot, progress=self.output.tell, options=options)
         if isinstance(found, RecordsDiscovery):
             return self._keep_records(robot, found)
         pairs = confirm(robot, found)

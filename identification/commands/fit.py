@@ -17,7 +17,12 @@ WORSE = (
 
 @dataclass(frozen=True)
 class Fit(OnRobot):
-    """Estimate free parameters from one log or several, confirm them on what was not fitted."""
+    """Estimate free parameters from one log or several, confirm them on what was not fitted.
+
+    Examples:
+        python -m identification fit models/emps.toml log.csv --out out/fit
+        python -m identification fit robot.toml a.csv b.csv --confirm c.csv --trust units
+    """
 
     def run(self) -> int:
         """Fit, confirm, say, keep; 1 where unseen records are predicted worse than before."""
@@ -27,7 +32,7 @@ class Fit(OnRobot):
         from identification.robot.write import write_robot
 
         robot = self.read()
-        found = fit(robot, note)
+        found = fit(robot, self.output.tell)
         record = robot_fit_to_json(found, confirm(robot, found))
 
         def keep(out: Path) -> None:

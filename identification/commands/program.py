@@ -9,13 +9,18 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+from identification.commands.meter import metered
 from identification.commands.places import refuse_empty, refuse_place
 from identification.commands.refusals import parsed
 from identification.commands.stopping import STOPPED, stoppable
 
 
 def run_program(
-    commands: Any, name: str, description: str, arguments: Sequence[str] | None = None
+    commands: Any,
+    name: str,
+    description: str,
+    arguments: Sequence[str] | None = None,
+    examples: tuple[str, ...] = (),
 ) -> int:
     """Run the command that the arguments name; returns the exit code.
 
@@ -24,11 +29,12 @@ def run_program(
         name: of the program.
         description: what it does.
         arguments: those of the process when None.
+        examples: command lines that its help shows.
     """
     given = sys.argv[1:] if arguments is None else arguments
     try:
         with stoppable(name):
-            return _run(commands, name, description, given)
+            return _run(commands, name, description, given, examples)
     except ValueError as error:
         from identification.errors import InputError
 
@@ -46,14 +52,18 @@ def run_program(
         return STOPPED
 
 
-def _run(commands: Any, name: str, description: str, arguments: Sequence[str]) -> int:
+def _run(
+    commands: Any, name: str, description: str, arguments: Sequence[str], examples: tuple[str, ...]
+) -> int:
     if [*arguments] == ["--version"]:
         sys.stdout.write(f"{name} {versions()}\n")
         return 0
     refuse_empty(arguments)
-    command = parsed(commands, name, description, arguments)
+    command = parsed(commands, name, description, arguments, examples)
     refuse_place(command)
-    return int(command.run())
+    output = getattr(command, "output", None)
+    with metered(getattr(output, "quiet", False)):
+        return int(command.run())
 
 
 def versions() -> str:

@@ -5,26 +5,38 @@ from __future__ import annotations
 import dataclasses
 import io
 import re
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import redirect_stderr
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import tyro
 
+from identification.commands.examples import examples_of, examples_text
 from identification.commands.repeated import gathered
 
 _FRAME = "│╭╮╰╯─|+ "  # of a box, also where a terminal knows no lines
+COMPLETION, SHELLS = "--completion", ("bash", "zsh", "fish")
 _KINDS = {"FLOAT": "a number", "INT": "a whole number", "PATH": "a path"}
 
 
-def parsed(commands: Any, name: str, description: str, arguments: Sequence[str]) -> Any:
+def parsed(
+    commands: Any,
+    name: str,
+    description: str,
+    arguments: Sequence[str],
+    examples: tuple[str, ...] = (),
+) -> Any:
     """The command that some arguments name.
 
     Args:
         commands: a union of dataclasses, as tyro takes it.
         name: of the program.
         description: what it does.
-        arguments: those of the command line.
+        arguments: those of the command line. `--completion SHELL` prints a script that completes
+            them in bash, zsh or fish.
+        examples: command lines that the help of the program shows; those of a command stand in its
+            docstring.
 
     Raises:
         InputError: they name no command, or one that cannot be had with them.
@@ -32,6 +44,11 @@ def parsed(commands: Any, name: str, description: str, arguments: Sequence[str])
     """
     from identification.errors import InputError
 
+    if arguments[:1] == [COMPLETION]:
+        shell = " ".join(arguments[1:])
+        if shell not in SHELLS:
+            raise InputError(f"{COMPLETION} {shell!r} is no shell; give one of {', '.join(SHELLS)}")
+        arguments = ["--tyro-print-completion", shell]
     said = io.StringIO()
     try:
         with redirect_stderr(said):
@@ -40,10 +57,20 @@ def parsed(commands: Any, name: str, description: str, arguments: Sequence[str])
                 config=(tyro.conf.AvoidSubcommands,),
             )  # fmt: skip
     except SystemExit as end:
-        if end.code in (0, None):
-            raise
         at_hand = dict(_commands(commands))
+        if end.code in (0, None):
+            command = at_hand.get(next(iter(arguments), ""))
+            if {"-h", "--help"} & {*arguments}:
+                sys.stdout.write(
+                    examples_text(examples if command is None else examples_of(command))
+                )
+            raise
         raise InputError(_sentence(_unboxed(said.getvalue()), name, arguments, at_hand)) from None
+    except RecursionError:  # of the parser's boxes, which hold no word without end
+        longest = max(arguments, key=len)
+        raise InputError(
+            f"{longest} is no argument of {name}; {name} --help lists the commands"
+        ) from None
 
 
 def _sentence(text: str, name: str, arguments: Sequence[str], commands: dict[str, type]) -> str:

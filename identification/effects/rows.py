@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from warnings import catch_warnings, simplefilter
 
 import mujoco
 import numpy as np
@@ -19,7 +20,9 @@ from identification.effects.joint_layout import JointLayout
 from identification.effects.moving_bodies import movable
 from identification.effects.values import Values, changed_columns
 from identification.errors import InputError, unknown_name
+from identification.files import read_bytes
 from identification.logs.names import quoted
+from identification.model.hostile import refuse_hostile, refuse_numbers
 from identification.model.paths import Slot
 from identification.native.joint_callback import FIRST, REACH, STOP, TAG, stopping_steps
 
@@ -41,13 +44,17 @@ def read_model(source: str | Path | mujoco.MjSpec) -> mujoco.MjSpec:
         return source.copy()
     text = str(source)
     given = text.lstrip().startswith("<")
+    where = "the model" if given else f"the model {text}"
+    refuse_hostile(text if given else read_bytes(Path(text)), where)
     try:
         spec = mujoco.MjSpec.from_string(text) if given else mujoco.MjSpec.from_file(text)
-        spec.compile()
-    except (ValueError, OSError, mujoco.FatalError) as error:
+        with catch_warnings():
+            simplefilter("error")
+            model = spec.compile()
+    except (ValueError, OSError, mujoco.FatalError, Warning) as error:
         reason = quoted(" ".join(str(error).split()), _LONGEST)  # MuJoCo writes several lines
-        where = "the model" if given else f"the model {text}"
         raise InputError(f"{where} cannot be read ({reason}); correct it there") from error
+    refuse_numbers(model, where)
     return spec
 
 

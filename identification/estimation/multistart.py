@@ -19,6 +19,7 @@ from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates, coordinates
 from identification.model.predictor import Plant
+from identification.progress import counted
 
 ENOUGH = 1.5  # times the noise floor: a search that ends below it is good enough
 ELSEWHERE = 0.1  # of the spread, for coordinates that are no logarithms, such as a pose
@@ -77,7 +78,7 @@ def estimate_from(
     floor = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2)))
     best: Estimate | None = None
     errors: list[float] = []
-    for k, row in enumerate(values):
+    for k, row in counted(enumerate(values), "starts", len(values)):
         begin = {**(start or {}), **dict(zip(names, row.tolist(), strict=True))}
         try:
             found = estimate(plant, log, names, begin, options, progress)

@@ -23,6 +23,7 @@ from identification.errors import DivergenceError, InputError
 from identification.estimation.estimation import Estimate
 from identification.estimation.estimation import estimate as search
 from identification.estimation.fit import Fit
+from identification.progress import stage
 
 LEVEL = float(chi2.ppf(0.95, 1))  # 3.84
 REACH = 3.0  # std to each side, unless points are given
@@ -82,14 +83,16 @@ def profile(
     scale = _scale(fit, j, bottom)
     rise, found = np.full(len(values), np.inf), [best] * len(values)
     middle = int(np.searchsorted(values, best[name]))
-    for way in (range(middle, len(values)), range(middle - 1, -1, -1)):
-        near = best
-        for i in way:
-            try:
-                found[i] = near = _refit(estimate, name, float(values[i]), near, max_evaluations)
-                rise[i] = (_cost(estimate, near) - bottom) / scale
-            except DivergenceError:
-                break
+    with stage(f"values of {name}", len(values)) as advance:
+        for way in (range(middle, len(values)), range(middle - 1, -1, -1)):
+            near = best
+            for i in way:
+                try:
+                    near = _refit(estimate, name, float(values[i]), near, max_evaluations)
+                    found[i], rise[i] = near, (_cost(estimate, near) - bottom) / scale
+                except DivergenceError:
+                    break
+                advance()
     others = {n: np.array([f[n] for f in found]) for n in names if n != name}
     ends = (_crossing(values, rise, best[name], -1), _crossing(values, rise, best[name], 1))
     return Profile(

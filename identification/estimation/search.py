@@ -25,6 +25,7 @@ from identification.model.sensitivity import (
     sensitivity,
     without_effect,
 )
+from identification.progress import USUAL, stage
 
 ROUGH = 1e-2  # relative gain at which a horizon ends, if a longer one follows
 HOLD = (1.0, 0.1)  # pull towards the last result, on a short horizon and on the whole log
@@ -75,6 +76,10 @@ class Search:
 
     def run(self) -> Status:
         """Search all horizons, then again with the weights of relative noise or with `det`."""
+        with stage("steps of the search", USUAL * len(self.options.horizons)) as self._advance:
+            return self._run()
+
+    def _run(self) -> Status:
         status: Status = "converged"
         try:
             status = self._grow()
@@ -181,6 +186,7 @@ class Search:
         return "converged" if found.status > 0 else "iterations"
 
     def _tell(self, samples: int, weighed: np.ndarray) -> None:
+        self._advance()
         if self.progress is not None:
             error = np.linalg.solve(self.whitener, weighed.T).T / self.weight[:samples]
             seconds = samples * self.predictor.log.sampling_time

@@ -83,7 +83,7 @@ class KalmanOptions:
             value, least, most = getattr(self, f.name), f.metadata["least"], f.metadata["most"]
             whole = isinstance(f.default, int)
             number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
-            if not number or not isfinite(value) or not least <= value <= most:
+            if not number or not least <= value <= most or value in (inf, -inf):
                 kind = "whole number" if whole else "number"
                 limits = (
                     f"from {least:g} to {most:g}" if isfinite(most) else f"of {least:g} or more"

@@ -24,6 +24,7 @@ from identification.kalman.noise_fit import NoiseLevel, fit_noise
 from identification.kalman.options import KalmanOptions
 from identification.kalman.point import Point, evaluate_point, is_costly, shift_point
 from identification.kalman.problem import Problem, linearise_criterion
+from identification.progress import counted
 
 NEAR = 0.02  # relative change of the parameters after which columns and linearisation may hold
 # Relative change of the parameters after which columns of small ones still hold: columns that are a
@@ -96,7 +97,8 @@ def refit(
         is_near: whether the point is near the optimum, so that only the likelihood counts.
         least: log posterior that an estimate must come to, to matter.
     """
-    for step in enumerate(descend(point, mean, prior, options, near, steps, is_near, least)):
+    search = descend(point, mean, prior, options, near, steps, is_near, least)
+    for step in enumerate(counted(search, "steps of a fit")):
         taken, (end, level) = step
         if progress is not None:
             off = float(np.sqrt(np.mean(end.e**2)))

@@ -20,7 +20,7 @@ from identification.logs.read_mat import parse_mat
 from identification.logs.resampling import even_out
 from identification.logs.sampling import FloatArray, check_time, grid
 from identification.logs.sidecar import Sidecar, read_sidecar
-from identification.logs.table import Table, check_columns, check_finite, renamed
+from identification.logs.table import Table, check_columns, check_finite, check_stamps, renamed
 from identification.logs.units import check_si, to_si
 
 
@@ -127,6 +127,7 @@ def _is_even(table: Table, sidecar: Sidecar) -> bool:
 
 def _evened(table: Table, inputs: Sequence[str], sidecar: Sidecar) -> tuple[Table, str]:
     """A table on an even grid, and what was done to it."""
+    check_stamps(table)
     names = [n for n in table.names if n != "time"]
     even = even_out(
         table.path.stem, table["time"], {n: table[n] for n in names}, inputs, sidecar.hold,

@@ -28,6 +28,7 @@ ALLOWED = 0.01  # of a channel's motion, that the bridge of a gap may err by
 CLEAR = 2.0  # std of its noise, that it may err by
 HELD = 10.0  # intervals that an input may stay away and count as held, if it comes every interval
 MOST = 0.05  # of the log, that one gap may be: beyond it the rest of the log is no witness
+EVEN = 1e-3  # of an interval, by which even stamps may differ
 ROUND = 0.02  # of the rate, by which it may be rounded: any rate near the samples' own would do
 
 
@@ -67,7 +68,7 @@ def even_out(
 
     Args:
         name: of the log.
-        time: stamps of the rows, shape (n,) [s], none smaller than the one before.
+        time: stamps of the rows, shape (n,) [s], finite, none smaller than the one before.
         channels: by name, shape (n,); NaN where nothing arrived.
         inputs: which of them are inputs.
         hold: of the inputs, "zoh" or "foh".
@@ -76,9 +77,9 @@ def even_out(
     Raises:
         InputError: stamps go back, a channel has too few samples, or a gap is too long.
     """
-    back = np.flatnonzero(np.diff(time[np.isfinite(time)]) < 0)
+    back = np.flatnonzero(np.diff(time) < 0)
     if back.size:
-        at = time[np.isfinite(time)][back[0]]
+        at = time[back[0]]
         raise InputError(
             f"time of log {name!r} goes back after {at:.9g} s; sort its rows, or cut the log there"
         )
@@ -104,12 +105,13 @@ def even_out(
         _refuse_gap(name, c, out[c.name], h)
     for c in steady:
         _refuse_pause(name, c, h)
-    return Even(t, out, _sentence(name, [*timed, *steady], t, h))
+    why = _why(time, channels)
+    return Even(t, out, _sentence(name, why, [*timed, *steady], t, h))
 
 
 def _samples(log: str, name: str, time: FloatArray, values: FloatArray) -> _Channel:
     """The rows of a channel in which it is finite, the last of equal stamps."""
-    rows = np.flatnonzero(np.isfinite(time) & np.isfinite(values))
+    rows = np.flatnonzero(np.isfinite(values))
     rows = rows[np.append(np.diff(time[rows]) > 0, True)] if rows.size else rows
     if rows.size < MIN_ROWS:
         raise InputError(
@@ -165,7 +167,16 @@ def _refuse_gap(log: str, c: _Channel, y: FloatArray, h: float) -> None:
         )
 
 
-def _sentence(log: str, timed: Sequence[_Channel], t: FloatArray, h: float) -> str:
+def _why(time: FloatArray, channels: Mapping[str, FloatArray]) -> str:
+    """Why a log needs another grid: its stamps, or cells in which nothing stands."""
+    gaps = np.diff(time)
+    empty = sum(int(np.isnan(x).sum()) for x in channels.values())
+    if empty and gaps.max() - gaps.min() <= EVEN * gaps.max():
+        return f"has {empty} empty cell{'s' * (empty > 1)}"
+    return "is uneven in time" + (f", with {empty} empty cells," if empty else "")
+
+
+def _sentence(log: str, why: str, timed: Sequence[_Channel], t: FloatArray, h: float) -> str:
     made, widest, at = 0, 0.0, 0.0
     for c in timed:
         near = np.clip(np.searchsorted(c.time, t), 1, len(c.time) - 1)
@@ -175,7 +186,7 @@ def _sentence(log: str, timed: Sequence[_Channel], t: FloatArray, h: float) -> s
         if c.time[k + 1] - c.time[k] > widest:
             widest, at = float(c.time[k + 1] - c.time[k]), float(c.time[k])
     return (
-        f"Log {log!r} is uneven in time and was put on a grid of {h:.6g} s ({1 / h:.4g} Hz); its"
+        f"Log {log!r} {why} and was put on a grid of {h:.6g} s ({1 / h:.4g} Hz); its"
         f" largest gap is {widest:.3g} s, from {at:.6g} s, and {made} of {len(t)} samples, farther"
         " than half a step from any that was measured, were made up."
     )

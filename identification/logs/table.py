@@ -111,7 +111,22 @@ def check_finite(table: Table) -> None:
     Raises:
         InputError: a cell is NaN or infinite; its row and column are named.
     """
-    bad = np.argwhere(~np.isfinite(table.data))
+    _refuse_cells(table, ~np.isfinite(table.data))
+
+
+def check_stamps(table: Table) -> None:
+    """Refuse a stamp of time that is no finite number, and a cell that is infinite.
+
+    Raises:
+        InputError: there is one; its row and column are named.
+    """
+    bad = np.isinf(table.data)
+    bad[:, table.names.index("time")] |= ~np.isfinite(table["time"])
+    _refuse_cells(table, bad)
+
+
+def _refuse_cells(table: Table, refused: np.ndarray) -> None:
+    bad = np.argwhere(refused)
     if bad.size:
         row, column = bad[0]
         raise InputError(

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from identification.estimation.options import Progress
 from identification.model.rollout import State
 from identification.prediction.point import AtPoint, linearised, projected
 from identification.prediction.problem import Problem
+from identification.progress import counted
 from identification.windows.tangents import Tangent
 
 # Of the squared norms of the columns of X and S.
@@ -131,7 +133,9 @@ def solve(
     converged, steps = False, 1
     samples = sum(p.cut.outputs.size for p in problem.parts)
     trials = levenberg_marquardt(at, AtPoint.moved, DAMPING)
-    while not converged and steps < most:
+    for _ in counted(count(), "steps of a fit"):
+        if converged or steps >= most:
+            break
         before = at.cost
         try:
             trial = next(trials)

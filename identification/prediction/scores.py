@@ -26,6 +26,7 @@ from identification.model.parameter import ParameterSet
 from identification.prediction.fit import BLOCKS, WindowFit
 from identification.prediction.joint_states import rows_for
 from identification.prediction.point import projected
+from identification.progress import counted
 
 SMALL = 1e-4  # of a probe, by which a size is moved to see whether free parameters imitate it
 BATCH = 24  # columns at a time: bounds the memory of their trajectories
@@ -67,7 +68,8 @@ def window_scores(fit: WindowFit, candidates: Sequence[Candidate]) -> tuple[Wind
     """
     base = _Base(fit)
     out: list[WindowScore] = []
-    for group in _groups(candidates):
+    groups = [*_groups(candidates)]
+    for group in counted(groups, "groups of candidates", len(groups)):
         try:
             out += base.scores(group)
         except InputError:

@@ -32,6 +32,7 @@ from identification.prediction.proof import Doubt, find_doubt, has_size, is_at_b
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction, Unseen, compare
+from identification.progress import counted
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +91,8 @@ def refit_contenders(
     refits = len(chosen)
 
     def refit(each: Sequence[Begun]) -> list[WindowModel]:
-        found = (_refit(model, b, horizon, confirm, progress) for b in each)
+        begun = counted(each, "refits", len(each))
+        found = (_refit(model, b, horizon, confirm, progress) for b in begun)
         return [c for c in found if c is not None]
 
     def judge(

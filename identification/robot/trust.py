@@ -28,6 +28,6 @@ def trusted(words: Sequence[Any], where: str) -> tuple[str, ...]:
         InputError: a word is unknown.
     """
     for word in words:
-        if word not in TRUST:
+        if str(word) not in TRUST:
             raise unknown_name(f"word under trust in {where}:", str(word), TRUST)
     return tuple(words)

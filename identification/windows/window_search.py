@@ -13,6 +13,7 @@ import numpy as np
 from identification.errors import InputError
 from identification.estimation.levenberg_marquardt import Cost, Damping, levenberg_marquardt
 from identification.estimation.options import Progress
+from identification.progress import Advance, stage
 from identification.windows.shooting import Shooting, tangent
 from identification.windows.tangents import Tangent
 
@@ -101,6 +102,13 @@ def search_windows(
         most: largest number of linearisations after the first.
         progress: receives one line per linearisation.
     """
+    with stage("steps of a fit") as advance:
+        return _search(begun, tolerance, most, progress, advance)
+
+
+def _search(
+    begun: WindowsAtPoint, tolerance: float, most: int, progress: Progress | None, advance: Advance
+) -> WindowsEnd:
     at, tangents = begun, 1
     trials = levenberg_marquardt(begun, WindowsAtPoint.moved, DAMPING)
     _tell(at, tangents, progress)
@@ -111,6 +119,7 @@ def search_windows(
                 return WindowsEnd(at, bool(trial.μ <= MOST_DAMPING), tangents)
             continue
         before, at, tangents = at, trial.criterion, tangents + 1
+        advance()
         gain = trial.before - trial.after
         small = np.abs(at.q - before.q).max() < tolerance or gain < tolerance * trial.before
         if small or tangents > most:

@@ -11,7 +11,6 @@ import tyro
 from identification.commands.common import (
     Output,
     conclude,
-    note,
     output_field,
     table,
 )
@@ -29,7 +28,12 @@ POINTS = ("point", "x", "y", "z")
 
 @dataclass(frozen=True)
 class Calibrate:
-    """Calibrate drives, geometry and platform from logs, and tell what the logs cannot say."""
+    """Calibrate drives, geometry and platform from logs, and tell what the logs cannot say.
+
+    Examples:
+        inca calibrate examples/log.csv --out out/robot
+        inca calibrate a.csv b.csv --confirm c.csv --out out/robot
+    """
 
     log: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """Logs of one robot; without --confirm the second half of each is kept unseen."""
@@ -60,7 +64,7 @@ class Calibrate:
             spread_of(self.spread), self.robot.parameters(), self.robot.place()
         )  # fmt: skip
         found = calibrate(
-            logs, parameters, place, confirm=confirm, spread=spread, progress=note
+            logs, parameters, place, confirm=confirm, spread=spread, progress=self.output.tell
         )  # fmt: skip
         conclude(self, calibration_json(found), text(found), lambda out: keep(found, out))
         return 0

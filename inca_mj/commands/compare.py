@@ -18,7 +18,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Compare:
-    """Lay a measured log over the twin's prediction from the same currents."""
+    """Lay a measured log over the twin's prediction from the same currents.
+
+    Examples:
+        inca compare examples/log.csv --out out/compare
+        inca compare examples/log.csv --param K_t=0.085 --json
+    """
 
     log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """Log to explain: CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, note, output_field, table
+from identification.commands.common import Output, conclude, output_field, table
 from inca_mj.commands.common import Values, do_not_draw, values_field
 
 if TYPE_CHECKING:
@@ -19,7 +19,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Crosscheck:
-    """Compare the MuJoCo twin with the reference ODE; exit 1 when they disagree."""
+    """Compare the MuJoCo twin with the reference ODE; exit 1 when they disagree.
+
+    Examples:
+        inca crosscheck
+        inca crosscheck --set simulation --duration 5 --states 1000
+    """
 
     duration: float = 10.0
     """Length of each run [s]."""
@@ -38,7 +43,7 @@ class Crosscheck:
             self.robot.place(),
             duration=self.duration,
             states=self.states,
-            progress=note,
+            progress=self.output.tell,
         )
         conclude(self, result.to_json(), summary(result), partial(keep, result))
         return 0 if result.passed else 1

@@ -15,7 +15,12 @@ from inca_mj.commands.discover import Discover
 
 @dataclass(frozen=True)
 class Demo:
-    """Find what the model lacks of the robot in a log, prove it, film it, write one report."""
+    """Find what the model lacks of the robot in a log, prove it, film it, write one report.
+
+    Examples:
+        inca demo
+        inca demo examples/log.csv --no-film --out out/mine
+    """
 
     log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")] = Path(
         "examples/log.csv"

@@ -10,7 +10,6 @@ import tyro
 
 from identification.commands.common import (
     Output,
-    bar,
     keep_if_possible,
     note,
     output_field,
@@ -31,7 +30,12 @@ FILES = "The model with it is in model.xml and effects.json; inca_mj.load_twin r
 
 @dataclass(frozen=True)
 class Discover:
-    """Find what the model lacks and prove it on unseen data, or say that it is unknown."""
+    """Find what the model lacks and prove it on unseen data, or say that it is unknown.
+
+    Examples:
+        inca discover examples/log.csv --spread none --out out/discover
+        inca discover a.csv b.csv --confirm c.csv --out out/discover
+    """
 
     log: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """Logs to explain; the TOML of each may name the splits estimation and validation."""
@@ -78,7 +82,7 @@ class Discover:
             place,
             confirm=confirm,
             spread=spread,
-            progress=note,
+            progress=self.output.tell,
             settled=self.settled,
             options=options,
         )
@@ -149,7 +153,7 @@ def _film(found: Discovery, robot: Twin, run: Run, out: Path) -> Path | None:
     log = records_of(found.log)[0][1]
     scene = Scene(run, log.outputs, pose_of(log))
     try:
-        return film(scene, out / "film.mp4", seconds=FILMED, progress=bar("film"))
+        return film(scene, out / "film.mp4", seconds=FILMED)
     except (GraphicsError, InputError) as error:
         note(f"no film: {error}")
         return None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, note, output_field, table
+from identification.commands.common import Output, conclude, output_field, table
 from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
@@ -19,7 +19,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Excite:
-    """Design currents that show the worst determined parameter best, inside the limits."""
+    """Design currents that show the worst determined parameter best, inside the limits.
+
+    Examples:
+        inca excite --duration 5 --budget 60 --out out/excite
+        inca excite --free b_v b_c K_t --current 0 1.5
+    """
 
     duration: float = 5.0
     """Length of the experiment [s]."""
@@ -76,7 +81,7 @@ class Excite:
             limits=limits,
             budget=self.budget,
             seed=self.seed,
-            progress=note,
+            progress=self.output.tell,
         )
         record = design_json(result)
         said = [summary(result), *design_verdict(result)]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
-from identification.commands.common import Output, bar, say, say_json
+from identification.commands.common import Output, say, say_json
 from inca_mj.commands.common import Robot, cannot_draw, robot_field
 
 if TYPE_CHECKING:
@@ -17,7 +17,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Film:
-    """Film a log (measured as ghost, simulated in colour) or a saved run."""
+    """Film a log (measured as ghost, simulated in colour) or a saved run.
+
+    Examples:
+        inca film examples/log.csv --seconds 5 --out out/film
+        inca film out/prbs/run.npz --camera handle --speed 0.25 --still 1.0
+    """
 
     source: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG|RUN")]
     """A log (.csv, .mat), or a run (.npz) that inca simulate or inca compare saved."""
@@ -60,7 +65,6 @@ class Film:
                 camera=self.camera,
                 plots=self.plots,
                 speed=self.speed,
-                progress=bar("film"),
             )
             pictures = stills(scene, draft, self.still, camera=self.camera, plots=self.plots)
         files = [str(out / p.name) for p in (path, *pictures)]

@@ -13,7 +13,6 @@ import tyro
 from identification.commands.common import (
     Output,
     keep_if_possible,
-    note,
     output_field,
     say,
     say_json,
@@ -31,7 +30,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Identify:
-    """Estimate parameters and start pose on the first half of a log, confirm on the second."""
+    """Estimate parameters and start pose on the first half of a log, confirm on the second.
+
+    Examples:
+        inca identify examples/log.csv --out out/identify
+        inca identify examples/log.csv --free lambda b J K_t --profile K_t
+    """
 
     log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """Log to learn from; its TOML may name the splits estimation and validation."""
@@ -126,7 +130,7 @@ class Identify:
         log, parameters, place = (
             read_inca_log(self.log), self.robot.parameters(), self.robot.place()
         )  # fmt: skip
-        common: Any = {"free": free, "progress": note, "timestep": self.robot.step}
+        common: Any = {"free": free, "progress": self.output.tell, "timestep": self.robot.step}
         if self.windows is not None:
             return identify_windows(log, self.windows, parameters, place, **common)
         if self.innovations:

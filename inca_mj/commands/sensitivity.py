@@ -18,7 +18,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Sensitivity:
-    """Which parameters the angles can tell, how well, and which only together."""
+    """Which parameters the angles can tell, how well, and which only together.
+
+    Examples:
+        inca sensitivity --out out/sensitivity
+        inca sensitivity examples/log.csv --free b_v b_c K_t J
+    """
 
     log: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")] = None
     """Log whose currents are taken; the thesis' PRBS when none is given."""

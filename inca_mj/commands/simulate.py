@@ -20,7 +20,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Simulate:
-    """Run the twin and write log.csv (states and tensions), run.npz, figures and a report."""
+    """Run the twin and write log.csv (states and tensions), run.npz, figures and a report.
+
+    Examples:
+        inca simulate --input prbs --duration 5 --out out/prbs
+        inca simulate --input examples/log.csv --param m=0.2 --out out/heavy
+    """
 
     input: Annotated[str, tyro.conf.arg(metavar="step|prbs|multisine|zero|FILE")] = "step"
     """Currents: 2 A in motor 1 (step), the thesis' PRBS, a multisine, none, or those of a log."""

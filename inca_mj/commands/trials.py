@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, note, output_field, table
+from identification.commands.common import Output, conclude, output_field, table
 from inca_mj.commands.common import do_not_draw
 
 if TYPE_CHECKING:
@@ -16,7 +16,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Trials:
-    """Run the thesis' four identification trials from its own starts."""
+    """Run the thesis' four identification trials from its own starts.
+
+    Examples:
+        inca trials --trial 1 2
+        inca trials --trial 4 --monte-carlo 20 --out out/trials
+    """
 
     trial: tuple[int, ...] = (1, 2, 3, 4)
     """Which trials."""
@@ -37,10 +42,10 @@ class Trials:
 
         refuse_negative("--monte-carlo", self.monte_carlo)  # before trials that take minutes
         options = Options(horizons=(1.0,)) if self.single else None
-        results = trials(self.trial, seed=self.seed, options=options, progress=note)
+        results = trials(self.trial, seed=self.seed, options=options, progress=self.output.tell)
         record: dict[str, object] = {"trials": [r.to_json() for r in results]}
         if self.monte_carlo:
-            record["monte_carlo"] = monte_carlo(self.monte_carlo, progress=note)
+            record["monte_carlo"] = monte_carlo(self.monte_carlo, progress=self.output.tell)
         text = "\n\n".join(summary(r) for r in results)
         if self.monte_carlo:
             text += f"\n{record['monte_carlo']}"

@@ -11,6 +11,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.files import whole_file
+from identification.progress import counted
 from inca_mj.rendering.colours import TensionScale, tension_scale
 from inca_mj.rendering.encoder import encoder
 from inca_mj.rendering.ghost import ghost_positions
@@ -82,7 +83,7 @@ def film(
         whole_file(path) as draft,
         encoder(draft, size, fps) as send,
     ):
-        for done, time in enumerate(times, 1):
+        for done, time in enumerate(counted(times, "frames", len(times)), 1):
             send(stage.frame(time))
             if progress is not None:
                 progress(done, len(times))

@@ -15,6 +15,7 @@ MOTOR = [0.12, 0.12, 0.13, 1.0]
 HANDLE = [0.93, 0.45, 0.13, 1.0]
 
 # The handle has 15 cm in a frame of 3 m, so its camera moves with it, at a fixed direction [m].
+NO_ARM = 1e-3  # length of an arm that is not drawn [m]
 HANDLE_EYE, HANDLE_TARGET = [0.18, -0.50, 0.12], [0.0, 0.0, -0.035]
 
 _BOX, _CYLINDER = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CYLINDER
@@ -111,7 +112,8 @@ def dress_platform(platform: Any, geometry: Geometry) -> None:
     )
     _add(platform, _SPHERE, STEEL, pos=[0, 0, 0], size=[0.014, 0, 0])
     for connector in np.unique(geometry.B, axis=0):
-        _add(platform, _CAPSULE, ALUMINIUM, fromto=[0, 0, 0, *connector], size=[0.005, 0, 0])
+        if np.linalg.norm(connector) > NO_ARM:
+            _add(platform, _CAPSULE, ALUMINIUM, fromto=[0, 0, 0, *connector], size=[0.005, 0, 0])
         _add(platform, _SPHERE, STEEL, pos=connector, size=[0.009, 0, 0])
     _add(platform, _CAPSULE, HANDLE, fromto=[0, 0, -0.02, 0, 0, -0.11], size=[0.015, 0, 0])
     _add(platform, _SPHERE, HANDLE, pos=[0, 0, -0.115], size=[0.019, 0, 0])

@@ -17,6 +17,7 @@ import numpy as np
 
 from identification.errors import InputError, refuse_negative
 from identification.estimation.information import determinable
+from identification.progress import counted
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import Twin, build_twin
 from inca_mj.workflows.bench import SAMPLING, Bench, Tried, standard_inputs
@@ -111,7 +112,8 @@ def excite(
     tried = (thesis, *others)
     best = max((t for t in tried if t.allowed), key=lambda t: t.found.e_value, default=None)
     settings: dict[str, float] = {}
-    for count, (recipe, candidate) in enumerate(_search(bench, n, budget, seed), 1):
+    found = counted(_search(bench, n, budget, seed), "inputs", budget)
+    for count, (recipe, candidate) in enumerate(found, 1):
         if best is None or candidate.found.e_value > best.found.e_value:
             best, settings = candidate, recipe.settings(limits)
             if progress is not None:

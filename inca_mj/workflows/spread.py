@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
 from identification.errors import InputError, unknown_name
@@ -84,7 +83,6 @@ def spread_of(word: str) -> Spread:
     return read_spread(path)
 
 
-@cache
 def read_spread(path: Path) -> Spread:
     """Read a spread from TOML: tables [drives], [points], [platform], and a source.
 

@@ -13,6 +13,7 @@ from identification.errors import refuse_negative, unknown_name
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import Fit, assess
 from identification.estimation.metrics import fit_percent, loss
+from identification.progress import counted
 from identification.quantities import finite_or_none
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import build_twin
@@ -122,7 +123,7 @@ def trials(
             raise unknown_name("trial", str(number), map(str, range(1, len(TRIALS) + 1)))
     say = progress or (lambda line: None)
     results = []
-    for number in numbers:
+    for number in counted(numbers, "trials", len(numbers)):
         say(f"trial {number}")
         results.append(run_trial(TRIALS[number - 1], seed=seed, options=options, progress=progress))
     return tuple(results)
@@ -149,7 +150,7 @@ def monte_carlo(seeds: int, progress: Callable[[str], None] | None = None) -> di
     trial = TRIALS[3]
     names = tuple(trial.start)
     found, claimed = np.empty((seeds, len(names))), np.empty((seeds, len(names)))
-    for seed in range(seeds):
+    for seed in counted(range(seeds), "seeds", seeds):
         fit = run_trial(trial, seed=1000 + seed).fit
         found[seed], claimed[seed] = list(fit.estimate.values.values()), fit.std
         if progress is not None:

@@ -20,6 +20,7 @@ from identification.kalman.point import Point
 from identification.kalman.sensitivity_equations import solve_sensitivities
 from identification.kalman.trajectory import FINE
 from identification.model.predictor import Predictor
+from identification.progress import counted
 
 BATCH = 48  # columns that are computed at once, which bounds the memory of their trajectories
 # Share of its probe at which an effect enters the equations: large accelerations nearly cancel each
@@ -101,10 +102,12 @@ def compute_sensitivities(point: Point, candidates: Sequence[Candidate]) -> tupl
     found: dict[int, Sensitivity] = {}
     records = _fine_records(point)
     if records:
-        for group in _groups([*enumerate(candidates)]):
+        groups = [*_groups([*enumerate(candidates)])]
+        for group in counted(groups, "groups of candidates", len(groups)):
             found |= _alone(partial(_solve, point, records), group)
     predicted = point.log.outputs - point.e
-    for group in _groups([(i, c) for i, c in enumerate(candidates) if i not in found]):
+    rest = [*_groups([(i, c) for i, c in enumerate(candidates) if i not in found])]
+    for group in counted(rest, "groups of other candidates", len(rest)):
         found |= _alone(partial(_simulate, point, predicted), group)
     return tuple(found[i] for i in sorted(found))
 

@@ -42,6 +42,7 @@ from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
 from identification.estimation.options import Progress
+from identification.progress import counted
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ def _refit_candidates(
     if is_hidden:
         chosen = _select_likeliest(scores, task.options)
     refitted = []
-    for s in chosen:
+    for s in counted(chosen, "refits", len(chosen)):
         name = f"{s.candidate.effect.name}, {s.candidate.where}"
         sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
         more = (*model.candidates, s.candidate)

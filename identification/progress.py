@@ -1,0 +1,64 @@
+"""How far a long computation is: told where it is known, shown by whoever watches.
+
+A computation tells the stage it is in and counts its steps. Nothing is shown unless a program
+watches, as the commands do on a terminal. A search does not know how many steps it will take; it
+gives a usual number, and the stage grows where it takes more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from contextvars import ContextVar
+from typing import TypeVar
+
+USUAL = 15  # steps of a search
+Item = TypeVar("Item")
+Advance = Callable[[], None]
+Watch = Callable[[str, int], AbstractContextManager[Advance]]  # of a stage and its steps
+
+_WATCH: ContextVar[Watch | None] = ContextVar("watch", default=None)
+
+
+@contextmanager
+def watched(watch: Watch) -> Iterator[None]:
+    """Show the stages of what is computed in the block.
+
+    Args:
+        watch: opens a stage of a name with a number of steps; what it yields counts one.
+    """
+    token = _WATCH.set(watch)
+    try:
+        yield
+    finally:
+        _WATCH.reset(token)
+
+
+@contextmanager
+def stage(what: str, steps: int = USUAL) -> Iterator[Advance]:
+    """A stage of a computation; call what it yields after each step.
+
+    Args:
+        what: is counted, such as "refits".
+        steps: how many there are, or usually are.
+    """
+    watch = _WATCH.get()
+    if watch is None:
+        yield lambda: None
+        return
+    with watch(what, steps) as advance:
+        yield advance
+
+
+def counted(items: Iterable[Item], what: str, steps: int = USUAL) -> Iterator[Item]:
+    """Items of a stage, each counted when the next one is asked for.
+
+    Args:
+        items: what is computed with.
+        what: they are.
+        steps: how many there are, or usually are.
+    """
+    with stage(what, steps) as advance:
+        for item in items:
+            yield item
+            advance()
