@@ -33,6 +33,12 @@ class DiscoveryOptions(PredictionOptions):
         " at least 10 samples each.",
         "judgement", least=50,
     )  # fmt: skip
+    max_memory_share: float = option(
+        0.8, "of the free memory",
+        "A search that is forecast to take more is refused before it begins; a machine that swaps"
+        " does not end.",
+        "judgement", least=0.01, most=100.0,
+    )  # fmt: skip
     max_effects: int = option(
         8, "effects",
         "Largest number of effects that are named. The search ends before, where unseen samples"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from identification.discovery.forecast import forecast, refuse_large
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
@@ -37,13 +38,19 @@ def discover(
         options: what is believed; the defaults of `DiscoveryOptions` when None.
 
     Raises:
-        InputError: the log is too short, a name is unknown, or a free parameter has no effect.
+        InputError: the log is too short or too long for this machine's memory, a name is unknown,
+            or a free parameter has no effect.
         DivergenceError: the nominal model cannot be simulated.
     """
     options, say = options or DiscoveryOptions(), progress or _say_nothing
     refuse_unfit(log, options)
     shared = tuple(effect for effect in effects if not (effect.own or effect.is_curve))
-    state = first_state(DiscoveryTask(nominal_model, log, shared, options), say)
+    task = DiscoveryTask(nominal_model, log, shared, options)
+    needs = forecast(task)
+    refuse_large(needs, options.max_memory_share)
+    if needs.is_large:
+        say(str(needs))
+    state = first_state(task, say)
     while not state.is_finished:
         state = next_state(state, say)
     return conclude(state)

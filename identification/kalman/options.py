@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields
 from math import inf, isfinite
 from numbers import Integral, Real
+from sys import float_info
 from typing import Any
 
 from identification.errors import InputError
@@ -83,7 +84,7 @@ class KalmanOptions:
             value, least, most = getattr(self, f.name), f.metadata["least"], f.metadata["most"]
             whole = isinstance(f.default, int)
             number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
-            if not number or not least <= value <= most or value in (inf, -inf):
+            if not number or not least <= value <= min(most, float_info.max):
                 kind = "whole number" if whole else "number"
                 limits = (
                     f"from {least:g} to {most:g}" if isfinite(most) else f"of {least:g} or more"

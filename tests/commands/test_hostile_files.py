@@ -3,12 +3,13 @@
 import json
 import re
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from identification import InputError, read_log
-from identification.discovery.options import read_options
+from identification.discovery.options import DiscoveryOptions, read_options
 from identification.logs import mat_child
 from inca_mj.cli import main
 from inca_mj.robot.geometry import INCA, read_geometry, write_geometry
@@ -25,7 +26,7 @@ FIRST = "  [1.5, 1.5, 0.1],"
 
 
 @pytest.mark.parametrize("row", [
-    '  ["1.5", 1.5, 0.1],', "  [true, 1.5, 0.1],", f"  [{DIGITS}, 1.5, 0.1],", "  [nan, 1.5, 0.1],",
+    '  ["1.5", 1.5, 0.1],', "  [true, 1.5, 0.1],", "  [1e999, 1.5, 0.1],", "  [nan, 1.5, 0.1],",
     "  [[1.5], 1.5, 0.1],", "  1.5,",
 ])  # fmt: skip
 def test_a_geometry_has_numbers_only(tmp_path, row):
@@ -44,6 +45,42 @@ def test_what_is_no_toml_is_told_so(tmp_path, read, text):
     path.write_text(text)
     with pytest.raises(InputError, match=r"is not TOML \(.{1,120}\); correct it there"):
         read(path)
+
+
+def test_a_number_too_long_for_a_float_is_told(tmp_path):
+    (tmp_path / "options.toml").write_text(f"max_effects = {DIGITS}")
+    with pytest.raises(InputError, match="a whole number has more than 64 bits"):
+        read_options(tmp_path / "options.toml")
+    with pytest.raises(InputError, match="option max_effects is 999"):
+        DiscoveryOptions(max_effects=int(DIGITS))
+
+
+def test_a_message_is_one_line_whatever_it_quotes():
+    said = str(InputError(f"file a\nb\x08 has {20 * DIGITS}; give less"))
+    assert said.isprintable()
+    assert said.startswith("file a b\\x08 has 999")
+    assert said.endswith("999; give less")
+    assert len(said) < 300
+    assert str(InputError(said)) == said
+
+
+def test_an_argument_without_end_is_refused(capsys):
+    assert main(["discover", "--" + 2000 * "a-"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_a_spread_is_read_again_when_its_file_changes(tmp_path):
+    path = tmp_path / "spread.toml"
+    path.write_text("[drives]\nlambda = 0.03\n")
+    first = read_spread(path)
+    path.write_text("[drives]\nlambda = 0.05\n")
+    assert read_spread(path).drives["lambda"] == 0.05 != first.drives["lambda"]
+
+
+def test_a_connector_may_be_the_centre_of_the_platform():
+    B = [tuple(row) for row in INCA.B]
+    B[3] = (0.0, 0.0, 0.0)
+    assert build_twin(geometry=replace(INCA, connectors=tuple(B))).model.nu == 8
 
 
 @pytest.mark.parametrize(("arguments", "said"), [

@@ -1,0 +1,126 @@
+"""How much memory and time a search will take, told before it takes them.
+
+    bytes   = COPIES · 8 N n_y (p + m)       N samples, n_y outputs, p parameters, m sizes of candidates
+    seconds = REPEATS · t₁ (p + m)           t₁ the time of one simulation of the fitted samples
+
+Both constants are measured (`benchmarks/forecast.py`, docs/benchmarks.md). The time is that of a
+search that finds nothing; each effect that is found is refitted, beside others, and adds to it.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.discovery.scoring.sensitivities import list_common, list_single
+from identification.discovery.task import DiscoveryTask
+from identification.errors import InputError
+from identification.model.predictor import Predictor
+
+COPIES = 4.75  # of the sensitivities to all candidates, that a search holds at once
+REPEATS = 4.0  # how often a search computes a column of the sensitivities, in simulations
+_SHORT = 400  # samples of the simulation that is timed
+_TOLD = 60.0, 2.0**30  # [s] and [bytes] from which a forecast is worth a line
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """What a search will take.
+
+    Attributes:
+        samples: of the log.
+        memory: [bytes], beside those of the program.
+        seconds: of a search that finds nothing [s].
+    """
+
+    samples: int
+    memory: float
+    seconds: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.samples} samples need about {self.memory / 2**30:.2g} GB of memory and"
+            f" {_duration(self.seconds)}, and longer with every effect that is found"
+        )
+
+    @property
+    def is_large(self) -> bool:
+        """Whether it is worth a line."""
+        seconds, memory = _TOLD
+        return self.seconds > seconds or self.memory > memory
+
+
+def forecast(task: DiscoveryTask) -> Forecast:
+    """What a search will take, from one short simulation.
+
+    Args:
+        task: what is asked.
+
+    Raises:
+        DivergenceError: the nominal model cannot be simulated.
+    """
+    log = task.log
+    common = list_common(task.effects)
+    first = {c.effect.name: c for c in common}
+    sizes = sum(len(c.sizes) for c in (*common, *list_single([*first.values()])))
+    columns = len(task.nominal_model.names) + sizes
+    memory = COPIES * 8 * log.outputs.size * columns
+    return Forecast(len(log), memory, REPEATS * columns * _simulated(task))
+
+
+def refuse_large(found: Forecast, share: float) -> None:
+    """Refuse a search for which this machine has no memory.
+
+    Args:
+        found: what it will take.
+        share: of the free memory that it may take.
+
+    Raises:
+        InputError: it will take more.
+    """
+    free = free_memory()
+    if found.memory > share * free:
+        most = int(found.samples * share * free / found.memory)
+        raise InputError(
+            f"{found.samples} samples need about {found.memory / 2**30:.2g} GB of memory, and"
+            f" {free / 2**30:.2g} GB are free; cut the log to {most} samples, or export it at a lower"
+            " rate, or allow more by the option max_memory_share"
+        )
+
+
+def free_memory() -> float:
+    """Memory that programs may still take [bytes]; infinite where the system does not say."""
+    try:
+        with open("/proc/meminfo") as file:
+            table = dict(line.split(":", 1) for line in file)
+        return 1024.0 * float(table["MemAvailable"].split()[0])
+    except (OSError, KeyError, ValueError):
+        try:
+            return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+        except (AttributeError, ValueError, OSError):
+            return np.inf
+
+
+def _simulated(task: DiscoveryTask) -> float:
+    """Time of one simulation of the log's fitted part [s]."""
+    names = task.nominal_model.names
+    own = task.nominal_model.plant.parameters
+    values = np.array([[own[name].value for name in names]])
+    predictor = Predictor(task.nominal_model.plant, task.log, names)
+    samples = min(_SHORT, len(task.log))
+    seconds = []
+    for _ in range(3):
+        began = time.perf_counter()
+        predictor.predict(values, samples)
+        seconds.append(time.perf_counter() - began)
+    return min(seconds) * len(task.log) / samples
+
+
+def _duration(seconds: float) -> str:
+    for unit, length in (("h", 3600.0), ("min", 60.0)):
+        if seconds >= length:
+            return f"{seconds / length:.2g} {unit}"
+    return f"{seconds:.2g} s"
