@@ -43,7 +43,7 @@ def refuse_hostile(raw: str | bytes, where: str) -> None:
         if isinstance(error, InputError):
             raise
         said = "nested too deeply" if isinstance(error, RecursionError) else str(error)
-        raise InputError(f"{where} is no XML ({said}); correct it there") from error
+        raise InputError(f"{where} cannot be read ({said}); correct it there") from error
     if count > MOST:
         raise InputError(
             f"{where} has {count:.3g} elements when all that repeat are counted, more than {MOST};"
