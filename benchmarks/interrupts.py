@@ -1,6 +1,6 @@
 """Ctrl-C at 20 random times of every command: exit code, seconds until the end, what was left.
 
-    python benchmarks/interrupts.py [--times 20] [--command discover] [--out benchmarks/results/interrupts.json]
+    python benchmarks/interrupts.py [--times 20] [--command discover] [--out FILE.json]
 
 A command that ends by itself before the interrupt is not counted. Right is exit code 130 within two
 seconds, "stopping" or "stopped" said once, and no draft left in the folder of the results.

@@ -24,16 +24,18 @@ _TICK = 0.02  # [s]
 
 
 @contextmanager
-def stoppable(name: str) -> Iterator[None]:
+def stoppable(name: str) -> Iterator[threading.Event]:
     """Answer Ctrl-C in the block: it says so, and raises KeyboardInterrupt as soon as it can.
+
+    Yields what is set once Ctrl-C was heard.
 
     Args:
         name: of the program.
     """
-    if threading.current_thread() is not threading.main_thread() or os.name != "posix":
-        yield
-        return
     heard = threading.Event()
+    if threading.current_thread() is not threading.main_thread() or os.name != "posix":
+        yield heard
+        return
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         heard.set()
@@ -46,7 +48,11 @@ def stoppable(name: str) -> Iterator[None]:
     watch = threading.Thread(target=_watch, args=(name, read, heard), daemon=True)
     watch.start()
     try:
-        yield
+        yield heard
+    except Exception as error:  # a library may have made another error of the interrupt
+        if heard.is_set():
+            raise KeyboardInterrupt from error
+        raise
     finally:
         signal.set_wakeup_fd(woken)
         signal.signal(signal.SIGINT, handler)

@@ -1,10 +1,11 @@
 """How much memory and time a search will take, told before it takes them.
 
     bytes   = COPIES · 8 N n_y (p + m)       N samples, n_y outputs, p parameters, m sizes of candidates
-    seconds = REPEATS · t₁ (p + m)           t₁ the time of one simulation of the fitted samples
+    seconds = BASE + t₁ (FITS p + SCORES m)     t₁ the time of one simulation of the fitted samples
 
-Both constants are measured (`benchmarks/forecast.py`, docs/benchmarks.md). The time is that of a
-search that finds nothing; each effect that is found is refitted, beside others, and adds to it.
+The constants are fitted to processor time and peak memory of searches of INCA's logs of 500, 1000
+and 2000 samples. The time is that of a search that finds nothing; each effect that is found is
+refitted, beside others, and adds to it.
 """
 
 from __future__ import annotations
@@ -21,7 +22,9 @@ from identification.errors import InputError
 from identification.model.predictor import Predictor
 
 COPIES = 4.75  # of the sensitivities to all candidates, that a search holds at once
-REPEATS = 4.0  # how often a search computes a column of the sensitivities, in simulations
+BASE = 12.0  # [s] that a search takes, however short the log
+FITS = 0.65  # simulations that a parameter costs
+SCORES = 0.1  # simulations that a size of a candidate costs; many are simulated at once
 _SHORT = 400  # samples of the simulation that is timed
 _TOLD = 60.0, 2.0**30  # [s] and [bytes] from which a forecast is worth a line
 
@@ -66,9 +69,10 @@ def forecast(task: DiscoveryTask) -> Forecast:
     common = list_common(task.effects)
     first = {c.effect.name: c for c in common}
     sizes = sum(len(c.sizes) for c in (*common, *list_single([*first.values()])))
-    columns = len(task.nominal_model.names) + sizes
-    memory = COPIES * 8 * log.outputs.size * columns
-    return Forecast(len(log), memory, REPEATS * columns * _simulated(task))
+    parameters = len(task.nominal_model.names)
+    memory = COPIES * 8 * log.outputs.size * (parameters + sizes)
+    seconds = BASE + (FITS * parameters + SCORES * sizes) * _simulated(task)
+    return Forecast(len(log), memory, seconds)
 
 
 def refuse_large(found: Forecast, share: float) -> None:
@@ -86,8 +90,8 @@ def refuse_large(found: Forecast, share: float) -> None:
         most = int(found.samples * share * free / found.memory)
         raise InputError(
             f"{found.samples} samples need about {found.memory / 2**30:.2g} GB of memory, and"
-            f" {free / 2**30:.2g} GB are free; cut the log to {most} samples, or export it at a lower"
-            " rate, or allow more by the option max_memory_share"
+            f" {free / 2**30:.2g} GB are free; cut the log to {most} samples, or export it at a"
+            " lower rate, or allow more by the option max_memory_share"
         )
 
 

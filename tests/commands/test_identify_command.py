@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from identification import write_log
+from identification.commands.common import Output
 from inca_mj.cli import main
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
@@ -106,10 +107,10 @@ def test_windows_can_be_asked_for(log: Path, capsys: pytest.CaptureFixture[str])
 def test_an_interrupt_keeps_the_best_values_and_is_told_by_the_exit_code(
     log: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def interrupt(line: str) -> None:
+    def interrupt(output: Output, line: str) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("inca_mj.commands.identify.note", interrupt)
+    monkeypatch.setattr(Output, "tell", interrupt)
     assert main(["identify", str(log), "--json"]) == 130
     result = json.loads(capsys.readouterr().out)
     assert len(result["steps"]) == 1  # the second does not begin

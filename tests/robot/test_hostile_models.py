@@ -29,7 +29,9 @@ HOSTILE = {
         '<asset><hfield nrow="99999" ncol="99999" size="1 1 1 1"/></asset><worldbody>': "cells",
     },
     'damping="3"': {'armature="inf"': "has an infinite number in dof_armature"},
-    "</mujoco>": {"": "cannot be read", "</mujocc>": "cannot be read", 9999 * "<b>": "cannot be read"},
+    "</mujoco>": {
+        "": "cannot be read", "</mujocc>": "cannot be read", 9999 * "<b>": "cannot be read",
+    },
 }  # fmt: skip
 EVERY = [(old, new, said) for old, each in HOSTILE.items() for new, said in each.items()]
 

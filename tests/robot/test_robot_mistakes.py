@@ -119,7 +119,8 @@ def test_time_in_milliseconds_is_asked_for_and_converted(folder, capsys):
 
 @pytest.mark.parametrize(
     ("change", "line"),
-    [(("</body>", ""), "mismatched tag: line 4"), (('gear="5"', 'geer="5"'), "'geer' Element 'general', li"),
+    [(("</body>", ""), "mismatched tag: line 4"),
+     (('gear="5"', 'geer="5"'), "'geer' Element 'general', li"),
      (('joint="slide" gear', 'joint="slid" gear'), "target 'slid'")],
 )  # fmt: skip
 def test_a_model_that_is_broken_is_told_with_its_path_and_line(folder, capsys, change, line):
