@@ -1,6 +1,6 @@
 """How much memory and time a search will take, told before it takes them.
 
-    bytes   = COPIES · 8 N n_y (p + m)       N samples, n_y outputs, p parameters, m sizes of candidates
+    bytes   = COPIES · 8 N n_y (p + m)    N samples, n_y outputs, p parameters, m sizes of effects
     seconds = BASE + t₁ (FITS p + SCORES m)     t₁ the time of one simulation of the fitted samples
 
 The constants are fitted to processor time and peak memory of searches of INCA's logs of 500, 1000

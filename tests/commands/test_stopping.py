@@ -71,3 +71,13 @@ def test_what_was_there_before_is_put_back():
     with stoppable("robot"):
         pass
     assert signal.set_wakeup_fd(woken) == woken
+
+
+def test_an_interrupt_that_a_library_made_another_error_of_is_one():
+    with pytest.raises(KeyboardInterrupt), stoppable("robot"):
+        try:
+            signal.raise_signal(signal.SIGINT)
+        except KeyboardInterrupt as error:
+            raise TypeError("argument") from error
+    with pytest.raises(TypeError, match="argument"), stoppable("robot"):
+        raise TypeError("argument")
