@@ -24,18 +24,16 @@ _TICK = 0.02  # [s]
 
 
 @contextmanager
-def stoppable(name: str) -> Iterator[threading.Event]:
+def stoppable(name: str) -> Iterator[None]:
     """Answer Ctrl-C in the block: it says so, and raises KeyboardInterrupt as soon as it can.
-
-    Yields what is set once Ctrl-C was heard.
 
     Args:
         name: of the program.
     """
-    heard = threading.Event()
     if threading.current_thread() is not threading.main_thread() or os.name != "posix":
-        yield heard
+        yield
         return
+    heard = threading.Event()
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         heard.set()
@@ -48,7 +46,7 @@ def stoppable(name: str) -> Iterator[threading.Event]:
     watch = threading.Thread(target=_watch, args=(name, read, heard), daemon=True)
     watch.start()
     try:
-        yield heard
+        yield
     except Exception as error:  # a library may have made another error of the interrupt
         if heard.is_set():
             raise KeyboardInterrupt from error

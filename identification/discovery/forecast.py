@@ -1,7 +1,7 @@
 """How much memory and time a search will take, told before it takes them.
 
     bytes   = COPIES · 8 N n_y (p + m)    N samples, n_y outputs, p parameters, m sizes of effects
-    seconds = BASE + t₁ (FITS p + SCORES m)     t₁ the time of one simulation of the fitted samples
+    seconds = BASE + t₁ (FITS p + SCORES m)     t₁ the time of one simulation of the log
 
 The constants are fitted to processor time and peak memory of searches of INCA's logs of 500, 1000
 and 2000 samples. The time is that of a search that finds nothing; each effect that is found is
@@ -36,7 +36,7 @@ class Forecast:
     Attributes:
         samples: of the log.
         memory: [bytes], beside those of the program.
-        seconds: of a search that finds nothing [s].
+        seconds: of processor time, of a search that finds nothing [s].
     """
 
     samples: int
@@ -46,7 +46,8 @@ class Forecast:
     def __str__(self) -> str:
         return (
             f"{self.samples} samples need about {self.memory / 2**30:.2g} GB of memory and"
-            f" {_duration(self.seconds)}, and longer with every effect that is found"
+            f" {_duration(self.seconds)} of processor time, and more with every effect that is"
+            " found"
         )
 
     @property
@@ -75,12 +76,13 @@ def forecast(task: DiscoveryTask) -> Forecast:
     return Forecast(len(log), memory, seconds)
 
 
-def refuse_large(found: Forecast, share: float) -> None:
+def refuse_large(found: Forecast, share: float, least: int) -> None:
     """Refuse a search for which this machine has no memory.
 
     Args:
         found: what it will take.
         share: of the free memory that it may take.
+        least: samples that a search needs, to fit and to confirm.
 
     Raises:
         InputError: it will take more.
@@ -88,10 +90,11 @@ def refuse_large(found: Forecast, share: float) -> None:
     free = free_memory()
     if found.memory > share * free:
         most = int(found.samples * share * free / found.memory)
+        cut = f"cut the log to {most} samples, or export it at a lower rate, or"
+        cure = cut if most >= least else "close other programs, or"
         raise InputError(
             f"{found.samples} samples need about {found.memory / 2**30:.2g} GB of memory, and"
-            f" {free / 2**30:.2g} GB are free; cut the log to {most} samples, or export it at a"
-            " lower rate, or allow more by the option max_memory_share"
+            f" {free / 2**30:.2g} GB are free; {cure} allow more by the option max_memory_share"
         )
 
 
@@ -109,7 +112,7 @@ def free_memory() -> float:
 
 
 def _simulated(task: DiscoveryTask) -> float:
-    """Time of one simulation of the log's fitted part [s]."""
+    """Time of one simulation of the log [s], from that of its first samples."""
     names = task.nominal_model.names
     own = task.nominal_model.plant.parameters
     values = np.array([[own[name].value for name in names]])

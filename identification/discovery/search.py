@@ -47,7 +47,7 @@ def discover(
     shared = tuple(effect for effect in effects if not (effect.own or effect.is_curve))
     task = DiscoveryTask(nominal_model, log, shared, options)
     needs = forecast(task)
-    refuse_large(needs, options.max_memory_share)
+    refuse_large(needs, options.max_memory_share, least=2 * options.min_samples)
     if needs.is_large:
         say(str(needs))
     state = first_state(task, say)
