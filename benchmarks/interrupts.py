@@ -2,8 +2,10 @@
 
     python benchmarks/interrupts.py [--times 20] [--command discover] [--out FILE.json]
 
-A command that ends by itself before the interrupt is not counted. Right is exit code 130 within two
-seconds, "stopping" or "stopped" said once, and no draft left in the folder of the results.
+A command that ends by itself before the interrupt is not counted, and another one is begun for it.
+Python itself takes 0.05 s to start, which is left out: its answer is its own. A command that had
+ended but for its process ends with 0. Right is that, or exit code 130 within two seconds with
+"stopping" or "stopped" said once, and no draft left in the folder of the results.
 """
 
 from __future__ import annotations
@@ -18,9 +20,12 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
+EARLIEST = 0.05  # [s]
 LATEST = 6.0  # [s] after the start, when most commands are within their search
 WITHIN = 2.0  # [s]
+TRIES = 5  # for each interrupt that is asked for
 ROBOT = [sys.executable, "-m", "identification"]
 INCA = [sys.executable, "-m", "inca_mj"]
 LOG = "examples/log.csv"
@@ -55,11 +60,15 @@ def main() -> int:
         write_robot(Path(folder))
         for name in options.command:
             line = [word.format(robot=folder) for word in COMMANDS[name]]
-            each = [interrupted(line, chance.uniform(0, LATEST)) for _ in range(options.times)]
-            stopped = [row for row in each if row is not None]
+            stopped: list[dict[str, Any]] = []
+            tries = 0
+            while len(stopped) < options.times and tries < TRIES * options.times:
+                tries += 1
+                row = interrupted(line, chance.uniform(EARLIEST, LATEST))
+                stopped += [row] if row is not None else []
             rows[name] = {
                 "interrupts": len(stopped),
-                "ended before": len(each) - len(stopped),
+                "ended before": tries - len(stopped),
                 "right": sum(row["right"] for row in stopped),
                 "slowest": max((row["seconds"] for row in stopped), default=0.0),
                 "wrong": [row for row in stopped if not row["right"]],
@@ -70,7 +79,7 @@ def main() -> int:
     return int(any(row["wrong"] for row in rows.values()))
 
 
-def interrupted(line: list[str], after: float) -> dict[str, object] | None:
+def interrupted(line: list[str], after: float) -> dict[str, Any] | None:
     """What a command did that was interrupted so many seconds after its start; None if nothing."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "out"
@@ -96,9 +105,8 @@ def interrupted(line: list[str], after: float) -> dict[str, object] | None:
         left = sorted(p.name for p in out.iterdir()) if out.exists() else []
         result = json.loads((out / "result.json").read_text()) if "result.json" in left else None
         right = (
-            process.returncode == 130
+            (process.returncode, told) in ((130, 1), (0, 0))
             and seconds < WITHIN
-            and told == 1
             and "Traceback" not in said
             and (not left or result is not None)
         )

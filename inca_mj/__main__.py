@@ -17,5 +17,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
 
 
+def program() -> int:
+    """Run one command as a process of its own, which ends with the exit code."""
+    code = main()
+    from identification.commands.stopping import at_end
+
+    at_end()
+    return code
+
+
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(program())

@@ -2,9 +2,9 @@
 
 Python notices an interrupt between two of its own steps only, and not within a simulation or a
 compilation. So the signal also wakes a thread (`signal.set_wakeup_fd`), which says that the program
-stops. Where this has not come back from native code after `GRACE`, the thread ends it; so does a
-second Ctrl-C. What was half-written then lies in drafts, which no reader takes for results and the
-next run removes.
+stops. Where the program has not ended after `GRACE`, be it within native code or waiting for a
+thread of its own, the thread ends it; so does a second Ctrl-C. What was half-written then lies in
+drafts, which no reader takes for results and the next run removes.
 """
 
 from __future__ import annotations
@@ -18,9 +18,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-GRACE = 1.5  # [s] for native code to return
+GRACE = 1.5  # [s] for native code to return, and to keep what is worth keeping
 STOPPED = 130  # exit code, as a shell gives it
-_TICK = 0.02  # [s]
 
 
 @contextmanager
@@ -43,7 +42,7 @@ def stoppable(name: str) -> Iterator[None]:
     os.set_blocking(write, False)
     handler = signal.signal(signal.SIGINT, interrupt)
     woken = signal.set_wakeup_fd(write, warn_on_full_buffer=False)
-    watch = threading.Thread(target=_watch, args=(name, read, heard), daemon=True)
+    watch = threading.Thread(target=_watch, args=(name, read), daemon=True)
     watch.start()
     try:
         yield
@@ -58,25 +57,31 @@ def stoppable(name: str) -> Iterator[None]:
         watch.join(GRACE)
 
 
-def _watch(name: str, read: int, heard: threading.Event) -> None:
+def at_end() -> None:
+    """Make an interrupt change nothing, once all is done and only the process has to end.
+
+    Python ends by the signal itself, whatever the exit code, where an interrupt came while it ran
+    a text as code, as each dataclass does that is imported: it remembers this until it runs a text
+    again (`unhandled_keyboard_interrupt` in CPython).
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    exec("")
+
+
+def _watch(name: str, read: int) -> None:
     """Say that the program stops, and end it where it does not."""
-    said = False
-    while number := os.read(read, 1):
+    end = None
+    while True:
+        patience = None if end is None else max(0.0, end - time.monotonic())
+        if not select.select([read], [], [], patience)[0]:
+            os._exit(STOPPED)
+        number = os.read(read, 1)
+        if not number:
+            break
         if number[0] != signal.SIGINT:
             continue
-        if said:
+        if end is not None:
             os._exit(STOPPED)
-        said = True
+        end = time.monotonic() + GRACE
         os.write(2, f"{name}: stopping …\n".encode())
-        if not _is_heard(read, heard):
-            os._exit(STOPPED)
     os.close(read)
-
-
-def _is_heard(read: int, heard: threading.Event) -> bool:
-    """Whether the program hears an interrupt within `GRACE`, and before a second one."""
-    end = time.monotonic() + GRACE
-    while time.monotonic() < end and not select.select([read], [], [], 0)[0]:
-        if heard.wait(_TICK):
-            return True
-    return heard.is_set()

@@ -23,7 +23,7 @@ from identification.estimation.identifiability import Identifiability, identifia
 from identification.estimation.information import Information, information_of
 from identification.estimation.metrics import fit_percent, loss, rms
 from identification.estimation.residuals import ResidualTests, residual_tests
-from identification.estimation.resolution import resolve
+from identification.estimation.resolution import nothing_resolved, resolve
 from identification.estimation.robust import influence
 from identification.estimation.whiteness import correlation_time
 from identification.logs.log import Log
@@ -85,6 +85,9 @@ class Fit:
 def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
     """Assess an estimate: its uncertainty, its residual, and its error on unseen data.
 
+    Whoever stopped a search does not wait: its uncertainty and unseen data are then not asked, and
+    every std is infinite.
+
     Args:
         estimate: where a search ended.
         validation: the whole log, of which the estimation used the beginning; the rest is unseen
@@ -103,8 +106,13 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
         S = np.einsum("ij,njp->nip", estimate.whitener, estimate.weight[:, :, None] * J)
         return S.reshape(-1, J.shape[2])
 
-    resolved = resolve(predictor, space, q, whiten)
-    S, found, prior = resolved.S, resolved.found, np.diag(estimate.prior)
+    if estimate.status == "stopped":
+        validation, prior = None, np.zeros((len(q), len(q)))
+        resolved = nothing_resolved(space.names, residual.size)
+    else:
+        prior = np.diag(estimate.prior)
+        resolved = resolve(predictor, space, q, whiten)
+    S, found = resolved.S, resolved.found
     E = np.concatenate([resolved.E, np.zeros_like(prior)])
     known = identifiability(np.concatenate([S, prior]), space.names, E, resolved.least)
     error = (estimate.weight * residual) @ estimate.whitener.T

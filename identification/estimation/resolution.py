@@ -82,6 +82,12 @@ class Resolved:
         return Resolved(self.names, S, E, self.least, symmetries)
 
 
+def nothing_resolved(names: tuple[str, ...], n: int) -> Resolved:
+    """Of sensitivities that nobody computed: no direction is felt; S has the shape (n, p)."""
+    S = np.zeros((n, len(names)))
+    return Resolved(names, S, S, 1.0)
+
+
 def resolve(predictor: Predictor, space: Coordinates, q: np.ndarray, whiten: Whiten) -> Resolved:
     """Sensitivities of a predictor's outputs at q, and their errors.
 

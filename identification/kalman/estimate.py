@@ -47,7 +47,8 @@ class InnovationsFit:
         fit: the values; std, correlation and tests are those of the innovations, residual and fit
             percentages those of a free run.
         level: the noise of sensors and inputs.
-        innovations: of the whole log, in units of the sensors' noise, shape (N, ny).
+        innovations: of the whole log, in the outputs' unit, shape (N, ny); of the fitted samples
+            alone where the search was stopped.
         first: first sample that was not fitted.
     """
 
@@ -132,8 +133,11 @@ def estimate_innovations(
         status=status,
         seconds=0.0,
     )
-    fit = _of_innovations(end, assess(ends, log))
-    E = compute_innovations(end, log)
+    fit = assess(ends, log)
+    if status == "stopped":  # nobody waits for std, nor for unseen data
+        E = _fitted_innovations(end)
+    else:
+        fit, E = _of_innovations(end, fit), compute_innovations(end, log)
     fit = replace(fit, estimate=replace(ends, seconds=time.perf_counter() - began))
     return InnovationsFit(fit, end.level, E, len(part))
 
@@ -165,6 +169,14 @@ def compute_innovations(end: Refit, whole: Log) -> np.ndarray:
     with threadpool_limits(1, "blas"):
         filter_ = build_whitener(linearise(predictor, values), end.level.noise, whole.sampling_time)
         return filter_(whole.outputs - predictor.predict(values)[0])
+
+
+def _fitted_innovations(end: Refit) -> np.ndarray:
+    """Innovations of the fitted samples, shape (n, ny), by the linearisation that is at hand."""
+    point = end.point
+    with threadpool_limits(1, "blas"):
+        filter_ = build_whitener(point.linear, end.level.noise, point.log.sampling_time)
+        return filter_(point.e)
 
 
 def _of_innovations(end: Refit, fit: Fit) -> Fit:

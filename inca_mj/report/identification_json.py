@@ -107,7 +107,10 @@ def windows_verdict(found: WindowEstimate, fit: Fit) -> list[str]:
 def innovations_verdict(found: InnovationsFit) -> list[str]:
     """The verdict of an estimate by innovations: first on the noise, then on the fit."""
     fit, noise = found.fit, found.level
-    said = [*search_sentences(fit), *identifiable_sentences(fit)]
+    said = [*search_sentences(fit)]
+    if fit.estimate.status == "stopped":  # it says nothing of the model
+        return said
+    said += identifiable_sentences(fit)
     if noise.noise.ratio:
         log = fit.estimate.predictor.log
         unit = log.units.get(log.input_names[0], "")

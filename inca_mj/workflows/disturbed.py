@@ -69,8 +69,10 @@ def identify_windows(
     names = tuple(dict.fromkeys((*(free or MECHANICS), *POSE)))
     time, end = fitted.time, float(fitted.time[0]) + FIRST * length
     early = fitted.between(float(time[0]), end) if end < time[-1] else fitted
-    near = estimate(plant, early, names, progress=progress).values
-    found = estimate_windows(plant, fitted, names, length, near, progress=progress)
+    near = estimate(plant, early, names, progress=progress)
+    if near.status == "stopped":
+        return Identification(log=log, fits=(assess(near, log),), best=0)
+    found = estimate_windows(plant, fitted, names, length, near.values, progress=progress)
     fit = assess(estimate(plant, fitted, POSE, found.values, progress=progress), log)
     return Identification(log=log, fits=(fit,), best=0, windows=found)
 

@@ -104,17 +104,28 @@ def test_windows_can_be_asked_for(log: Path, capsys: pytest.CaptureFixture[str])
     assert "give a length above 0" in refused(capsys, log, "--windows", "nan")
 
 
+@pytest.mark.parametrize("options", [[], ["--innovations"], ["--windows", "0.25"]])
 def test_an_interrupt_keeps_the_best_values_and_is_told_by_the_exit_code(
-    log: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    log: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    options: list[str],
 ) -> None:
     def interrupt(output: Output, line: str) -> None:
         raise KeyboardInterrupt
 
+    def sensitivities(*arguments: object) -> None:
+        raise AssertionError("nobody waits for these")
+
     monkeypatch.setattr(Output, "tell", interrupt)
-    assert main(["identify", str(log), "--json"]) == 130
+    monkeypatch.setattr("identification.estimation.fit.resolve", sensitivities)
+    monkeypatch.setattr("identification.kalman.estimate.resolve", sensitivities)
+    assert main(["identify", str(log), "--json", *options]) == 130
     result = json.loads(capsys.readouterr().out)
     assert len(result["steps"]) == 1  # the second does not begin
-    assert "was stopped" in result["verdict"][0]
+    assert "was stopped" in " ".join(result["verdict"])
+    assert result["validation_rms"] is None  # whoever stopped it does not wait
+    assert {known["std"] for known in result["parameters"].values()} == {None}
 
 
 def test_options_that_say_nothing_are_refused_and_what_they_leave_out_is_said(

@@ -14,32 +14,36 @@ WITHIN = 5.0  # [s]; two are promised, on a machine that does nothing else
 BUSY = {
     "python": "while True: pass",
     "waiting": "time.sleep(60)",
+    "a thread": "with ThreadPoolExecutor(1) as w: w.submit(time.sleep, 60); time.sleep(60)",
+    "text that is code": "exec('time.sleep(60)')",  # as in each dataclass that is imported
     "native": "hashlib.pbkdf2_hmac('sha256', b'', b'', 2**31 - 1)",  # takes minutes
 }
 PROGRAM = """
 import hashlib, sys, time
-from identification.commands.stopping import STOPPED, stoppable
+from concurrent.futures import ThreadPoolExecutor
+from identification.commands.stopping import STOPPED, at_end, stoppable
 try:
     with stoppable("robot"):
         print("ready", flush=True)
         {}
 except KeyboardInterrupt:
+    at_end()
     sys.exit(STOPPED)
 """
 
 
-def started(busy):
-    process = subprocess.Popen(
-        [sys.executable, "-c", PROGRAM.format(busy)], stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
+def started(busy, folder):
+    (folder / "robot.py").write_text(PROGRAM.format(busy))
+    process = subprocess.Popen([sys.executable, "-m", "robot"], cwd=folder,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)  # fmt: skip
     assert process.stdout.readline() == b"ready\n"
     return process
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 @pytest.mark.parametrize("busy", BUSY)
-def test_it_says_so_and_ends(busy):
-    process = started(BUSY[busy])
+def test_it_says_so_and_ends(busy, tmp_path):
+    process = started(BUSY[busy], tmp_path)
     time.sleep(0.1)
     begun = time.monotonic()
     process.send_signal(signal.SIGINT)
@@ -50,8 +54,8 @@ def test_it_says_so_and_ends(busy):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
-def test_a_second_one_ends_it_at_once():
-    process = started(BUSY["native"])
+def test_a_second_one_ends_it_at_once(tmp_path):
+    process = started(BUSY["native"], tmp_path)
     begun = time.monotonic()
     for _ in range(2):
         time.sleep(0.1)
@@ -88,3 +92,10 @@ def test_an_interrupt_that_a_library_made_another_error_of_is_one():
 def test_another_error_stays_what_it_is():
     with pytest.raises(TypeError, match="argument"), stoppable("robot"):
         raise TypeError("argument")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_an_interrupt_after_the_end_changes_nothing():
+    late = "import os, signal; from identification.commands.stopping import at_end; at_end();"
+    late += "os.kill(os.getpid(), signal.SIGINT)"
+    assert subprocess.run([sys.executable, "-c", late], check=True).returncode == 0
