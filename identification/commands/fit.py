@@ -8,6 +8,7 @@ from typing import Any
 
 from identification.commands.common import conclude, note, table
 from identification.commands.robots import OnRobot
+from identification.commands.stopping import STOPPED
 
 WORSE = (
     "the fitted values predict unseen records worse than those of the robot's file, and are not to"
@@ -25,7 +26,7 @@ class Fit(OnRobot):
     """
 
     def run(self) -> int:
-        """Fit, confirm, say, keep; 1 where unseen records are predicted worse than before."""
+        """Fit, confirm, say, keep; 1 where unseen records are predicted worse, 130 when stopped."""
         from identification.robot.confirmation import confirm
         from identification.robot.fit_json import robot_fit_to_json
         from identification.robot.fitting import fit
@@ -37,13 +38,13 @@ class Fit(OnRobot):
 
         def keep(out: Path) -> None:
             place = self.output.out or out
-            remark = record["verdict"][0] if found.is_worse else ""
+            remark = record["verdict"][0] if found.is_worse or found.stopped else ""
             write_robot(robot, found.shared, out / "robot.toml", place, remark, found.own_values)
 
         conclude(self, record, _text(record), keep)
         if found.is_worse:
             note(f"identification: {WORSE}")
-        return int(found.is_worse)
+        return STOPPED if found.stopped else int(found.is_worse)
 
 
 def _text(record: dict[str, Any]) -> str:

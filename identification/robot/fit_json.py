@@ -31,7 +31,9 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     repeated = find_repetitions(result.robot)
     said = (*(confirmed or result.unseen), *repeated)
     far = _far(record["parameters"])
-    first = int(result.is_worse)  # then nothing else of the verdict matters as much
+    first = int(
+        result.is_worse or result.stopped
+    )  # then nothing else of the verdict matters as much
     if no_body := impossible_sentence(result.robot, result.shared):
         far.append(no_body)
     verdict = [*record["verdict"][:first], *far, *record["verdict"][first:], *map(str, said)]

@@ -73,6 +73,11 @@ class RobotFit:
         return self.found.model.fit.converged
 
     @property
+    def stopped(self) -> bool:
+        """Whether the user stopped the search of a free run; its best values are kept."""
+        return isinstance(self.found, Fit) and self.found.estimate.status == "stopped"
+
+    @property
     def is_worse(self) -> bool:
         """Whether it predicts unseen records worse than the values with which it began.
 

@@ -5,6 +5,8 @@ import json
 import pytest
 from robot_cases import NAMES, TOML, refused, run
 
+from identification.__main__ import main
+from identification.commands.common import Output
 from identification.robot.file import read_robot_file
 from identification.robot.robot import read_robot_log, robot_of
 from identification.robot.write import write_robot
@@ -97,3 +99,17 @@ def test_where_nothing_is_missing_the_fitted_model_is_confirmed(folder, capsys):
     (there,) = found["confirm"]
     assert there["after"] == pytest.approx(5e-4, rel=0.15)
     assert there["before"] > there["after"]
+
+
+def test_a_fit_that_is_stopped_keeps_its_best_values_and_says_so(folder, tmp_path, monkeypatch):
+    def interrupt(output, line):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Output, "tell", interrupt)
+    out = tmp_path / "out"
+    given = ["fit", str(folder / "robot.toml"), str(folder / "plain.csv"), "--out", str(out)]
+    assert main(given) == 130
+    result = json.loads((out / "result.json").read_text())
+    assert result["status"] == "stopped"
+    assert {known["std"] for known in result["parameters"].values()} == {None}
+    assert "The search was stopped" in (out / "robot.toml").read_text().splitlines()[0]
