@@ -17,6 +17,9 @@ class Proof:
     Attributes:
         gain: log likelihood of the unseen samples with it minus without, under one noise.
         t: Student's t of the gain, by blocks.
+        chance: of a gain as large as this where blocks gain and lose alike, by flips of their
+            signs.
+        blocks: how many blocks there are.
         share: of the mean square above sensors' noise and input errors, the share that it closes.
         fall: relative fall of the mean square of the judged error.
         above: of the mean square above the sensors' noise, the share that it closes.
@@ -26,6 +29,8 @@ class Proof:
 
     gain: float
     t: float
+    chance: float
+    blocks: int
     share: float
     fall: float
     above: float

@@ -10,7 +10,7 @@ import numpy as np
 from identification.discovery.effect_results import Proof
 from identification.discovery.nominal_model import STEPS, fit_with_effects
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.proof import Validation, validate
+from identification.discovery.proof import Validation, allowed_chance, validate
 from identification.discovery.scoring.scores import Score, score
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.discovery.task import DiscoveryTask
@@ -161,7 +161,7 @@ def list_parameters_at_limit(model: FittedModel, options: DiscoveryOptions) -> t
 
 def is_proven(proof: Proof, options: DiscoveryOptions) -> bool:
     """Whether unseen samples confirm an effect beyond chance."""
-    return proof.t > options.min_proof_t
+    return proof.chance < allowed_chance(proof.blocks, options)
 
 
 def is_relevant(proof: Proof, options: DiscoveryOptions) -> bool:

@@ -131,8 +131,9 @@ class DiscoveryOptions(PredictionOptions):
     )  # fmt: skip
     min_proof_t: float = option(
         2.0, "t of the mean gain of the blocks",
-        "The proof is beyond chance above this: 3 % one-sided with 19 degrees of freedom.",
-        "Student's t",
+        "The proof is beyond chance where flips of the blocks' signs are as seldom as a t above"
+        " this is for normal gains: 3 % with 20 blocks.",
+        "Student's t; Fisher 1935 for the flips",
     )  # fmt: skip
     min_fall: float = option(
         0.03, "of the mean square of the error on unseen samples",

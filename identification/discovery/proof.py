@@ -2,12 +2,16 @@
 
     Δ_b = ½ Σ_{k in b} ‖E_k(without)‖² - ‖E_k(with)‖²        over blocks b of unseen samples
     t = mean(Δ_b)/(std(Δ_b)/√B)
+    chance = P(Σ_b s_b Δ_b >= Σ_b Δ_b)        s_b = ±1, all choices equally likely
 
     share = (rms²(without) - rms²(with))/(rms²(without) - σ² - d²)
 
-Both residuals pass the filter of the model without the effect, so that neither predictor follows
-the data more closely than the other. rms is that of the free run, and d is what input errors do to
-it. (A robot that is judged over a horizon has a proof of its own: `identification.prediction`.)
+The chance decides, and not t: an effect that acts only at times gains much in few blocks and a
+little in the others, and that skew makes t small although every block gains. Flips of the signs
+need no normal distribution. Both residuals pass the filter of the model without the effect, so that
+neither predictor follows the data more closely than the other. rms is that of the free run, and d
+is what input errors do to it. (A robot that is judged over a horizon has a proof of its own:
+`identification.prediction`.)
 """
 
 from __future__ import annotations
@@ -16,6 +20,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import t as student
 from threadpoolctl import threadpool_limits
 
 from identification.discovery.disturbance import propagate_input_error
@@ -29,6 +34,8 @@ from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
 
 SHORTEST = 5  # samples of a block at least
+MOST_FLIPS = 32  # blocks whose flips are counted, 2^16 sums of each half
+ROUNDING = 1e-12  # of the blocks' sizes: sums that differ by less are one
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,6 +113,7 @@ def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -
         E = without.filter(with_it.e) / without.refit.level.sigma
     fewer = np.sum(without.innovations**2 - E**2, axis=1) / 2
     gain = fewer[~with_it.seen]
+    blocks = _blocks(gain, options)
     each = [(name, part) for name, part in _by_record(with_it, fewer) if len(part) >= 2 * SHORTEST]
     floor = with_it.refit.level.sigma**2 + with_it.disturbance**2
     above = without.rms**2 - min(floor, with_it.rms**2)
@@ -113,12 +121,14 @@ def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -
     sensed = without.rms**2 - min(with_it.refit.level.sigma, with_it.rms) ** 2
     return Proof(
         gain=float(gain.sum()),
-        t=_t(gain, options),
+        t=_t(blocks),
+        chance=flip_chance(blocks),
+        blocks=len(blocks),
         share=float(closed / above) if above > 0 else 0.0,
         fall=float(closed / without.rms**2),
         above=float(closed / sensed) if sensed > 0 else 0.0,
         agrees=tuple(name for name, part in each if part.sum() > 0),
-        disagrees=tuple(name for name, part in each if _t(part, options) < -options.min_proof_t),
+        disagrees=tuple(name for name, part in each if is_beyond(-_blocks(part, options), options)),
     )
 
 
@@ -130,10 +140,56 @@ def _by_record(validation: Validation, gain: np.ndarray) -> Iterator[tuple[str, 
         yield record.name, gain[rows][~validation.seen[rows]]
 
 
-def _t(gain: np.ndarray, options: DiscoveryOptions) -> float:
-    """Student's t of the gain by blocks."""
+def is_beyond(blocks: np.ndarray, options: DiscoveryOptions) -> bool:
+    """Whether blocks gain beyond chance: beyond what Student's t allows at `min_proof_t`.
+
+    Args:
+        blocks: gain of each block, shape (B,).
+        options: which t a normal distribution would need.
+    """
+    return flip_chance(blocks) < allowed_chance(len(blocks), options)
+
+
+def allowed_chance(count: int, options: DiscoveryOptions) -> float:
+    """The chance of a t above `min_proof_t`, one-sided, for so many blocks."""
+    return float(student.sf(options.min_proof_t, count - 1))
+
+
+def flip_chance(blocks: np.ndarray) -> float:
+    """Share of all flips of the blocks' signs whose sum is at least the sum itself.
+
+    All 2^B sums are counted: those of one half of the blocks against those of the other half.
+    (`scipy.stats.permutation_test` draws flips by chance beyond a dozen blocks.)
+
+    Args:
+        blocks: gain of each block, shape (B,); with more than `MOST_FLIPS`, neighbours are added.
+    """
+    while len(blocks) > MOST_FLIPS:
+        blocks = np.add.reduceat(blocks, np.arange(0, len(blocks), 2))
+    half = len(blocks) // 2
+    one, other = (_signed_sums(part) for part in (blocks[:half], blocks[half:]))
+    scale = np.abs(blocks).sum()
+    least = blocks.sum() - ROUNDING * scale - one
+    enough = len(other) - np.searchsorted(np.sort(other), least)
+    return float(enough.sum() / (len(one) * len(other)))
+
+
+def _signed_sums(blocks: np.ndarray) -> np.ndarray:
+    """Sums of the blocks with every choice of their signs, shape (2^B,)."""
+    sums = np.zeros(1)
+    for gain in blocks:
+        sums = np.concatenate([sums + gain, sums - gain])
+    return sums
+
+
+def _blocks(gain: np.ndarray, options: DiscoveryOptions) -> np.ndarray:
+    """Gains of blocks of neighbouring samples, shape (B,)."""
     count = min(options.proof_blocks, len(gain) // SHORTEST)
     starts = np.linspace(0, len(gain), count, endpoint=False).astype(int)
-    blocks = np.add.reduceat(gain, starts)
+    return np.add.reduceat(gain, starts)
+
+
+def _t(blocks: np.ndarray) -> float:
+    """Student's t of the gain by blocks."""
     scatter = blocks.std(ddof=1) / np.sqrt(len(blocks))
     return float(blocks.mean() / scatter) if scatter > 0 else 0.0

@@ -80,6 +80,9 @@ def _named_to_json(named: NamedEffect) -> dict[str, Any]:
         },
         "outside": outside_to_json(named.outside),
         "advice": named.advice or None,
-        "proof": {"gain": named.proof.gain, "t": named.proof.t, "share": named.proof.share},
+        "proof": {
+            "gain": named.proof.gain, "t": named.proof.t, "chance": named.proof.chance,
+            "share": named.proof.share,
+        },
         "agrees": list(named.proof.agrees), "disagrees": list(named.proof.disagrees),
     }  # fmt: skip

@@ -6,9 +6,15 @@ from collections.abc import Iterable, Sequence
 from math import hypot, isfinite
 
 from identification.discovery.effect_results import Detectable, NamedEffect, RejectedEffect
+from identification.discovery.fitted_model import is_proven
 from identification.discovery.result import Discovery
 from identification.quantities import alike, quantity
-from identification.report.effect_words import describe_effect, describe_outside, describe_sizes
+from identification.report.effect_words import (
+    describe_chance,
+    describe_effect,
+    describe_outside,
+    describe_sizes,
+)
 from identification.report.finding_words import describe_finding, sentence
 
 RETUNED = 0.05  # the explanation without an effect gets a sentence above this confidence
@@ -82,25 +88,23 @@ def unexplained(found: Discovery) -> str:
     more = "what is named" if len(found.named) == 1 else "all that is named"
     ratio = found.after.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
     times = f", {ratio:.3g} times the noise" if 1 < ratio < float("inf") else ""
+    proven = [r for r in found.rejected if r.gain > 0 and is_proven(r.proof, found.options)]
     return " ".join(
         [
             f"Something is left beside {more} that no known effect surely explains: the model is"
             f" still {_size(found, found.after.rms)} rms off on unseen data{times}.",
             *(sentence(describe_finding(f)) for f in found.findings),
-            *map(_nearest, [r for r in found.rejected if r.gain > 0 and _is_proven(r, found)][:1]),
+            *map(_nearest, proven[:1]),
         ]
     )
-
-
-def _is_proven(rejected: RejectedEffect, found: Discovery) -> bool:
-    return rejected.proof.t > found.options.min_proof_t
 
 
 def _nearest(rejected: RejectedEffect) -> str:
     """A sentence on what was refitted, is beyond chance, and is not named."""
     return (
         f"Nearest comes {describe_effect(rejected.candidate)}: it predicts unseen samples better"
-        f" (t = {rejected.proof.t:.1f}), but it is either too small to matter or not the likeliest."
+        f" ({describe_chance(rejected.proof)}), but it is either too small to matter or not the"
+        " likeliest."
     )
 
 

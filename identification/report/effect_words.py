@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from identification.discovery.effect_results import NamedEffect, Outside, RejectedEffect
+from identification.discovery.effect_results import NamedEffect, Outside, Proof, RejectedEffect
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
 from identification.discovery.scoring.scores import Score
 from identification.discovery.scoring.significance import correct_p_value
 from identification.effects.effect import Candidate
-from identification.quantities import quantity
+from identification.quantities import probability, quantity
 
 
 def describe_effect(candidate: Candidate) -> str:
@@ -56,13 +56,19 @@ def _describe_next(scores: Sequence[Score], options: DiscoveryOptions) -> str:
     return f"{describe_effect(best.candidate)}: gain {best.gain:.3g}, {why}"
 
 
+def describe_chance(proof: Proof) -> str:
+    """How far unseen samples are from chance."""
+    return f"t = {proof.t:.1f}, {probability(proof.chance)}"
+
+
 def _describe_proof(rejected: RejectedEffect) -> str:
     """What a rejected effect would do on fitted and on unseen samples."""
     proof, outside = rejected.proof, rejected.outside
     instead = f"; instead of it, {describe_outside(outside)}" if outside is not None else ""
+    turn = "falls" if proof.fall >= 0 else "rises"
     return (
-        f"gain {rejected.gain:.4g} on fitted samples; on unseen ones t = {proof.t:.1f}, and the"
-        f" mean square {'falls' if proof.fall >= 0 else 'rises'} by {100 * abs(proof.fall):.3g} %"
+        f"gain {rejected.gain:.4g} on fitted samples; on unseen ones {describe_chance(proof)}, and"
+        f" the mean square {turn} by {100 * abs(proof.fall):.3g} %"
         f"{instead}"
     )
 

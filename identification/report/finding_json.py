@@ -39,7 +39,9 @@ def rejected_to_json(rejected: RejectedEffect) -> dict[str, Any]:
     return {
         "name": rejected.candidate.effect.name, "where": rejected.candidate.where,
         "parameters": parameters_to_json(rejected.parameters), "gain": rejected.gain,
-        "proof": {"gain": proof.gain, "t": proof.t, "fall": proof.fall},
+        "proof": {
+            "gain": proof.gain, "t": proof.t, "chance": proof.chance, "fall": proof.fall,
+        },
         "outside": outside_to_json(rejected.outside),
     }  # fmt: skip
 

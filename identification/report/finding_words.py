@@ -8,7 +8,7 @@ from typing import Any
 from identification.discovery.findings import evidence as records
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.quantities import alike, probability, quantity
-from identification.report.effect_words import describe_effect, describe_sizes
+from identification.report.effect_words import describe_chance, describe_effect, describe_sizes
 
 HOLDS = {"foh": "ran in straight lines between their samples", "zoh": "kept each sample's value"}
 FOLLOWED = {  # by an error of the inputs: keys of `input_error.list_families`
@@ -128,7 +128,7 @@ def _doubtful_effect(e: records.DoubtfulEffect) -> str:
     return (
         f"{describe_effect(r.candidate)}, {describe_sizes(r)}, explains the fitted samples"
         f" beyond chance and {100 * r.proof.fall:.0f} % of the error on unseen data, but is not"
-        f" proven there (t = {r.proof.t:.1f})"
+        f" proven there ({describe_chance(r.proof)})"
     )
 
 

@@ -45,7 +45,7 @@ RETUNED = Retuned("m", 40.0, 0.0)
 STRIBECK = Candidate(STRIBECK_FRICTION, "all drives", {"v_s": 2.4, "n": 2.0})
 MISMATCH = Candidate(FRICTION_MISMATCH, "drive 3", {})
 LATE = Candidate(DELAY, "all drives", {})
-WORSE = Proof(gain=-1.2, t=-0.7, share=0.0, fall=-0.002, above=0.0)
+WORSE = Proof(gain=-1.2, t=-0.7, chance=0.75, blocks=20, share=0.0, fall=-0.002, above=0.0)
 REJECTED = RejectedEffect(LATE, {"tau": (2.5e-4, 1e-4, "s")}, 4.0, WORSE)
 SLOW = Finding(FindingKind.WORST_INTERVAL, WorstInterval(0.2, 0.3, 0.4))
 DRIVE_3 = Finding(FindingKind.WORST_OUTPUT, WorstOutput("angle_3", "rad", 2e-3, 0.5, 4.0))
@@ -144,7 +144,7 @@ def _stribeck(one_of: bool) -> NamedEffect:
 
 
 def _proof() -> Proof:
-    return Proof(gain=450.0, t=12.0, share=0.98, fall=0.97, above=0.98)
+    return Proof(gain=450.0, t=12.0, chance=2**-20, blocks=20, share=0.98, fall=0.97, above=0.98)
 
 
 def _level() -> NoiseLevel:

@@ -16,7 +16,7 @@ from identification.effects.effect import Candidate, Effect, Shape
 ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02}
 K = 5.0
 KIND = Shape("kind", "", (0.0, 1.0), 0.0, 1.0, free=False)
-PROOF = Proof(gain=1.0, t=3.0, share=1.0, fall=0.5, above=0.5)
+PROOF = Proof(gain=1.0, t=3.0, chance=1e-3, blocks=20, share=1.0, fall=0.5, above=0.5)
 
 
 def of_kinds(name: str) -> Effect:

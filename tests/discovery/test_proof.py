@@ -1,13 +1,18 @@
 """What unseen data say of a model, and what they say of two that are the same."""
 
 from dataclasses import replace
+from itertools import product
 
+import hypothesis.extra.numpy as arrays
 import numpy as np
 import pytest
 from discovery_cases import EFFECTS, OPTIONS, SENSOR, STEP, record, slider, task, wander
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.stats import t as student
 
 from identification.discovery.fitted_model import fit_model
-from identification.discovery.proof import prove
+from identification.discovery.proof import allowed_chance, flip_chance, prove
 from identification.effects.effect import Candidate
 from identification.logs.joined import join_logs
 
@@ -94,3 +99,41 @@ def test_what_closes_the_gap_is_proved_where_the_inputs_have_no_noise():
     proof = prove(without.validation, with_it.validation, OPTIONS)
     assert proof.share > 0.99
     assert proof.t > 2
+
+
+GAINS = arrays.arrays(float, st.integers(2, 9), elements=st.integers(-50, 50).map(float))
+
+
+@given(GAINS)
+def test_the_chance_counts_every_flip_of_the_signs(gains):
+    sums = [float(np.dot(signs, gains)) for signs in product((1, -1), repeat=len(gains))]
+    assert flip_chance(gains) == np.mean(np.array(sums) >= gains.sum())
+
+
+@given(GAINS, st.floats(0.01, 100))
+def test_the_chance_knows_neither_unit_nor_order(gains, factor):
+    chance = flip_chance(gains)
+    assert flip_chance(gains[::-1]) == chance
+    assert flip_chance(factor * gains) == chance
+
+
+def test_blocks_that_all_gain_are_beyond_chance_though_few_gain_most():
+    """A skew that makes Student's t small, and no doubt."""
+    gains = np.array([400.0, 150.0, *np.full(18, 2.0)])
+    t = gains.mean() / (gains.std(ddof=1) / np.sqrt(20))
+    assert t < OPTIONS.min_proof_t
+    assert flip_chance(gains) == 2.0**-20
+
+
+def test_normal_gains_without_mean_pass_as_often_as_allowed():
+    """At the level of Student's t, and for skewed losses less often."""
+    rng = np.random.default_rng(4)
+    allowed = allowed_chance(20, OPTIONS)
+    assert allowed == pytest.approx(student.sf(2.0, 19))
+    passed = np.mean([flip_chance(g) < allowed for g in rng.normal(size=(3000, 20))])
+    assert abs(passed - allowed) < 4 * np.sqrt(allowed / 3000)
+
+
+def test_more_blocks_than_can_be_counted_are_joined_with_their_neighbours():
+    gains = np.random.default_rng(1).normal(0.3, 1, 40)
+    assert flip_chance(gains) == flip_chance(gains.reshape(-1, 2).sum(1))

@@ -18,11 +18,13 @@ def find_doubtful_effect(
 ) -> tuple[Finding, ...]:
     """The best effect that fitted samples want and that would matter, but is not proven.
 
+    Of an effect that makes the unseen samples less likely there is no doubt: it is not there.
+
     Args:
         rejected: effects that were refitted and not accepted, the best first.
         options: which effects would matter.
     """
-    wanted = [r for r in rejected if r.gain > 0 and is_relevant(r.proof, options)]
+    wanted = [r for r in rejected if r.gain > 0 < r.proof.gain and is_relevant(r.proof, options)]
     return tuple(Finding(FindingKind.DOUBTFUL_EFFECT, DoubtfulEffect(r)) for r in wanted[:1])
 
 
