@@ -1,8 +1,13 @@
-"""How large an effect is, as the part that the base parameters cannot absorb.
+"""How large an effect is, as the part that a robot without it cannot absorb.
 
     e(s)  = φ(with s times the effect) − φ(without), all samples and drives
     S     = ∂φ/∂(base parameters, start pose), by forward differences of the world without effects
-    r(s)  = rms((I − S S⁺) e(s)) / rms(measurement noise)
+    D     = ∂φ/∂(deviations of drives, points and platform), each times its std by the tolerances
+    r(s)² = min over a, x of (‖e(s) − S a − D x‖² / σ² + ‖x‖²) / N,         σ the measurement noise
+
+Base parameters may be anything. A part that deviates costs what it is beyond the usual: x is in
+units of std. Where all drives are alike and the geometry is exact there is no D, and r is the rms
+of (I − S S⁺) e(s) in units of σ.
 
 `sized` solves r(s) = ratio by secants; r(0) = 0, and r is nearly proportional to s mostly.
 """
@@ -20,6 +25,7 @@ from inca_mj.robot.geometry import Geometry
 from inca_mj.worlds import layout as at
 from inca_mj.worlds.effect import HiddenEffect
 from inca_mj.worlds.plant import make_plant, simulate_world
+from inca_mj.worlds.tolerances import EXACT, Tolerances, usual_std
 
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 COARSE = 1e-3  # step of these simulations: 4e-8 rad from the world's own, in half its time [s]
@@ -28,7 +34,7 @@ ATTEMPTS = 12
 
 
 class HiddenAbsorbed:
-    """What the base parameters and the start pose of a robot can absorb, for one input."""
+    """What a robot can absorb, for one input: by its base parameters, its start, and its parts."""
 
     def __init__(
         self,
@@ -37,6 +43,8 @@ class HiddenAbsorbed:
         currents: np.ndarray,
         sampling_time: float,
         names: Sequence[str],
+        tolerances: Tolerances = EXACT,
+        noise: float = 1.0,
     ) -> None:
         """Take the sensitivities.
 
@@ -46,25 +54,37 @@ class HiddenAbsorbed:
             currents: the input, shape (n, 8) [A].
             sampling_time: [s].
             names: the base parameters; the start pose is always among them.
+            tolerances: how much drives, points and platform may differ.
+            noise: rms of the measurement noise [rad]; it counts where parts may differ.
         """
         self._robot = (parameters, geometry, currents, sampling_time)
         self._without = self._angles(parameters, ())
         columns = []
         for name in (*names, *(pose for pose in POSE if pose not in names)):
-            value = parameters[name].value
-            h = 1e-5 if name in POSE else 1e-4 * value
-            moved = parameters.with_values({name: value + h})
-            column = self._angles(moved, ()) - self._without
+            h = 1e-5 if name in POSE else 1e-4 * parameters[name].value
+            column = self._column(name, h)
             columns.append(column / np.linalg.norm(column))
         # Directions that differ by rounding only (as R_s and k_s do) must not count twice.
         U, size, _ = np.linalg.svd(np.stack(columns, axis=1), full_matrices=False)
         self._basis = U[:, size > 1e-6 * size[0]]
+        std = usual_std(parameters, tolerances)
+        parts = [self._column(name, 0.1 * s) * (10.0 / noise) for name, s in std.items()]
+        D = np.stack(parts, axis=1) if parts else np.zeros((self._without.size, 0))
+        # ‖(I − S S⁺) e − D x‖²/σ² + ‖x‖² is least at x = (I + DᵀD)⁻¹ Dᵀ e/σ.
+        self._parts = D - self._basis @ (self._basis.T @ D)
+        self._inverse = np.linalg.inv(np.eye(D.shape[1]) + self._parts.T @ self._parts)
 
     def rms(self, effects: Sequence[HiddenEffect]) -> float:
-        """Rms of what the base cannot absorb of these effects [rad]."""
+        """Rms of what the robot cannot absorb of these effects, r σ [rad]."""
         e = self._angles(self._robot[0], effects) - self._without
         e -= self._basis @ (self._basis.T @ e)
-        return float(np.sqrt(np.mean(e**2)))
+        seen = self._parts.T @ e
+        return float(np.sqrt((e @ e - seen @ self._inverse @ seen) / e.size))
+
+    def _column(self, name: str, h: float) -> np.ndarray:
+        """What a change h of a parameter does to all angles [rad]."""
+        moved = self._robot[0].with_values({name: self._robot[0][name].value + h})
+        return self._angles(moved, ()) - self._without
 
     def _angles(self, parameters: ParameterSet, effects: Sequence[HiddenEffect]) -> np.ndarray:
         _, geometry, currents, sampling_time = self._robot

@@ -83,6 +83,29 @@ class Tolerances:
         return {point: getattr(self, point) for point in POINTS}
 
 
+def usual_std(parameters: ParameterSet, tolerances: Tolerances) -> dict[str, float]:
+    """Std of each parameter that the tolerances move, by name; empty for `EXACT`.
+
+    A uniform deviation has the half-width over √3 as its std; inertias and mass have it times their
+    value.
+
+    Args:
+        parameters: of a robot that was built, with its deviations.
+        tolerances: of drives, points and platform.
+    """
+    of_drives = {name: largest / np.sqrt(3) for name, largest in tolerances.drives.items()}
+    of_points = {f"{p}_{axis}": std for p, std in tolerances.points.items() for axis in AXES}
+    out = {
+        f"{name}@{k}": std
+        for name, std in {**of_drives, **of_points}.items()
+        for k in range(1, DRIVES + 1)
+    }
+    for name in (*INERTIAS, "m"):
+        largest = tolerances.inertia if name in INERTIAS else tolerances.m
+        out[name] = largest * parameters[name].value / np.sqrt(3)
+    return {name: float(std) for name, std in out.items() if std > 0}
+
+
 EXACT = Tolerances()  # all drives alike, all points where the drawing has them
 AS_BUILT = Tolerances(
     R=0.005, R_s=0.01, k_s=0.03, lambda_=0.05, b=0.2, J=0.05, b_v=0.15, b_c=0.15, K_t=0.02,

@@ -40,8 +40,9 @@ def world(
         seed: 0 or more.
         effects: frozen records, sizes in physical units.
         ratio: of each effect, or one for all: sizes are changed so that the rms of what the varied
-            parameters and the start pose cannot absorb is `ratio` times that of the measurement
-            noise, each effect alone; the sizes given are where the search starts.
+            parameters, the start pose and parts within the tolerances cannot absorb is `ratio`
+            times that of the measurement noise, each effect alone; the sizes given are where the
+            search starts.
         setting: of the experiment.
         geometry: nominal exit points and connectors.
 
@@ -100,8 +101,11 @@ def records(
     u = make_currents(seed, settings[0])
     chosen, ratios = tuple(effects), _ratios(ratio, len(effects))
     if ratios:
-        absorbed = HiddenAbsorbed(robot, geometry, u, setting.sampling_time, setting.varied)
-        goals = [r * noise_rms(setting.counts, setting.noise) for r in ratios]
+        noise = noise_rms(setting.counts, setting.noise)
+        absorbed = HiddenAbsorbed(
+            robot, geometry, u, setting.sampling_time, setting.varied, setting.tolerances, noise
+        )
+        goals = [r * noise for r in ratios]
         chosen = tuple(sized(e, absorbed, goal) for e, goal in zip(chosen, goals, strict=True))
     made = [_record(seed, (), robot, geometry, chosen, ratios, settings[0], u)]
     for j in range(1, n):
