@@ -24,7 +24,7 @@ from typing import Any
 
 from discovery_null import null_summary, null_task, null_tasks
 from discovery_statistics import summary
-from discovery_tasks import USUAL, log_of, practice_tasks, world_tasks
+from discovery_tasks import COUNTS, USUAL, logs_of, practice_tasks, world_tasks
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
@@ -55,7 +55,7 @@ def answer_of(found: Any) -> dict[str, Any]:
         for n in found.named
     ]  # fmt: skip
     return {
-        "verdict": found.verdict, "named": named,
+        "verdict": found.verdict, "unexplained": found.unexplained, "named": named,
         "findings": [finding_to_json(finding) for finding in found.findings],
         "before": found.before.rms, "after": found.after.rms, "noise": found.noise_rms,
         "disturbance": found.disturbance_rms,
@@ -69,13 +69,13 @@ def study(task: dict[str, Any]) -> dict[str, Any]:
     """One log from its making to its answer; an error is a row too."""
     begin = time.perf_counter()
     try:
-        log, truth = log_of(task)
+        logs, truth = logs_of(task)
         from inca_mj.workflows.discovery import discover
         from inca_mj.workflows.spread import spread_of
 
         # a world stands at rest with what it lacks, as a robot that was let go; practice was held
         spread = spread_of(task["spread"])
-        answer = answer_of(discover(log, settled="seed" in task, spread=spread))
+        answer = answer_of(discover(logs, settled="seed" in task, spread=spread))
     except Exception as error:
         return {"key": task["key"], "error": f"{type(error).__name__}: {error}",
                 "trace": traceback.format_exc(limit=-3)}  # fmt: skip
@@ -145,8 +145,10 @@ def main() -> None:
     add("--seed", type=int, default=1000)
     add("--ratio", type=float, default=None, help="1, 3 or 10 by chance when not given")
     add("--duration", type=float, default=USUAL, help="of a world [s]")
-    for flag in ("--coloured", "--wrong-shapes", "--pairs", "--null", "--as-built", "--resume"):
+    for flag in ("--coloured", "--wrong-shapes", "--null", "--as-built", "--resume"):
         add(flag, action="store_true")
+    add("--effects", type=int, default=1, choices=COUNTS, help="hidden in a world")
+    add("--records", type=int, default=1, help="of a world, each with its input and start")
     add("--spread", default="usual", help="none, usual, or a file")
     add("--limit", type=int, default=None, help="logs at most")
     add("--jobs", type=int, default=1)

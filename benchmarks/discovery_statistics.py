@@ -134,8 +134,8 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
     """Of all rows that did not fail."""
     done = [row for row in rows if "error" not in row]
     kind = {k: [r for r in done if r["truth"]["kind"] == k]
-            for k in ("null", "single", "pair", "unknown")}  # fmt: skip
-    known = kind["single"] + kind["pair"]
+            for k in ("null", "single", "pair", "triple", "unknown")}  # fmt: skip
+    known = kind["single"] + kind["pair"] + kind["triple"]
     confusion: dict[str, Counter[str]] = {}
     for row in done:
         names = [e["name"] for e in row["truth"]["effects"]]
@@ -150,6 +150,7 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
         "wrong_name_accepted": rate(known, lambda r: bool(r["answer"]["named"]) and not right(r)),
         "singles_exactly": rate(kind["single"], all_found),
         "pairs_exactly": rate(kind["pair"], all_found),
+        "triples_exactly": rate(kind["triple"], all_found),
         "sign_right": signs(known),
         "place_right": places(known),
         "null_without_name": rate(kind["null"], lambda r: not r["answer"]["named"]),

@@ -28,6 +28,7 @@ LABELS = {
 }  # fmt: skip
 WORLDS = {"delay": "tau", "fraction": "c"}  # the same of the worlds
 USUAL = 20.0  # length of a world's log where nothing is said [s]
+COUNTS = {1: "single", 2: "pair", 3: "triple"}  # the kind of a world by its hidden effects
 RATIOS = (1.0, 3.0, 10.0)  # of what cannot be absorbed to the noise, drawn by chance
 
 
@@ -78,30 +79,32 @@ def world_tasks(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
         seed = options.seed + k
         rng = np.random.default_rng([seed, 5])
         kind = "null" if options.null or k % 6 == 0 else "unknown" if k % 6 == 3 else "single"
-        if options.pairs and kind == "single":
-            kind = "pair"
+        if kind == "single":
+            kind = COUNTS[options.effects]
         known = [*HIDDEN_EFFECTS] if kind != "unknown" else [*UNLISTED]
-        count = {"null": 0, "pair": 2}.get(kind, 1)
+        count = {"null": 0, "unknown": 1}.get(kind, options.effects)
         names = [str(n) for n in rng.choice(known, count, replace=False)]
         yield {
             "key": f"world/{seed}/{kind}/{options.ratio}/{options.coloured}/{options.wrong_shapes}"
-            + "/as built" * options.as_built
-            + f"/{options.duration:g} s" * (options.duration != USUAL),
+            + "/beside the spread" * options.as_built
+            + f"/{options.duration:g} s" * (options.duration != USUAL)
+            + f"/{options.records} records" * (options.records > 1),
             "seed": seed, "kind": kind, "names": names,
             "ratio": float(options.ratio or rng.choice(RATIOS)),
             "coloured": options.coloured, "as_built": options.as_built,
             "other_shape": [options.wrong_shapes and n in SHAPES for n in names],
-            "duration": options.duration,
+            "duration": options.duration, "records": options.records,
         }  # fmt: skip
 
 
-def log_of(task: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
-    """The log of a task, and its truth."""
+def logs_of(task: dict[str, Any]) -> tuple[list[Any], dict[str, Any]]:
+    """The logs of a task, and its truth."""
     if "practice" in task:
         from inca_mj.twin.logs import read_inca_log
 
-        return read_inca_log(task["practice"]), task["truth"]
-    from inca_mj.worlds import AS_BUILT, EXACT, HiddenSetting, draw_effect, world
+        return [read_inca_log(task["practice"])], task["truth"]
+    from inca_mj.worlds import AS_BUILT, EXACT, HiddenSetting, draw_effect, records
+    from inca_mj.worlds.world import INPUTS
 
     effects = [
         draw_effect(name, task["seed"], other_shape=other)
@@ -113,12 +116,15 @@ def log_of(task: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         error_rms=5e-4 if task["coloured"] or task["as_built"] else 0.0,
         tolerances=AS_BUILT if task["as_built"] else EXACT,
     )  # fmt: skip
-    log, truth = world(
-        task["seed"], effects, ratio=task["ratio"] if effects else None, setting=setting
-    )
-    return log, {
+    turn = INPUTS.index(setting.input)
+    made = records(
+        task["seed"], effects, n=task["records"], inputs=(*INPUTS[turn:], *INPUTS[:turn]),
+        ratio=task["ratio"] if effects else None, setting=setting,
+    )  # fmt: skip
+    truth = made[0].truth
+    return [each.log for each in made], {
         "kind": task["kind"], "ratio": task["ratio"] if effects else 0.0,
-        "duration": task["duration"],
+        "duration": task["duration"], "records": task["records"],
         "other_shape": any(task["other_shape"]),
         "effects": [
             {"name": e.name, "where": e.where,
