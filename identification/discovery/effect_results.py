@@ -154,6 +154,24 @@ class NamedEffect:
 
 
 @dataclass(frozen=True)
+class Hidden:
+    """An effect that is not named and that the fitted noise may hide.
+
+    Attributes:
+        candidate: the effect.
+        sizes: estimate, largest magnitude that the log does not contradict (95 %), and unit, by
+            name of the size.
+        taken: share of the power of the unlogged error of the inputs that it would explain.
+        gain: of twice the log likelihood, as its score says it.
+    """
+
+    candidate: Candidate
+    sizes: Mapping[str, tuple[float, float, str]]
+    taken: float
+    gain: float
+
+
+@dataclass(frozen=True)
 class Detectable:
     """The smallest effect of a kind that a log would have shown.
 

@@ -8,7 +8,13 @@ from typing import Literal
 
 import numpy as np
 
-from identification.discovery.effect_results import Detectable, Gap, NamedEffect, RejectedEffect
+from identification.discovery.effect_results import (
+    Detectable,
+    Gap,
+    Hidden,
+    NamedEffect,
+    RejectedEffect,
+)
 from identification.discovery.findings.finding import Finding
 from identification.discovery.missing_forces import MissingForce
 from identification.discovery.options import DiscoveryOptions
@@ -43,6 +49,7 @@ class Discovery:
         scores: of all candidates on the nominal fit, the best first.
         remaining: of the other candidates on the final fit, the best first.
         detectable: the smallest effects that this log would have shown.
+        hidden: how large effects may be that the fitted noise hides, the likeliest first.
         located: where the nominal model fails; empty when nothing is missing.
         findings: what the final model leaves unexplained; empty when it explains all.
         missing_forces: the forces that the nominal model lacks, by where they act.
@@ -66,6 +73,7 @@ class Discovery:
     scores: tuple[Score, ...]
     remaining: tuple[Score, ...]
     detectable: tuple[Detectable, ...]
+    hidden: tuple[Hidden, ...]
     located: tuple[Finding, ...]
     findings: tuple[Finding, ...]
     missing_forces: tuple[MissingForce, ...]

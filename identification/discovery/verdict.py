@@ -22,6 +22,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import prove
 from identification.discovery.result import Discovery, Verdict
 from identification.discovery.scoring.detectability import list_detectable
+from identification.discovery.scoring.hidden import list_hidden
 from identification.discovery.state import SearchState
 
 # With these findings a model is not believed, and nothing is named that leaves anything.
@@ -136,6 +137,7 @@ def conclude(state: SearchState) -> Discovery:
         scores=state.nominal_scores,
         remaining=scores,
         detectable=list_detectable(scores, options),
+        hidden=list_hidden(scores, model.refit.level, options),
         located=located,
         findings=findings,
         missing_forces=forces,

@@ -46,6 +46,13 @@ def discovery_to_json(found: Discovery | RecordsDiscovery) -> dict[str, Any]:
              "smallest": d.smallest, "unit": d.unit}
             for d in found.detectable
         ],
+        "hidden": [
+            {"name": h.candidate.effect.name, "where": h.candidate.where,
+             "sizes": [{"parameter": n, "value": v, "most": most, "unit": unit}
+                       for n, (v, most, unit) in h.sizes.items()],
+             "taken": h.taken, "gain": h.gain}
+            for h in found.hidden
+        ],
         "missing_forces": [
             {"where": m.where, "names": m.names, "units": m.units,
              "rms": np.sqrt(np.mean(m.force**2, axis=0)).tolist(), "gain": m.gain,

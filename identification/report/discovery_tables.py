@@ -6,7 +6,7 @@ from identification.discovery.effect_results import Detectable
 from identification.discovery.final_values import collect_final_values, collect_std
 from identification.discovery.result import Discovery
 from identification.quantities import quantity
-from identification.report.discovery_verdict import split_detectable
+from identification.report.discovery_limits import split_detectable
 from identification.report.effect_words import describe_effect
 from identification.report.page import Section, Table
 

@@ -9,12 +9,12 @@ from identification.discovery.findings.finding import Finding
 from identification.discovery.result import Discovery
 from identification.prediction.result import RecordsDiscovery
 from identification.quantities import alike, quantity
+from identification.report.discovery_limits import split_detectable
 from identification.report.discovery_tables import parameters_section
 from identification.report.discovery_verdict import (
     diff_line,
     discovery_verdict,
     floor_rms,
-    split_detectable,
 )
 from identification.report.effect_words import describe_chance, describe_effect, describe_rejected
 from identification.report.finding_words import describe_finding

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from math import hypot, isfinite
 
-from identification.discovery.effect_results import Detectable, NamedEffect, RejectedEffect
+from identification.discovery.effect_results import NamedEffect, RejectedEffect
 from identification.discovery.fitted_model import is_proven
 from identification.discovery.result import Discovery
 from identification.quantities import alike, quantity
+from identification.report.discovery_limits import SHOWN, hiding, smallest, split_detectable
 from identification.report.effect_words import (
     describe_chance,
     describe_effect,
@@ -18,7 +19,6 @@ from identification.report.effect_words import (
 from identification.report.finding_words import describe_finding, sentence
 
 RETUNED = 0.05  # the explanation without an effect gets a sentence above this confidence
-SHOWN = 4  # of the effects that the log would have shown, as many are listed
 
 
 def discovery_verdict(found: Discovery) -> list[str]:
@@ -34,6 +34,8 @@ def discovery_verdict(found: Discovery) -> list[str]:
     said.append(_proof(found))
     if found.unexplained:
         said.append(unexplained(found))
+    elif found.hidden:
+        said.append(f"Nothing else is missing that this log shows.{hiding(found)}")
     return said
 
 
@@ -48,8 +50,9 @@ def nothing(found: Discovery) -> str:
     if floor_rms(found) > found.noise_rms:
         said += _unlogged(found)
     if seen:
-        listed = "; ".join(f"{describe_effect(d.candidate)}, {_smallest(d)}" for d in seen[:SHOWN])
+        listed = "; ".join(f"{describe_effect(d.candidate)}, {smallest(d)}" for d in seen[:SHOWN])
         said += f" The log would have shown, in 9 cases of 10, effects as small as: {listed}."
+    said += hiding(found)
     if unseen:
         names = _unique(d.candidate.effect.phrase or d.candidate.effect.name for d in unseen)
         said += f" No plausible size would show in it of these: {'; '.join(names)}."
@@ -184,18 +187,6 @@ def diff_line(named: NamedEffect) -> str:
     return f"+ {describe_effect(named.candidate)}: {describe_sizes(named)}"
 
 
-def split_detectable(
-    detectable: Sequence[Detectable],
-) -> tuple[list[Detectable], list[Detectable]]:
-    """Effects that a plausible size would show, the easiest to find first; and the others."""
-    largest = {id(d): _largest(d) for d in detectable}
-    seen = [d for d in detectable if d.smallest <= largest[id(d)]]
-    return (
-        sorted(seen, key=lambda d: d.smallest / largest[id(d)]),
-        [d for d in detectable if not d.smallest <= largest[id(d)]],
-    )
-
-
 def floor_rms(found: Discovery) -> float:
     """Rms of what sensors and unlogged input errors make of a free run of the true model.
 
@@ -205,14 +196,6 @@ def floor_rms(found: Discovery) -> float:
     is_small = found.final.relative_input_error <= found.options.allowed_input_error
     is_believed = found.verdict != "unknown effect" and is_small
     return hypot(found.noise_rms, found.disturbance_rms if is_believed else 0.0)
-
-
-def _largest(d: Detectable) -> float:
-    return next((s.largest for s in d.candidate.effect.sizes if s.name == d.size), float("inf"))
-
-
-def _smallest(d: Detectable) -> str:
-    return f"{d.size} {quantity(d.smallest, unit=d.unit)}"
 
 
 def _size(found: Discovery, rms: float) -> str:

@@ -12,6 +12,8 @@ from identification.discovery.scoring.significance import correct_p_value
 from identification.effects.effect import Candidate
 from identification.quantities import probability, quantity
 
+FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
+
 
 def describe_effect(candidate: Candidate) -> str:
     """An effect and its place in words."""
@@ -58,7 +60,8 @@ def _describe_next(scores: Sequence[Score], options: DiscoveryOptions) -> str:
 
 def describe_chance(proof: Proof) -> str:
     """How far unseen samples are from chance."""
-    return f"t = {proof.t:.1f}, {probability(proof.chance)}"
+    chance = f"{proof.chance:.2g}" if proof.chance > FEW else probability(proof.chance)
+    return f"t = {proof.t:.1f}, chance {chance}"
 
 
 def _describe_proof(rejected: RejectedEffect) -> str:

@@ -9,6 +9,7 @@ from identification import Predictor, fit_percent
 from identification.discovery.effect_results import (
     Detectable,
     Gap,
+    Hidden,
     NamedEffect,
     Proof,
     RejectedEffect,
@@ -103,6 +104,7 @@ def found(verdict="named", *, one_of=False, unexplained=False, several=False) ->
         noise_rms=NOISE, disturbance_rms=0.0, before=_gap(before), after=_gap(after),
         nominal=nominal, final=final, predicted_before=before, predicted_after=after,
         scores=scores, remaining=scores[1:],
+        hidden=(Hidden(MISMATCH, {"delta": (0.002, 0.006, "")}, 0.3, 4.0),),
         detectable=(Detectable(STRIBECK, "f_s", 2e-4, "N m"), Detectable(LATE, "tau", np.inf, "s")),
         located=(SLOW,), findings=(DRIVE_3,) * unexplained,
         missing_forces=() if verdict == "nothing missing" else (_pushed(),),

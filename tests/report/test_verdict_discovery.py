@@ -27,7 +27,13 @@ def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
     assert "none of which was near enough to be refitted" in discovery_verdict(alone)[0]
     assert "On data that the fit has not seen, the error falls from" in said[1]
     assert said[1].count("mrad") == 3
-    assert len(said) == 2
+    assert said[2] == (
+        "Nothing else is missing that this log shows. The fitted noise may still hide effects up"
+        " to these sizes: friction: Coulomb part differs at one drive, drive 3, delta 0.600 % (it"
+        " would be 30 % of what passes for errors of the inputs)."
+    )
+    assert len(said) == 3
+    assert len(discovery_verdict(replace(found(), hidden=()))) == 2
 
 
 @pytest.mark.parametrize(
@@ -54,11 +60,11 @@ def test_what_is_left_is_said_last() -> None:
     said = discovery_verdict(found(unexplained=True))
     assert said[-1].startswith("Something is left beside what is named that no known effect")
     assert said[-1].endswith(sentence(describe_finding(DRIVE_3)))
-    proven = replace(REJECTED, gain=50.0, proof=replace(REJECTED.proof, t=8.3))
+    proven = replace(REJECTED, gain=50.0, proof=replace(REJECTED.proof, t=8.3, chance=1e-6))
     said = discovery_verdict(replace(found(unexplained=True), rejected=(proven,)))
     nearest = f"Nearest comes {describe_effect(REJECTED.candidate)}: it predicts unseen samples"
     assert nearest in said[-1]
-    assert "(t = 8.3)" in said[-1]
+    assert "(t = 8.3, chance 1e-06)" in said[-1]
 
 
 def test_two_effects_are_two_sentences() -> None:
@@ -120,7 +126,7 @@ def test_what_was_tried_and_not_believed_is_told_with_its_size_and_why() -> None
     text = discovery_text(found())
     told = text[text.index("tried beside what is named, and not believed:") :]
     assert "all drives: tau = 250 ± 100 µs (delay)" in told
-    assert "t = -0.7, and the mean square rises by 0.2 %" in told
+    assert "t = -0.7, chance 0.75, and the mean square rises by 0.2 %" in told
     (kept,) = discovery_to_json(found())["rejected"]
     assert kept["parameters"]["tau"] == {"value": 2.5e-4, "std": 1e-4, "unit": "s"}
     assert kept["proof"]["fall"] == -0.002

@@ -1,0 +1,48 @@
+"""What a log could not have shown: the smallest effects it shows, and those that noise hides."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from identification.discovery.effect_results import Detectable, Hidden
+from identification.discovery.result import Discovery
+from identification.quantities import quantity
+from identification.report.effect_words import describe_effect
+
+SHOWN = 4  # of the effects that a log would have shown, or that its noise hides, so many are listed
+SHARE = 0.1  # of the inputs' error, by power: an effect that would be less of it has no share told
+
+
+def hiding(found: Discovery) -> str:
+    """How large the likeliest effects may be that the fitted noise hides; "" without any."""
+    if not found.hidden:
+        return ""
+    listed = "; ".join(map(_describe, found.hidden[:SHOWN]))
+    return f" The fitted noise may still hide effects up to these sizes: {listed}."
+
+
+def _describe(h: Hidden) -> str:
+    sizes = ", ".join(f"{n} {quantity(most, unit=unit)}" for n, (_, most, unit) in h.sizes.items())
+    taken = f" (it would be {100 * h.taken:.0f} % of what passes for errors of the inputs)"
+    return f"{describe_effect(h.candidate)}, {sizes}{taken if h.taken >= SHARE else ''}"
+
+
+def split_detectable(
+    detectable: Sequence[Detectable],
+) -> tuple[list[Detectable], list[Detectable]]:
+    """Effects that a plausible size would show, the easiest to find first; and the others."""
+    largest = {id(d): _largest(d) for d in detectable}
+    seen = [d for d in detectable if d.smallest <= largest[id(d)]]
+    return (
+        sorted(seen, key=lambda d: d.smallest / largest[id(d)]),
+        [d for d in detectable if not d.smallest <= largest[id(d)]],
+    )
+
+
+def smallest(d: Detectable) -> str:
+    """The smallest size in words."""
+    return f"{d.size} {quantity(d.smallest, unit=d.unit)}"
+
+
+def _largest(d: Detectable) -> float:
+    return next((s.largest for s in d.candidate.effect.sizes if s.name == d.size), float("inf"))
