@@ -29,6 +29,9 @@ HOSTILE = {
         '<asset><hfield nrow="99999" ncol="99999" size="1 1 1 1"/></asset><worldbody>': "cells",
     },
     'damping="3"': {'armature="inf"': "has an infinite number in dof_armature"},
+    'gear="5"': {
+        'gear="1e308"': r"give one between 1e-50 and 1e\+50", 'gear="1e-300"': "has force",
+    },
     "</mujoco>": {
         "": "cannot be read", "</mujocc>": "cannot be read", 9999 * "<b>": "cannot be read",
     },

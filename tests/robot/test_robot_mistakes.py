@@ -73,6 +73,16 @@ def test_a_thing_without_a_name_is_told(folder, capsys, change, thing, outputs):
     assert f"{thing} 0 of {folder / 'unnamed.xml'}, counted from 0, has no name; give it" in said
 
 
+@pytest.mark.parametrize("log", [".", "/", "", ".."])
+def test_a_folder_is_no_log(folder, capsys, log):
+    path = folder / "robot.toml"
+    path.write_text(TOML)
+    assert "is a folder; name a log file in it" in refused(capsys, "fit", path, log)
+    assert "is a folder; name a log file in it" in refused(
+        capsys, "discover", path, folder / "plain.csv", "--confirm", log
+    )
+
+
 def test_an_effect_of_the_other_kind_of_joint_is_suggested():
     crane = (Axis("swing", "hinge", 1.0, 1.0, 1.0), Axis("x", "slide", 1.0, 1.0, 1.0))
     said = str(unknown_number("coulomb_friction.f_c@x", joint_effects(crane, TURNS)))
