@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -42,6 +43,7 @@ def main() -> int:
         if options.record is not None:
             row = {"reader": name, "seed": options.seed, "first": options.first, "cases": count}
             row |= {"counts": dict(tally.counts), "seconds": round(tally.seconds, 1)}
+            row["commit"] = _commit()
             with options.record.open("a") as record:
                 record.write(json.dumps(row) + "\n")
         counts = "".join(f"{tally.counts[kind]:>11}" for kind in KINDS)
@@ -50,6 +52,13 @@ def main() -> int:
     found = sum(len(t.finds) for t in tallies.values())
     print(f"{every.total()} cases, {found} finds" + (f", kept in {options.out}" if found else ""))
     return int(found > 0)
+
+
+def _commit() -> str:
+    """The commit of the code that runs."""
+    done = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=Path(__file__).parent,
+                          text=True, capture_output=True, check=False)  # fmt: skip
+    return done.stdout.strip()
 
 
 def _keep(name: str, tally: Tally, seed: int, out: Path) -> None:
