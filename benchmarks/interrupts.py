@@ -3,10 +3,11 @@
     python benchmarks/interrupts.py [--times 20] [--command discover]
 
 A command that ends by itself before the interrupt is not counted, and another one is begun for it.
-Python itself takes 0.05 s to start, which is left out: its answer is its own. A command that had
-ended but for its process ends with 0. Right is that, or exit code 130 within two seconds with
-"stopping" or "stopped" said once, and no draft left in the folder of the results. A row for each
-interrupt is added to results/interrupts.jsonl, of which benchmarks/robustness.py makes its page.
+The time until the first line of the program runs is measured and left out, because the answer is
+then Python's own. A command that had ended but for its process ends with 0. Right is that, or exit
+code 130 within two seconds with "stopping" or "stopped" said once, and no draft left in the folder
+of the results. A row for each interrupt is added to results/interrupts.jsonl, of which
+benchmarks/robustness.py makes its page.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ import time
 from pathlib import Path
 from typing import Any
 
-EARLIEST = 0.05  # [s]
+from forecast import commit
+
 LATEST = 6.0  # [s] after the start, when most commands are within their search
 WITHIN = 2.0  # [s]
 TRIES = 5  # for each interrupt that is asked for
@@ -57,7 +59,8 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--record", type=Path, default=RECORD)
     options = parser.parse_args()
-    chance, wrong = random.Random(options.seed), 0
+    chance, wrong, earliest = random.Random(options.seed), 0, python_start()
+    now = commit()
     with tempfile.TemporaryDirectory() as folder:
         write_robot(Path(folder))
         for name in options.command:
@@ -66,9 +69,9 @@ def main() -> int:
             tries = 0
             while len(stopped) < options.times and tries < TRIES * options.times:
                 tries += 1
-                row = interrupted(line, chance.uniform(EARLIEST, LATEST))
+                row = interrupted(line, chance.uniform(earliest, LATEST))
                 if row is not None:
-                    stopped.append({"command": name, "seed": options.seed, **row})
+                    stopped.append({"command": name, "seed": options.seed, **row, "commit": now})
             with options.record.open("a") as record:
                 record.writelines(json.dumps(row) + "\n" for row in stopped)
             right = sum(row["right"] for row in stopped)
@@ -77,6 +80,16 @@ def main() -> int:
                   f" {tries - len(stopped)} ended before", flush=True)  # fmt: skip
             wrong += len(stopped) - right
     return int(wrong > 0)
+
+
+def python_start() -> float:
+    """Time that Python needs on this machine before it runs the first line of a program [s]."""
+    seconds = []
+    for _ in range(5):
+        began = time.perf_counter()
+        subprocess.run([sys.executable, "-c", "import runpy, inca_mj"], check=True)
+        seconds.append(time.perf_counter() - began)
+    return max(seconds)
 
 
 def interrupted(line: list[str], after: float) -> dict[str, Any] | None:
