@@ -4,7 +4,7 @@
     seconds = BASE + t₁ (FITS p + SCORES m)     t₁ the processor time of one simulation of the log
 
 The constants are fitted to processor time and peak memory of searches of INCA's logs of 500, 1000
-and 2000 samples. The time is that of a search that finds nothing; each effect that is found is
+and 2000 samples (benchmarks/forecast.py). The time is that of a search that finds nothing; each effect that is found is
 refitted, beside others, and adds to it.
 """
 
@@ -23,8 +23,8 @@ from identification.model.predictor import Predictor
 
 COPIES = 4.75  # of the sensitivities to all candidates, that a search holds at once
 BASE = 12.0  # [s] that a search takes, however short the log
-FITS = 0.65  # simulations that a parameter costs
-SCORES = 0.1  # simulations that a size of a candidate costs; many are simulated at once
+FITS = 1.6  # simulations that a parameter costs
+SCORES = 0.25  # simulations that a size of a candidate costs; many are simulated at once
 _SHORT = 400  # samples of the simulation that is timed
 _TOLD = 60.0, 2.0**30  # [s] and [bytes] from which a forecast is worth a line
 
