@@ -4,8 +4,8 @@
     seconds = BASE + t₁ (FITS p + SCORES m)     t₁ the processor time of one simulation of the log
 
 The constants are fitted to processor time and peak memory of searches of INCA's logs of 500, 1000
-and 2000 samples (benchmarks/forecast.py). The time is that of a search that finds nothing; each effect that is found is
-refitted, beside others, and adds to it.
+and 2000 samples (benchmarks/forecast.py). The time is that of a search that finds nothing; each
+effect that is found is refitted, beside others, and adds to it.
 """
 
 from __future__ import annotations
