@@ -14,7 +14,7 @@ _SMALL = ("rad",)  # those that take small ones only: nobody says kiloradian
 _LEAST = 1e-3  # smaller numbers, in units without a prefix, are said as powers of ten
 _FINEST = 1e-5  # a smaller std is said as a power of ten
 _DIGITS = 3  # of a value whose std is not known
-HELD = 2  # digits of an error of a model that hold on every processor (docs/identification.md)
+HELD = 2  # digits of the error of a model that are said (docs/identification.md)
 
 
 def finite_or_none(value: float | None) -> float | None:
@@ -49,7 +49,7 @@ def probability(p: float) -> str:
 
 
 def held(value: float) -> str:
-    """The error of a model, or a ratio of two, with the digits that hold on every processor."""
+    """The error of a model, or a ratio of two, with two digits."""
     return _plain(_rounded(value, HELD), HELD) if isfinite(value) else "unknown"
 
 
