@@ -1,11 +1,13 @@
 """Ctrl-C at 20 random times of every command: exit code, seconds until the end, what was left.
 
-    python benchmarks/interrupts.py [--times 20] [--command discover] [--out FILE.json]
+    python benchmarks/interrupts.py [--times 20] [--command discover]
 
 A command that ends by itself before the interrupt is not counted, and another one is begun for it.
-Python itself takes 0.05 s to start, which is left out: its answer is its own. A command that had
-ended but for its process ends with 0. Right is that, or exit code 130 within two seconds with
-"stopping" or "stopped" said once, and no draft left in the folder of the results.
+The time until the first line of the program runs is measured and left out, because the answer is
+then Python's own. A command that had ended but for its process ends with 0. Right is that, or exit
+code 130 within two seconds with "stopping" or "stopped" said once, and no draft left in the folder
+of the results. A row for each interrupt is added to results/interrupts.jsonl, of which
+benchmarks/robustness.py makes its page.
 """
 
 from __future__ import annotations
@@ -22,10 +24,12 @@ import time
 from pathlib import Path
 from typing import Any
 
-EARLIEST = 0.05  # [s]
+from forecast import commit
+
 LATEST = 6.0  # [s] after the start, when most commands are within their search
 WITHIN = 2.0  # [s]
 TRIES = 5  # for each interrupt that is asked for
+RECORD = Path(__file__).parent / "results" / "interrupts.jsonl"
 ROBOT = [sys.executable, "-m", "identification"]
 INCA = [sys.executable, "-m", "inca_mj"]
 LOG = "examples/log.csv"
@@ -48,14 +52,15 @@ COMMANDS = {
 
 
 def main() -> int:
-    """Interrupt, print a line per command, write the record; 1 where something was wrong."""
+    """Interrupt, print a line for each command, keep the rows; 1 where something was wrong."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--times", type=int, default=20)
     parser.add_argument("--command", nargs="*", choices=[*COMMANDS], default=[*COMMANDS])
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--out", type=Path)
+    parser.add_argument("--record", type=Path, default=RECORD)
     options = parser.parse_args()
-    chance, rows = random.Random(options.seed), {}
+    chance, wrong, earliest = random.Random(options.seed), 0, python_start()
+    now = commit()
     with tempfile.TemporaryDirectory() as folder:
         write_robot(Path(folder))
         for name in options.command:
@@ -64,19 +69,27 @@ def main() -> int:
             tries = 0
             while len(stopped) < options.times and tries < TRIES * options.times:
                 tries += 1
-                row = interrupted(line, chance.uniform(EARLIEST, LATEST))
-                stopped += [row] if row is not None else []
-            rows[name] = {
-                "interrupts": len(stopped),
-                "ended before": tries - len(stopped),
-                "right": sum(row["right"] for row in stopped),
-                "slowest": max((row["seconds"] for row in stopped), default=0.0),
-                "wrong": [row for row in stopped if not row["right"]],
-            }
-            print(f"{name:<18}" + ", ".join(f"{k} {v}" for k, v in rows[name].items()), flush=True)
-    if options.out is not None:
-        options.out.write_text(json.dumps(rows, indent=1) + "\n")
-    return int(any(row["wrong"] for row in rows.values()))
+                row = interrupted(line, chance.uniform(earliest, LATEST))
+                if row is not None:
+                    stopped.append({"command": name, "seed": options.seed, **row, "commit": now})
+            with options.record.open("a") as record:
+                record.writelines(json.dumps(row) + "\n" for row in stopped)
+            right = sum(row["right"] for row in stopped)
+            slowest = max((row["seconds"] for row in stopped), default=0.0)
+            print(f"{name:<18}right {right} of {len(stopped)}, slowest {slowest:.2f} s,"
+                  f" {tries - len(stopped)} ended before", flush=True)  # fmt: skip
+            wrong += len(stopped) - right
+    return int(wrong > 0)
+
+
+def python_start() -> float:
+    """Time that Python needs on this machine before it runs the first line of a program [s]."""
+    seconds = []
+    for _ in range(5):
+        began = time.perf_counter()
+        subprocess.run([sys.executable, "-c", "import runpy, inca_mj"], check=True)
+        seconds.append(time.perf_counter() - began)
+    return max(seconds)
 
 
 def interrupted(line: list[str], after: float) -> dict[str, Any] | None:
@@ -110,8 +123,9 @@ def interrupted(line: list[str], after: float) -> dict[str, Any] | None:
             and "Traceback" not in said
             and (not left or result is not None)
         )
-        return {"right": right, "after": after, "seconds": seconds, "code": process.returncode,
-                "left": left, "said": said[-600:] if not right else ""}  # fmt: skip
+        return {"right": right, "after": round(after, 3), "seconds": round(seconds, 3),
+                "code": process.returncode, "left": left,
+                "said": said[-600:] if not right else ""}  # fmt: skip
 
 
 def write_robot(folder: Path) -> None:

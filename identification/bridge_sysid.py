@@ -103,7 +103,7 @@ def to_sysid_parameters(
     for record in (plant.parameters[name] for name in names):
         value = (start or {}).get(record.name, record.value)
         found.add(
-            sysid.Parameter(name=record.name, value=value, unit=record.lower, where=record.upper)
+            sysid.Parameter(record.name, value, min_value=record.lower, max_value=record.upper)
         )
     return found
 

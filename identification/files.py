@@ -18,6 +18,14 @@ _SAID = 120  # letters of another library's message
 MAX_BYTES = 512 * 2**20  # hours at 1 kHz; more would fill the memory before it failed
 
 
+def is_file(path: Path) -> bool:
+    """Whether there is a regular file of this name; a name that no file can have is none."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # too long, or not to be looked at
+        return False
+
+
 def read_bytes(path: Path, largest: int = MAX_BYTES) -> bytes:
     """The bytes of a regular file of a sane size.
 

@@ -14,6 +14,7 @@ _SMALL = ("rad",)  # those that take small ones only: nobody says kiloradian
 _LEAST = 1e-3  # smaller numbers, in units without a prefix, are said as powers of ten
 _FINEST = 1e-5  # a smaller std is said as a power of ten
 _DIGITS = 3  # of a value whose std is not known
+HELD = 2  # digits of the error of a model that are said (docs/identification.md)
 
 
 def finite_or_none(value: float | None) -> float | None:
@@ -47,20 +48,28 @@ def probability(p: float) -> str:
     return f"{p:.0e}" if p > 0 else "below 1e-300"
 
 
-def alike(values: Sequence[float], unit: str) -> list[str]:
+def held(value: float) -> str:
+    """The error of a model, or a ratio of two, with two digits."""
+    return _plain(_rounded(value, HELD), HELD) if isfinite(value) else "unknown"
+
+
+def alike(values: Sequence[float], unit: str, digits: int = _DIGITS) -> list[str]:
     """Several values with one prefix, so that they compare at a glance.
 
     It is that of the largest, or where that has none and the smallest needs one, the milli's.
+
+    Args:
+        values: in `unit`.
+        unit: SI unit, "" when dimensionless.
+        digits: of each; `HELD` for errors of models.
     """
     known = [abs(v) for v in values if isfinite(v)]
     most, least = max(known, default=0.0), min(known, default=0.0)
     factor, name = _scale(most, unit, exact=True)
     if factor == 1.0 and 0 < least < _LEAST and most < 1:
         factor, name = _scale(0.01, unit, exact=True)
-    return [
-        f"{_plain(v / factor, _DIGITS)} {name}".strip() if isfinite(v) else "unknown"
-        for v in values
-    ]
+    sizes = [_rounded(v / factor, digits) for v in values]
+    return [f"{_plain(v, digits)} {name}".strip() if isfinite(v) else "unknown" for v in sizes]
 
 
 def _scale(magnitude: float, unit: str, exact: bool) -> tuple[float, str]:
@@ -96,6 +105,11 @@ def _decimals(std: float) -> int:
     """Decimals that show two digits of a std that starts with 1 to 3, else one."""
     first = floor(log10(std))
     return -first + (1 if std / 10.0**first < 3.5 else 0)
+
+
+def _rounded(value: float, digits: int) -> float:
+    """131.4 with two digits is 130."""
+    return float(f"{value:.{digits}g}") if digits == HELD else value
 
 
 def _plain(value: float, digits: int) -> str:

@@ -60,6 +60,8 @@ def refuse_place(command: Any) -> None:
 
 def _inputs(value: Any) -> Iterator[Path]:
     """The files that a command's fields name."""
+    from identification.files import is_file
+
     if isinstance(value, Output):
         return
     if is_dataclass(value):
@@ -68,12 +70,5 @@ def _inputs(value: Any) -> Iterator[Path]:
     elif isinstance(value, tuple | list):
         for each in value:
             yield from _inputs(each)
-    elif isinstance(value, Path | str) and _is_file(Path(value)):
+    elif isinstance(value, Path | str) and is_file(Path(value)):
         yield Path(value)
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False

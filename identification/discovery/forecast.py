@@ -1,11 +1,11 @@
 """How much memory and time a search will take, told before it takes them.
 
     bytes   = COPIES · 8 N n_y (p + m)    N samples, n_y outputs, p parameters, m sizes of effects
-    seconds = BASE + t₁ (FITS p + SCORES m)     t₁ the time of one simulation of the log
+    seconds = BASE + t₁ (FITS p + SCORES m)     t₁ the processor time of one simulation of the log
 
 The constants are fitted to processor time and peak memory of searches of INCA's logs of 500, 1000
-and 2000 samples. The time is that of a search that finds nothing; each effect that is found is
-refitted, beside others, and adds to it.
+and 2000 samples (benchmarks/forecast.py). The time is that of a search that finds nothing; each
+effect that is found is refitted, beside others, and adds to it.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from identification.model.predictor import Predictor
 
 COPIES = 4.75  # of the sensitivities to all candidates, that a search holds at once
 BASE = 12.0  # [s] that a search takes, however short the log
-FITS = 0.65  # simulations that a parameter costs
-SCORES = 0.1  # simulations that a size of a candidate costs; many are simulated at once
+FITS = 1.6  # simulations that a parameter costs
+SCORES = 0.25  # simulations that a size of a candidate costs; many are simulated at once
 _SHORT = 400  # samples of the simulation that is timed
 _TOLD = 60.0, 2.0**30  # [s] and [bytes] from which a forecast is worth a line
 
@@ -112,7 +112,7 @@ def free_memory() -> float:
 
 
 def _simulated(task: DiscoveryTask) -> float:
-    """Time of one simulation of the log [s], from that of its first samples."""
+    """Processor time of one simulation of the log [s], from that of its first samples."""
     names = task.nominal_model.names
     own = task.nominal_model.plant.parameters
     values = np.array([[own[name].value for name in names]])
@@ -120,9 +120,9 @@ def _simulated(task: DiscoveryTask) -> float:
     samples = min(_SHORT, len(task.log))
     seconds = []
     for _ in range(3):
-        began = time.perf_counter()
+        began = time.process_time()  # other programs may have the processor meanwhile
         predictor.predict(values, samples)
-        seconds.append(time.perf_counter() - began)
+        seconds.append(time.process_time() - began)
     return min(seconds) * len(task.log) / samples
 
 

@@ -35,6 +35,7 @@ from identification.discovery.task import DiscoveryTask
 from identification.estimation.options import Progress
 from identification.kalman.hierarchy import estimate_scatter
 from identification.model.sensitivity import refuse_without_effect
+from identification.quantities import held
 
 Stage = Literal["selection", "deviants", "pruning", "finished"]
 
@@ -90,7 +91,7 @@ def first_state(task: DiscoveryTask, progress: Progress) -> SearchState:
     if task.nominal_model.scattering:
         task, nominal = _with_scatter(task, nominal)
     watch.stop("nominal fit")
-    progress(f"nominal fit: {1e3 * nominal.validation.rms:.3g}e-3 on unseen data")
+    progress(f"nominal fit: {held(1e3 * nominal.validation.rms)}e-3 on unseen data")
     sensitivities = _compute_all_sensitivities(task, nominal)
     watch.stop("sensitivities")
     scores = score_candidates(nominal, sensitivities, task.options)

@@ -56,7 +56,7 @@ class Axis:
             one is not resolved [rad/(N m) or m/N].
 
     Raises:
-        InputError: a magnitude is not positive.
+        InputError: a magnitude is not positive, or is one that no robot has.
     """
 
     joint: str
@@ -74,9 +74,10 @@ class Axis:
     def __post_init__(self) -> None:
         for word in MAGNITUDES:
             value = getattr(self, word)
-            if not (np.isfinite(value) and value > 0):
+            if not 1 / HUGE <= value <= HUGE:  # their squares and cubes are numbers too
                 raise InputError(
-                    f"joint {self.joint!r} has {word} {value:g}; give a positive finite one"
+                    f"joint {self.joint!r} has {word} {value:g}; give one between {1 / HUGE:g} and"
+                    f" {HUGE:g}"
                 )
 
 

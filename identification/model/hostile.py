@@ -14,6 +14,7 @@ from identification.errors import InputError
 
 MOST = 20_000  # elements, replicated ones counted each; robots have hundreds
 STEP = (1e-7, 1.0)  # least and largest timestep [s]
+HUGE = 1e50  # of any unit: squares and cubes of it are numbers too
 _COUNTS = {"composite": "count", "flexcomp": "count"}
 _GRIDS = {"hfield": ("nrow", "ncol"), "texture": ("width", "height")}
 _CELLS = 2**26
@@ -55,7 +56,7 @@ def refuse_numbers(model: mujoco.MjModel, where: str) -> None:
     """Refuse a compiled model that cannot be simulated for its numbers.
 
     Raises:
-        InputError: its timestep [s] is none, or a number of its dynamics is infinite.
+        InputError: its timestep [s] is none, or a number of its dynamics is infinite or huge.
     """
     (least, most), step = STEP, model.opt.timestep
     if not least <= step <= most:
@@ -63,9 +64,16 @@ def refuse_numbers(model: mujoco.MjModel, where: str) -> None:
             f"{where} has the timestep {step:g} s; give <option timestep> a number from {least:g}"
             f" to {most:g}"
         )
-    for field in _FINITE:
-        if not np.isfinite(getattr(model, field)).all():
+    numbers = {field: getattr(model, field) for field in _FINITE}
+    numbers["gravity"] = model.opt.gravity
+    for field, values in numbers.items():
+        if not np.isfinite(values).all():
             raise InputError(f"{where} has an infinite number in {field}; write a finite one")
+        if values.size and np.abs(values).max() > HUGE:
+            raise InputError(
+                f"{where} has {values.flat[np.abs(values).argmax()]:g} in {field}, which no robot"
+                f" has; write a number up to {HUGE:g}"
+            )
 
 
 def _refuse_nan(root: ElementTree.Element, names: set[str], where: str) -> None:

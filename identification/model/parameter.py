@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from math import inf, isfinite
 
 from identification.errors import InputError, repeated, unknown_name
+from identification.logs.dimension import refuse_not_si
 
 RECORD = "record"  # where a value goes that one record of a joined log has for itself
 DEVIATION = "deviation"  # where one goes that multiplies what another parameter writes
@@ -32,8 +33,8 @@ class Parameter:
         scale: a magnitude that matters [unit]; a search divides by it where the value may be zero.
 
     Raises:
-        InputError: the bounds are in the wrong order, the value is outside them, or a tie's factor
-            is zero or not finite.
+        InputError: the unit is not SI (g, mm, deg), the bounds are in the wrong order, the value is
+            outside them, or a tie's factor is zero or not finite.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Parameter:
     scale: float = 1.0
 
     def __post_init__(self) -> None:
+        refuse_not_si(self.unit, f"parameter {self.name!r}")
         if not self.lower < self.upper:
             raise InputError(
                 f"parameter {self.name!r}: lower bound {self.lower:g} must be less than "

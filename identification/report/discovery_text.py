@@ -8,7 +8,7 @@ from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import Finding
 from identification.discovery.result import Discovery
 from identification.prediction.result import RecordsDiscovery
-from identification.quantities import alike, quantity
+from identification.quantities import HELD, alike, held, quantity
 from identification.report.discovery_limits import split_detectable
 from identification.report.discovery_tables import parameters_section
 from identification.report.discovery_verdict import (
@@ -70,10 +70,10 @@ def _diff(found: Discovery) -> list[str]:
 def _gap(found: Discovery) -> list[str]:
     unit, floor = found.log.output_unit, floor_rms(found)
 
-    before, after = alike([found.before.rms, found.after.rms], unit)
+    before, after = alike([found.before.rms, found.after.rms], unit, HELD)
 
     def line(what: str, size: str, gap: Gap) -> str:
-        times = f", {gap.rms / floor:.3g} times the noise" if floor > 0 else ""
+        times = f", {held(gap.rms / floor)} times the noise" if floor > 0 else ""
         return f"  {what:<7}{size} rms{times}"
 
     out = ["error on unseen data:", line("before", before, found.before)]

@@ -8,7 +8,7 @@ from math import hypot, isfinite
 from identification.discovery.effect_results import NamedEffect, RejectedEffect
 from identification.discovery.fitted_model import is_proven
 from identification.discovery.result import Discovery
-from identification.quantities import alike, quantity
+from identification.quantities import HELD, alike, held, quantity
 from identification.report.discovery_limits import SHOWN, hiding, smallest, split_detectable
 from identification.report.effect_words import (
     describe_chance,
@@ -42,7 +42,7 @@ def discovery_verdict(found: Discovery) -> list[str]:
 def nothing(found: Discovery) -> str:
     """The paragraph that says that nothing is missing, as far as this log can tell."""
     seen, unseen = split_detectable(found.detectable)
-    left, noise = alike([found.before.rms, floor_rms(found)], found.log.output_unit)
+    left, noise = alike([found.before.rms, floor_rms(found)], found.log.output_unit, HELD)
     said = (
         "Nothing is missing: what the fitted model leaves unexplained is noise,"
         f" {left} rms on unseen data where the sensors and unlogged disturbances make {noise}."
@@ -62,7 +62,7 @@ def nothing(found: Discovery) -> str:
 def _unlogged(found: Discovery) -> str:
     """The errors of the inputs that are part of the noise, and on which the verdict rests."""
     level, log = found.final.level, found.log
-    sensors = alike([found.noise_rms], log.output_unit)[0]
+    sensors = alike([found.noise_rms], log.output_unit, HELD)[0]
     size = quantity(level.input_std, unit=log.units.get(log.input_names[0], ""))
     return (
         f" The sensors alone make {sensors}; the rest is what inputs do that err by {size} rms"
@@ -79,7 +79,7 @@ def unknown(found: Discovery) -> str:
         [
             f"Something is missing that none of the {tried} known effects surely explains: the"
             f" fitted model is {_size(found, found.before.rms)} rms off on unseen data"
-            + (f", {ratio:.3g} times the sensors' noise." if isfinite(ratio) else "."),
+            + (f", {held(ratio)} times the sensors' noise." if isfinite(ratio) else "."),
             "It is not named here rather than named wrongly.",
             *(sentence(describe_finding(f)) for f in (*found.findings, *found.located)),
         ]
@@ -90,7 +90,7 @@ def unexplained(found: Discovery) -> str:
     """The paragraph on what is left after the named effects."""
     more = "what is named" if len(found.named) == 1 else "all that is named"
     ratio = found.after.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
-    times = f", {ratio:.3g} times the noise" if 1 < ratio < float("inf") else ""
+    times = f", {held(ratio)} times the noise" if 1 < ratio < float("inf") else ""
     proven = [r for r in found.rejected if r.gain > 0 and is_proven(r.proof, found.options)]
     return " ".join(
         [
@@ -165,7 +165,9 @@ def _agreement(named: NamedEffect) -> str:
 
 def _proof(found: Discovery) -> str:
     before, after, floor = found.before.rms, found.after.rms, floor_rms(found)
-    was, now, noise, own = alike([before, after, floor, found.noise_rms], found.log.output_unit)
+    was, now, noise, own = alike(
+        [before, after, floor, found.noise_rms], found.log.output_unit, HELD
+    )
     whom = "it" if len(found.named) == 1 else "them"
     rest = f", of which sensors make {own} and unlogged errors of the inputs the rest"
     made = rest if floor > found.noise_rms else ""
@@ -199,7 +201,7 @@ def floor_rms(found: Discovery) -> float:
 
 
 def _size(found: Discovery, rms: float) -> str:
-    return alike([rms], found.log.output_unit)[0]
+    return alike([rms], found.log.output_unit, HELD)[0]
 
 
 def _unique(names: Iterable[str]) -> list[str]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from identification.estimation.identifiability import in_words
+from identification.quantities import held
 
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
@@ -124,9 +125,9 @@ def window_sentences(found: WindowEstimate, floor: float) -> list[str]:
     if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
         said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
     said += _weak(found)
-    ratio = f", {found.rms / floor:.2f} of the noise floor {floor:.3g}" if floor > 0 else ""
+    ratio = f", {held(found.rms / floor)} of the noise floor {floor:.3g}" if floor > 0 else ""
     said.append(
-        f"{len(found.residual)} windows of {found.length:g} s leave {found.rms:.3g} rms{ratio}."
+        f"{len(found.residual)} windows of {found.length:g} s leave {found.rms:.2g} rms{ratio}."
     )
     return said
 
@@ -148,7 +149,9 @@ def _above(fit: Fit) -> float:
 
 def _enough(fit: Fit) -> list[str]:
     floor, ratio = _floor(fit), _above(fit)
-    sentences = [f"The residual is {fit.rms:.3g} rms, {ratio:.2f} of the noise floor {floor:.3g}."]
+    sentences = [
+        f"The residual is {fit.rms:.2g} rms, {held(ratio)} of the noise floor {floor:.3g}."
+    ]
     dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
     coloured = coloured_outputs(fit)
     if ratio > ABOVE:
@@ -176,18 +179,18 @@ def _unseen(fit: Fit) -> list[str]:
         return ["There is no unseen data to confirm it on."]
     likely = max(fit.rms, fit.validation_expected or 0.0)
     ratio = fit.validation_rms / likely if likely > 0 else np.inf
-    held = "it does not hold: too many parameters, or an effect missing"
+    said = "it does not hold: too many parameters, or an effect missing"
     if ratio < HOLDS:
-        held = "what was fitted holds there too"
+        said = "what was fitted holds there too"
         if _above(fit) > ABOVE:
-            held = "no worse than on what was fitted, but what is missing is missing there too"
+            said = "no worse than on what was fitted, but what is missing is missing there too"
     if ratio < HOLDS and fit.validation_rms > GROWN * fit.rms:
         return [
-            f"On unseen data the residual is {fit.validation_rms:.3g} rms,"
+            f"On unseen data the residual is {fit.validation_rms:.2g} rms,"
             f" {fit.validation_rms / fit.rms:.0f} times that of the fitted part; so small errors of"
             " the parameters may do that there, and it says little. Judge over a horizon."
         ]
     return [
-        f"On unseen data the residual is {fit.validation_rms:.3g} rms,"
-        f" {ratio:.2f} times what the fit leads one to expect: {held}."
+        f"On unseen data the residual is {fit.validation_rms:.2g} rms,"
+        f" {held(ratio)} times what the fit leads one to expect: {said}."
     ]

@@ -20,7 +20,7 @@ path = "body/carriage.mass"          # into the model; the name itself if not gi
 value = 95.11                        # where the search begins; the model's own if not given
 prior = 95.11                        # what is believed before the log speaks; value if not given
 known = 0.3                          # its std: relative where it must be positive, else in its unit
-unit = "kg"
+unit = "kg"                          # a label; refused where it is not that of the numbers, in SI
 lower = 0.0
 upper = 500.0
 scale = 1.0                          # a magnitude that matters, where it may be zero
@@ -45,7 +45,7 @@ from pathlib import Path
 from typing import Any
 
 from identification.errors import InputError
-from identification.files import read_toml
+from identification.files import is_file, read_toml
 from identification.robot.alike import Alike, read_alike
 from identification.robot.file_checks import (
     Kinds,
@@ -56,6 +56,8 @@ from identification.robot.file_checks import (
     texts,
 )
 from identification.robot.trust import trusted
+
+LONGEST = 1e6  # [s] of a horizon
 
 _KINDS: Kinds = {
     "model": (str, "a path in quotes"),
@@ -148,6 +150,11 @@ def read_robot_file(path: str | Path) -> RobotFile:
     for key in ("model", "free"):
         if not content.get(key):
             raise InputError(f"{path} does not say {key!r}; give {_KINDS[key][1]}")
+    horizon = content.get("horizon")
+    if horizon is not None and abs(horizon) > LONGEST:
+        raise InputError(
+            f"horizon in {path} is {horizon:g} s; give one that fits into a log, such as 0.2 s"
+        )
     alike = read_alike(content, path, content["free"])
     free = (*texts(content["free"], "free", path), *(n for a in alike for n in a.names))
     records = content.get("parameters", {})
@@ -167,7 +174,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
     effects = content.get("effects", {})
     check_table(effects, _EFFECTS, f"effects in {path}")
     model = path.parent / content["model"]
-    if not model.is_file():
+    if not is_file(model):
         raise InputError(f"{path} names the model {model}, which is no file; correct it there")
     return RobotFile(
         path=path,
@@ -175,7 +182,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
         free=free,
         own=read_own(content, path),
         outputs=texts(content.get("outputs", []), "outputs", path),
-        horizon=content.get("horizon"),
+        horizon=horizon,
         every=content.get("every", 1),
         trust=trusted(content.get("trust", []), str(path)),
         start={name: float(value) for name, value in start.items()},
@@ -205,7 +212,7 @@ def with_spread(file: RobotFile, word: str) -> RobotFile:
         return file
     alike = tuple(replace(a, deviates=False) for a in file.spread)
     if word != "none":
-        if not Path(word).is_file():
+        if not is_file(Path(word)):
             raise InputError(f"no spread {word!r}; give none, usual, or a TOML file")
         content = read_toml(Path(word))
         check_table(content, {"spread": _KINDS["spread"]}, word)

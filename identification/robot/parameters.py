@@ -6,7 +6,7 @@ it is the first measured sample.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Any
@@ -18,6 +18,7 @@ from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
 from identification.effects.named import means_effect, unknown_number
 from identification.errors import InputError
+from identification.logs.dimension import refuse_not_si, refuse_other_unit
 from identification.logs.log import Log
 from identification.model.parameter import Parameter
 from identification.model.paths import Slot, read, resolve
@@ -79,8 +80,8 @@ def free_parameter(
     """A free parameter of a robot's file.
 
     Raises:
-        InputError: it is neither a path nor the size of an effect, its value is missing, or its
-            prior lies outside its bounds.
+        InputError: it is neither a path nor the size of an effect, its value is missing, its unit
+            is not that of its numbers, or its prior lies outside its bounds.
     """
     for alike in file.spread:
         if name in alike.names:
@@ -88,9 +89,11 @@ def free_parameter(
     said = file.records.get(name, {})
     given: dict[str, Any] = {k: said[k] for k in ("unit", "about") if k in said}
     given |= {k: float(said[k]) for k in ("value", "lower", "upper", "scale") if k in said}
+    whose = f"parameters.{name} in {file.path}"
     sizes = effect_sizes(effects)
     if name in sizes:
         own, largest = sizes[name]
+        refuse_other_unit(said.get("unit", own.unit), own.unit, whose)
         if "value" not in given:
             raise InputError(
                 f"{file.path} frees {name}, which is zero in the model: give it a value under"
@@ -109,6 +112,7 @@ def free_parameter(
         body = path.partition(".inertia")[0]
         every = (str(file.records.get(n, {}).get("path", n)) for n in file.free)
         alone = sum(p.startswith(f"{body}.inertia") for p in every) == 1
+        _refuse_unit(said, unit_of(model, path), whose)
         record, guess = _in_model(path, name, model, log, given, alone)
     mean = float(said.get("prior", record.value))
     if not record.lower <= mean <= record.upper:
@@ -125,9 +129,18 @@ def _alike(file: RobotFile, alike: Alike, name: str, model: mujoco.MjModel) -> F
     """The common value of a spread, or a deviation from it."""
     record, std = alike.parameters(model, unit_of(model, alike.of[0]))[name]
     said = file.records.get(name, {})
+    _refuse_unit(said, record.unit, f"parameters.{name} in {file.path}")
     mean = float(said.get("prior", record.value))
     std = float(said.get("known", std))
     return Free(replace(record, value=float(said.get("value", record.value))), mean, std)
+
+
+def _refuse_unit(said: Mapping[str, Any], own: str, whose: str) -> None:
+    """Refuse a unit in which the model does not read numbers; `own` is "" where none is known."""
+    unit = said.get("unit", own)
+    if own:
+        refuse_other_unit(unit, own, whose)
+    refuse_not_si(unit, whose)
 
 
 def measured_start(model: mujoco.MjModel, path: str, log: Log, own: float) -> float:

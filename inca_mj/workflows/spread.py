@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from identification.errors import InputError, unknown_name
-from identification.files import read_toml
+from identification.files import is_file, read_toml
 from inca_mj.files import model_path
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES, EACH_DRIVE, POINTS
@@ -78,7 +78,7 @@ def spread_of(word: str) -> Spread:
     if word == "none":
         return NONE
     path = model_path("inca6d_spread.toml") if word == "usual" else Path(word)
-    if word != "usual" and not path.is_file():
+    if word != "usual" and not is_file(path):
         raise InputError(f"no spread {word!r}; give {' or '.join(WORDS)}, or a TOML file")
     return read_spread(path)
 

@@ -41,11 +41,25 @@ def hang(folder):
         time.sleep(60)
 
 
+def busy(folder):
+    while (folder / "x").read_bytes() != b"a = 1\n":
+        pass
+
+
+@posix
+def test_a_reader_that_computes_for_ever_is_found(monkeypatch):
+    monkeypatch.setitem(TARGETS, "bad", bad(busy))
+    monkeypatch.setattr(campaign, "PATIENCE", 0.3)
+    found = run("bad", 0, range(2))
+    assert found.counts["hang"] >= 1
+
+
 @posix
 @pytest.mark.parametrize("kind", [traceback, cryptic, crash, hang])
 def test_a_bad_reader_is_found(monkeypatch, kind):
     monkeypatch.setitem(TARGETS, "bad", bad(kind))
     monkeypatch.setattr(campaign, "PATIENCE", 0.5)
+    monkeypatch.setattr(campaign, "WAITING", 2)
     found = run("bad", 0, range(4))
     assert found.counts.total() == 4
     assert found.counts[kind.__name__] >= 3  # a change may change nothing

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from identification import InputError, Log
+from identification import InputError, Log, bridge_sysid
 from identification.bridge_sysid import (
     from_sysid,
     sysid_residual,
@@ -48,9 +48,13 @@ def log(robot) -> Log:
     return run_to_log(simulate(robot, make_input("prbs", 0.6)))
 
 
-@pytest.mark.skipif(not missing(), reason="mujoco.sysid can be imported")
-def test_what_is_missing_is_said_in_one_sentence(robot, log, refusal):
+def test_what_is_missing_is_said_in_one_sentence(robot, log, refusal, monkeypatch):
+    def absent(name):
+        raise ModuleNotFoundError("No module named 'colorama'")
+
+    monkeypatch.setattr(bridge_sysid, "import_module", absent)
     said = refusal(to_sysid, robot, log)
+    assert "colorama" in said
     assert "mujoco[sysid]" in said
 
 
@@ -114,6 +118,6 @@ def test_misspelt_names_and_wide_parameters_are_refused(robot, log, refusal):
     assert "lambda" in refusal(to_sysid_parameters, robot, ["lamda"])
     assert "lambda" in refusal(to_sysid, robot, log, ["lamda"])
     wide = sysid.ParameterDict(
-        {"I": sysid.Parameter(name="I", value=[1, 2, 3], unit=[0] * 3, where=[9] * 3)}
+        {"I": sysid.Parameter("I", [1, 2, 3], min_value=[0] * 3, max_value=[9] * 3)}
     )
     assert "3 numbers" in refusal(from_sysid, wide)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -30,6 +31,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--first", type=int, default=0, help="number of the first case")
     parser.add_argument("--out", type=Path, default=Path("out/fuzz"))
+    parser.add_argument("--record", type=Path, help="JSON lines to which the counts are added")
     options = parser.parse_args()
     total, tallies = sum(TARGETS[name].share for name in options.reader), {}
     print(f"{'reader':<14}" + "".join(f"{kind:>11}" for kind in KINDS) + f"{'seconds':>11}")
@@ -38,12 +40,25 @@ def main() -> int:
         tally = run(name, options.seed, range(options.first, options.first + count))
         tallies[name] = tally
         _keep(name, tally, options.seed, options.out)
+        if options.record is not None:
+            row = {"reader": name, "seed": options.seed, "first": options.first, "cases": count}
+            row |= {"counts": dict(tally.counts), "seconds": round(tally.seconds, 1)}
+            row["commit"] = _commit()
+            with options.record.open("a") as record:
+                record.write(json.dumps(row) + "\n")
         counts = "".join(f"{tally.counts[kind]:>11}" for kind in KINDS)
         print(f"{name:<14}{counts}{tally.seconds:>11.0f}", flush=True)
     every = sum((t.counts for t in tallies.values()), type(tally.counts)())
     found = sum(len(t.finds) for t in tallies.values())
     print(f"{every.total()} cases, {found} finds" + (f", kept in {options.out}" if found else ""))
     return int(found > 0)
+
+
+def _commit() -> str:
+    """The commit of the code that runs."""
+    done = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=Path(__file__).parent,
+                          text=True, capture_output=True, check=False)  # fmt: skip
+    return done.stdout.strip()
 
 
 def _keep(name: str, tally: Tally, seed: int, out: Path) -> None:

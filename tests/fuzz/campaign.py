@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import faulthandler
 import multiprocessing
+import os
 import random
 import resource
 import tempfile
@@ -26,7 +27,9 @@ from targets import TARGETS
 
 from identification.errors import InputError
 
-PATIENCE = 30.0  # [s] for one case
+PATIENCE = 30.0  # [s] of the processor for one case
+WAITING = 20  # times as long for one that waits, or whose machine has others to serve
+_TICK = 0.1  # [s]
 MEMORY = 4 * 2**30  # [bytes] beyond what the process has at first
 _LONGEST = 2000  # letters of a message
 
@@ -124,10 +127,10 @@ def _told(receive: Any, process: Any, at: Synchronized[int]) -> Iterator[tuple[s
     """What a process tells until it ends, and how it ended if not by itself."""
     last = at.value
     while True:
-        if not receive.poll(PATIENCE):
+        if not _in_time(receive, process):
             process.kill()
             process.join()
-            yield "hang", at.value, f"no end within {PATIENCE:g} s"
+            yield "hang", at.value, f"no end within {PATIENCE:g} s of the processor"
             return
         try:
             kind, said, last = receive.recv()
@@ -138,3 +141,20 @@ def _told(receive: Any, process: Any, at: Synchronized[int]) -> Iterator[tuple[s
                 yield "crash", at.value, f"exit code {process.exitcode}"
             return
         yield kind, last, said
+
+
+def _in_time(receive: Any, process: Any) -> bool:
+    """Whether a process tells something, or ends, before the patience with it does."""
+    began, used = time.monotonic(), _processor_time(process.pid)
+    while not receive.poll(_TICK):
+        if _processor_time(process.pid) - used > PATIENCE:
+            return False
+        if time.monotonic() - began > WAITING * PATIENCE:
+            return False
+    return True
+
+
+def _processor_time(number: int) -> float:
+    """What a process has taken of the processor [s]; proc(5) tells the fields."""
+    behind_name = Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()
+    return sum(int(behind_name[k]) for k in (11, 12)) / os.sysconf("SC_CLK_TCK")

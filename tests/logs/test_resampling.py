@@ -44,6 +44,15 @@ def test_an_even_log_is_left_as_it_is():
     assert "and 0 of 300 samples" in found.sentence
 
 
+def test_a_slope_that_is_nearly_zero_is_one_that_is_zero():
+    t = 0.01 * np.delete(np.arange(60), 35)
+    x = signals(t)
+    flat = {**x, "y": x["y"] * (t > 0.02)}
+    nearly = {**x, "y": np.where(t == 0.01, 1e-320, flat["y"])}
+    found, wanted = (even(t, each).channels["y"] for each in (nearly, flat))
+    np.testing.assert_allclose(found, wanted, rtol=1e-12, atol=1e-300)
+
+
 def test_drops_repeated_stamps_and_interleaved_channels():
     t = 0.005 * np.arange(2000)
     x = signals(t)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from identification.quantities import alike, probability, quantity
+from identification.quantities import HELD, alike, held, probability, quantity
 
 NAN, INF = float("nan"), float("inf")
 
@@ -40,6 +40,14 @@ def test_one_prefix_for_all() -> None:
     assert alike([0.131, 0.000676], "m²") == ["0.131 m²", "6.76e-04 m²"]
     assert alike([0.02, float("nan")], "") == ["0.0200", "unknown"]
     assert alike([], "rad") == []
+
+
+def test_an_error_of_a_model_has_two_digits():
+    assert alike([0.03214, 0.03138], "rad", HELD) == ["32 mrad", "31 mrad"]
+    assert alike([0.1314, 0.00067], "rad", HELD) == ["130 mrad", "0.67 mrad"]
+    assert [held(x) for x in (21.46, 0.987, 1.34, 131.0, float("inf"))] == [
+        "21", "0.99", "1.3", "130", "unknown",
+    ]  # fmt: skip
 
 
 def test_a_chance_that_underflows_is_not_called_zero() -> None:

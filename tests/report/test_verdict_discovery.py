@@ -101,7 +101,7 @@ def test_nothing_missing_says_which_unlogged_errors_it_rests_on() -> None:
 def test_a_proof_says_what_of_the_noise_the_sensors_make() -> None:
     assert "of which sensors" not in " ".join(discovery_verdict(found()))
     said = " ".join(discovery_verdict(replace(found(), disturbance_rms=2e-3)))
-    assert "the noise is 2.06 mrad, of which sensors make 0.500 mrad and unlogged errors" in said
+    assert "the noise is 2.1 mrad, of which sensors make 0.50 mrad and unlogged errors" in said
 
 
 def test_an_unknown_effect_is_not_named() -> None:

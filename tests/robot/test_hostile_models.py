@@ -6,6 +6,7 @@ from joint_cases import SLIDER
 from robot_cases import TOML, simulated
 
 from identification import InputError, read_robot
+from identification.effects.axes import Axis
 from identification.effects.rows import read_model
 from identification.logs.write import write_log
 
@@ -28,7 +29,12 @@ HOSTILE = {
         '<worldbody><replicate count="100000"><geom size="1"/></replicate>': "more than 20000",
         '<asset><hfield nrow="99999" ncol="99999" size="1 1 1 1"/></asset><worldbody>': "cells",
     },
+    'gravity="0 0 0"': {'gravity="0 0 1e308"': r"has 1e\+308 in gravity, which no robot has"},
     'damping="3"': {'armature="inf"': "has an infinite number in dof_armature"},
+    'gear="5"': {
+        'gear="1e308"': r"has 1e\+308 in actuator_gear, which no robot has",
+        'gear="1e-300"': "has force",
+    },
     "</mujoco>": {
         "": "cannot be read", "</mujocc>": "cannot be read", 9999 * "<b>": "cannot be read",
     },
@@ -51,6 +57,11 @@ def test_a_hostile_model_is_refused(tmp_path, capfd, old, new, said):
         read_robot(*files)
     assert str(refused.value).isprintable()  # MuJoCo writes several lines
     assert capfd.readouterr().err == ""  # and warnings of its own
+
+
+@pytest.mark.parametrize("force", [1e51, 1e-51, 0.0, np.nan, np.inf, -1.0])
+def test_a_magnitude_that_no_robot_has_is_refused(refusal, force):
+    assert "give one between 1e-50 and 1e+50" in refusal(Axis, "x", "slide", force, 1.0, 1.0)
 
 
 def test_a_model_with_replicas_and_names_of_any_kind_is_read():

@@ -28,8 +28,13 @@ from identification.robot.robot import read_robot_log
         (("[columns]", "[fixed]\n'stribeck_friction.v' = 1.0\n[columns]"), "stribeck_friction.v_s"),
         (("[columns]", "[effects]\nturns = [0]\n[columns]"), "numbers above zero"),
         (("unit =", "units ="), "did you mean 'unit'"),
+        (('unit = "kg"', 'unit = "g"'), "in 'kg': multiply them by 0.001 and write unit = 'kg'"),
+        (('unit = "kg"', 'unit = "N"'), "has the unit 'N', and its numbers are in 'kg'"),
         (("free", "every = 0\nfree"), "every in"),
         (("free", "horizon = inf\nfree"), "horizon in"),
+        (("free", "horizon = 1e308\nfree"), "give one that fits into a log"),
+        (("free", "horizon = -1e308\nfree"), "give one that fits into a log"),
+        (('"slider.xml"', f'"{900 * "long"}.xml"'), "which is no file; correct it there"),
         (("free", "outputs = ['nothing']\nfree"), "known: position"),
         (
             ("[columns]", "[effects]\nonly = ['stribek_friction']\n[columns]"),
@@ -71,6 +76,25 @@ def test_a_thing_without_a_name_is_told(folder, capsys, change, thing, outputs):
     path.write_text(outputs + TOML.replace("slider.xml", "unnamed.xml"))
     said = refused(capsys, "fit", path, folder / "plain.csv")
     assert f"{thing} 0 of {folder / 'unnamed.xml'}, counted from 0, has no name; give it" in said
+
+
+def test_a_unit_of_what_has_no_known_one_is_of_si(folder, capsys):
+    path = folder / "gear.toml"
+    text = TOML.replace('"joint/slide.damping"', '"actuator/force.gear[0]"', 1)
+    path.write_text(text + "[parameters.'actuator/force.gear[0]']\nunit = 'N/mA'\n")
+    assert "multiply its numbers by 1000 and give the SI unit" in refused(
+        capsys, "fit", path, folder / "plain.csv"
+    )
+
+
+@pytest.mark.parametrize("log", [".", "/", "", ".."])
+def test_a_folder_is_no_log(folder, capsys, log):
+    path = folder / "robot.toml"
+    path.write_text(TOML)
+    assert "is a folder; name a log file in it" in refused(capsys, "fit", path, log)
+    assert "is a folder; name a log file in it" in refused(
+        capsys, "discover", path, folder / "plain.csv", "--confirm", log
+    )
 
 
 def test_an_effect_of_the_other_kind_of_joint_is_suggested():
