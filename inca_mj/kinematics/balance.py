@@ -43,7 +43,7 @@ class Weights:
 
     Attributes:
         length: σ_d of each cable, shape (8,) [m].
-        tension: σ_T of each drum, shape (8,) [N].
+        tension: σ_T of each drum, shape (8,), or (N, 8) where instants differ [N].
         force: of the platform's balance [N].
         moment: of the platform's balance [N m].
     """
@@ -95,7 +95,7 @@ class Balance:
     @property
     def redundancy(self) -> Array:
         """Share of each statement's error that is left in its residual, shape (N, 22)."""
-        return 1 - np.einsum("nai,nij,naj->na", self.J, self.covariance, self.J)
+        return 1 - np.sum((self.J @ self.covariance) * self.J, axis=2)
 
     def shift(self, residual_change: Array) -> Array:
         """How pose and tensions move when the residuals change, (N, 22) -> (N, 14).
@@ -113,7 +113,7 @@ def balance(
     measured: Measured,
     weights: Weights,
     no_load: NoLoad,
-    begin: tuple[Array, Array],
+    begin: tuple[Array, Array, Array],
 ) -> Balance:
     """The most likely poses and tensions.
 
@@ -122,14 +122,13 @@ def balance(
         measured: angles and currents.
         weights: std of the statements.
         no_load: d₀ and ∂d₀/∂T for a robot and tensions.
-        begin: positions (N, 3) [m] and rotations (N, 3, 3) to begin at.
+        begin: positions (N, 3) [m], rotations (N, 3, 3) and tensions (N, 8) [N] to begin at.
 
     Raises:
         InputError: the search does not end, or a pose on the way cannot be.
     """
-    T = np.maximum(drum_tension(robot, measured), 0)
+    position, R, T = begin
     taut = np.ones_like(T, dtype=bool)
-    position, R = begin
     for _ in range(2):  # again where a cable turned out to be slack
         position, R, T, covariance = _search(
             robot, measured, weights, no_load, (position, R, T), taut
@@ -171,7 +170,7 @@ def statements(
     d_0, slope = no_load(robot, T)
     σ_T = np.where(taut, weights.tension, SLACK)
     σ_w, eye = weights.platform, np.eye(8)
-    WT = -np.einsum("nki,nk->ni", L, T)
+    WT = -(T[:, None] @ L)[:, 0]
     r = np.concatenate(
         [
             taut * (there.lengths - d_0 * stretch) / weights.length,
@@ -185,9 +184,8 @@ def statements(
     by_T = taut * -(d_0 / robot.lambda_ + slope * stretch) / weights.length
     J[:, LENGTHS, 6:] = by_T[..., None] * eye
     J[:, DRUMS, 6:] = eye / σ_T[..., None]
-    for k, twist in enumerate(np.eye(6)):
-        stiffness = -np.einsum("nki,nk->ni", jacobian_rate(there, twist), T)
-        J[:, PLATFORM, k] = stiffness / σ_w
+    stiffness = [-(T[:, None] @ jacobian_rate(there, twist))[:, 0] for twist in np.eye(6)]
+    J[:, PLATFORM, :6] = np.stack(stiffness, -1) / σ_w[:, None]
     J[:, PLATFORM, 6:] = -np.swapaxes(L, 1, 2) / σ_w[:, None]
     return r, J
 

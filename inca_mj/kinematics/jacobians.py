@@ -64,7 +64,7 @@ def jacobian_rate(cables: Cables, twist: Array) -> Array:
     twist = np.asarray(twist, float)
     b, s = cables.arms, cables.directions
     b_rate = np.cross(twist[..., None, 3:], b)
-    s_rate = np.einsum("...ij,...j->...i", cables.bends, twist[..., None, :3] + b_rate)
+    s_rate = (cables.bends @ (twist[..., None, :3] + b_rate)[..., None])[..., 0]
     return np.concatenate([s_rate, np.cross(b_rate, s) + np.cross(b, s_rate)], -1)
 
 

@@ -78,7 +78,7 @@ def rest_pose(robot: ElasticRobot, measured: Measured, encoder: float = ENCODER)
     position, R, _ = find(lengths, robot.geometry, (robot.pose[:3], rotation(*robot.pose[3:])), σ)
     no_load = partial(no_load_of, φ)
     found = balance(
-        robot, measured, rest_weights(robot, encoder), no_load, (position[None], R[None])
+        robot, measured, rest_weights(robot, encoder), no_load, (position[None], R[None], T)
     )
     missed = found.residual[0, :DRIVES] * σ
     if not found.taut.all():

@@ -164,10 +164,10 @@ def log_poses(
         raise InputError(f"the std of an encoder must be above zero [rad], not {encoder:g}")
     seen = noise_floor(log.outputs) if encoder is None else np.full(DRIVES, encoder)
     σ = np.maximum(seen, FINEST)
-    measured = measure(log.outputs, log.inputs, log.sampling_time, log.hold)
+    measured, ends = measure(log.outputs, log.inputs, log.sampling_time, log.hold)
     if progress is not None:
         progress(f"{len(log)} samples, each a pose and eight tensions")
-    along = poses_along(_robot(values, geometry), measured, σ)
+    along = poses_along(_robot(values, geometry), measured, σ, ends)
     found, noise = along.found, _noise(along.found)
     path = partial(no_load_path, measured.angles, found.tension)
     spread = _by_parameters(values, geometry, known, measured, along.weights, path, found)
@@ -181,7 +181,7 @@ def log_poses(
         tension_std=both[:, 6:],
         taut=found.taut,
         encoder=σ,
-        tension_error=float(along.weights.tension[0]),
+        tension_error=float(along.weights.tension.min()),
         force_error=along.weights.force,
         measured=pose_of(log),
     )
