@@ -50,6 +50,10 @@ _PUBLIC = {
     "with_spread": "robot.spread",
     "discover": "workflows.discovery",
     "named_twin": "workflows.discovery_model",
+    "pose_at_rest": "workflows.poses",
+    "RestingPose": "workflows.poses",
+    "log_poses": "workflows.poses",
+    "LogPoses": "workflows.poses",
     "sensitivity": "workflows.sensitivity",
     "excite": "workflows.excitation",
     "Design": "workflows.excitation",
@@ -111,6 +115,10 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.workflows.identification import Identification as Identification
     from inca_mj.workflows.identification import identify as identify
     from inca_mj.workflows.limits import Limits as Limits
+    from inca_mj.workflows.poses import LogPoses as LogPoses
+    from inca_mj.workflows.poses import RestingPose as RestingPose
+    from inca_mj.workflows.poses import log_poses as log_poses
+    from inca_mj.workflows.poses import pose_at_rest as pose_at_rest
     from inca_mj.workflows.sensitivity import sensitivity as sensitivity
     from inca_mj.workflows.spread import Spread as Spread
     from inca_mj.workflows.spread import spread_of as spread_of

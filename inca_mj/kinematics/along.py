@@ -2,31 +2,26 @@
 
 Each sample is a measurement of its own (`inca_mj.kinematics.balance`). Its drums are balanced with
 the rates and accelerations that the angles themselves show: ω and ω̇ are derivatives of a
-polynomial of degree 2 over five samples or 50 ms (Savitzky and Golay 1964), and the current is
-averaged over the two that act just before and just after the sample. What that leaves open of a
-drum has the unknown std σ_T, and the acceleration of the platform, which is neglected, the unknown
-std σ_F. Both are estimated from the residuals of the whole log, as variance components (Förstner
-1979):
-
-    σ² ← σ² Σ r²/Σ redundancy        until both stay; r in units of σ
-
-The moment has the std σ_F k²/ρ: a platform that shakes as much by turning as by moving, k its
-radius of gyration, ρ the mean distance of the connectors. The lengths have the std of the
-encoders.
+polynomial of degree 2 over five samples or 50 ms (Savitzky and Golay 1964), and the current is the
+mean of the two that act just before and just after the sample. What all this leaves open has std
+that the log itself shows (`inca_mj.kinematics.components`).
 
 d₀ follows the path: first with the mean strain of both ends, then by the integral of (2.30) with
-the tensions that were found."""
+the tensions that were found. At the last samples, where the rates are extrapolated, the balance of
+the drums is not used.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from scipy.signal import savgol_filter
+from scipy.signal import savgol_coeffs, savgol_filter
 
 from identification.errors import InputError
-from inca_mj.kinematics.balance import DRUMS, LENGTHS, PLATFORM, Balance, NoLoad, Weights, balance
+from inca_mj.kinematics.balance import LENGTHS, Balance, NoLoad, Weights, balance
+from inca_mj.kinematics.components import FIRST, Components, components, weights_of
 from inca_mj.kinematics.elastic import ElasticRobot, Measured, drum_tension, no_load_along
 from inca_mj.kinematics.forward import find
 from inca_mj.kinematics.inverse_geometry import cables_at
@@ -37,10 +32,6 @@ Array = np.ndarray
 
 WINDOW = 0.05  # over which rates are taken, but at least five samples [s]
 FEWEST = 5  # samples
-FIRST_TENSION, FIRST_FORCE = 1.0, 0.3  # where the search for both std begins [N]
-LEAST = 1e-3  # smallest std of a tension or force [N]
-ROUNDS = 50
-STILL = 0.01  # relative change of a std that counts as none
 UNUSED = 100.0  # std of a tension where the drum's balance is not used [N]
 ENOUGH = 250  # samples by which the std are estimated
 PATHS = 2  # times that d₀ is integrated along the path of the tensions
@@ -54,15 +45,13 @@ class Along:
 
     Attributes:
         found: poses, tensions and their covariance at each sample.
-        measured: angles, currents, rates and their changes.
-        weights: std of the statements, two of them estimated.
-        no_load_length: d₀, shape (N, 8) [m].
+        std: what the statements leave open, as the log shows it.
+        weights: std of all statements.
     """
 
     found: Balance
-    measured: Measured
+    std: Components
     weights: Weights
-    no_load_length: Array
 
 
 def measure(
@@ -98,7 +87,11 @@ def measure(
     if hold == "zoh":
         i[1:] = (i[1:] + i[:-1]) / 2
     measured = Measured(
-        angles=np.asarray(angles), currents=i[window:], rates=ω, rate_changes=ω_rate
+        angles=np.asarray(angles),
+        currents=i[window:],
+        rates=ω,
+        rate_changes=ω_rate,
+        rate_noise=float(np.linalg.norm(savgol_coeffs(window, 2, deriv=2, delta=sampling_time))),
     )
     return measured, window // 2
 
@@ -115,25 +108,26 @@ def poses_along(robot: ElasticRobot, measured: Measured, encoder: Array, ends: i
     Raises:
         InputError: at a sample no pose has such cable lengths.
     """
-    ρ = np.linalg.norm(robot.geometry.B, axis=1).mean()
-    arm = robot.gyration / ρ
-    weights = Weights(
-        length=robot.R * encoder,
-        tension=np.full_like(measured.angles, FIRST_TENSION),
-        force=FIRST_FORCE,
-        moment=FIRST_FORCE * arm,
-    )
-    first: NoLoad = partial(no_load_of, measured.angles)
-    found = balance(robot, measured, weights, first, _rigid(robot, measured, weights.length))
     used = np.arange(len(measured.angles)) < len(measured.angles) - ends
+    σ = FIRST
+    first: NoLoad = partial(no_load_of, measured.angles)
+    weights = weights_of(σ, robot, encoder)
+    found = balance(robot, measured, weights, first, _rigid(robot, measured, weights.length))
+    some = np.flatnonzero(used)[:: max(1, used.sum() // ENOUGH)]
+    rows = {n: getattr(measured, n)[some] for n in ("angles", "currents", "rates", "rate_changes")}
+    part = replace(measured, **rows)
     for _ in range(PATHS):
         d_0 = no_load_along(robot, measured.angles, found.tension)
-        weights = _components(robot, measured, weights, d_0, found, arm, used)
         begin = found.position, found.R, found.tension
+        of_some = begin[0][some], begin[1][some], begin[2][some]
+        σ = components(robot, part, encoder, σ, partial(_fixed, d_0[some]), of_some)
+        weights = weights_of(σ, robot, encoder)
+        drums = np.where(used[:, None], weights.tension, UNUSED)
+        weights = replace(weights, tension=drums)
         found = balance(robot, measured, weights, partial(_fixed, d_0), begin)
     missed = found.residual[:, LENGTHS] * weights.length
     _refuse_unreached(missed, np.arange(len(missed)))
-    return Along(found=found, measured=measured, weights=weights, no_load_length=d_0)
+    return Along(found=found, std=σ, weights=weights)
 
 
 def no_load_path(angles: Array, path: Array, robot: ElasticRobot, T: Array) -> tuple[Array, Array]:
@@ -143,36 +137,6 @@ def no_load_path(angles: Array, path: Array, robot: ElasticRobot, T: Array) -> t
 
 def _fixed(d_0: Array, robot: ElasticRobot, T: Array) -> tuple[Array, Array]:
     return d_0, np.zeros_like(T)
-
-
-def _components(
-    robot: ElasticRobot,
-    measured: Measured,
-    weights: Weights,
-    d_0: Array,
-    found: Balance,
-    arm: float,
-    used: Array,
-) -> Weights:
-    """The std of drums and platform that the residuals show, by evenly chosen samples."""
-    some = np.flatnonzero(used)[:: max(1, used.sum() // ENOUGH)]
-    part = Measured(**{f.name: getattr(measured, f.name)[some] for f in fields(measured)})
-    begin = found.position[some], found.R[some], found.tension[some]
-    σ_T, σ_F = FIRST_TENSION, weights.force
-    for _ in range(ROUNDS):
-        both = replace(weights, tension=np.full((len(some), 1), σ_T), force=σ_F, moment=σ_F * arm)
-        now = balance(robot, part, both, partial(_fixed, d_0[some]), begin)
-        begin = now.position, now.R, now.tension
-        square, left = now.residual**2, now.redundancy
-        scale = [
-            float(np.sqrt(square[:, group].sum() / left[:, group].sum()))
-            for group in (DRUMS, PLATFORM)
-        ]
-        σ_T, σ_F = max(LEAST, σ_T * scale[0]), max(LEAST, σ_F * scale[1])
-        if np.abs(np.array(scale) - 1).max() < STILL:
-            break
-    tension = np.where(used[:, None], σ_T, UNUSED) * np.ones_like(weights.tension)
-    return replace(weights, tension=tension, force=σ_F, moment=σ_F * arm)
 
 
 def _rigid(robot: ElasticRobot, measured: Measured, σ: Array) -> tuple[Array, Array, Array]:

@@ -92,12 +92,14 @@ class Measured:
         currents: i, shape (N, 8) [A].
         rates: ω, shape (N, 8) [rad/s].
         rate_changes: ω̇, shape (N, 8) [rad/s^2].
+        rate_noise: std of ω̇ that noise of the angles makes, over their std [1/s^2].
     """
 
     angles: Array
     currents: Array
     rates: Array
     rate_changes: Array
+    rate_noise: float = 0.0
 
 
 def elastic_robot(

@@ -29,6 +29,7 @@ STD = 1.2e-5  # of a length: an encoder of 6.7e-4 rad at a roller of 17.5 mm [m]
 REACH = 0.01  # lengths that no pose meets better than that belong to no pose [m]
 STEPS = 100
 HALVINGS = 30
+STAGE = 0.2  # far lengths are approached in stages, lest the search ends at another pose [m]
 MOVED = 1e-6  # a larger part in a motion that changes no length is not known
 
 
@@ -133,6 +134,25 @@ def find(
     Raises:
         InputError: the search passes a pose where a cable has no length.
     """
+    before = cables_at(*begin, geometry, pulleys).lengths
+    stages = max(1, int(np.ceil(np.abs(lengths - before).max() / STAGE)))
+    last = np.inf
+    for part in np.arange(1, stages + 1) / stages:
+        target = before + part * (lengths - before)
+        position, R, last = _search(target, geometry, begin, σ, pulleys, tolerance)
+        begin = position, R
+    return *begin, last
+
+
+def _search(
+    lengths: Array,
+    geometry: Geometry,
+    begin: tuple[Array, Array],
+    σ: Array,
+    pulleys: Pulleys | None,
+    tolerance: float,
+) -> tuple[Array, Array, float]:
+    """Steps of Gauss and Newton, halved where they do not lower the error."""
     position, R = begin
     there = cables_at(position, R, geometry, pulleys)
     error, last = (lengths - there.lengths) / σ, np.inf

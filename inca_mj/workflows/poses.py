@@ -70,6 +70,9 @@ class LogPoses:
         tension_std: by noise and parameters, shape (N, 8) [N].
         taut: False where a cable is slack, shape (N, 8), bool.
         encoder: std of each angle, shape (8,) [rad].
+        encoder_length: std of each length by its encoder, shape (8,) [m].
+        length_error: std of what geometry and parameters leave open of the lengths [m]; zero
+            where it is not told from the noise of the encoders.
         tension_error: std of what the balances of the drums leave open [N].
         force_error: std of the neglected force that accelerates the platform [N].
         measured: pose that the log holds, shape (N, 6) [m, rad]; None where it holds none.
@@ -83,6 +86,8 @@ class LogPoses:
     tension_std: np.ndarray
     taut: np.ndarray
     encoder: np.ndarray
+    encoder_length: np.ndarray
+    length_error: float
     tension_error: float
     force_error: float
     measured: np.ndarray | None
@@ -167,7 +172,8 @@ def log_poses(
     measured, ends = measure(log.outputs, log.inputs, log.sampling_time, log.hold)
     if progress is not None:
         progress(f"{len(log)} samples, each a pose and eight tensions")
-    along = poses_along(_robot(values, geometry), measured, σ, ends)
+    robot = _robot(values, geometry)
+    along = poses_along(robot, measured, σ, ends)
     found, noise = along.found, _noise(along.found)
     path = partial(no_load_path, measured.angles, found.tension)
     spread = _by_parameters(values, geometry, known, measured, along.weights, path, found)
@@ -181,8 +187,10 @@ def log_poses(
         tension_std=both[:, 6:],
         taut=found.taut,
         encoder=σ,
-        tension_error=float(along.weights.tension.min()),
-        force_error=along.weights.force,
+        encoder_length=robot.R * σ,
+        length_error=along.std.length,
+        tension_error=along.std.tension,
+        force_error=along.std.force,
         measured=pose_of(log),
     )
 
