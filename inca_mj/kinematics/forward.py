@@ -29,7 +29,7 @@ STD = 1.2e-5  # of a length: an encoder of 6.7e-4 rad at a roller of 17.5 mm [m]
 REACH = 0.01  # lengths that no pose meets better than that belong to no pose [m]
 STEPS = 100
 HALVINGS = 30
-STAGE = 0.2  # far lengths are approached in stages, lest the search ends at another pose [m]
+FAR = 0.1  # lengths that are farther off are met by the position alone first [m]
 MOVED = 1e-6  # a larger part in a motion that changes no length is not known
 
 
@@ -134,14 +134,11 @@ def find(
     Raises:
         InputError: the search passes a pose where a cable has no length.
     """
-    before = cables_at(*begin, geometry, pulleys).lengths
-    stages = max(1, int(np.ceil(np.abs(lengths - before).max() / STAGE)))
-    last = np.inf
-    for part in np.arange(1, stages + 1) / stages:
-        target = before + part * (lengths - before)
-        position, R, last = _search(target, geometry, begin, σ, pulleys, tolerance)
-        begin = position, R
-    return *begin, last
+    position, R = begin
+    away = np.abs(lengths - cables_at(position, R, geometry, pulleys).lengths).max()
+    if away > FAR:
+        position, R, _ = _search(lengths, geometry, begin, σ, pulleys, FAR / 10, free=3)
+    return _search(lengths, geometry, (position, R), σ, pulleys, tolerance)
 
 
 def _search(
@@ -151,13 +148,16 @@ def _search(
     σ: Array,
     pulleys: Pulleys | None,
     tolerance: float,
+    free: int = 6,
 ) -> tuple[Array, Array, float]:
-    """Steps of Gauss and Newton, halved where they do not lower the error."""
+    """Steps of Gauss and Newton, halved where they do not lower the error; `free` of a twist."""
     position, R = begin
     there = cables_at(position, R, geometry, pulleys)
     error, last = (lengths - there.lengths) / σ, np.inf
     for _ in range(STEPS):
-        step = np.linalg.lstsq(jacobian(there) / σ[:, None], error, rcond=1e-12)[0]
+        step = np.zeros(6)
+        L = jacobian(there)[:, :free] / σ[:, None]
+        step[:free] = np.linalg.lstsq(L, error, rcond=1e-12)[0]
         for _ in range(HALVINGS):
             moved, turned = position + step[:3], turn(step[3:]) @ R
             there = cables_at(moved, turned, geometry, pulleys)

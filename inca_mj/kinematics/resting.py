@@ -11,7 +11,8 @@ from functools import partial
 import numpy as np
 
 from identification.errors import InputError
-from inca_mj.kinematics.balance import Balance, Weights, balance
+from inca_mj.kinematics.balance import LENGTHS, Balance, NoLoad, Weights, balance
+from inca_mj.kinematics.components import FIRST, ROUNDS, STILL, TOLD
 from inca_mj.kinematics.elastic import ElasticRobot, Measured, drum_tension, no_load_at_rest
 from inca_mj.kinematics.forward import REACH, find
 from inca_mj.kinematics.rotations import rotation
@@ -44,18 +45,22 @@ def at_rest(angles: Array, currents: Array) -> Measured:
     return Measured(angles=rows["angles"], currents=rows["currents"], rates=zero, rate_changes=zero)
 
 
-def rest_weights(robot: ElasticRobot, encoder: float = ENCODER) -> Weights:
-    """Std of the statements at rest; `encoder` is that of each angle [rad]."""
+def rest_weights(robot: ElasticRobot, encoder: float, length: float = 0.0) -> Weights:
+    """Std of the statements at rest, by that of angles [rad] and of wrong geometry [m]."""
     return Weights(
-        length=robot.R * encoder,
+        length=np.maximum(robot.R * encoder, length),
         tension=np.maximum(robot.held, LEAST),
         force=FORCE,
         moment=MOMENT,
     )
 
 
-def rest_pose(robot: ElasticRobot, measured: Measured, encoder: float = ENCODER) -> Balance:
-    """Pose and tensions of a robot at rest.
+def rest_pose(
+    robot: ElasticRobot, measured: Measured, encoder: float = ENCODER
+) -> tuple[Balance, Weights]:
+    """Pose and tensions of a robot at rest, and the std of the statements.
+
+    Where the lengths disagree by more than the encoders explain, their std is what they show.
 
     Args:
         robot: its numbers.
@@ -66,7 +71,14 @@ def rest_pose(robot: ElasticRobot, measured: Measured, encoder: float = ENCODER)
         InputError: no pose has such cable lengths, or a cable is slack there.
     """
     φ, σ = measured.angles, robot.R * encoder
-    T = np.maximum(drum_tension(robot, measured), 0)
+    balanced = drum_tension(robot, measured)
+    weakest = int((balanced + 3 * robot.held)[0].argmin())
+    if balanced[0, weakest] + 3 * robot.held[weakest] < 0:
+        raise InputError(
+            f"cable {weakest + 1} is slack at rest: its motor and spring would have to push with"
+            f" {-balanced[0, weakest]:.3g} N; give angles and currents that keep all cables taut"
+        )
+    T = np.maximum(balanced, 0)
     d_0, _ = no_load_at_rest(robot, φ, T)
     lengths = d_0[0] * (1 + T[0] / robot.lambda_)
     if lengths.min() <= 0:
@@ -77,10 +89,8 @@ def rest_pose(robot: ElasticRobot, measured: Measured, encoder: float = ENCODER)
         )
     position, R, _ = find(lengths, robot.geometry, (robot.pose[:3], rotation(*robot.pose[3:])), σ)
     no_load = partial(no_load_of, φ)
-    found = balance(
-        robot, measured, rest_weights(robot, encoder), no_load, (position[None], R[None], T)
-    )
-    missed = found.residual[0, :DRIVES] * σ
+    found, weights = _weighted(robot, measured, encoder, no_load, (position[None], R[None], T))
+    missed = found.residual[0, :DRIVES] * weights.length
     if not found.taut.all():
         k = int(np.flatnonzero(~found.taut[0])[0]) + 1
         raise InputError(
@@ -94,7 +104,30 @@ def rest_pose(robot: ElasticRobot, measured: Measured, encoder: float = ENCODER)
             f" {abs(missed[k]):.3g} m; check the geometry, the start pose and the sign of the"
             " angles (positive winds in)"
         )
-    return found
+    return found, weights
+
+
+def _weighted(
+    robot: ElasticRobot,
+    measured: Measured,
+    encoder: float,
+    no_load: NoLoad,
+    begin: tuple[Array, Array, Array],
+) -> tuple[Balance, Weights]:
+    """The balance with the std of the lengths that their residuals show (Förstner 1979)."""
+    floor, length = float((robot.R * encoder).mean()), FIRST.length
+    for _ in range(ROUNDS):
+        weights = rest_weights(robot, encoder, max(length, floor))
+        found = balance(robot, measured, weights, no_load, begin)
+        r, left = found.residual[:, LENGTHS], found.redundancy[:, LENGTHS]
+        scale = float(np.sqrt((r**2).sum() / left.sum()))
+        length = scale * float(np.sqrt(np.mean(weights.length**2)))
+        if abs(scale - 1) < STILL or length < floor:
+            break
+    if length < TOLD * floor:
+        weights = rest_weights(robot, encoder)
+        found = balance(robot, measured, weights, no_load, begin)
+    return found, weights
 
 
 def no_load_of(angles: Array, robot: ElasticRobot, T: Array) -> tuple[Array, Array]:

@@ -28,7 +28,7 @@ def settled_run(seconds: float = 14.0) -> Run:
     """Steady currents, switched on slowly, until the robot rests."""
     parameters = parameter_set("trial", {"b_c": 0.0, "b_v": 6e-4})
     t = np.arange(round(seconds / 0.01)) * 0.01
-    steady = np.array([0.9, 0.6, 0.7, 0.8, 0.5, 0.9, 0.6, 0.7])
+    steady = np.array([1.6, 0.6, 0.4, 1.2, 1.5, 0.5, 0.3, 1.0])
     return simulate(build_twin(parameters), np.minimum(t / 3, 1)[:, None] * steady)
 
 

@@ -85,6 +85,7 @@ def test_the_acceleration_of_lengths_is_the_difference_of_the_twins_rates(model,
     np.testing.assert_allclose(jacobian_rate(there, twist) @ twist, numeric, atol=1e-8 * scale)
 
 
+@settings(max_examples=30, deadline=None)
 @given(INSIDE, TWIST, TWIST)
 def test_all_rates_are_those_of_the_reference(pose, twist, change):
     there = inverse(pose, INCA)

@@ -12,7 +12,7 @@ from inca_mj.robot.geometry import INCA
 START = np.array([0, 0, 1.43, 0, 0, 0])
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(INSIDE)
 def test_lengths_give_their_pose_back(pose):
     found = pose_from_lengths(inverse(pose, INCA).lengths, INCA, START)
@@ -35,12 +35,12 @@ def test_the_covariance_is_the_scatter_of_poses_from_noisy_lengths():
     std = 1e-4 * np.arange(1, 9)
     found = pose_from_lengths(d, INCA, START, std=std)
     noisy = (
-        pose_from_lengths(d + std * rng.normal(size=8), INCA, pose, std=std) for _ in range(400)
+        pose_from_lengths(d + std * rng.normal(size=8), INCA, pose, std=std) for _ in range(200)
     )
     error = np.array([n.pose for n in noisy]) - pose
-    # 400 squared distances of six degrees of freedom: their mean is 6 ± 0.17
+    # 200 squared distances of six degrees of freedom: their mean is 6 ± 0.25
     distance = np.einsum("ni,ij,nj->n", error, np.linalg.inv(found.covariance), error)
-    assert distance.mean() == pytest.approx(6, abs=0.7)
+    assert distance.mean() == pytest.approx(6, abs=1.0)
 
 
 def test_where_a_motion_changes_no_length_its_std_is_infinite():
@@ -69,7 +69,7 @@ def test_lengths_of_no_pose_are_refused(lengths, options, words):
 
 def test_a_length_that_does_not_fit_the_others_is_refused_unless_it_is_in_reach():
     d = inverse(START, INCA).lengths
-    d[4] += 0.1
+    d[0] += 0.1
     with pytest.raises(InputError, match="no pose of the platform"):
         pose_from_lengths(d, INCA, START)
     found = pose_from_lengths(d, INCA, START, reach=0.2)

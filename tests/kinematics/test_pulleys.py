@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from identification.errors import InputError
@@ -48,10 +48,11 @@ def test_the_path_is_the_shortest_one_around_the_pulley(span, r):
     assert found.wraps[0] == pytest.approx(β, abs=1e-5)
 
 
+@settings(max_examples=30, deadline=None)
 @given(SPAN, st.floats(0.001, 0.08), st.booleans())
 def test_it_is_the_path_of_the_effect_and_of_the_hidden_robots(span, r, over):
     found = paths(np.tile(span, (8, 1)), Pulleys(r, over))
-    longer = pulley_radius(_State(span), (r, float(over)))
+    longer = pulley_radius.py_func(_State(span), (r, float(over)))
     straight = np.linalg.norm(span)
     assert found.lengths[0] == pytest.approx(straight + longer[0], abs=1e-12)
     np.testing.assert_allclose(found.directions[0], span / straight + longer[1:], atol=1e-12)
@@ -61,6 +62,7 @@ def test_it_is_the_path_of_the_effect_and_of_the_hidden_robots(span, r, over):
     np.testing.assert_allclose(found.directions[0], s, atol=1e-12)
 
 
+@settings(max_examples=30, deadline=None)
 @given(SPAN, st.floats(0.0, 0.08), st.booleans())
 def test_directions_and_bends_are_derivatives(span, r, over):
     def at(b):
@@ -76,6 +78,7 @@ def test_directions_and_bends_are_derivatives(span, r, over):
         np.testing.assert_allclose(s_rate, found.bends[0, :, k], atol=1e-7)
 
 
+@settings(max_examples=30, deadline=None)
 @given(SPAN)
 def test_without_a_radius_the_cable_is_straight(span):
     spans = np.tile(span, (8, 1))

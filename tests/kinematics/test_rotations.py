@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from kinematics_cases import INSIDE
 from scipy.spatial.transform import Rotation
 
@@ -19,6 +19,7 @@ from inca_mj.kinematics import (
 from inca_mj.kinematics.rotations import cross_matrix, turn
 
 
+@settings(max_examples=30, deadline=None)
 @given(INSIDE)
 def test_rotations_are_those_of_scipy_and_give_their_angles_back(pose):
     R = rotation(*pose[3:])
@@ -32,6 +33,7 @@ def test_turns_are_those_of_scipy_also_for_no_turn():
     np.testing.assert_allclose(turn(vectors), Rotation.from_rotvec(vectors).as_matrix(), atol=1e-14)
 
 
+@settings(max_examples=30, deadline=None)
 @given(INSIDE)
 def test_the_euler_rate_matrix_inverts_the_body_rate_matrix(pose):
     np.testing.assert_allclose(
@@ -39,6 +41,7 @@ def test_the_euler_rate_matrix_inverts_the_body_rate_matrix(pose):
     )
 
 
+@settings(max_examples=30, deadline=None)
 @given(INSIDE)
 def test_pose_rates_move_the_pose_as_the_twist_says(pose):
     twist, h = np.array([0.3, -0.2, 0.5, 0.4, -0.7, 0.6]), 1e-5
