@@ -30,7 +30,7 @@ class Cables:
     Attributes:
         arms: b_i, from P to B_i, in O, shape (..., 8, 3) [m].
         lengths: d_i, shape (..., 8) [m].
-        directions: s_i, in O, shape (..., 8, 3).
+        directions: s_i, in O, shape (..., 8, 3), without unit.
         bends: ∂s_i/∂B_i, in O, shape (..., 8, 3, 3) [1/m].
         wraps: angle over which the cables lie on their pulleys, shape (..., 8) [rad].
         pulleys: at the exit points; None for straight cables.

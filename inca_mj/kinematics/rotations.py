@@ -46,7 +46,16 @@ def rotation(roll: float | Array, pitch: float | Array, yaw: float | Array) -> A
 
 
 def quaternion(roll: float, pitch: float, yaw: float) -> Array:
-    """Unit quaternion (w, x, y, z) of `rotation`, shape (4,)."""
+    """Unit quaternion (w, x, y, z) of `rotation`.
+
+    Args:
+        roll: about x [rad].
+        pitch: about y [rad].
+        yaw: about z [rad].
+
+    Returns:
+        Shape (4,), without unit.
+    """
     (cr, cp, cy), (sr, sp, sy) = (f(np.array([roll, pitch, yaw]) / 2) for f in (np.cos, np.sin))
     return np.array(
         [
