@@ -39,8 +39,8 @@ class ForwardPose:
 
     Attributes:
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
-        covariance: of the pose by the std of the lengths, shape (6, 6) [m, rad]; infinite variance where the
-            lengths do not say it.
+        covariance: of the pose by the std of the lengths, shape (6, 6) [m, rad]; infinite variance
+            where the lengths do not say it.
         residual: lengths of the pose minus the measured ones, shape (8,) [m].
         rank: of the Jacobian; below 6 the pose is not unique.
         condition: of the Jacobian, angles counted at the distance of the connectors.
