@@ -56,7 +56,7 @@ def test_it_is_the_path_of_the_effect_and_of_the_hidden_robots(span, r, over):
     straight = np.linalg.norm(span)
     assert found.lengths[0] == pytest.approx(straight + longer[0], abs=1e-12)
     np.testing.assert_allclose(found.directions[0], span / straight + longer[1:], atol=1e-12)
-    side = 1.0 if (span[2] >= 0) == over else -1.0
+    side = 1.0 if (span[2] >= 0) != over else -1.0
     d, s = path_of_worlds(tuple(span), r, side)
     assert found.lengths[0] == pytest.approx(d, abs=1e-12)
     np.testing.assert_allclose(found.directions[0], s, atol=1e-12)
