@@ -13,8 +13,8 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from inca_mj.kinematics.rotations import rotation
 from inca_mj.robot.geometry import INCA
-from inca_mj.robot.kinematics import rotation
 from inca_mj.robot.parameters import GRAVITY
 from inca_mj.twin.statics import start_from
 

@@ -14,10 +14,10 @@ _PUBLIC = {
     "Geometry": "robot.geometry",
     "INCA": "robot.geometry",
     "read_geometry": "robot.geometry",
-    "rotation": "robot.kinematics",
-    "euler": "robot.kinematics",
-    "length_jacobian": "robot.kinematics",
-    "pose_from_lengths": "robot.kinematics",
+    "rotation": "kinematics.rotations",
+    "euler": "kinematics.rotations",
+    "length_jacobian": "kinematics.jacobians",
+    "pose_from_lengths": "kinematics.forward",
     "spring_force": "robot.law",
     "make_input": "robot.inputs",
     # the twin, its runs and its logs
@@ -50,6 +50,10 @@ _PUBLIC = {
     "with_spread": "robot.spread",
     "discover": "workflows.discovery",
     "named_twin": "workflows.discovery_model",
+    "pose_at_rest": "workflows.poses",
+    "RestingPose": "workflows.poses",
+    "log_poses": "workflows.poses",
+    "LogPoses": "workflows.poses",
     "sensitivity": "workflows.sensitivity",
     "excite": "workflows.excitation",
     "Design": "workflows.excitation",
@@ -69,6 +73,10 @@ __all__ = list(_PUBLIC)
 if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.effects.catalogue import CATALOGUE as CATALOGUE
     from inca_mj.effects.hooks import DRIVES_EACH as DRIVES_EACH
+    from inca_mj.kinematics.forward import pose_from_lengths as pose_from_lengths
+    from inca_mj.kinematics.jacobians import length_jacobian as length_jacobian
+    from inca_mj.kinematics.rotations import euler as euler
+    from inca_mj.kinematics.rotations import rotation as rotation
     from inca_mj.rendering.film import film as film
     from inca_mj.rendering.film import stills as stills
     from inca_mj.rendering.scene import Scene as Scene
@@ -76,10 +84,6 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.robot.geometry import Geometry as Geometry
     from inca_mj.robot.geometry import read_geometry as read_geometry
     from inca_mj.robot.inputs import make_input as make_input
-    from inca_mj.robot.kinematics import euler as euler
-    from inca_mj.robot.kinematics import length_jacobian as length_jacobian
-    from inca_mj.robot.kinematics import pose_from_lengths as pose_from_lengths
-    from inca_mj.robot.kinematics import rotation as rotation
     from inca_mj.robot.law import spring_force as spring_force
     from inca_mj.robot.parameters import GRAVITY as GRAVITY
     from inca_mj.robot.parameters import parameter_set as parameter_set
@@ -111,6 +115,10 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.workflows.identification import Identification as Identification
     from inca_mj.workflows.identification import identify as identify
     from inca_mj.workflows.limits import Limits as Limits
+    from inca_mj.workflows.poses import LogPoses as LogPoses
+    from inca_mj.workflows.poses import RestingPose as RestingPose
+    from inca_mj.workflows.poses import log_poses as log_poses
+    from inca_mj.workflows.poses import pose_at_rest as pose_at_rest
     from inca_mj.workflows.sensitivity import sensitivity as sensitivity
     from inca_mj.workflows.spread import Spread as Spread
     from inca_mj.workflows.spread import spread_of as spread_of

@@ -17,6 +17,7 @@ from inca_mj.commands.discover import Discover
 from inca_mj.commands.excite import Excite
 from inca_mj.commands.film import Film
 from inca_mj.commands.identify import Identify
+from inca_mj.commands.kinematics import Kinematics
 from inca_mj.commands.sensitivity import Sensitivity
 from inca_mj.commands.simulate import Simulate
 from inca_mj.commands.trials import Trials
@@ -28,6 +29,7 @@ Command = (
     | Annotated[Identify, tyro.conf.subcommand("identify")]
     | Annotated[Calibrate, tyro.conf.subcommand("calibrate")]
     | Annotated[Discover, tyro.conf.subcommand("discover")]
+    | Annotated[Kinematics, tyro.conf.subcommand("kinematics")]
     | Annotated[Sensitivity, tyro.conf.subcommand("sensitivity")]
     | Annotated[Excite, tyro.conf.subcommand("excite")]
     | Annotated[Trials, tyro.conf.subcommand("trials")]

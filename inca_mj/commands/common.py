@@ -31,16 +31,9 @@ class Values:
         Raises:
             InputError: a value is malformed, unknown, given twice or out of bounds.
         """
-        from identification.errors import InputError
         from inca_mj.robot.parameters import parameter_set
 
-        values: dict[str, float] = {}
-        for name, value in map(_assignment, self.param):
-            if name in values:
-                raise InputError(
-                    f"--param gives {name} twice, {values[name]:g} and {value:g}; give it once"
-                )
-            values[name] = value
+        values = assignments(self.param, "--param")
         return parameter_set(self.set, values)
 
     def place(self) -> Geometry:
@@ -62,16 +55,34 @@ class Robot(Values):
     """Largest step of the integrator [s]; stiff cables and light motors need a smaller one."""
 
 
-def _assignment(text: str) -> tuple[str, float]:
+def assignments(texts: tuple[str, ...], option: str) -> dict[str, float]:
+    """The values of an option that is given as NAME=VALUE.
+
+    Args:
+        texts: what was given.
+        option: its name.
+
+    Raises:
+        InputError: one is malformed, or a name is given twice.
+    """
     from identification.errors import InputError
 
-    name, equals, value = text.partition("=")
-    try:
-        if not equals:
-            raise ValueError
-        return name.strip(), float(value)
-    except ValueError:
-        raise InputError(f"{text!r} is not NAME=VALUE; write e.g. --param m=0.2") from None
+    values: dict[str, float] = {}
+    for text in texts:
+        left, equals, right = text.partition("=")
+        name = left.strip()
+        try:
+            if not equals:
+                raise ValueError
+            value = float(right)
+        except ValueError:
+            raise InputError(f"{text!r} is not NAME=VALUE; write e.g. {option} m=0.2") from None
+        if name in values:
+            raise InputError(
+                f"{option} gives {name} twice, {values[name]:g} and {value:g}; give it once"
+            )
+        values[name] = value
+    return values
 
 
 def cannot_draw() -> str:

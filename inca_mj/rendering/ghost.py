@@ -10,8 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from identification.errors import InputError
+from inca_mj.kinematics.forward import find
+from inca_mj.kinematics.inverse_geometry import cables
+from inca_mj.kinematics.rotations import euler_of, quaternion, rotation
 from inca_mj.robot.geometry import DRIVES
-from inca_mj.robot.kinematics import cables, pose_from_lengths, quaternion, rotation
 from inca_mj.twin.twin import Twin
 
 
@@ -29,10 +31,12 @@ def poses_from_angles(robot: Twin, angles: np.ndarray) -> np.ndarray:
         InputError: no pose has such cable lengths.
     """
     pose = np.array(robot.start.pose, float)
-    at_rest, _ = cables(pose[:3], rotation(*pose[3:]), robot.geometry)
-    poses = np.empty((len(angles), 6))
+    position, R = pose[:3], rotation(*pose[3:])
+    at_rest, _ = cables(position, R, robot.geometry)
+    poses, σ = np.empty((len(angles), 6)), np.ones(DRIVES)
     for k, lengths in enumerate(at_rest - robot.parameters.values()["R"] * angles):
-        poses[k] = pose = pose_from_lengths(lengths, robot.geometry, pose, tolerance=1e-7)
+        position, R, _ = find(lengths, robot.geometry, (position, R), σ, tolerance=1e-7)
+        poses[k] = np.concatenate([position, euler_of(R)])
     return poses
 
 

@@ -21,8 +21,8 @@ from identification.effects.effect import Effect
 from inca_mj.effects.hooks import Drive, Platform
 from inca_mj.effects.layout import Layout
 from inca_mj.effects.values import drive_values, present
+from inca_mj.kinematics.rotations import rotation
 from inca_mj.robot.geometry import DRIVES, Geometry
-from inca_mj.robot.kinematics import rotation
 from inca_mj.robot.spread import at_drives
 
 SECANTS = 12  # more than enough, because secant steps converge faster than linearly

@@ -19,9 +19,9 @@ from identification.errors import InputError
 from identification.model.parameter import ParameterSet
 from inca_mj.effects.layout import KEY, Layout
 from inca_mj.effects.values import about_centre, drive_values
+from inca_mj.kinematics.rotations import quaternion
 from inca_mj.robot import law
 from inca_mj.robot.geometry import DRIVES, Geometry
-from inca_mj.robot.kinematics import quaternion
 from inca_mj.robot.parameters import GRAVITY
 from inca_mj.robot.spread import EACH_DRIVE, at_drives, displaced
 from inca_mj.twin.appearance import dress_drum, dress_platform, dress_world

@@ -15,8 +15,8 @@ from mujoco.batch import Batch
 from identification.errors import InputError
 from identification.files import whole_file
 from identification.model.rollout import State, rollout
+from inca_mj.kinematics.rotations import euler
 from inca_mj.robot.geometry import DRIVES, Geometry, geometry_of
-from inca_mj.robot.kinematics import euler
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import Twin, build_twin
 

@@ -19,8 +19,10 @@ from identification.errors import InputError
 from identification.model.parameter import ParameterSet
 from inca_mj.effects.layout import Layout
 from inca_mj.effects.values import about_centre
+from inca_mj.kinematics.inverse_geometry import cables
+from inca_mj.kinematics.jacobians import length_jacobian
+from inca_mj.kinematics.rotations import rotation
 from inca_mj.robot.geometry import Geometry
-from inca_mj.robot.kinematics import cables, length_jacobian, rotation
 from inca_mj.robot.parameters import GRAVITY, PRETENSION
 from inca_mj.robot.spread import at_drives, displaced
 from inca_mj.twin.at_rest import Change, change_at_rest, own_states

@@ -22,9 +22,9 @@ from inca_mj.effects.layout import Layout
 from inca_mj.effects.values import inputs as effect_inputs
 from inca_mj.effects.values import readings as effect_readings
 from inca_mj.effects.values import with_effects
+from inca_mj.kinematics.rotations import quaternion
 from inca_mj.robot import law
 from inca_mj.robot.geometry import INCA, Geometry
-from inca_mj.robot.kinematics import quaternion
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin import native
 from inca_mj.twin.mjcf import TIMESTEP, build, check_inertia

@@ -11,9 +11,10 @@ from __future__ import annotations
 import numpy as np
 
 from identification.model.rollout import State
+from inca_mj.kinematics.inverse_geometry import cables
+from inca_mj.kinematics.rotations import quaternion, rotation
 from inca_mj.reference import layout as at
 from inca_mj.robot.geometry import DRIVES, Geometry
-from inca_mj.robot.kinematics import cables, quaternion, rotation
 
 STRETCH = 1e-3  # cables are strained and slackened up to this strain: tensions of some 10 N
 

@@ -1,0 +1,156 @@
+"""inca kinematics POSE|LOG: the cables of a pose, or the pose along a log."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from identification.commands.common import Output, conclude, output_field, table
+from inca_mj.commands.common import Values, do_not_draw, values_field
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from inca_mj.kinematics.inverse_geometry import Cables
+    from inca_mj.robot.geometry import Geometry
+    from inca_mj.workflows.poses import LogPoses
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kinematics:
+    """Cables of a pose (lengths, directions, Jacobian), or the pose along a log with its std.
+
+    Examples:
+        inca kinematics 0.1 0 1.4 0 0.2 0
+        inca kinematics examples/log.csv --std R=1e-4 x=0.002 --out out/kinematics
+    """
+
+    what: Annotated[tuple[str, ...], tyro.conf.Positional, tyro.conf.arg(metavar="POSE|LOG")]
+    """A pose, six numbers x y z [m] roll pitch yaw [rad], or one log of currents and angles."""
+    pulley: float = 0.0
+    """Of a pose: radius of a swivelling pulley at each exit point [m]; 0: straight cables."""
+    noise: float | None = None
+    """Of a log: std of each angle [rad]; seen in the log when not given."""
+    std: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME=STD")] = ()
+    """Of a log: how well parameters are known, such as R=1e-4 x=0.002; exact when not given."""
+    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+
+    def run(self) -> int:
+        """Compute, say, keep."""
+        do_not_draw()
+        pose = self._pose()
+        if pose is None:
+            self._along()
+        else:
+            self._at(pose)
+        return 0
+
+    def _pose(self) -> np.ndarray | None:
+        """The six numbers, or None where a log is named.
+
+        Raises:
+            InputError: it is neither.
+        """
+        import numpy as np
+
+        from identification.errors import InputError
+
+        if len(self.what) == 1 and Path(self.what[0]).suffix in (".csv", ".mat"):
+            return None
+        try:
+            pose = np.array([float(x) for x in self.what])
+        except ValueError:
+            pose = np.empty(0)
+        if pose.shape != (6,) or not np.isfinite(pose).all():
+            raise InputError(
+                f"{' '.join(self.what)!r} is neither a pose nor a log; give six numbers x y z [m]"
+                " roll pitch yaw [rad], such as 0 0 1.43 0 0 0, or one log (.csv, .mat)"
+            )
+        return pose
+
+    def _at(self, pose: np.ndarray) -> None:
+        from identification.errors import InputError
+        from inca_mj.kinematics.inverse_geometry import inverse
+        from inca_mj.kinematics.pulleys import Pulleys
+        from inca_mj.report.poses import cables_json, cables_rows, cables_verdict
+        from inca_mj.robot.spread import displaced
+
+        if self.noise is not None or self.std:
+            raise InputError("--noise and --std are for a log; a pose has no noise: leave them out")
+        place = displaced(self.robot.place(), self.robot.parameters().values())
+        there = inverse(pose, place, Pulleys(self.pulley) if self.pulley else None)
+        said = cables_verdict(there, place)
+        text = "\n".join([table(*cables_rows(there)), jacobian_text(there), *said])
+        conclude(self, cables_json(pose, there), text, partial(keep_pose, pose, there, place, said))
+
+    def _along(self) -> None:
+        from identification.errors import InputError
+        from inca_mj.commands.common import assignments
+        from inca_mj.report.poses import poses_json, poses_verdict
+        from inca_mj.twin.logs import read_inca_log
+        from inca_mj.workflows.poses import log_poses
+
+        if self.pulley:
+            raise InputError("--pulley is for a pose; a log is read with straight cables: leave it")
+        log = read_inca_log(Path(self.what[0]))
+        found = log_poses(
+            log,
+            self.robot.parameters(),
+            self.robot.place(),
+            encoder=self.noise,
+            std=assignments(self.std, "--std"),
+            progress=self.output.tell,
+        )
+        text = "\n".join([log_text(found), *poses_verdict(found)])
+        conclude(self, poses_json(found), text, partial(keep_log, found))
+
+
+def jacobian_text(cables: Cables) -> str:
+    """The Jacobian as a text table."""
+    from inca_mj.kinematics.jacobians import jacobian
+
+    names = ("cable", "∂/∂x", "∂/∂y", "∂/∂z", "∂/∂ω_x [m]", "∂/∂ω_y [m]", "∂/∂ω_z [m]")
+    rows = [(str(k + 1), *(f"{x:+.4f}" for x in row)) for k, row in enumerate(jacobian(cables))]
+    return "Jacobian of the lengths by twist, along O:\n" + table(names, rows)
+
+
+def log_text(found: LogPoses) -> str:
+    """Some of the poses as a text table."""
+    import numpy as np
+
+    from inca_mj.twin.logs import POSE
+
+    some = np.unique(np.linspace(0, len(found.log) - 1, 11).round().astype(int))
+    rows = [(f"{found.log.time[k]:.2f}", *(f"{x:.4f}" for x in found.pose[k])) for k in some]
+    return table(("time [s]", *(f"{n} [{'m' if n in 'xyz' else 'rad'}]" for n in POSE)), rows)
+
+
+def keep_pose(
+    pose: np.ndarray, cables: Cables, geometry: Geometry, said: list[str], out: Path
+) -> None:
+    """Write the figure and the one-file report of a pose into a folder."""
+    from identification.report.page import save_figures, write_report
+    from inca_mj.report.poses import cables_section
+
+    sections = [cables_section(pose, cables, geometry)]
+    save_figures(sections, out)
+    write_report(out / "report.html", "A pose and its cables", said, sections)
+
+
+def keep_log(found: LogPoses, out: Path) -> None:
+    """Write poses.csv, the figure and the one-file report of a log into a folder."""
+    from identification.report.page import save_figures, write_report
+    from inca_mj.report.poses import poses_section, poses_verdict, write_poses
+
+    write_poses(found, out / "poses.csv")
+    sections = [poses_section(found)]
+    save_figures(sections, out)
+    write_report(
+        out / "report.html", f"{found.log.name}: where the platform was", poses_verdict(found),
+        sections,
+    )  # fmt: skip

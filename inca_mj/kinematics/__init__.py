@@ -1,0 +1,58 @@
+"""Kinematics of the INCA 6D (thesis section 2.2): cables of a pose, rates, and the pose back.
+
+The public names; `docs/kinematics.md` shows their use. The pose from motor angles needs the
+pretension of the robot as well: `inca_mj.pose_at_rest` and `inca_mj.log_poses`."""
+
+from typing import TYPE_CHECKING
+
+from identification.lazy import lazy
+
+_PUBLIC = {
+    "body_rate_matrix": "rotations",
+    "euler": "rotations",
+    "euler_of": "rotations",
+    "euler_rate_matrix": "rotations",
+    "pose_rate_matrix": "rotations",
+    "quaternion": "rotations",
+    "rotation": "rotations",
+    "Pulleys": "pulleys",
+    "Cables": "inverse_geometry",
+    "inverse": "inverse_geometry",
+    "CableRates": "cable_rates",
+    "rates": "cable_rates",
+    "CableAccelerations": "cable_accelerations",
+    "accelerations": "cable_accelerations",
+    "condition": "jacobians",
+    "jacobian": "jacobians",
+    "jacobian_rate": "jacobians",
+    "length_jacobian": "jacobians",
+    "rank": "jacobians",
+    "ForwardPose": "forward",
+    "pose_from_lengths": "forward",
+}
+__all__ = list(_PUBLIC)
+
+if TYPE_CHECKING:  # the same list, for type checkers and editors
+    from inca_mj.kinematics.cable_accelerations import CableAccelerations as CableAccelerations
+    from inca_mj.kinematics.cable_accelerations import accelerations as accelerations
+    from inca_mj.kinematics.cable_rates import CableRates as CableRates
+    from inca_mj.kinematics.cable_rates import rates as rates
+    from inca_mj.kinematics.forward import ForwardPose as ForwardPose
+    from inca_mj.kinematics.forward import pose_from_lengths as pose_from_lengths
+    from inca_mj.kinematics.inverse_geometry import Cables as Cables
+    from inca_mj.kinematics.inverse_geometry import inverse as inverse
+    from inca_mj.kinematics.jacobians import condition as condition
+    from inca_mj.kinematics.jacobians import jacobian as jacobian
+    from inca_mj.kinematics.jacobians import jacobian_rate as jacobian_rate
+    from inca_mj.kinematics.jacobians import length_jacobian as length_jacobian
+    from inca_mj.kinematics.jacobians import rank as rank
+    from inca_mj.kinematics.pulleys import Pulleys as Pulleys
+    from inca_mj.kinematics.rotations import body_rate_matrix as body_rate_matrix
+    from inca_mj.kinematics.rotations import euler as euler
+    from inca_mj.kinematics.rotations import euler_of as euler_of
+    from inca_mj.kinematics.rotations import euler_rate_matrix as euler_rate_matrix
+    from inca_mj.kinematics.rotations import pose_rate_matrix as pose_rate_matrix
+    from inca_mj.kinematics.rotations import quaternion as quaternion
+    from inca_mj.kinematics.rotations import rotation as rotation
+else:
+    __getattr__, __dir__ = lazy(__name__, _PUBLIC)

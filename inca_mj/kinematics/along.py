@@ -1,0 +1,169 @@
+"""The pose along a log of motor angles and currents, with its std at each sample.
+
+Each sample is a measurement of its own (`inca_mj.kinematics.balance`). Its drums are balanced with
+the rates and accelerations that the angles themselves show: ω and ω̇ are derivatives of a
+polynomial of degree 2 over five samples or 50 ms (Savitzky and Golay 1964), and the current is the
+mean of the two that act just before and just after the sample. What all this leaves open has std
+that the log itself shows (`inca_mj.kinematics.components`).
+
+d₀ follows the path: first with the mean strain of both ends, then by the integral of (2.30) with
+the tensions that were found. At the last samples, where the rates are extrapolated, the balance of
+the drums is not used.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from scipy.signal import savgol_coeffs, savgol_filter
+
+from identification.errors import InputError
+from inca_mj.kinematics.balance import LENGTHS, Balance, NoLoad, Weights, balance
+from inca_mj.kinematics.components import FIRST, Components, components, weights_of
+from inca_mj.kinematics.elastic import ElasticRobot, Measured, drum_tension, no_load_along
+from inca_mj.kinematics.forward import find
+from inca_mj.kinematics.inverse_geometry import cables_at
+from inca_mj.kinematics.resting import no_load_of
+from inca_mj.kinematics.rotations import rotation
+
+Array = np.ndarray
+
+WINDOW = 0.05  # over which rates are taken, but at least five samples [s]
+FEWEST = 5  # samples
+UNUSED = 100.0  # std of a tension where the drum's balance is not used [N]
+ENOUGH = 250  # samples by which the std are estimated
+PATHS = 2  # times that d₀ is integrated along the path of the tensions
+STRIDE = 5  # samples; the poses between begin at the same one
+FAR = 0.05  # lengths that no pose meets better than that belong to no pose [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Along:
+    """Poses along a log.
+
+    Attributes:
+        found: poses, tensions and their covariance at each sample.
+        std: what the statements leave open, as the log shows it.
+        weights: std of all statements.
+    """
+
+    found: Balance
+    std: Components
+    weights: Weights
+
+
+def measure(
+    angles: Array, currents: Array, sampling_time: float, hold: str = "zoh"
+) -> tuple[Measured, int]:
+    """Angles and currents of a log, with the rates that the angles show.
+
+    Before its first sample the robot rests with all angles zero and no currents.
+
+    Args:
+        angles: φ, shape (N, 8) [rad].
+        currents: i, shape (N, 8) [A].
+        sampling_time: between samples [s].
+        hold: "zoh" or "foh", the currents between samples.
+
+    Returns:
+        The record, and how many samples at its end have rates that are extrapolated.
+
+    Raises:
+        InputError: there are fewer than five samples.
+    """
+    if len(angles) < FEWEST:
+        raise InputError(
+            f"{len(angles)} samples are too few to see rates in them; give {FEWEST} or more"
+        )
+    longest = len(angles) - 1 + len(angles) % 2
+    window = min(max(FEWEST, 2 * round(WINDOW / sampling_time / 2) + 1), longest)
+    still = np.zeros((window, angles.shape[1]))  # the rest before the log
+    φ, i = np.concatenate([still, angles]), np.concatenate([still, currents])
+    ω, ω_rate = (
+        savgol_filter(φ, window, 2, deriv=k, delta=sampling_time, axis=0)[window:] for k in (1, 2)
+    )
+    if hold == "zoh":
+        i[1:] = (i[1:] + i[:-1]) / 2
+    measured = Measured(
+        angles=np.asarray(angles),
+        currents=i[window:],
+        rates=ω,
+        rate_changes=ω_rate,
+        rate_noise=float(np.linalg.norm(savgol_coeffs(window, 2, deriv=2, delta=sampling_time))),
+    )
+    return measured, window // 2
+
+
+def poses_along(robot: ElasticRobot, measured: Measured, encoder: Array, ends: int) -> Along:
+    """Poses and tensions at each sample of a log that begins at rest with all angles zero.
+
+    Args:
+        robot: its numbers.
+        measured: from `measure`.
+        encoder: std of each angle, shape (8,) [rad].
+        ends: samples at the end of which the drums' balance is not used.
+
+    Raises:
+        InputError: at a sample no pose has such cable lengths.
+    """
+    used = np.arange(len(measured.angles)) < len(measured.angles) - ends
+    σ = FIRST
+    first: NoLoad = partial(no_load_of, measured.angles)
+    weights = weights_of(σ, robot, encoder)
+    found = balance(robot, measured, weights, first, _rigid(robot, measured, weights.length))
+    some = np.flatnonzero(used)[:: max(1, used.sum() // ENOUGH)]
+    rows = {n: getattr(measured, n)[some] for n in ("angles", "currents", "rates", "rate_changes")}
+    part = replace(measured, **rows)
+    for _ in range(PATHS):
+        d_0 = no_load_along(robot, measured.angles, found.tension)
+        begin = found.position, found.R, found.tension
+        of_some = begin[0][some], begin[1][some], begin[2][some]
+        σ = components(robot, part, encoder, σ, partial(_fixed, d_0[some]), of_some)
+        weights = weights_of(σ, robot, encoder)
+        drums = np.where(used[:, None], weights.tension, UNUSED)
+        weights = replace(weights, tension=drums)
+        found = balance(robot, measured, weights, partial(_fixed, d_0), begin)
+    missed = found.residual[:, LENGTHS] * weights.length
+    _refuse_unreached(missed, np.arange(len(missed)))
+    return Along(found=found, std=σ, weights=weights)
+
+
+def no_load_path(angles: Array, path: Array, robot: ElasticRobot, T: Array) -> tuple[Array, Array]:
+    """d₀ of another robot along the same path of tensions: its change with the robot's numbers."""
+    return no_load_along(robot, angles, path), np.zeros_like(T)
+
+
+def _fixed(d_0: Array, robot: ElasticRobot, T: Array) -> tuple[Array, Array]:
+    return d_0, np.zeros_like(T)
+
+
+def _rigid(robot: ElasticRobot, measured: Measured, σ: Array) -> tuple[Array, Array, Array]:
+    """Poses from the lengths alone, tensions by the drums; some samples in turn, others alike."""
+    T = np.maximum(drum_tension(robot, measured), 0)
+    d_0, _ = no_load_of(measured.angles, robot, T)
+    lengths = d_0 * (1 + T / robot.lambda_)
+    position, R = robot.pose[:3], rotation(*robot.pose[3:])
+    positions, rotations = np.empty((len(T), 3)), np.empty((len(T), 3, 3))
+    for k in range(0, len(T), STRIDE):
+        position, R, _ = find(lengths[k], robot.geometry, (position, R), σ, tolerance=1e-6)
+        missed = cables_at(position, R, robot.geometry).lengths - lengths[k]
+        _refuse_unreached(missed[None], np.array([k]))
+        positions[k : k + STRIDE], rotations[k : k + STRIDE] = position, R
+    return positions, rotations, T
+
+
+def _refuse_unreached(missed: Array, samples: Array) -> None:
+    """Refuse lengths that no pose has; their errors have shape (n, 8) [m].
+
+    Raises:
+        InputError: an error is larger than `FAR`.
+    """
+    n, k = np.unravel_index(np.abs(missed).argmax(), missed.shape)
+    if abs(missed[n, k]) > FAR:
+        raise InputError(
+            f"no pose has the cable lengths of sample {samples[n]}: the nearest one misses cable"
+            f" {k + 1} by {abs(missed[n, k]):.3g} m; check the geometry, the start pose and the"
+            " sign of the angles (positive winds in)"
+        )

@@ -1,0 +1,214 @@
+"""Pose and tensions that agree best with motor angles and currents: weighted least squares.
+
+Fourteen unknowns, the pose and eight tensions T, and twenty-two statements, each with a std:
+
+    (d(pose) - d₀ (1 + T/λ))/σ_d      8   length of the elastic cable; σ_d = R σ_φ by the encoder
+    (T - T_drum)/σ_T                  8   balance of the drum
+    (W(pose) T - w)/σ_w               6   balance of the platform, forces and moments
+
+    δ = -(JᵀJ)⁻¹ Jᵀ r,   cov = (JᵀJ)⁻¹          steps of Gauss and Newton; N measurements at once
+
+∂(W T)/∂(v, ω) = -Σ T_i ∂L_iᵀ: the geometric stiffness, whose columns are -L̇ᵀ T for unit twists.
+The leverage J (JᵀJ)⁻¹ Jᵀ of a statement says how much of its error the unknowns take; what is
+left, one minus that, is its redundancy (eight of twenty-two in all).
+
+A slack cable has no tension and says nothing of the pose: its length counts not, and T is 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.errors import InputError
+from inca_mj.kinematics.elastic import ElasticRobot, Measured, drum_tension
+from inca_mj.kinematics.inverse_geometry import cables_at
+from inca_mj.kinematics.jacobians import jacobian, jacobian_rate
+from inca_mj.kinematics.rotations import euler_of, pose_rate_matrix, turn
+
+Array = np.ndarray
+NoLoad = Callable[[ElasticRobot, Array], tuple[Array, Array]]
+
+STEPS = 40
+CLOSE = 1e-9  # largest last step [m, rad]
+SLACK = 1e-3  # std of T = 0 in a slack cable [N]
+LENGTHS, DRUMS, PLATFORM = slice(0, 8), slice(8, 16), slice(16, 22)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Weights:
+    """Std of the statements.
+
+    Attributes:
+        length: σ_d of each cable, shape (8,) [m].
+        tension: σ_T of each drum, shape (8,), or (N, 8) where instants differ [N].
+        force: of the platform's balance [N].
+        moment: of the platform's balance [N m].
+    """
+
+    length: Array
+    tension: Array
+    force: float
+    moment: float
+
+    @property
+    def platform(self) -> Array:
+        """σ_w, shape (6,) [N, N m]."""
+        return np.repeat([self.force, self.moment], 3)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Balance:
+    """Poses and tensions at N instants.
+
+    Attributes:
+        position: of the platform, shape (N, 3) [m].
+        R: its rotation, shape (N, 3, 3), without unit.
+        tension: shape (N, 8) [N].
+        taut: False where a cable is slack, shape (N, 8), bool.
+        residual: of the statements, in their std, shape (N, 22), relative.
+        J: their derivative by twist and tensions, shape (N, 22, 14), in the units of both.
+        covariance: (JᵀJ)⁻¹ of twist and tensions, shape (N, 14, 14), in the units of both.
+    """
+
+    position: Array
+    R: Array
+    tension: Array
+    taut: Array
+    residual: Array
+    J: Array
+    covariance: Array
+
+    @property
+    def pose(self) -> Array:
+        """x, y, z [m], roll, pitch, yaw [rad], shape (N, 6)."""
+        return np.hstack([self.position, euler_of(self.R)])
+
+    @property
+    def pose_covariance(self) -> Array:
+        """Covariance of `pose`, shape (N, 6, 6)."""
+        E = pose_rate_matrix(self.pose)
+        return E @ self.covariance[:, :6, :6] @ np.swapaxes(E, -1, -2)
+
+    @property
+    def redundancy(self) -> Array:
+        """Share of each statement's error that is left in its residual, shape (N, 22)."""
+        return 1 - np.sum((self.J @ self.covariance) * self.J, axis=2)
+
+    def shift(self, residual_change: Array) -> Array:
+        """How pose and tensions move when the residuals change, (N, 22) -> (N, 14).
+
+        The first six are changes of x, y, z, roll, pitch, yaw [m, rad], the others of the tensions
+        [N].
+        """
+        moved = -np.einsum("nij,naj,na->ni", self.covariance, self.J, residual_change)
+        moved[:, :6] = np.einsum("nij,nj->ni", pose_rate_matrix(self.pose), moved[:, :6])
+        return moved
+
+
+def balance(
+    robot: ElasticRobot,
+    measured: Measured,
+    weights: Weights,
+    no_load: NoLoad,
+    begin: tuple[Array, Array, Array],
+) -> Balance:
+    """The most likely poses and tensions.
+
+    Args:
+        robot: its numbers.
+        measured: angles and currents.
+        weights: std of the statements.
+        no_load: d₀ and ∂d₀/∂T for a robot and tensions.
+        begin: positions (N, 3) [m], rotations (N, 3, 3) and tensions (N, 8) [N] to begin at.
+
+    Raises:
+        InputError: the search does not end, or a pose on the way cannot be.
+    """
+    position, R, T = begin
+    taut = np.ones_like(T, dtype=bool)
+    for _ in range(2):  # again where a cable turned out to be slack
+        position, R, T, covariance = _search(
+            robot, measured, weights, no_load, (position, R, T), taut
+        )
+        now = taut & (T > 0)
+        if (now == taut).all():
+            break
+        taut = now
+    r, J = statements(robot, measured, weights, no_load, (position, R, T), taut)
+    return Balance(
+        position=position, R=R, tension=T, taut=taut, residual=r, J=J, covariance=covariance
+    )
+
+
+def statements(
+    robot: ElasticRobot,
+    measured: Measured,
+    weights: Weights,
+    no_load: NoLoad,
+    at: tuple[Array, Array, Array],
+    taut: Array,
+) -> tuple[Array, Array]:
+    """Residuals, shape (N, 22), and their derivatives by twist and T, shape (N, 22, 14).
+
+    Args:
+        robot: its numbers.
+        measured: angles and currents.
+        weights: std of the statements.
+        no_load: d₀ and ∂d₀/∂T for a robot and tensions.
+        at: positions (N, 3) [m], rotations (N, 3, 3) and tensions (N, 8) [N].
+        taut: False where a cable is slack, shape (N, 8), bool.
+
+    Raises:
+        InputError: a cable has no length.
+    """
+    position, R, T = at
+    there = cables_at(position, R, robot.geometry)
+    L, stretch = jacobian(there), 1 + T / robot.lambda_
+    d_0, slope = no_load(robot, T)
+    σ_T = np.where(taut, weights.tension, SLACK)
+    σ_w, eye = weights.platform, np.eye(8)
+    WT = -(T[:, None] @ L)[:, 0]
+    r = np.concatenate(
+        [
+            taut * (there.lengths - d_0 * stretch) / weights.length,
+            (T - taut * drum_tension(robot, measured)) / σ_T,
+            (WT - robot.weight) / σ_w,
+        ],
+        axis=1,
+    )
+    J = np.zeros((len(T), 22, 14))
+    J[:, LENGTHS, :6] = (taut / weights.length)[..., None] * L
+    by_T = taut * -(d_0 / robot.lambda_ + slope * stretch) / weights.length
+    J[:, LENGTHS, 6:] = by_T[..., None] * eye
+    J[:, DRUMS, 6:] = eye / σ_T[..., None]
+    stiffness = [-(T[:, None] @ jacobian_rate(there, twist))[:, 0] for twist in np.eye(6)]
+    J[:, PLATFORM, :6] = np.stack(stiffness, -1) / σ_w[:, None]
+    J[:, PLATFORM, 6:] = -np.swapaxes(L, 1, 2) / σ_w[:, None]
+    return r, J
+
+
+def _search(
+    robot: ElasticRobot,
+    measured: Measured,
+    weights: Weights,
+    no_load: NoLoad,
+    begin: tuple[Array, Array, Array],
+    taut: Array,
+) -> tuple[Array, Array, Array, Array]:
+    position, R, T = begin
+    for _ in range(STEPS):
+        r, J = statements(robot, measured, weights, no_load, (position, R, T), taut)
+        transposed = np.swapaxes(J, -1, -2)
+        covariance = np.linalg.inv(transposed @ J)
+        step = -(covariance @ (transposed @ r[..., None]))[..., 0]
+        position, R, T = position + step[:, :3], turn(step[:, 3:6]) @ R, T + step[:, 6:]
+        last = np.abs(step[:, :6]).max(axis=1)
+        if last.max() < CLOSE:
+            return position, R, T, covariance
+    raise InputError(
+        f"no pose agrees with the motor angles at sample {int(last.argmax())}; check the geometry,"
+        " the pose at the start and the sign of the motor angles (positive winds in)"
+    )

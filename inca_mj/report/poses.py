@@ -1,0 +1,189 @@
+"""What the kinematics say: JSON, text and sections of one pose and of poses along a log."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from identification.files import write_text
+from identification.report.page import Section, Table
+from inca_mj.kinematics.inverse_geometry import Cables
+from inca_mj.kinematics.jacobians import condition, jacobian, rank
+from inca_mj.report.poses_figures import cables_figure, poses_figure
+from inca_mj.robot.geometry import Geometry
+from inca_mj.twin.logs import POSE
+from inca_mj.workflows.poses import LogPoses
+
+INSIDE = 1.96  # std on each side that hold 95 % of a Gaussian
+
+
+def cables_json(pose: np.ndarray, cables: Cables) -> dict[str, Any]:
+    """A pose and its cables as plain values.
+
+    Args:
+        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
+        cables: of that pose.
+    """
+    number = condition(cables)
+    return {
+        "pose": pose.tolist(),
+        "lengths": cables.lengths.tolist(),
+        "directions": cables.directions.tolist(),
+        "cable_angles": cables.angles.tolist(),
+        "wraps": cables.wraps.tolist(),
+        "jacobian": jacobian(cables).tolist(),
+        "rank": rank(cables),
+        "condition": number if np.isfinite(number) else None,
+    }
+
+
+def cables_verdict(cables: Cables, geometry: Geometry) -> list[str]:
+    """What the Jacobian says of a pose, in sentences."""
+    said = []
+    if rank(cables) < 6:
+        said.append(
+            f"The lengths do not tell this pose: the Jacobian has rank {rank(cables)} of 6, so that"
+            " the platform can move without a change of any length."
+        )
+    else:
+        said.append(
+            "The lengths tell this pose: the Jacobian has rank 6 and the condition number"
+            f" {condition(cables):.3g} (angles counted at the distance of the connectors)."
+        )
+    if geometry.assumed:
+        said.append(f"The geometry is assumed ({geometry.source}).")
+    return said
+
+
+def cables_rows(cables: Cables) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """A table of the cables: heading and a row for each."""
+    head = ("cable", "length [m]", "direction", "φ [deg]", "θ [deg]")
+    rows = [
+        (
+            str(k + 1),
+            f"{cables.lengths[k]:.5f}",
+            " ".join(f"{x:+.4f}" for x in cables.directions[k]),
+            *(f"{x:.2f}" for x in np.degrees(cables.angles[k])),
+        )
+        for k in range(len(cables.lengths))
+    ]
+    return head, rows
+
+
+def cables_section(pose: np.ndarray, cables: Cables, geometry: Geometry) -> Section:
+    """The cables of a pose: picture and table."""
+    head, rows = cables_rows(cables)
+    place = ", ".join(f"{name} {x:g}" for name, x in zip(POSE, pose, strict=True))
+    return Section(
+        "The cables of the pose",
+        f"Pose: {place} [m, rad]. φ and θ are the Euler angles of the cable (thesis 2.9, 2.10).",
+        figures=(("Cables in space", cables_figure(pose, cables, geometry)),),
+        table=Table(head, tuple(rows)),
+    )
+
+
+def poses_json(found: LogPoses) -> dict[str, Any]:
+    """Poses along a log as plain values."""
+    return {
+        "samples": len(found.log),
+        "encoder_std": found.encoder.tolist(),
+        "length_error": found.length_error,
+        "tension_error": found.tension_error,
+        "force_error": found.force_error,
+        "slack_samples": int((~found.taut.all(axis=1)).sum()),
+        "mean_std": found.std.mean(axis=0).tolist(),
+        "mean_noise_std": found.noise_std.mean(axis=0).tolist(),
+        "measured": _measured(found),
+        "time": found.log.time.tolist(),
+        "pose": found.pose.tolist(),
+        "std": found.std.tolist(),
+        "tension": found.tension.tolist(),
+    }
+
+
+def poses_verdict(found: LogPoses) -> list[str]:
+    """What the poses are worth, in sentences."""
+    length, angle = 1e6 * found.std[:, :3].mean(), 1e3 * found.std[:, 3:].mean()
+    said = [
+        f"The mean std is {length:.0f} µm of the position and {angle:.2f} mrad of the angles.",
+        f"The motors' balances leave {found.tension_error:.2g} N of each tension open, and the"
+        f" neglected acceleration of the platform is worth {found.force_error:.2g} N.",
+    ]
+    encoder = float(found.encoder_length.mean())
+    if found.length_error > 0:
+        said.append(
+            f"The lengths disagree by {1e3 * found.length_error:.2g} mm, far more than the"
+            f" encoders' {1e3 * encoder:.2g} mm: geometry, start pose or parameters are not those"
+            " of this robot; inca calibrate finds them."
+        )
+    slack = int((~found.taut.all(axis=1)).sum())
+    if slack:
+        said.append(
+            f"In {slack} samples a cable is slack; its motor says nothing of the pose there."
+        )
+    against = _measured(found)
+    if against is not None:
+        inside = 100 * np.mean(against["inside_95"])
+        rms = np.array(against["rms"])
+        said.append(
+            f"Against the pose in the log the rms error is {1e6 * rms[:3].max():.0f} µm and"
+            f" {1e3 * rms[3:].max():.2f} mrad at the worst axis; {inside:.0f} % of the errors lie"
+            " within the 95 % intervals."
+        )
+    if np.allclose(found.std, found.noise_std):
+        said.append("The parameters are taken as exact; --std says how well they are known.")
+    return said
+
+
+def poses_section(found: LogPoses) -> Section:
+    """Poses along a log: figure and table."""
+    against = _measured(found)
+    columns: tuple[str, ...] = ("coordinate", "unit", "mean std", "of it noise")
+    rows: list[tuple[object, ...]] = []
+    for k, name in enumerate(POSE):
+        std, noise = found.std[:, k].mean(), found.noise_std[:, k].mean()
+        row: tuple[object, ...] = (name, "m" if k < 3 else "rad", float(std), float(noise))
+        if against is not None:
+            row += (against["rms"][k], 100 * against["inside_95"][k])
+        rows.append(row)
+    if against is not None:
+        columns += ("rms error", "within 95 % interval [%]")
+    return Section(
+        "The pose along the log",
+        f"{len(found.log)} samples, each by weighted least squares of cable lengths, balances of"
+        " the motors and balance of the platform (docs/kinematics.md). poses.csv has all samples.",
+        figures=(("Pose and its std", poses_figure(found)),),
+        table=Table(columns, tuple(rows)),
+    )
+
+
+def write_poses(found: LogPoses, path: Path) -> Path:
+    """Write poses, their std and the tensions as CSV; returns the path.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    drives = range(1, found.tension.shape[1] + 1)
+    names = [
+        "time", *POSE, *(f"std_{name}" for name in POSE),
+        *(f"tension_{k}" for k in drives), *(f"std_tension_{k}" for k in drives),
+    ]  # fmt: skip
+    table = np.column_stack(
+        [found.log.time, found.pose, found.std, found.tension, found.tension_std]
+    )
+    lines = [",".join(names), *(",".join(f"{x:.10g}" for x in row) for row in table)]
+    return write_text(path, "\n".join(lines) + "\n")
+
+
+def _measured(found: LogPoses) -> dict[str, Any] | None:
+    """Errors against the pose in the log, where it has one."""
+    if found.measured is None:
+        return None
+    error = found.pose - found.measured
+    inside = np.abs(error) <= INSIDE * found.std
+    return {
+        "rms": np.sqrt(np.mean(error**2, axis=0)).tolist(),
+        "inside_95": inside.mean(axis=0).tolist(),
+    }

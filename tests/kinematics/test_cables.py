@@ -1,0 +1,177 @@
+"""Lengths, rates and accelerations against MuJoCo, the reference and differences."""
+
+import mujoco
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from kinematics_cases import FLAT, INSIDE, TWIST
+
+from identification.errors import InputError
+from inca_mj.kinematics import (
+    Pulleys,
+    accelerations,
+    condition,
+    inverse,
+    jacobian,
+    jacobian_rate,
+    length_jacobian,
+    pose_rate_matrix,
+    quaternion,
+    rank,
+    rates,
+    rotation,
+)
+from inca_mj.reference import kinematics as reference
+from inca_mj.robot.geometry import INCA
+from inca_mj.twin.twin import build_twin
+
+PULLEYS = (None, Pulleys(0.03), Pulleys((0.01, 0.02, 0.03, 0.04) * 2, over=True))
+
+
+@pytest.fixture(scope="module")
+def model():
+    return build_twin().model
+
+
+def in_mujoco(model, pose, twist):
+    """Lengths and their rates; MuJoCo turns the platform about its own axes."""
+    data = mujoco.MjData(model)
+    data.qpos[:7] = [*pose[:3], *quaternion(*pose[3:])]
+    data.qvel[:6] = [*twist[:3], *(rotation(*pose[3:]).T @ twist[3:])]
+    data.act[:] = model.key("start").act
+    mujoco.mj_fwdPosition(model, data)
+    mujoco.mj_fwdVelocity(model, data)
+    return data.ten_length.copy(), data.ten_velocity.copy()
+
+
+@settings(max_examples=25, deadline=None)
+@given(INSIDE, TWIST)
+def test_lengths_and_their_rates_are_those_of_the_twin(model, pose, twist):
+    there = inverse(pose, INCA)
+    d, d_rate = in_mujoco(model, pose, twist)
+    np.testing.assert_allclose(there.lengths, d, rtol=1e-12)
+    np.testing.assert_allclose(rates(there, twist).lengths, d_rate, atol=1e-11)
+    np.testing.assert_allclose(jacobian(there) @ twist, d_rate, atol=1e-11)
+    np.testing.assert_allclose(
+        jacobian(there), length_jacobian(pose[:3], rotation(*pose[3:]), INCA), atol=1e-15
+    )
+
+
+def differences(function, pose, twist, h=2e-3):
+    """Central differences of order 4 along a motion of constant twist."""
+
+    def at(t):
+        # a constant twist along O: the angles follow it, integrated by RK4 in ten steps
+        now, n = pose.copy(), 10
+        for _ in range(n):
+            k = []
+            for part in (0, 0.5, 0.5, 1):
+                shifted = now + (part * t / n * k[-1] if k else 0)
+                k.append(pose_rate_matrix(shifted) @ twist)
+            now = now + t / n * (k[0] + 2 * k[1] + 2 * k[2] + k[3]) / 6
+        return function(now)
+
+    return (at(-2 * h) - 8 * at(-h) + 8 * at(h) - at(2 * h)) / (12 * h)
+
+
+@settings(max_examples=10, deadline=None)
+@given(INSIDE, TWIST)
+def test_the_acceleration_of_lengths_is_the_difference_of_the_twins_rates(model, pose, twist):
+    there = inverse(pose, INCA)
+    numeric = differences(lambda p: in_mujoco(model, p, twist)[1], pose, twist)
+    scale = 1 + np.abs(numeric).max()
+    found = accelerations(there, twist, np.zeros(6))
+    np.testing.assert_allclose(found.lengths, numeric, atol=1e-8 * scale)
+    np.testing.assert_allclose(jacobian_rate(there, twist) @ twist, numeric, atol=1e-8 * scale)
+
+
+@settings(max_examples=30, deadline=None)
+@given(INSIDE, TWIST, TWIST)
+def test_all_rates_are_those_of_the_reference(pose, twist, change):
+    there = inverse(pose, INCA)
+    same = reference.geometric(pose[:3], reference.rotation(pose[3:]), INCA)
+    np.testing.assert_allclose(there.directions, same.directions, atol=1e-14)
+    np.testing.assert_allclose(there.angles, same.angles, atol=1e-13)
+    np.testing.assert_allclose(there.frames, same.frames, atol=1e-13)
+    moved = reference.velocity(same, twist[:3], twist[3:])
+    ours = rates(there, twist)
+    np.testing.assert_allclose(ours.connectors, moved.connectors, atol=1e-14)
+    np.testing.assert_allclose(ours.turns, moved.turns, atol=1e-12)
+    turned = reference.acceleration(same, moved, change[:3], twist[3:], change[3:])
+    found = accelerations(there, twist, change)
+    np.testing.assert_allclose(found.connectors, turned.connectors, atol=1e-12)
+    np.testing.assert_allclose(found.lengths, turned.lengths, atol=1e-12)
+    np.testing.assert_allclose(found.turns, turned.turns, atol=1e-12)
+    d_rate_rate = jacobian(there) @ change + jacobian_rate(there, twist) @ twist
+    np.testing.assert_allclose(found.lengths, d_rate_rate, atol=1e-12)
+
+
+@pytest.mark.parametrize("pulleys", PULLEYS)
+def test_jacobian_and_its_rate_are_differences_also_over_pulleys(pulleys):
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        pose = rng.uniform([-0.5, -0.5, 0.8, -0.4, -0.4, -0.4], [0.5, 0.5, 2.2, 0.4, 0.4, 0.4])
+        twist = rng.normal(0, 1, 6)
+        there = inverse(pose, INCA, pulleys)
+        d_rate = differences(lambda p: inverse(p, INCA, pulleys).lengths, pose, twist)
+        np.testing.assert_allclose(jacobian(there) @ twist, d_rate, atol=1e-8)
+        L_rate = differences(lambda p: jacobian(inverse(p, INCA, pulleys)), pose, twist)
+        np.testing.assert_allclose(jacobian_rate(there, twist), L_rate, atol=1e-8)
+
+
+def test_many_poses_are_done_at_once_as_one_by_one():
+    rng = np.random.default_rng(1)
+    poses = rng.uniform(
+        [-0.5, -0.5, 1, -0.4, -0.4, -0.4], 0.5 + np.array([0, 0, 1, 0, 0, 0]), (7, 6)
+    )
+    twists = rng.normal(0, 1, (7, 6))
+    for pulleys in PULLEYS:
+        together = inverse(poses, INCA, pulleys)
+        for k, (pose, twist) in enumerate(zip(poses, twists, strict=True)):
+            alone = inverse(pose, INCA, pulleys)
+            np.testing.assert_allclose(together.lengths[k], alone.lengths, rtol=1e-15)
+            np.testing.assert_allclose(
+                rates(together, twists).turns[k], rates(alone, twist).turns, atol=1e-14
+            )
+            np.testing.assert_allclose(
+                jacobian_rate(together, twists)[k], jacobian_rate(alone, twist), atol=1e-14
+            )
+
+
+def test_a_flat_robot_has_rank_three_and_no_condition():
+    there = inverse(np.array([0.1, 0.2, 1.0, 0, 0, 0.3]), FLAT)
+    assert rank(there) == 3
+    assert condition(there) == np.inf
+    assert rank(inverse(np.array([0, 0, 1.43, 0, 0, 0]), INCA)) == 6
+
+
+def test_the_condition_does_not_depend_on_the_unit_of_length():
+    from dataclasses import replace
+
+    pose = np.array([0.1, -0.2, 1.2, 0.1, 0.2, 0.3])
+    tenth = replace(
+        INCA,
+        exits=tuple(map(tuple, INCA.A / 10)),
+        connectors=tuple(map(tuple, INCA.B / 10)),
+    )
+    scaled = pose * [0.1, 0.1, 0.1, 1, 1, 1]
+    assert condition(inverse(scaled, tenth)) == pytest.approx(condition(inverse(pose, INCA)))
+
+
+@pytest.mark.parametrize(
+    ("pose", "words"),
+    [
+        ([0, 0, 1.43], "six finite numbers"),
+        ([0, 0, np.nan, 0, 0, 0], "six finite numbers"),
+        ([1.5, 1.45, 0.1, 0, 0, 0], "cable 1 has no length"),
+    ],
+)
+def test_a_pose_that_is_none_is_refused(pose, words):
+    with pytest.raises(InputError, match=words):
+        inverse(pose, INCA)
+
+
+def test_accelerations_over_pulleys_are_refused():
+    there = inverse(np.array([0, 0, 1.43, 0, 0, 0]), INCA, Pulleys(0.02))
+    with pytest.raises(InputError, match="jacobian_rate"):
+        accelerations(there, np.zeros(6), np.zeros(6))
