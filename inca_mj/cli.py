@@ -17,6 +17,7 @@ from inca_mj.commands.discover import Discover
 from inca_mj.commands.excite import Excite
 from inca_mj.commands.film import Film
 from inca_mj.commands.identify import Identify
+from inca_mj.commands.linearize import Linearize
 from inca_mj.commands.sensitivity import Sensitivity
 from inca_mj.commands.simulate import Simulate
 from inca_mj.commands.trials import Trials
@@ -30,6 +31,7 @@ Command = (
     | Annotated[Discover, tyro.conf.subcommand("discover")]
     | Annotated[Sensitivity, tyro.conf.subcommand("sensitivity")]
     | Annotated[Excite, tyro.conf.subcommand("excite")]
+    | Annotated[Linearize, tyro.conf.subcommand("linearize")]
     | Annotated[Trials, tyro.conf.subcommand("trials")]
     | Annotated[Film, tyro.conf.subcommand("film")]
     | Annotated[Demo, tyro.conf.subcommand("demo")]

@@ -204,7 +204,10 @@ def check_axis(name: str, points: np.ndarray, fewest: int) -> None:
     if points.ndim != 1 or not np.isfinite(points).all() or not (np.diff(points) > 0).all():
         raise InputError(f"the points of {name} must be finite numbers that rise; got {points}")
     if len(points) < fewest:
-        raise InputError(f"the grid has {len(points)} points of {name}; it needs {fewest} or more")
+        raise InputError(
+            f"the grid has {len(points)} points of {name}; its interpolation needs {fewest} or more"
+            f" ({', '.join(f'{method} {n}' for method, n in FEWEST.items())})"
+        )
 
 
 def gridded(

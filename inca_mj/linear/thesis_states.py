@@ -37,9 +37,9 @@ UNITS = (*["m"] * 3, *["m/s"] * 3, *["rad"] * 3, *["rad/s"] * 3,
 LEAST_COSINE = 1e-3  # of pitch, below which Euler angles turn too fast
 
 # Where each quantity is in δx and in δz.
-_P, _TURN, _ANGLE = slice(0, 3), slice(3, 6), slice(6, 14)
+POSITION, _TURN, _ANGLE = slice(0, 3), slice(3, 6), slice(6, 14)
 _V, _OMEGA, _SPEED, _ACT = slice(14, 17), slice(17, 20), slice(20, 28), 28
-_V_BODY, _EULER, _RATES = slice(3, 6), slice(6, 9), slice(9, 12)
+_V_BODY, EULER, _RATES, PLATFORM = slice(3, 6), slice(6, 9), slice(9, 12), slice(0, 12)
 _ANGLES, _SPEEDS, NO_LOAD = slice(12, 20), slice(20, 28), slice(28, 36)
 
 
@@ -94,17 +94,17 @@ def _one(system: LinearSystem, qpos: np.ndarray, own: int, names: tuple[str, ...
     v̇_B = Rᵀ @ v̇ - np.cross(ω, v_B)
     n = len(system.x)
     T, Ṫ = np.zeros((n, n)), np.zeros((n, n))
-    T[_P, _P] = np.eye(3)
+    T[POSITION, POSITION] = np.eye(3)
     T[_V_BODY, _V], T[_V_BODY, _TURN] = Rᵀ, _cross(v_B)
-    T[_EULER, _TURN], T[_RATES, _OMEGA] = J, np.eye(3)
+    T[EULER, _TURN], T[_RATES, _OMEGA] = J, np.eye(3)
     T[_ANGLES, _ANGLE] = T[_SPEEDS, _SPEED] = np.eye(DRIVES)
     T[np.arange(_ACT, n), _ACT + _activations(own)] = 1
     Ṫ[_V_BODY, _V], Ṫ[_V_BODY, _TURN] = -_cross(ω) @ Rᵀ, _cross(v̇_B)
-    Ṫ[_EULER, _TURN] = _euler_rates_change(e, J @ ω)
+    Ṫ[EULER, _TURN] = _euler_rates_change(e, J @ ω)
     back = np.linalg.inv(T)
     x, rate = T @ system.x, T @ system.rate
-    x[_V_BODY], x[_EULER] = v_B, e
-    rate[_V_BODY], rate[_EULER] = v̇_B, J @ ω
+    x[_V_BODY], x[EULER] = v_B, e
+    rate[_V_BODY], rate[EULER] = v̇_B, J @ ω
     return replace(
         system, A=(T @ system.A + Ṫ) @ back, B=T @ system.B, C=system.C @ back,
         states=names, x=x, rate=rate,
