@@ -23,6 +23,7 @@ from identification.linear.export import ARRAYS, NAMES, names_of, read_arrays, w
 from identification.linear.system import LinearSystem, held_for, sampling_time_of
 
 FEWEST = {"linear": 2, "cubic": 4}  # points of an axis
+DEGREE = {"linear": 1, "cubic": 3}
 _AXIS = "axis_"
 
 
@@ -31,7 +32,7 @@ class GriddedSystem:
     """Continuous systems on a grid of k scheduling variables with n₁ × … × n_k points.
 
     Attributes:
-        axes: points of each scheduling variable by its name, in order and rising, in its unit.
+        axes: points of each scheduling variable by its name, each shape (n_j,), rising, in its unit.
         A: shape (n₁, …, n_k, nx, nx), in the units of a `LinearSystem`, as all below.
         B: shape (n₁, …, n_k, nx, nu), in these units.
         C: shape (n₁, …, n_k, ny, nx), in these units.
@@ -75,16 +76,12 @@ class GriddedSystem:
 
         Most entries of the matrices are the same everywhere; they are left out.
         """
-        from scipy.interpolate import RegularGridInterpolator
-
         k = len(self.axes)
         every = [getattr(self, name) for name in ARRAYS]
         flat = np.concatenate([a.reshape(*a.shape[:k], -1) for a in every], axis=-1)
         first = flat.reshape(-1, flat.shape[-1])[0]
         varies = (flat != first).reshape(-1, len(first)).any(axis=0)
-        axes = tuple(self.axes.values())
-        function = RegularGridInterpolator(axes, flat[..., varies], method=self.method)
-        return first, varies, function
+        return first, varies, spline(tuple(self.axes.values()), flat[..., varies], self.method)
 
     def at(self, point: Mapping[str, float]) -> LinearSystem:
         """The interpolated system at one point.
@@ -97,7 +94,7 @@ class GriddedSystem:
         """
         first, varies, function = self._packed
         flat = first.copy()
-        flat[varies] = function(self.place(point))[0]
+        flat[varies] = function(self.place(point))
         shapes = {name: getattr(self, name).shape[len(self.axes) :] for name in ARRAYS}
         ends = np.cumsum([int(np.prod(shape)) for shape in shapes.values()])
         parts = zip(shapes.items(), np.split(flat, ends[:-1]), strict=True)
@@ -187,6 +184,27 @@ class GriddedSystem:
             {**{name: getattr(self, name) for name in ARRAYS}, **names_of(self), **axes,
              "scheduling": tuple(self.axes), "method": np.array(self.method)},
         )  # fmt: skip
+
+
+def spline(axes: Sequence[np.ndarray], values: np.ndarray, method: str) -> Any:
+    """The tensor-product spline through values on a grid, as a function of points (M, k).
+
+    It is solved axis by axis, exactly; `RegularGridInterpolator` solves cubic splines by an
+    iteration that leaves a relative error of 1e-6.
+
+    Args:
+        axes: points of each axis, each of shape (n_j,), in its unit.
+        values: shape (n₁, …, n_k, numbers), in their units.
+        method: "linear" or "cubic".
+    """
+    from scipy.interpolate import NdBSpline, make_interp_spline
+
+    knots, coefficients = [], values
+    for k, points in enumerate(axes):
+        along = make_interp_spline(points, np.moveaxis(coefficients, k, 0), k=DEGREE[method])
+        knots.append(along.t)
+        coefficients = np.moveaxis(along.c, 0, k)
+    return NdBSpline(tuple(knots), np.ascontiguousarray(coefficients), DEGREE[method])
 
 
 def check_axis(name: str, points: np.ndarray, fewest: int) -> None:

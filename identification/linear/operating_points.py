@@ -38,6 +38,9 @@ class OperatingPoints:
         act: activations, shape (M, na), in the units of their actuators.
         inputs: shape (M, nu), in the units of the model's controls.
         time: shape (M,) [s].
+
+    Raises:
+        InputError: a shape does not fit the model.
     """
 
     model: mujoco.MjModel
@@ -70,6 +73,7 @@ def at_rest(
 
     Raises:
         InputError: the inputs have another shape, or no rest is near the start.
+        DivergenceError: the accelerations at the start are not finite.
     """
     u = np.zeros(model.nu) if inputs is None else np.asarray(inputs, float)
     if u.shape != (model.nu,) or not np.isfinite(u).all():

@@ -84,6 +84,7 @@ def interpolation_errors(
 
     Raises:
         InputError: the robot cannot be held at one of them.
+        DivergenceError: the accelerations are not finite.
     """
     out = []
     for point in random_points(grid, points, seed):

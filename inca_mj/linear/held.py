@@ -41,6 +41,7 @@ def held_at(robot: Twin, poses: Sequence[Sequence[float]]) -> OperatingPoints:
     Raises:
         InputError: a pose is not six numbers within the robot's bounds, a cable would have to push
             there, or the cables cannot hold the platform.
+        DivergenceError: the accelerations are not finite.
     """
     starts = [_start(robot, pose) for pose in poses]
     own = robot.start

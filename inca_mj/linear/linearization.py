@@ -133,6 +133,7 @@ def linearize_grid(
     Raises:
         InputError: an axis is unknown, does not rise or has too few points, or the robot cannot be
             held at a point of the grid.
+        DivergenceError: the accelerations are not finite.
     """
     if method not in FEWEST:
         raise unknown_name("interpolation", method, FEWEST)
