@@ -9,7 +9,6 @@ docs/linearisation_grid.png; docs/linearisation.md tells the numbers.
 from __future__ import annotations
 
 import json
-import platform
 import sys
 from collections.abc import Callable
 from functools import partial
@@ -81,7 +80,7 @@ def milliseconds(call: Callable[[], object]) -> dict[str, float]:
 def main() -> None:
     quick = "--quick" in sys.argv
     robot = build_twin(visual=False)
-    record: dict[str, object] = {"span": SPAN, "points": POINTS, "machine": platform.platform()}
+    record: dict[str, object] = {"span": SPAN, "points": POINTS}
     grids, table, lines = {}, [], {}
     for method in ("linear", "cubic"):
         for n in (5, 9) if quick else (5, 7, 9, 13):
