@@ -32,7 +32,7 @@ class GriddedSystem:
     """Continuous systems on a grid of k scheduling variables with n₁ × … × n_k points.
 
     Attributes:
-        axes: points of each scheduling variable by its name, each shape (n_j,), rising, in its unit.
+        axes: rising points of each scheduling variable by its name, shape (n_j,), in its unit.
         A: shape (n₁, …, n_k, nx, nx), in the units of a `LinearSystem`, as all below.
         B: shape (n₁, …, n_k, nx, nu), in these units.
         C: shape (n₁, …, n_k, ny, nx), in these units.
