@@ -55,6 +55,22 @@ _PUBLIC = {
     "candidates": "effects.joint_plant",
     "read_model": "effects.rows",
     "places": "effects.places",
+    # linear models
+    "LinearSystem": "linear.system",
+    "OperatingPoints": "linear.operating_points",
+    "at_rest": "linear.operating_points",
+    "along_log": "linear.operating_points",
+    "operating_points": "robot.linearization",
+    "linearize": "linear.linearization",
+    "minimal": "linear.minimal",
+    "Minimal": "linear.minimal",
+    "modes": "linear.modes",
+    "Mode": "linear.modes",
+    "save_system": "linear.export",
+    "load_system": "linear.export",
+    "GriddedSystem": "linear.gridded",
+    "gridded": "linear.gridded",
+    "load_grid": "linear.gridded",
     # values from a log
     "estimate": "estimation.estimation",
     "Estimate": "estimation.estimation",
@@ -149,6 +165,20 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.estimation.residuals import residual_tests as residual_tests
     from identification.kalman.estimate import InnovationsFit as InnovationsFit
     from identification.kalman.estimate import estimate_innovations as estimate_innovations
+    from identification.linear.export import load_system as load_system
+    from identification.linear.export import save_system as save_system
+    from identification.linear.gridded import GriddedSystem as GriddedSystem
+    from identification.linear.gridded import gridded as gridded
+    from identification.linear.gridded import load_grid as load_grid
+    from identification.linear.linearization import linearize as linearize
+    from identification.linear.minimal import Minimal as Minimal
+    from identification.linear.minimal import minimal as minimal
+    from identification.linear.modes import Mode as Mode
+    from identification.linear.modes import modes as modes
+    from identification.linear.operating_points import OperatingPoints as OperatingPoints
+    from identification.linear.operating_points import along_log as along_log
+    from identification.linear.operating_points import at_rest as at_rest
+    from identification.linear.system import LinearSystem as LinearSystem
     from identification.logs.decimation import decimate as decimate
     from identification.logs.irregular import on_a_grid as on_a_grid
     from identification.logs.log import Log as Log
@@ -179,6 +209,7 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.robot.discovery import discover as discover
     from identification.robot.fitting import RobotFit as RobotFit
     from identification.robot.fitting import fit as fit
+    from identification.robot.linearization import operating_points as operating_points
     from identification.robot.reading import read_robot as read_robot
     from identification.robot.record_error import Confirmation as Confirmation
     from identification.robot.robot import Robot as Robot

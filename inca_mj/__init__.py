@@ -33,6 +33,16 @@ _PUBLIC = {
     "run_to_log": "twin.logs",
     "load_environment": "twin.control",
     "CONTROL_TIMESTEP": "twin.control",
+    # the twin linearised
+    "linearize": "linear.linearization",
+    "linearize_along": "linear.linearization",
+    "linearize_grid": "linear.linearization",
+    "LinearModel": "linear.linearization",
+    "held_at": "linear.held",
+    "interpolation_errors": "linear.accuracy",
+    "InterpolationError": "linear.accuracy",
+    "run_error": "linear.accuracy",
+    "RunError": "linear.accuracy",
     # effects that it may lack
     "CATALOGUE": "effects.catalogue",
     "DRIVES_EACH": "effects.hooks",
@@ -77,6 +87,15 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.kinematics.jacobians import length_jacobian as length_jacobian
     from inca_mj.kinematics.rotations import euler as euler
     from inca_mj.kinematics.rotations import rotation as rotation
+    from inca_mj.linear.accuracy import InterpolationError as InterpolationError
+    from inca_mj.linear.accuracy import RunError as RunError
+    from inca_mj.linear.accuracy import interpolation_errors as interpolation_errors
+    from inca_mj.linear.accuracy import run_error as run_error
+    from inca_mj.linear.held import held_at as held_at
+    from inca_mj.linear.linearization import LinearModel as LinearModel
+    from inca_mj.linear.linearization import linearize as linearize
+    from inca_mj.linear.linearization import linearize_along as linearize_along
+    from inca_mj.linear.linearization import linearize_grid as linearize_grid
     from inca_mj.rendering.film import film as film
     from inca_mj.rendering.film import stills as stills
     from inca_mj.rendering.scene import Scene as Scene

@@ -18,6 +18,7 @@ from inca_mj.commands.excite import Excite
 from inca_mj.commands.film import Film
 from inca_mj.commands.identify import Identify
 from inca_mj.commands.kinematics import Kinematics
+from inca_mj.commands.linearize import Linearize
 from inca_mj.commands.sensitivity import Sensitivity
 from inca_mj.commands.simulate import Simulate
 from inca_mj.commands.trials import Trials
@@ -32,6 +33,7 @@ Command = (
     | Annotated[Kinematics, tyro.conf.subcommand("kinematics")]
     | Annotated[Sensitivity, tyro.conf.subcommand("sensitivity")]
     | Annotated[Excite, tyro.conf.subcommand("excite")]
+    | Annotated[Linearize, tyro.conf.subcommand("linearize")]
     | Annotated[Trials, tyro.conf.subcommand("trials")]
     | Annotated[Film, tyro.conf.subcommand("film")]
     | Annotated[Demo, tyro.conf.subcommand("demo")]

@@ -1,4 +1,4 @@
-"""python -m identification: fit any robot, and find what its model lacks."""
+"""python -m identification: fit any robot, find what its model lacks, and linearise it."""
 
 from __future__ import annotations
 
@@ -10,11 +10,13 @@ import tyro
 
 from identification.commands.discover import Discover
 from identification.commands.fit import Fit
+from identification.commands.linearize import Linearize
 from identification.commands.program import run_program
 
 Command = (
     Annotated[Fit, tyro.conf.subcommand("fit")]
     | Annotated[Discover, tyro.conf.subcommand("discover")]
+    | Annotated[Linearize, tyro.conf.subcommand("linearize")]
 )
 EXAMPLES = (
     "python -m identification fit robot.toml log.csv",
@@ -25,5 +27,5 @@ EXAMPLES = (
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
     os.environ.setdefault("MUJOCO_GL", "disable")  # nothing here draws with OpenGL
-    what = "Fit the parameters of any MJCF to a log, and find what it lacks."
+    what = "Fit the parameters of any MJCF to a log, find what it lacks, and linearise it."
     return run_program(Command, "identification", what, arguments, EXAMPLES)

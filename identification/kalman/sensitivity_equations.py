@@ -18,9 +18,10 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from identification.kalman.derivatives import Points
 from identification.kalman.linear import Linearisation, tangent_index
-from identification.kalman.trajectory import Trajectory, average_inputs, with_numbers
+from identification.kalman.trajectory import Trajectory, average_inputs
+from identification.linear.derivatives import Points
+from identification.model.numbers import with_numbers
 from identification.model.predictor import Predictor, output_columns
 from identification.model.protocol import with_states
 from identification.model.rollout import hold, substeps

@@ -9,14 +9,14 @@ motor varies faster, and takes more points.
 
 from __future__ import annotations
 
-import copy
 from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
 
-from identification.model.predictor import Numbers, Predictor
-from identification.model.rollout import UNDERIVED, hold, rollout, substeps, without_sensors
+from identification.model.numbers import with_numbers
+from identification.model.predictor import Predictor
+from identification.model.rollout import hold, rollout, substeps, without_sensors
 
 # Intervals of a sample, where the step of the simulation allows as many: a state of the rate
 # 100 1/s that is sampled at 100 Hz changes by half over one of them.
@@ -102,7 +102,7 @@ def follow(predictor: Predictor, values: np.ndarray, points: int) -> Trajectory:
     middle = (steps[1:] + steps[:-1]) / 2
     at = {field: _between(x, middle) for field, x in states.items()}
     return Trajectory(
-        model=with_numbers(model, numbers, 0),
+        model=with_numbers(without_sensors(model), numbers, 0),
         qpos=at["qpos"],
         qvel=at["qvel"],
         act=at.get("act", np.empty((len(middle), 0))),
@@ -144,23 +144,3 @@ def average_inputs(held: np.ndarray, steps: np.ndarray, nu: int) -> np.ndarray:
     mean = np.add.reduceat(each, steps[:-1], axis=1) / np.diff(steps)[:, None]
     rest = np.zeros((*mean.shape[:2], nu - mean.shape[2]))
     return np.concatenate([mean, rest], axis=2)
-
-
-def with_numbers(
-    model: mujoco.MjModel, numbers: Numbers, row: int, like: int | None = None
-) -> mujoco.MjModel:
-    """A copy of a model with the numbers of one value set, without its sensors.
-
-    Args:
-        model: the model.
-        numbers: slots and their values, one for each value set.
-        row: which value set.
-        like: a value set that the model has already; only what differs from it is written.
-    """
-    new = [(slot, v[row]) for slot, v in numbers if like is None or v[row] != v[like]]
-    out = copy.copy(without_sensors(model))
-    for slot, value in new:
-        getattr(out, slot.field)[slot.index()] = value
-    if not all(slot.field in UNDERIVED for slot, _ in new):
-        mujoco.mj_setConst(out, mujoco.MjData(out))
-    return out

@@ -16,11 +16,12 @@ from identification.discovery.scoring.sensitivities import (
 )
 from identification.effects.effect import Candidate
 from identification.kalman.columns import do_equations_hold
-from identification.kalman.derivatives import shift_position, state_derivatives
+from identification.kalman.derivatives import state_derivatives
 from identification.kalman.linear import linearise_records
 from identification.kalman.point import evaluate_point, shift_point
 from identification.kalman.sensitivity_equations import can_solve, solve_sensitivities
 from identification.kalman.trajectory import COARSE, FINE, follow
+from identification.linear.derivatives import shift_position
 from identification.logs.joined import join_logs
 from identification.model.coordinates import coordinates
 from identification.model.own import with_own

@@ -1,0 +1,112 @@
+"""A linear system in files: `.npz` for Python, `.mat` for MATLAB.
+
+Both have the variables A, B, C, D, x, u, y, rate, states, inputs, outputs and Ts, which is 0 for a
+continuous system. In MATLAB:
+
+    s = load('system.mat'); sys = ss(s.A, s.B, s.C, s.D, s.Ts);
+    set(sys, 'StateName', s.states, 'InputName', s.inputs, 'OutputName', s.outputs)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.files import whole_file
+from identification.linear.system import LinearSystem
+
+NAMES = ("states", "inputs", "outputs")
+ARRAYS = ("A", "B", "C", "D", "x", "u", "y", "rate")
+FORMATS = (".npz", ".mat")
+
+
+def save_system(system: LinearSystem, path: str | Path) -> Path:
+    """Write a system to a file whose name ends in .npz or .mat; returns the path.
+
+    Args:
+        system: continuous or discrete.
+        path: where to write.
+
+    Raises:
+        InputError: the name ends otherwise, or the file cannot be written.
+    """
+    arrays = {name: getattr(system, name) for name in ARRAYS}
+    return write_arrays(
+        path, {**arrays, **names_of(system), "Ts": np.array(system.sampling_time or 0.0)}
+    )
+
+
+def names_of(system: Any) -> dict[str, Any]:
+    """The names of states, inputs and outputs of a system or of a grid of systems."""
+    return {name: getattr(system, name) for name in NAMES}
+
+
+def load_system(path: str | Path) -> LinearSystem:
+    """Read a system that `save_system` wrote as .npz.
+
+    Args:
+        path: of the file.
+
+    Raises:
+        InputError: there is no such file, or it is no such system.
+    """
+    content = read_arrays(path, (*ARRAYS, *NAMES, "Ts"), "a system of save_system")
+    Ts = float(content["Ts"])
+    arrays: dict[str, Any] = {name: content[name] for name in ARRAYS}
+    names: dict[str, Any] = {name: tuple(content[name].tolist()) for name in NAMES}
+    return LinearSystem(**arrays, **names, sampling_time=Ts or None)
+
+
+def write_arrays(path: str | Path, content: Mapping[str, Any]) -> Path:
+    """Write arrays and tuples of names as .npz or .mat, whole or not at all; returns the path.
+
+    Args:
+        path: where to write; its end is the format.
+        content: by name of variable.
+
+    Raises:
+        InputError: the name ends otherwise, or the file cannot be written.
+    """
+    path = Path(path)
+    if path.suffix not in FORMATS:
+        raise InputError(f"{path.name} does not end in {' or '.join(FORMATS)}; name it so")
+    with whole_file(path) as draft, draft.open("wb") as stream:
+        if path.suffix == ".npz":
+            arrays: dict[str, Any] = {name: np.asarray(v) for name, v in content.items()}
+            np.savez_compressed(stream, **arrays)
+        else:
+            from scipy.io import savemat
+
+            # A cell of texts in MATLAB is an array of objects here.
+            cells = {
+                name: np.array(v, object)[:, None] if isinstance(v, tuple) else v
+                for name, v in content.items()
+            }
+            savemat(stream, cells, oned_as="column", long_field_names=True)
+    return path
+
+
+def read_arrays(path: str | Path, names: tuple[str, ...], what: str) -> dict[str, np.ndarray]:
+    """Read variables of an .npz.
+
+    Args:
+        path: of the file.
+        names: of the variables that it must have.
+        what: the file is, for the message.
+
+    Raises:
+        InputError: there is no such file, or a variable is missing.
+    """
+    try:
+        with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            return {name: file[name] for name in (*names, *(set(file.files) - {*names}))}
+    except FileNotFoundError:
+        raise InputError(f"no such file: {path}; check its name and folder") from None
+    except Exception as error:  # zip and numpy raise different errors
+        raise InputError(
+            f"{path} is not {what}, or is damaged ({type(error).__name__}); write it again"
+        ) from error

@@ -1,0 +1,139 @@
+"""inca linearize: A, B, C, D at a pose or along a log, modes, and a model over the workspace."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import tyro
+
+from identification.commands.common import Output, conclude, output_field, table
+from inca_mj.commands.common import Robot, do_not_draw, robot_field
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from identification.linear.gridded import GriddedSystem
+    from inca_mj.linear.linearization import LinearModel
+
+
+@dataclass(frozen=True, kw_only=True)
+class Linearize:
+    """Linearise the robot: the thesis' 36 states, the minimal ones, its modes, and an LPV model.
+
+    Examples:
+        inca linearize --pose 0.2 0 1.3 0 0 0 --out out/linear
+        inca linearize --grid x=-0.4:0.4:5 y=-0.4:0.4:5 z=1:1.8:5 --out out/lpv
+    """
+
+    pose: Annotated[tuple[float, ...], tyro.conf.arg(metavar="X Y Z ROLL PITCH YAW")] = ()
+    """Where currents hold the robot [m, rad]; its start when not given."""
+    log: Annotated[Path | None, tyro.conf.arg(metavar="LOG")] = None
+    """Log under whose currents the twin runs, to be linearised at --time."""
+    time: Annotated[tuple[float, ...], tyro.conf.arg(metavar="SECONDS")] = ()
+    """Times of the log."""
+    rate: float | None = None
+    """Samples a second of the discrete model [Hz]; that of the log, or 100."""
+    grid: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME=LOW:HIGH:POINTS")] = ()
+    """Axes of an LPV model, of x y z [m] roll pitch yaw [rad]."""
+    interpolation: Literal["linear", "cubic"] = "cubic"
+    """Between the points of the grid."""
+    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+
+    def run(self) -> int:
+        """Linearise, say, keep."""
+        do_not_draw()
+        from identification.linear.system import sampling_time_of
+        from inca_mj.report.linear_sections import (
+            HANDLE_HEAD,
+            grid_sentences,
+            grid_to_json,
+            handle_rows,
+            model_sentences,
+            model_to_json,
+        )
+
+        self._refuse_both()
+        if self.rate is not None:
+            sampling_time_of(self.rate)
+        models, labels, rate = self._models()
+        record: dict[str, Any] = {"models": [model_to_json(m, rate) for m in models]}
+        said = []
+        for model, label in zip(models, labels, strict=True):
+            said += [*model_sentences(model, label), table(HANDLE_HEAD, handle_rows(model))]
+        grid = None
+        if self.grid:
+            grid, errors, runs = self._grid(models[0], rate)
+            record["grid"] = grid_to_json(grid, errors, runs)
+            said += grid_sentences(errors, runs)
+        conclude(self, record, "\n".join(said), partial(keep, models, labels, rate, grid, said))
+        return 0
+
+    def _refuse_both(self) -> None:
+        from identification.errors import InputError
+
+        if self.log is not None and (self.pose or self.grid):
+            other = "--pose" if self.pose else "--grid"
+            raise InputError(f"--log and {other} are two ways to an operating point; give one")
+        if (self.log is None) != (not self.time):
+            raise InputError("--log and --time belong together; give both, or a --pose")
+
+    def _models(self) -> tuple[tuple[LinearModel, ...], list[str], float]:
+        """The models, what their operating points are called, and the rate [Hz]."""
+        from inca_mj.linear.linearization import linearize
+        from inca_mj.twin.logs import read_inca_log
+        from inca_mj.twin.twin import build_twin
+        from inca_mj.workflows.linearization import linearize_log
+
+        parameters, place = self.robot.parameters(), self.robot.place()
+        if self.log is None:
+            model = linearize(build_twin(parameters, place), self.pose or None)
+            label = f"held at pose {', '.join(f'{v:g}' for v in self.pose)}"
+            return (model,), [label if self.pose else "at rest at its start"], self.rate or 100.0
+        log = read_inca_log(self.log)
+        models = linearize_log(log, self.time, parameters, place, self.robot.step)
+        labels = [f"at {m.time:g} s of {log.name}" for m in models]
+        return models, labels, self.rate or 1 / log.sampling_time
+
+    def _grid(self, model: LinearModel, rate: float) -> tuple[GriddedSystem, Any, Any]:
+        """The gridded model, its errors off the grid, and a run beside the twin."""
+        from inca_mj.linear.accuracy import interpolation_errors, random_points, run_error
+        from inca_mj.linear.linearization import linearize_grid
+        from inca_mj.twin.logs import POSE
+        from inca_mj.workflows.linearization import grid_axes
+
+        axes = grid_axes(self.grid)
+        grid = linearize_grid(model.robot, axes, self.interpolation)
+        point = random_points(grid, 1, seed=1)[0]
+        if self.pose:
+            point = {n: v for n, v in zip(POSE, self.pose, strict=True) if n in axes}
+        grid.place(point)
+        errors = interpolation_errors(model.robot, grid)
+        return grid, errors, (run_error(model.robot, grid, point, rate=rate),)
+
+
+def keep(
+    models: Sequence[LinearModel],
+    labels: Sequence[str],
+    rate: float,
+    grid: GriddedSystem | None,
+    said: Sequence[str],
+    out: Path,
+) -> None:
+    """Write the systems for Python and MATLAB, figures and the one-file report into a folder."""
+    from identification.commands.linearize import save_systems
+    from identification.linear.export import FORMATS
+    from identification.report.page import save_figures, write_report
+    from inca_mj.report.linear_sections import model_sections
+
+    save_systems([m.system for m in models], rate, out)
+    if grid is not None:
+        for end in FORMATS:
+            grid.save(out / f"grid{end}")
+    sections = model_sections(models, labels, rate)
+    save_figures(sections, out)
+    verdict = [line for line in said if "\n" not in line]
+    write_report(out / "report.html", "The robot linearised", verdict, sections)

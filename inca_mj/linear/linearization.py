@@ -1,0 +1,188 @@
+"""The robot linearised at a pose where currents hold it, and along a log.
+
+    δẋ = A δx + B δi,   δφ = C δx + D δi        x: the 36 states of the thesis, i currents, φ angles
+
+The friction of a motor is smooth, so it has a slope everywhere, and the slope at rest is special:
+
+    -∂Γ_f/∂ω_m = b_v + b_c β (1 - tanh²(β ω_m))     at ω_m = 0:  b_v + b_c β
+
+With the thesis' values that is 4.2e-3 N m s/rad, of which b_v has 2e-4. A motor that turns faster
+than 1/β feels far less: the linear model at rest holds for rates well below 1/β = 1.25 rad/s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Literal
+
+import numpy as np
+
+from identification.errors import InputError, unknown_name
+from identification.linear.gridded import FEWEST, GriddedSystem, check_axis, gridded
+from identification.linear.linearization import linearize as linearize_model
+from identification.linear.operating_points import OperatingPoints, along_log
+from identification.linear.system import LinearSystem
+from identification.logs.log import Log
+from identification.model.predictor import Predictor
+from inca_mj.linear.held import held_at
+from inca_mj.linear.tension_states import TENSIONS, to_tension
+from inca_mj.linear.thesis_states import to_thesis
+from inca_mj.robot.geometry import DRIVES
+from inca_mj.robot.spread import at_drives
+from inca_mj.twin.logs import ANGLES, POSE
+from inca_mj.twin.twin import Twin, build_twin
+
+LENGTHS = tuple(f"length_{k}" for k in range(1, DRIVES + 1))
+SPEEDS = slice(20, 28)
+LARGEST_GRID = 20_000  # points: two minutes and 1 GB
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinearModel:
+    """The robot linearised at one operating point.
+
+    Attributes:
+        robot: the twin.
+        system: continuous, in the 36 states of the thesis.
+        tension: of the cables there, shape (8,) [N].
+        friction_slope: of each motor there, shape (8,) [N m s/rad].
+        time: of the log [s]; None at a pose.
+        lengths: the system with the lengths of the cables as outputs [m].
+    """
+
+    robot: Twin
+    system: LinearSystem
+    tension: np.ndarray
+    friction_slope: np.ndarray
+    time: float | None
+    lengths: LinearSystem
+
+    @property
+    def with_tensions(self) -> LinearSystem:
+        """The system with tensions in the place of no-load lengths, at rest only."""
+        return to_tension(self.system, self.lengths, self.robot)
+
+
+def linearize(
+    robot: Twin | None = None,
+    pose: Sequence[float] | None = None,
+    outputs: Sequence[str] = ANGLES,
+) -> LinearModel:
+    """Linearise the robot where currents hold it at a pose.
+
+    Args:
+        robot: the twin; that of the thesis' Table 3.2 when None.
+        pose: x, y, z [m], roll, pitch, yaw [rad]; its start, where the currents are zero, if None.
+        outputs: names of the model's sensors.
+
+    Raises:
+        InputError: the pose is not six numbers within bounds, a cable would have to push there, the
+            robot does not rest there, or an output is no sensor of the model.
+        DivergenceError: the accelerations are not finite.
+    """
+    robot = robot or build_twin()
+    own = robot.parameters.values()
+    at = [own[name] for name in POSE] if pose is None else pose
+    return _models(robot, held_at(robot, [at]), outputs)[0]
+
+
+def linearize_along(
+    robot: Twin, log: Log, times: Sequence[float], outputs: Sequence[str] = ANGLES
+) -> tuple[LinearModel, ...]:
+    """Linearise the robot along its free run under the currents of a log.
+
+    Args:
+        robot: the twin, which begins at its start pose.
+        log: of this robot.
+        times: of the log [s].
+        outputs: names of the model's sensors.
+
+    Raises:
+        InputError: a time is outside the log, a cable is slack there, or an output is no sensor of
+            the model.
+        DivergenceError: the simulation left the finite numbers.
+    """
+    points = along_log(Predictor(robot, log, (), {}), times)
+    models = _models(robot, points, outputs)
+    timed = [replace(m, time=float(t)) for m, t in zip(models, points.time, strict=True)]
+    for model in timed:
+        if slack := [str(k + 1) for k in np.flatnonzero(model.tension <= 0)]:
+            raise InputError(
+                f"cable {', '.join(slack)} is slack at {model.time:g} s, where the law has a kink"
+                " and no linear model holds; take a time at which every cable pulls"
+            )
+    return tuple(timed)
+
+
+def linearize_grid(
+    robot: Twin,
+    axes: Mapping[str, np.ndarray],
+    method: Literal["linear", "cubic"] = "cubic",
+    outputs: Sequence[str] = ANGLES,
+) -> GriddedSystem:
+    """Linearise the robot on a grid of poses: an LPV model with tensions among its states.
+
+    Args:
+        robot: the twin; where the axes give nothing, its own start pose holds.
+        axes: points of some of x, y, z [m], roll, pitch, yaw [rad], each an array of shape (n,).
+        method: how to interpolate, "linear" or "cubic".
+        outputs: names of the model's sensors.
+
+    Raises:
+        InputError: an axis is unknown, does not rise or has too few points, or the robot cannot be
+            held at a point of the grid.
+        DivergenceError: the accelerations are not finite.
+    """
+    if method not in FEWEST:
+        raise unknown_name("interpolation", method, FEWEST)
+    for name, values in axes.items():
+        if name not in POSE:
+            raise unknown_name("scheduling variable", name, POSE)
+        check_axis(name, values, FEWEST[method])
+    if not axes:
+        raise InputError(f"a grid needs an axis or more of {', '.join(POSE)}")
+    size = int(np.prod([len(values) for values in axes.values()]))
+    if size > LARGEST_GRID:
+        raise InputError(
+            f"the grid has {size} points, more than {LARGEST_GRID}; give fewer, and method cubic"
+        )
+    own = robot.parameters.values()
+    poses = [
+        [dict(zip(axes, point, strict=True)).get(name, own[name]) for name in POSE]
+        for point in product(*axes.values())
+    ]
+    models = _models(robot, held_at(robot, poses), outputs)
+    return gridded(axes, [model.with_tensions for model in models], method)
+
+
+def _models(
+    robot: Twin, points: OperatingPoints, outputs: Sequence[str]
+) -> tuple[LinearModel, ...]:
+    """The models at some operating points; no time is told."""
+    sensors = (*outputs, *LENGTHS, *TENSIONS)
+    systems = to_thesis(linearize_model(points, sensors), points, robot.layout.states - 1)
+    p = robot.parameters.values()
+    b_v, b_c, β = (at_drives(name, p) for name in ("b_v", "b_c", "beta"))
+    out = []
+    for system in systems:
+        shown, lengths, tension = _parted(system)
+        slope = b_v + b_c * β / np.cosh(β * system.x[SPEEDS]) ** 2
+        out.append(
+            LinearModel(robot=robot, system=shown, tension=tension.y, friction_slope=slope,
+                        time=None, lengths=lengths)
+        )  # fmt: skip
+    return tuple(out)
+
+
+def _parted(system: LinearSystem) -> tuple[LinearSystem, LinearSystem, LinearSystem]:
+    """A system by its outputs: those asked for, the lengths and the tensions of the cables."""
+    n = len(system.outputs)
+    cuts = (slice(0, n - 2 * DRIVES), slice(n - 2 * DRIVES, n - DRIVES), slice(n - DRIVES, n))
+    first, second, third = (
+        replace(system, C=system.C[cut], D=system.D[cut], y=system.y[cut],
+                outputs=system.outputs[cut])
+        for cut in cuts
+    )  # fmt: skip
+    return first, second, third

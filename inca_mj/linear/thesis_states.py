@@ -1,0 +1,117 @@
+"""The thesis' 36 states, from MuJoCo's tangent space.
+
+    MuJoCo   δx = (δp, δθ, δφ_m, δv, δω, δω_m, δd₀)   v along O, δθ a turn about the body's axes
+    thesis   δz = (δp, δv_B, δe, δω, δφ_m, δω_m, δd₀)   v_B = Rᵀ v, e = (roll, pitch, yaw)
+
+    δz = T δx:   δv_B = Rᵀ δv + v_B × δθ,   δe = J(e) δθ                             (2.1, 2.5)
+    ∂ż/∂z = (T ∂ẋ/∂x + Ṫ) T⁻¹,   ∂ż/∂u = T ∂ẋ/∂u,   ∂y/∂z = ∂y/∂x T⁻¹
+    Ṫ:   d(Rᵀ)/dt = -ω × Rᵀ,   v̇_B = Rᵀ v̇ - ω × v_B,   J̇ = ∂J/∂e ė
+
+The order is that of the reference (`inca_mj.reference.layout`), whose equations the tests compare.
+States of effects follow behind.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.linear.operating_points import OperatingPoints
+from identification.linear.system import LinearSystem
+from inca_mj.kinematics.rotations import euler, rotation
+from inca_mj.robot.geometry import DRIVES
+
+
+def _each(name: str) -> tuple[str, ...]:
+    return tuple(f"{name}_{k}" for k in range(1, DRIVES + 1))
+
+
+STATES = (
+    "x", "y", "z", "vx_body", "vy_body", "vz_body", "roll", "pitch", "yaw", "wx", "wy", "wz",
+    *_each("angle"), *_each("rate"), *_each("no_load_length"),
+)  # fmt: skip
+UNITS = (*["m"] * 3, *["m/s"] * 3, *["rad"] * 3, *["rad/s"] * 3,
+         *["rad"] * DRIVES, *["rad/s"] * DRIVES, *["m"] * DRIVES)  # fmt: skip
+LEAST_COSINE = 1e-3  # of pitch, below which Euler angles turn too fast
+
+# Where each quantity is in δx and in δz.
+POSITION, _TURN, _ANGLE = slice(0, 3), slice(3, 6), slice(6, 14)
+_V, _OMEGA, _SPEED, _ACT = slice(14, 17), slice(17, 20), slice(20, 28), 28
+_V_BODY, EULER, _RATES, PLATFORM = slice(3, 6), slice(6, 9), slice(9, 12), slice(0, 12)
+_ANGLES, _SPEEDS, NO_LOAD = slice(12, 20), slice(20, 28), slice(28, 36)
+
+
+def to_thesis(
+    systems: tuple[LinearSystem, ...], points: OperatingPoints, own: int = 0
+) -> tuple[LinearSystem, ...]:
+    """Linear systems in the thesis' states.
+
+    Args:
+        systems: M systems in MuJoCo's tangent space.
+        points: their operating points.
+        own: states that effects have at each drive.
+
+    Raises:
+        InputError: the platform is pitched by 90°, where its Euler angles are singular.
+    """
+    names = (*STATES, *(f"effect_{i}_{k}" for k in range(1, DRIVES + 1) for i in range(1, own + 1)))
+    return tuple(
+        _one(system, points.qpos[k], own, names) for k, system in enumerate(systems)
+    )  # fmt: skip
+
+
+def euler_rates(e: np.ndarray) -> np.ndarray:
+    """J of (2.5), [φ̇ θ̇ ψ̇]ᵀ = J ω, shape (3, 3), without unit; e = (φ, θ, ψ), shape (3,) [rad]."""
+    (s, c), (cp, tp) = (np.sin(e[0]), np.cos(e[0])), (np.cos(e[1]), np.tan(e[1]))
+    return np.array([[1, s * tp, c * tp], [0, c, -s], [0, s / cp, c / cp]])
+
+
+def _euler_rates_change(e: np.ndarray, ė: np.ndarray) -> np.ndarray:
+    """J̇ = ∂J/∂φ φ̇ + ∂J/∂θ θ̇."""
+    (s, c), (sp, cp) = (np.sin(e[0]), np.cos(e[0])), (np.sin(e[1]), np.cos(e[1]))
+    by_roll = np.array([[0, c * sp / cp, -s * sp / cp], [0, -s, -c], [0, c / cp, -s / cp]])
+    by_pitch = np.array([[0, s, c], [0, 0, 0], [0, s * sp, c * sp]]) / cp**2
+    return np.asarray(by_roll * ė[0] + by_pitch * ė[1])
+
+
+def _cross(a: np.ndarray) -> np.ndarray:
+    """The matrix of b -> a × b."""
+    return np.array([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
+
+
+def _one(system: LinearSystem, qpos: np.ndarray, own: int, names: tuple[str, ...]) -> LinearSystem:
+    e = euler(qpos[3:7])
+    if np.cos(e[1]) < LEAST_COSINE:
+        raise InputError(
+            f"the platform is pitched by {np.degrees(e[1]):.4g}°, where Euler angles are singular;"
+            " take another time or pose"
+        )
+    Rᵀ, J = rotation(*e).T, euler_rates(e)
+    v, ω, v̇ = system.x[_V], system.x[_OMEGA], system.rate[_V]
+    v_B = Rᵀ @ v
+    v̇_B = Rᵀ @ v̇ - np.cross(ω, v_B)
+    n = len(system.x)
+    T, Ṫ = np.zeros((n, n)), np.zeros((n, n))
+    T[POSITION, POSITION] = np.eye(3)
+    T[_V_BODY, _V], T[_V_BODY, _TURN] = Rᵀ, _cross(v_B)
+    T[EULER, _TURN], T[_RATES, _OMEGA] = J, np.eye(3)
+    T[_ANGLES, _ANGLE] = T[_SPEEDS, _SPEED] = np.eye(DRIVES)
+    T[np.arange(_ACT, n), _ACT + _activations(own)] = 1
+    Ṫ[_V_BODY, _V], Ṫ[_V_BODY, _TURN] = -_cross(ω) @ Rᵀ, _cross(v̇_B)
+    Ṫ[EULER, _TURN] = _euler_rates_change(e, J @ ω)
+    back = np.linalg.inv(T)
+    x, rate = T @ system.x, T @ system.rate
+    x[_V_BODY], x[EULER] = v_B, e
+    rate[_V_BODY], rate[EULER] = v̇_B, J @ ω
+    return replace(
+        system, A=(T @ system.A + Ṫ) @ back, B=T @ system.B, C=system.C @ back,
+        states=names, x=x, rate=rate,
+    )  # fmt: skip
+
+
+def _activations(own: int) -> np.ndarray:
+    """Activations in the thesis' order: d₀ of all drives, then the effects' states by drive."""
+    each = np.arange(DRIVES * (1 + own)).reshape(DRIVES, 1 + own)
+    return np.concatenate([each[:, 0], each[:, 1:].ravel()])
