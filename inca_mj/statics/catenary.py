@@ -37,6 +37,8 @@ from inca_mj.robot.parameters import GRAVITY
 PLUMB = 1e-6  # a span of less, relative to the chord, is taken to be this
 TAUT = 0.3  # H of a taut cable is at least this part of that of the straight line
 STEEPEST = 300.0  # h/2a beyond which a cable hangs down on both sides like a curtain
+LIGHTEST = 1e-9  # a cable of less has no mass that would give it a shape [kg/m]
+SLACK = 1e-12  # a strain of less is none
 WIDENINGS = 60  # of a bracket, each by a factor e of H
 
 
@@ -116,7 +118,7 @@ def hang(
     A, B = _checked(exit, connector, no_load, rho, lambda_)
     d, h = float(np.linalg.norm(B - A)), _span(A, B)
     taut, w = lambda_ * (d - no_load) / no_load, rho * GRAVITY
-    if rho == 0 and taut <= 0:
+    if rho < LIGHTEST and taut < SLACK * lambda_:
         raise InputError(
             f"a cable of {no_load:g} m without mass is slack over {d:g} m; give a shorter one"
         )
@@ -266,7 +268,10 @@ def _curve(s, H: float, V: float, w: float, lambda_: float):  # type: ignore[no-
     """X and Z at s."""
     V_s = V - w * s
     T_0, T_s = np.hypot(H, V), np.hypot(H, V_s)
-    per = (H**2 + T_0 * T_s - V * V_s) / (T_0 + T_s) / H**2  # q/(w s)
+    alike = V * V_s > 0  # then T_0 T_s − V V_s loses digits; its conjugate does not
+    same = (V**2 + V_s**2 + H**2) / np.where(alike, T_0 * T_s + V * V_s, 1.0)
+    apart = (T_0 * T_s - V * V_s) / H**2
+    per = (1 + np.where(alike, same, apart)) / (T_0 + T_s)  # q/(w s)
     q = w * s * per
     small = np.abs(q) < 1e-4
     safe = np.where(small, 1.0, q)

@@ -67,7 +67,8 @@ def equilibrium(
         load: wrench on the platform beside its weight, in O at its centre, shape (6,) [N, N m].
 
     Raises:
-        InputError: a number is not finite, no rest is near, or a cable is slack at rest.
+        InputError: a number is not finite, no rest is near, it is outside the frame, or a cable is
+            slack there.
     """
     current, load = np.asarray(current, float), np.asarray(load, float)
     if load.shape != (6,) or current.shape not in ((), (8,)):
@@ -78,6 +79,12 @@ def equilibrium(
     if not (np.isfinite(load).all() and np.isfinite(current).all()):
         raise InputError("loads and currents must be finite numbers")
     pose = _solve(robot, current, load)
+    low, high = robot.geometry.A.min(axis=0), robot.geometry.A.max(axis=0)
+    if not ((low < pose[:3]) & (pose[:3] < high)).all():
+        raise InputError(
+            f"the handle would rest at {np.round(pose[:3], 3).tolist()} m, outside the frame, whose"
+            f" exit points span {low.tolist()} to {high.tolist()} m; give a smaller load"
+        )
     at = lines(pose, robot.geometry)
     found = pull(robot, at.d, current)
     if found.tension.min() <= 0:
@@ -98,7 +105,7 @@ def _solve(robot: Robot, current: np.ndarray, load: np.ndarray) -> np.ndarray:
         if np.abs(left).max() < BALANCED:
             return pose
         step = np.linalg.lstsq(K, left, rcond=None)[0]
-        step = step * min(1.0, LONGEST / np.abs(step).max())
+        step = step / max(1.0, np.abs(step).max() / LONGEST)
         for _ in range(HALVINGS):
             tried = moved(pose, step)
             then = _left(robot, tried, current, load)
