@@ -9,12 +9,10 @@ from inca_mj.robot.parameters import parameter_set
 from inca_mj.statics.robot import static_robot
 
 ROBOT = static_robot(parameter_set("trial"), INCA)
-NO_WRENCH = np.zeros(6)
 
-_coordinate, _angle = st.floats(-0.7, 0.7), st.floats(-0.2, 0.2)
-poses = st.tuples(_coordinate, _coordinate, st.floats(0.9, 2.2), _angle, _angle, _angle).map(
-    np.array
-)
+_across, _angle = st.floats(-0.7, 0.7), st.floats(-0.2, 0.2)
+_places = (_across, _across, st.floats(0.9, 2.2), _angle, _angle, _angle)
+poses = st.tuples(*_places).map(np.array)
 
 
 def random_poses(count, seed=0, across=1.4):
@@ -33,7 +31,6 @@ def _layout(connectors, source):
     return Geometry(INCA.exits, tuple(map(tuple, connectors)), True, source)
 
 
-_b = INCA.B
 # Both cables of a vertical edge end in one connector: rank 6, and no tension is positive.
 EDGES = _layout(
     [(0.05, 0, 0), (0, 0.05, 0), (-0.05, 0, 0), (0, -0.05, 0)] * 2, "one connector for each edge"

@@ -133,9 +133,7 @@ def test_half_of_the_weight_hangs_on_the_connector(exit_point, T):
         without.append(np.linalg.norm(F - line))
     assert wrong[0] < 0.02 * without[0]
     assert without[0] / without[1] == pytest.approx(2, rel=0.05)
-    assert (
-        wrong[1] < wrong[0] / 1.9 or wrong[0] < 1e-6
-    )  # what is left comes from d₀ < d, of order ρ
+    assert wrong[1] < wrong[0] / 1.9 or wrong[0] < 1e-6
 
 
 def test_the_twin_with_cable_weight_rests_where_catenaries_balance():
@@ -177,5 +175,5 @@ def test_refusals(arguments, sentence):
 
 
 def test_a_tension_below_the_weight_is_refused():
-    with pytest.raises(InputError, match="is not taut with 0.01 N"):
+    with pytest.raises(InputError, match=r"is not taut with 0\.01 N"):
         pulled(EXIT, CONNECTOR, 0.01, 3e-3, LAMBDA)

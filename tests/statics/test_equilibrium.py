@@ -37,7 +37,7 @@ def test_the_twin_comes_to_rest_there():
 
 
 def test_the_energy_is_least_there():
-    """Energy of weight, load, drum springs and cables, d₀ = d₀(0) − R φ to first order in strain."""
+    """Energy of weight, load, drum springs and cables, with d₀ to first order in the strain."""
     load = np.array([0.3, -0.2, -0.4, 0.0, 0.0, 0.0])
     rest = equilibrium(ROBOT, load=load)
 
