@@ -93,7 +93,9 @@ def table(folder: Path) -> None:
     rows = [
         {"rho": e.rho, "tension": e.tension, "pose": e.pose.tolist(), "length": e.length,
          "angle": e.angle, "force": e.force, "force_half": e.force_half,
-         "stiffness_lost": e.stiffness_lost, "moved": e.moved, "moved_angle": e.moved_angle}
+         "sag": e.sag,
+         "stiffness_lost": e.stiffness_lost, "moved": e.moved,
+         "moved_angle": e.moved_angle}
         for e in line_errors(ROBOT, poses)
     ]  # fmt: skip
     text = "\n".join(json.dumps(row) for row in rows)

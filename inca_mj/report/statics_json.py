@@ -59,6 +59,7 @@ def statics_json(found: StaticAnalysis) -> dict[str, Any]:
                 "angle_error": e.angle,
                 "force_error": e.force,
                 "force_error_half_weight": e.force_half,
+                "sag": e.sag,
                 "stiffness_lost": e.stiffness_lost,
                 "moved": e.moved,
                 "moved_angle": e.moved_angle,
@@ -75,6 +76,7 @@ def statics_json(found: StaticAnalysis) -> dict[str, Any]:
                 "coupled": c.coupled.tolist(),
                 "share": c.share.tolist(),
                 "cables": c.cables.tolist(),
+                "in_plane": c.in_plane.tolist(),
             }
             for rho, c in zip(found.rho, found.cable_modes, strict=True)
         ],

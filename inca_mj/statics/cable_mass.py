@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inca_mj.robot.parameters import GRAVITY
-from inca_mj.statics.catenary import ernst_modulus, pulled
+from inca_mj.statics.catenary import ernst_modulus, pulled, sag
 from inca_mj.statics.drums import pull
 from inca_mj.statics.robot import Robot, lines
 from inca_mj.statics.stiffness import stiffness
@@ -42,6 +42,7 @@ class LineError:
         angle: the same as an angle of the drum [rad].
         force: difference of the forces on the connector, without any weight of the cable [N].
         force_half: the same where half of the cable's weight hangs on the connector [N].
+        sag: of the cable below the middle of its chord, by Irvine's parabola [m].
         stiffness_lost: 1 − λ_eq/λ by Ernst.
         moved: how far the weight of all cables moves the handle against free drums [m].
         moved_angle: the largest turn of a drum by that [rad].
@@ -54,6 +55,7 @@ class LineError:
     angle: float
     force: float
     force_half: float
+    sag: float
     stiffness_lost: float
     moved: float
     moved_angle: float
@@ -123,6 +125,7 @@ def _line_error(robot: Robot, pose: np.ndarray, rho: float, T: float) -> LineErr
         angle=float((np.abs(length) / robot.R).max()),
         force=float(force.max()),
         force_half=float(half.max()),
+        sag=sag(float(at.d.max()), T, rho),
         stiffness_lost=float(lost.max()),
         moved=float(np.linalg.norm(δ[:3])),
         moved_angle=float(turned.max()),

@@ -34,6 +34,7 @@ from inca_mj.statics.robot import Lines, Robot
 from inca_mj.statics.stiffness import cross_matrix, mass_matrix, stiffness
 
 SINES = 12
+STRAIGHT = 1e-9  # Λ² below which sag changes no digit that counts
 
 
 def string_frequencies(d: float, tension: float, rho: float, count: int = 3) -> np.ndarray:
@@ -63,8 +64,8 @@ def irvine_parameter(span: float, tension: float, rho: float, lambda_: float) ->
 def in_plane_frequency(d: float, span: float, tension: float, rho: float, lambda_: float) -> float:
     """Frequency of the first symmetric mode in the vertical plane [Hz].
 
-    It is that of the string, c/(2 d), without sag, and tends to 2.86 π/2 of it in angle for a
-    cable that cannot stretch.
+    Without sag it is that of the string, c/(2 d), and 2.86 times as much for a cable that sags and
+    cannot stretch.
 
     Args:
         d: length of the chord [m].
@@ -74,6 +75,8 @@ def in_plane_frequency(d: float, span: float, tension: float, rho: float, lambda
         lambda_: elastic modulus λ = E S [N].
     """
     Λ2 = irvine_parameter(span, tension, rho, lambda_)
+    if Λ2 < STRAIGHT:
+        return float(string_frequencies(d, tension, rho, 1)[0])
     # x = ω̄/2, tan written as sin/cos, so that the function has no pole between π/2 and 3π/2
     equation = (  # noqa: E731
         lambda x: Λ2 * (np.sin(x) - x * np.cos(x)) + 4 * x**3 * np.cos(x)
@@ -93,6 +96,7 @@ class Coupled:
         coupled: frequencies of the modes in which the handle moves most, shape (6,) [Hz].
         share: part of the kinetic energy of each that the handle has, shape (6,).
         cables: lowest frequency of each cable between ends at rest, shape (8,) [Hz].
+        in_plane: the same in the vertical plane, where sag stretches the cable, shape (8,) [Hz].
     """
 
     massless: np.ndarray
@@ -100,6 +104,7 @@ class Coupled:
     coupled: np.ndarray
     share: np.ndarray
     cables: np.ndarray
+    in_plane: np.ndarray
 
 
 def coupled_modes(
@@ -135,12 +140,20 @@ def coupled_modes(
     ω2, x = eigh(stiff, whole)
     share = np.einsum("ai,ab,bi->i", x[:6], M, x[:6])
     most = np.sort(np.argsort(-share)[:6])
+    rows = list(zip(at.d, tension, strict=True))
+    span = np.hypot(at.s[:, 0], at.s[:, 1]) * at.d
     return Coupled(
         massless=_hertz(eigh(K, M, eigvals_only=True)),
         added=_hertz(eigh(K, heavier, eigvals_only=True)),
         coupled=_hertz(ω2[most]),
         share=share[most],
-        cables=np.sqrt(tension / rho) / (2 * at.d),
+        cables=np.array([string_frequencies(d, T, rho, 1)[0] for d, T in rows]),
+        in_plane=np.array(
+            [
+                in_plane_frequency(d, x, T, rho, λ)
+                for (d, T), x, λ in zip(rows, span, robot.lambda_, strict=True)
+            ]
+        ),
     )
 
 

@@ -69,7 +69,7 @@ class StaticAnalysis:
         held: how the load is shared among the cables at the pose.
         rest: where the handle rests with the power off under the load.
         locked: stiffness at the pose with drums that do not turn, shape (6, 6) [N/m, N, N m/rad].
-        free: stiffness with drums that turn against their springs, shape (6, 6).
+        free: stiffness with drums that turn against their springs, shape (6, 6) [N/m, N, N m/rad].
         push: principal stiffness against forces, drums locked.
         twist: principal stiffness against torques, drums locked.
         modes: of the handle, drums locked.

@@ -88,7 +88,8 @@ def test_cables_are_watched_along_a_log():
     found = analyse_statics(log=log).nearness_along
     assert found.between.shape == (50, 24)
     # without the measured pose it follows from the angles, to the strain of the cables
-    again = analyse_statics(log=replace(log, extras={})).nearness_along
+    units = {name: log.units[name] for name in (*log.input_names, *log.output_names)}
+    again = analyse_statics(log=replace(log, extras={}, units=units)).nearness_along
     np.testing.assert_allclose(again.between, found.between, atol=2e-3)
 
 

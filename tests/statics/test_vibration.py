@@ -50,6 +50,8 @@ def test_light_cables_change_nothing_and_more_sines_converge_from_above():
     assert np.abs(found[1] - found[2]).max() < np.abs(found[0] - found[1]).max()
     assert (found[2] <= found[1] + 1e-9).all()  # of a Ritz method
     assert (coupled().added < coupled().massless).all()
+    assert (coupled().in_plane > coupled().cables).all()
+    np.testing.assert_allclose(light.in_plane, light.cables)
 
 
 def test_the_exact_dynamic_stiffness_of_strings_is_singular_there():
