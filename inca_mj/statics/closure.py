@@ -27,7 +27,8 @@ from scipy.optimize import linprog
 from identification.errors import InputError
 
 RANK = 1e-9  # a singular value this far below the largest is zero
-POSITIVE = 1e-9  # a margin of less is none
+POSITIVE = 1e-6  # a margin of less is none: the solver keeps equations to 1e-7
+NOTHING = 1e-9  # a row of the null space of less is zero
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,7 @@ def closure(W: np.ndarray) -> Closure:
         method="highs",
     )
     T = found.x[:n]
+    T = T - np.linalg.pinv(W) @ (W @ T)  # to rounding
     if T.min() <= POSITIVE:
         return Closure(rank, condition, 0.0, np.zeros(n))
     return Closure(rank, condition, float(T.min() / T.max()), T / T.max())
@@ -136,5 +138,5 @@ def gap_margin(N: np.ndarray, full: np.ndarray) -> np.ndarray:
     """
     angle = np.sort(np.arctan2(N[..., 1], N[..., 0]), axis=1)
     gap = np.diff(angle, axis=1, append=angle[:, :1] + 2 * np.pi).max(axis=1)
-    lost = (np.linalg.norm(N, axis=2).min(axis=1) < POSITIVE) | ~full
+    lost = (np.linalg.norm(N, axis=2).min(axis=1) < NOTHING) | ~full
     return np.where(lost, -np.pi, gap - np.pi)
