@@ -73,6 +73,17 @@ _PUBLIC = {
     "monte_carlo": "workflows.trials",
     "crosscheck": "verification.check",
     "CrossCheck": "verification.result",
+    # what its cables can hold, and where
+    "analyse_statics": "workflows.statics",
+    "StaticAnalysis": "workflows.statics",
+    "static_robot": "statics.robot",
+    "distribute": "statics.tensions",
+    "equilibrium": "statics.equilibrium",
+    "workspace": "statics.workspace",
+    "DriveLimits": "statics.workspace",
+    "interference": "statics.interference",
+    "hang": "statics.catenary",
+    "workspace_picture": "rendering.workspace_picture",
     # films
     "film": "rendering.film",
     "stills": "rendering.film",
@@ -99,6 +110,7 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.rendering.film import film as film
     from inca_mj.rendering.film import stills as stills
     from inca_mj.rendering.scene import Scene as Scene
+    from inca_mj.rendering.workspace_picture import workspace_picture as workspace_picture
     from inca_mj.robot.geometry import INCA as INCA
     from inca_mj.robot.geometry import Geometry as Geometry
     from inca_mj.robot.geometry import read_geometry as read_geometry
@@ -107,6 +119,13 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.robot.parameters import GRAVITY as GRAVITY
     from inca_mj.robot.parameters import parameter_set as parameter_set
     from inca_mj.robot.spread import with_spread as with_spread
+    from inca_mj.statics.catenary import hang as hang
+    from inca_mj.statics.equilibrium import equilibrium as equilibrium
+    from inca_mj.statics.interference import interference as interference
+    from inca_mj.statics.robot import static_robot as static_robot
+    from inca_mj.statics.tensions import distribute as distribute
+    from inca_mj.statics.workspace import DriveLimits as DriveLimits
+    from inca_mj.statics.workspace import workspace as workspace
     from inca_mj.twin.control import CONTROL_TIMESTEP as CONTROL_TIMESTEP
     from inca_mj.twin.control import load_environment as load_environment
     from inca_mj.twin.logs import read_inca_log as read_inca_log
@@ -141,6 +160,8 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.workflows.sensitivity import sensitivity as sensitivity
     from inca_mj.workflows.spread import Spread as Spread
     from inca_mj.workflows.spread import spread_of as spread_of
+    from inca_mj.workflows.statics import StaticAnalysis as StaticAnalysis
+    from inca_mj.workflows.statics import analyse_statics as analyse_statics
     from inca_mj.workflows.trials import TrialResult as TrialResult
     from inca_mj.workflows.trials import monte_carlo as monte_carlo
     from inca_mj.workflows.trials import trials as trials

@@ -21,6 +21,7 @@ from inca_mj.commands.kinematics import Kinematics
 from inca_mj.commands.linearize import Linearize
 from inca_mj.commands.sensitivity import Sensitivity
 from inca_mj.commands.simulate import Simulate
+from inca_mj.commands.statics import Statics
 from inca_mj.commands.trials import Trials
 
 Command = (
@@ -35,6 +36,7 @@ Command = (
     | Annotated[Excite, tyro.conf.subcommand("excite")]
     | Annotated[Linearize, tyro.conf.subcommand("linearize")]
     | Annotated[Trials, tyro.conf.subcommand("trials")]
+    | Annotated[Statics, tyro.conf.subcommand("statics")]
     | Annotated[Film, tyro.conf.subcommand("film")]
     | Annotated[Demo, tyro.conf.subcommand("demo")]
 )

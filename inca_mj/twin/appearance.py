@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from inca_mj.robot.geometry import Geometry
+from inca_mj.robot.handle import ARM_RADIUS, GRIP, GRIP_RADIUS
 
 ALUMINIUM = [0.60, 0.62, 0.66, 1.0]
 STEEL = [0.30, 0.32, 0.36, 1.0]
@@ -113,9 +114,10 @@ def dress_platform(platform: Any, geometry: Geometry) -> None:
     _add(platform, _SPHERE, STEEL, pos=[0, 0, 0], size=[0.014, 0, 0])
     for connector in np.unique(geometry.B, axis=0):
         if np.linalg.norm(connector) > NO_ARM:
-            _add(platform, _CAPSULE, ALUMINIUM, fromto=[0, 0, 0, *connector], size=[0.005, 0, 0])
+            _add(platform, _CAPSULE, ALUMINIUM, fromto=[0, 0, 0, *connector],
+                 size=[ARM_RADIUS, 0, 0])  # fmt: skip
         _add(platform, _SPHERE, STEEL, pos=connector, size=[0.009, 0, 0])
-    _add(platform, _CAPSULE, HANDLE, fromto=[0, 0, -0.02, 0, 0, -0.11], size=[0.015, 0, 0])
+    _add(platform, _CAPSULE, HANDLE, fromto=[*GRIP[0], *GRIP[1]], size=[GRIP_RADIUS, 0, 0])
     _add(platform, _SPHERE, HANDLE, pos=[0, 0, -0.115], size=[0.019, 0, 0])
 
 

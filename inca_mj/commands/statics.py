@@ -1,0 +1,122 @@
+"""inca statics: what the cables can hold, how stiffly, where, and what their mass costs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import tyro
+
+from identification.commands.common import Output, conclude, note, output_field, table
+from inca_mj.commands.common import Values, cannot_draw, do_not_draw, values_field
+
+if TYPE_CHECKING:
+    from inca_mj.workflows.statics import StaticAnalysis
+
+
+@dataclass(frozen=True, kw_only=True)
+class Statics:
+    """Tensions, rest, stiffness, modes, workspace, near cables and the mass of cables at a pose.
+
+    Examples:
+        inca statics --workspace feasible --out out/statics
+        inca statics --pose 0.3 0.2 1.2 0 0 0.1 --force-on-handle 0 0 -2
+    """
+
+    pose: tuple[float, float, float, float, float, float] | None = None
+    """x y z [m] roll pitch yaw [rad]; the start pose when it is not given."""
+    workspace: Literal["none", "closure", "feasible", "static"] = "none"
+    """Workspace at the orientation of the pose."""
+    log: Path | None = None
+    """Log along which cables may come near to each other."""
+    force_on_handle: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Force on the handle beside its weight, in the frame of the room [N]."""
+    torque_on_handle: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Torque on the handle, in the frame of the room [N m]."""
+    current: tuple[float, float] = (-2.0, 2.0)
+    """Smallest and largest current of a motor [A]."""
+    taut: float = 0.5
+    """Every cable keeps at least this tension [N]."""
+    force: float = 1.0
+    """Of the feasible workspace: any force up to this must be held [N]."""
+    torque: float = 0.02
+    """Of the feasible workspace: any torque up to this must be held [N m]."""
+    cells: int = 24
+    """Cells of the workspace along the longest edge of the frame."""
+    rho: Annotated[tuple[float, ...], tyro.conf.arg(metavar="KG/M")] = (3e-4, 1e-3, 3e-3)
+    """Masses of the cables per length to look at [kg/m]."""
+    seed: int = 0
+    """Seed of the random points that measure the volume."""
+    robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
+
+    def run(self) -> int:
+        """Analyse, say, keep."""
+        draws = self.output.out is not None and self.workspace != "none"
+        blind = cannot_draw() if draws else ""  # before MuJoCo is imported
+        if not draws:
+            do_not_draw()
+        import numpy as np
+
+        from inca_mj.report.statics_json import statics_json
+        from inca_mj.report.statics_sections import statics_verdict
+        from inca_mj.statics.workspace import DriveLimits
+        from inca_mj.twin.logs import read_inca_log
+        from inca_mj.workflows.statics import analyse_statics
+
+        found = analyse_statics(
+            self.robot.parameters(),
+            self.robot.place(),
+            None if self.pose is None else np.array(self.pose),
+            load=np.array([*self.force_on_handle, *self.torque_on_handle]),
+            limits=DriveLimits(
+                current=self.current, taut=self.taut, force=self.force, torque=self.torque
+            ),
+            kind=None if self.workspace == "none" else self.workspace,
+            cells=self.cells,
+            log=None if self.log is None else read_inca_log(self.log),
+            rho=self.rho,
+            seed=self.seed,
+        )
+        if blind:
+            note(f"no picture of the workspace: {blind}")
+        text = "\n".join([summary(found), *statics_verdict(found)])
+        keep_all = partial(keep, self, found, draws and not blind)
+        conclude(self, statics_json(found), text, keep_all)
+        return 0
+
+
+def summary(found: StaticAnalysis) -> str:
+    """Tensions and currents of the cables at the pose."""
+    held = found.held
+    return table(
+        ("cable", "low [N]", "high [N]", "tension [N]", "current [A]"),
+        [
+            (str(k + 1), f"{held.low[k]:.2f}", f"{held.high[k]:.2f}", f"{held.within[k]:.3f}",
+             f"{held.current[k] + 0.0:.3f}")
+            for k in range(len(held.within))
+        ],
+    )  # fmt: skip
+
+
+def keep(command: Statics, found: StaticAnalysis, picture: bool, out: Path) -> None:
+    """Write the figures, the picture of the workspace, and the report into a folder."""
+    from identification.report.page import save_figures, write_report
+    from inca_mj.report.statics_sections import statics_sections, statics_verdict
+
+    sections = statics_sections(found)
+    save_figures(sections, out)
+    write_report(out / "report.html", "Statics of the robot", statics_verdict(found), sections)
+    if picture and found.workspace is not None and found.workspace.inside.any():
+        from inca_mj.rendering.workspace_picture import workspace_picture
+
+        workspace_picture(
+            found.workspace,
+            out / "workspace.png",
+            command.robot.parameters(),
+            command.robot.place(),
+            pose=found.pose,
+            tension=found.held.within,
+        )

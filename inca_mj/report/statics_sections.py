@@ -1,0 +1,144 @@
+"""Sections of the report of `inca statics`, and its sentences."""
+
+from __future__ import annotations
+
+from identification.report.page import Section, Table
+from inca_mj.report.statics_figures import (
+    NAMES,
+    cable_mass_figure,
+    frequency_figure,
+    slices_figure,
+    tension_figure,
+)
+from inca_mj.statics.interference import Interference
+from inca_mj.statics.workspace import Kind
+from inca_mj.workflows.statics import StaticAnalysis
+
+
+def statics_verdict(found: StaticAnalysis) -> list[str]:
+    """What was found, in sentences."""
+    held, rest, push = found.held, found.rest, found.push
+    x, y, z = rest.pose[:3]
+    said = [
+        f"The cables have rank {found.closure.rank} and closure: the best internal tension has a"
+        f" smallest tension of {found.closure.margin:.2f} of the largest.",
+        f"Tensions from {held.within.min():.2f} to {held.within.max():.2f} N hold the handle, with"
+        f" currents from {held.current.min():.2f} to {held.current.max():.2f} A.",
+        f"With the power off it rests at ({x:.3f}, {y:.3f}, {z:.3f}) m,"
+        f" {'stable' if rest.stable else 'NOT stable'}; Coulomb friction may hold it up to"
+        f" {1e3 * rest.friction_band[:3].max():.0f} mm away from there.",
+        f"With locked drums the softest direction is {push.words[0]}, {push.values[0] / 1e3:.1f}"
+        f" N/mm, and the stiffest {push.words[-1]}, {push.values[-1] / 1e3:.1f} N/mm; the softest"
+        f" turn is {found.twist.words[0]}, {found.twist.values[0]:.1f} N m/rad.",
+        f"The slowest mode with locked drums has {found.modes.frequency[0]:.1f} Hz: the handle"
+        f" {found.modes.words[0]}.",
+    ]
+    if found.workspace is not None:
+        w = found.workspace
+        said.append(
+            f"The {NAMES[w.kind]} workspace at this orientation has {w.volume:.2f} ± {w.std:.2f} m³"
+            " (standard error of stratified sampling)."
+        )
+    said += _near_words("At the pose", found.nearness)
+    if found.nearness_along is not None:
+        n = len(found.nearness_along.platform)
+        said += _near_words(f"Over {n} poses", found.nearness_along)
+    return [*said, *mass_verdict(found)]
+
+
+def mass_verdict(found: StaticAnalysis) -> list[str]:
+    """For which cables the massless straight line is good enough, in sentences."""
+    said = []
+    for rho in found.rho:
+        rows = [e for e in found.line_errors if e.rho == rho]
+        enough = [e.tension for e in rows if e.line_is_enough]
+        where = f"from {min(enough):g} N on" if enough else "at none of the tensions"
+        said.append(
+            f"Cables of {1e3 * rho:g} g/m are straight to the noise of a log {where}; their weight"
+            f" moves a free handle by {1e3 * rows[0].moved:.1f} mm."
+        )
+    return said
+
+
+def _near_words(begin: str, found: Interference) -> list[str]:
+    (i, j), _ = found.nearest_pair()
+    cable, _ = found.nearest_to_platform()
+    gap = found.platform.min()
+    touch = f"clears it by {1e3 * gap:.0f} mm" if gap > 0 else "TOUCHES it"
+    return [
+        f"{begin} the nearest cables are {i} and {j}, {1e3 * found.between.min():.0f} mm apart;"
+        f" cable {cable} is nearest to the handle and {touch}."
+    ]
+
+
+def statics_sections(found: StaticAnalysis) -> list[Section]:
+    """The sections, with their figures."""
+    held = found.held
+    sections = [
+        Section(
+            "Tensions at the pose",
+            "Limits follow from the smallest and the largest current and the drum springs.",
+            figures=(("Tensions of the cables", tension_figure(found)),),
+            table=Table(
+                ("cable", "low [N]", "high [N]", "minimum norm [N]", "nearest to 4 N [N]",
+                 "within limits [N]", "current [A]"),
+                tuple(
+                    (k + 1, *(float(x[k]) for x in (held.low, held.high, held.minimum_norm,
+                                                    held.nearest, held.within, held.current)))
+                    for k in range(8)
+                ),
+            ),
+        ),
+        Section(
+            "Stiffness and modes",
+            "Stiffness against a force while the handle may turn, against a torque while it may"
+            " move; drums locked. Modes have no damping here.",
+            figures=(("Frequencies of handle and cables", frequency_figure(found)),),
+            table=Table(("what", "value", "unit"), _stiffness_rows(found)),
+        ),
+    ]  # fmt: skip
+    if found.workspace is not None:
+        kinds: tuple[Kind, ...] = tuple(dict.fromkeys(("closure", found.workspace.kind)))
+        sections.append(
+            Section(
+                "Workspace",
+                f"Slices through the pose. Volume {found.workspace.volume:.3f} ±"
+                f" {found.workspace.std:.3f} m³.",
+                figures=(("Slices of the workspace", slices_figure(found.robot, found, kinds)),),
+            )
+        )
+    sections.append(
+        Section(
+            "Mass of the cables",
+            "What a massless straight cable gets wrong at this pose, the worst of the eight.",
+            figures=(("Error of the length of a straight line", cable_mass_figure(found)),),
+            table=Table(MASS_COLUMNS, mass_rows(found)),
+        )
+    )
+    return sections
+
+
+MASS_COLUMNS = (
+    "ρ [g/m]", "tension [N]", "length [µm]", "angle [mrad]", "force [mN]",
+    "force, half weight [mN]", "stiffness lost [%]", "handle moves [mm]", "straight is enough",
+)  # fmt: skip
+
+
+def mass_rows(found: StaticAnalysis) -> tuple[tuple[object, ...], ...]:
+    """The table of the mass of the cables, with the columns `MASS_COLUMNS`."""
+    return tuple(
+        (1e3 * e.rho, e.tension, 1e6 * e.length, 1e3 * e.angle, 1e3 * e.force, 1e3 * e.force_half,
+         1e2 * e.stiffness_lost, 1e3 * e.moved, "yes" if e.line_is_enough else "no")
+        for e in found.line_errors
+    )  # fmt: skip
+
+
+def _stiffness_rows(found: StaticAnalysis) -> tuple[tuple[object, ...], ...]:
+    rows: list[tuple[object, ...]] = []
+    for axes, unit in ((found.push, "N/m"), (found.twist, "N m/rad")):
+        for value, words in zip(axes.values, axes.words, strict=True):
+            rows.append((f"stiffness {words}", float(value), unit))
+    for modes, what in ((found.modes, "drums locked"), (found.modes_free, "drums free")):
+        for value, words in zip(modes.frequency, modes.words, strict=True):
+            rows.append((f"{what}: {words}", float(value), "Hz"))
+    return tuple(rows)

@@ -1,0 +1,142 @@
+"""How near cables come to each other and to the handle.
+
+Cables, arms and the grip are straight segments p + t u, q + t' v with t, t' in [0, 1]. The nearest
+points of two segments are either inside of both, where the connection is perpendicular to both, or
+one of them is an end; the least of the five candidates is the distance.
+
+Two cables that share a connector or an exit point touch there by design. What counts for them is
+the angle between them: they lie on each other where it is zero. A cable and the arm that carries
+its own connector are not compared either.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from inca_mj.robot.geometry import DRIVES, Geometry
+from inca_mj.robot.handle import ARM_RADIUS, GRIP, GRIP_RADIUS
+from inca_mj.statics.robot import lines_of_many, turn
+
+SHARED = 1e-6  # anchors that are nearer than this are one point [m]
+PARALLEL = 1e-12
+
+
+def segment_distance(p: np.ndarray, u: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Distances of segments p + t u and q + t' v, 0 ≤ t, t' ≤ 1, shape (...,) [m].
+
+    Args:
+        p: begin of the first segment, shape (..., 3) [m].
+        u: from its begin to its end, shape (..., 3) [m].
+        q: begin of the second segment, shape (..., 3) [m].
+        v: from its begin to its end, shape (..., 3) [m].
+    """
+    w = q - p
+    uu, vv, uv = _dot(u, u), _dot(v, v), _dot(u, v)
+    det = uu * vv - uv**2
+    t = np.divide(_dot(w, u) * vv - _dot(w, v) * uv, det, where=det > PARALLEL * uu * vv,
+                  out=np.full(np.shape(det), np.nan))  # fmt: skip
+    t2 = (t * uv - _dot(w, v)) / vv
+    inside = (t >= 0) & (t <= 1) & (t2 >= 0) & (t2 <= 1)  # NaN, where parallel, is not inside
+    across = np.linalg.norm(w + t2[..., None] * v - t[..., None] * u, axis=-1)
+    ends = [
+        point_distance(p, q, v), point_distance(p + u, q, v),
+        point_distance(q, p, u), point_distance(q + v, p, u),
+    ]  # fmt: skip
+    return np.minimum(np.where(inside, across, np.inf), np.min(ends, axis=0))
+
+
+def point_distance(x: np.ndarray, p: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Distances of points x from segments p + t u, shape (...,) [m].
+
+    Args:
+        x: points, shape (..., 3) [m].
+        p: begin of the segment, shape (..., 3) [m].
+        u: from its begin to its end, shape (..., 3) [m].
+    """
+    t = np.clip(_dot(x - p, u) / _dot(u, u), 0.0, 1.0)
+    return np.linalg.norm(x - p - t[..., None] * u, axis=-1)
+
+
+@dataclass(frozen=True)
+class Interference:
+    """What comes nearest along some poses.
+
+    Attributes:
+        pairs: cables that share no anchor, as numbers from 1.
+        between: their distances, shape (N, pairs) [m].
+        sharing: cables that share an anchor, as numbers from 1.
+        angle: between them, shape (N, sharing) [rad].
+        platform: clearance of each cable from grip and arms, shape (N, 8) [m]; negative where it
+            would run through them.
+    """
+
+    pairs: tuple[tuple[int, int], ...]
+    between: np.ndarray
+    sharing: tuple[tuple[int, int], ...]
+    angle: np.ndarray
+    platform: np.ndarray
+
+    def nearest_pair(self) -> tuple[tuple[int, int], int]:
+        """The two cables that come nearest, and the number of the pose."""
+        pose, pair = np.unravel_index(self.between.argmin(), self.between.shape)
+        return self.pairs[pair], int(pose)
+
+    def nearest_to_platform(self) -> tuple[int, int]:
+        """The cable that comes nearest to the handle, from 1, and the number of the pose."""
+        pose, cable = np.unravel_index(self.platform.argmin(), self.platform.shape)
+        return int(cable) + 1, int(pose)
+
+
+def interference(poses: np.ndarray, geometry: Geometry) -> Interference:
+    """Distances between cables, and of cables from the handle, at poses.
+
+    Args:
+        poses: x, y, z [m], roll, pitch, yaw [rad], shape (N, 6).
+        geometry: anchors of the cables; the handle is that of `inca_mj.robot.handle`.
+    """
+    poses = np.atleast_2d(np.asarray(poses, float))
+    at = lines_of_many(poses, geometry)
+    u = at.s * at.d[..., None]  # from exit to connector
+    all_pairs = list(combinations(range(DRIVES), 2))
+    shared = [_share(geometry, i, j) for i, j in all_pairs]
+    apart = [pair for pair, one in zip(all_pairs, shared, strict=True) if not one]
+    joined = [pair for pair, one in zip(all_pairs, shared, strict=True) if one]
+    A = np.broadcast_to(geometry.A, u.shape)
+    between = [segment_distance(A[:, i], u[:, i], A[:, j], u[:, j]) for i, j in apart]
+    angles = [np.arccos(np.clip(_dot(at.s[:, i], at.s[:, j]), -1, 1)) for i, j in joined]
+    return Interference(
+        tuple((i + 1, j + 1) for i, j in apart),
+        np.reshape(between, (len(apart), len(poses))).T,
+        tuple((i + 1, j + 1) for i, j in joined),
+        np.reshape(angles, (len(joined), len(poses))).T,
+        _clearance(poses, geometry, A, u),
+    )
+
+
+def _clearance(poses: np.ndarray, geometry: Geometry, A: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Distance of each cable from the surface of grip and arms, shape (N, 8) [m]."""
+    R, P = turn(poses), poses[:, :3]
+    ends = [(np.array(GRIP[0]), np.array(GRIP[1]), GRIP_RADIUS, np.zeros(DRIVES, bool))]
+    for b in np.unique(geometry.B, axis=0):
+        own = np.linalg.norm(geometry.B - b, axis=1) < SHARED
+        if np.linalg.norm(b) > SHARED:
+            ends.append((np.zeros(3), b, ARM_RADIUS, own))
+    clearance = np.full(u.shape[:2], np.inf)
+    for begin, end, radius, own in ends:
+        q, v = P + R @ begin, R @ (end - begin)
+        for k in np.flatnonzero(~own):
+            d = segment_distance(A[:, k], u[:, k], q, v) - radius
+            clearance[:, k] = np.minimum(clearance[:, k], d)
+    return clearance
+
+
+def _share(geometry: Geometry, i: int, j: int) -> bool:
+    ends = (geometry.A[i] - geometry.A[j], geometry.B[i] - geometry.B[j])
+    return any(float(np.linalg.norm(end)) < SHARED for end in ends)
+
+
+def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.asarray((a * b).sum(axis=-1))

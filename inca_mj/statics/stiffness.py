@@ -1,0 +1,201 @@
+"""How stiffly the cables hold the handle, and how it would swing on them.
+
+With x = (δp, δθ) a small displacement and turn in O, and f the wrench on the platform, δf = −K x.
+J = [s_iᵀ, (r_i × s_i)ᵀ], A_i = [1, −[r_i]×] the displacement of a connector, P_i = 1 − s_i s_iᵀ:
+
+    K = Jᵀ diag(k) J                                          cables that stretch
+        + Σ T_i A_iᵀ (P_i/d_i) A_i + Σ T_i [0, 0; 0, [s_i]× [r_i]×]        cables that turn
+
+    k_i = λ/d₀                          drums locked
+    k_i = 1/(d₀/λ + R/κ)                drums free, against their springs (see `drums`)
+
+K is symmetric at an equilibrium without external torque (Behzadipour, Khajepour 2006, Stiffness of
+cable-based parallel manipulators). Forces and torques cannot be compared, so K as a whole has no
+eigenvectors that mean anything. What has a meaning: the stiffness against a force while the handle
+may turn, against a torque while it may move, and, with the mass matrix M, its modes,
+
+    K_pp − K_pθ K_θθ⁻¹ K_θp [N/m],   K_θθ − K_θp K_pp⁻¹ K_pθ [N m/rad],   K x = ω² M x.
+
+Modes with free drums need the inertia of the drums too (`with_drums`): J/R² = 0.26 kg is more than
+the handle has.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh
+
+from identification.errors import InputError
+from inca_mj.statics.robot import Lines, Robot, turn
+
+AXES = ("x", "y", "z")
+SMALL = 0.15  # a part of an eigenvector that is smaller than this is not told
+
+
+def cross_matrix(v: np.ndarray) -> np.ndarray:
+    """[v]×, shape (..., 3) -> (..., 3, 3), in the unit of v."""
+    x, y, z = np.moveaxis(np.asarray(v, float), -1, 0)
+    o = np.zeros_like(x)
+    return np.stack([o, -z, y, z, o, -x, -y, x, o], -1).reshape(*x.shape, 3, 3)
+
+
+def stiffness(at: Lines, tension: np.ndarray, k: np.ndarray) -> np.ndarray:
+    """K, shape (..., 6, 6) [N/m, N, N m/rad].
+
+    Args:
+        at: the cables.
+        tension: of the cables, shape (..., 8) [N].
+        k: stiffness of each along itself, shape (..., 8) [N/m].
+    """
+    J = -np.swapaxes(at.W, -1, -2)
+    elastic = np.einsum("...ka,...k,...kb->...ab", J, k, J)
+    return elastic + geometric_stiffness(at, tension)
+
+
+def geometric_stiffness(at: Lines, tension: np.ndarray) -> np.ndarray:
+    """The part of K that tensions make by turning the cables, shape (..., 6, 6).
+
+    Args:
+        at: the cables.
+        tension: of the cables, shape (..., 8) [N].
+    """
+    r, eye = cross_matrix(at.r), np.eye(3)
+    A = np.concatenate([np.broadcast_to(eye, r.shape), -r], axis=-1)  # (..., 8, 3, 6)
+    P = eye - at.s[..., :, None] * at.s[..., None, :]
+    K = np.einsum("...k,...kia,...kij,...kjb->...ab", tension / at.d, A, P, A)
+    K[..., 3:, 3:] += np.einsum("...k,...kij,...kjl->...il", tension, cross_matrix(at.s), r)
+    return K
+
+
+def mass_matrix(robot: Robot, pose: np.ndarray) -> np.ndarray:
+    """M of the handle in O about its centre of mass, shape (6, 6) [kg, kg m^2].
+
+    Args:
+        robot: its numbers.
+        pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
+    """
+    M, R = robot.m * np.eye(6), turn(pose)
+    M[3:, 3:] = R @ np.diag(robot.I) @ R.T
+    return M
+
+
+def with_drums(robot: Robot, at: Lines, tension: np.ndarray, no_load: np.ndarray) -> np.ndarray:
+    """Stiffness of handle and drums together, in the coordinates (δp, δθ, φ_1 … φ_8).
+
+    A turn φ of a drum stretches its cable by R φ, and its spring by R_s φ:
+
+        K = [Jᵀ k J + K_T, Jᵀ k R; R k J, R² k + κ R],   k = λ/d₀,  K_T the geometric part
+
+    Args:
+        robot: its numbers.
+        at: the cables.
+        tension: of the cables, shape (8,) [N].
+        no_load: d₀ of the cables, shape (8,) [m].
+
+    Returns:
+        Shape (14, 14) [N/m, N, N m/rad].
+    """
+    J, k = -at.W.T, robot.lambda_ / no_load
+    upper = J.T * (k * robot.R)
+    drums = np.diag(robot.R**2 * k + robot.drum * robot.R)
+    return np.block([[stiffness(at, tension, k), upper], [upper.T, drums]])
+
+
+@dataclass(frozen=True)
+class Axes:
+    """Principal values of a 3 x 3 stiffness, the softest first.
+
+    Attributes:
+        values: shape (3,) [N/m] or [N m/rad].
+        vectors: in the rows, in O, shape (3, 3), without unit.
+        words: each in words.
+    """
+
+    values: np.ndarray
+    vectors: np.ndarray
+    words: tuple[str, ...]
+
+
+def principal(K: np.ndarray) -> tuple[Axes, Axes]:
+    """Stiffness against forces (the handle may turn) and against torques (it may move).
+
+    Args:
+        K: stiffness at an equilibrium, shape (6, 6) [N/m, N, N m/rad].
+
+    Raises:
+        InputError: the handle is held in no way along some direction.
+    """
+    K = (K + K.T) / 2
+    pp, pt, tt = K[:3, :3], K[:3, 3:], K[3:, 3:]
+    if min(np.linalg.svd(part, compute_uv=False)[-1] for part in (pp, tt)) <= 0:
+        raise InputError("the cables do not hold the handle along some direction here; move it")
+    push, twist = pp - pt @ np.linalg.solve(tt, pt.T), tt - pt.T @ np.linalg.solve(pp, pt)
+    found = []
+    for part, begin in ((push, "along"), (twist, "about")):
+        values, vectors = np.linalg.eigh(part)
+        rows = vectors.T
+        words = tuple(f"{begin} {axis_words(v)}" for v in rows)
+        found.append(Axes(values, rows, words))
+    return found[0], found[1]
+
+
+@dataclass(frozen=True)
+class Modes:
+    """How the handle swings without damping, the slowest first.
+
+    Attributes:
+        frequency: shape (6,) [Hz]; NaN where the equilibrium is not stable.
+        shape: in the rows, displacement and turn, M-normalised, shape (6, n).
+        words: each mode in words.
+    """
+
+    frequency: np.ndarray
+    shape: np.ndarray
+    words: tuple[str, ...]
+
+
+def modes(K: np.ndarray, M: np.ndarray, count: int = 6) -> Modes:
+    """The slowest modes of K x = ω² M x; the first six coordinates are those of the handle.
+
+    Args:
+        K: stiffness, shape (n, n) [N/m, N, N m/rad].
+        M: masses, shape (n, n) [kg, kg m^2].
+        count: how many.
+    """
+    ω2, x = eigh((K + K.T) / 2, M)
+    frequency = np.sqrt(np.where(ω2 > 0, ω2, np.nan)) / (2 * np.pi)
+    rows = x.T[:count]
+    return Modes(frequency[:count], rows, tuple(mode_words(row[:6], M[:6, :6]) for row in rows))
+
+
+def mode_words(x: np.ndarray, M: np.ndarray) -> str:
+    """A mode of the handle in words, by its share in the kinetic energy.
+
+    Args:
+        x: displacement and turn, shape (6,), in the units of M.
+        M: mass matrix of the handle, shape (6, 6) [kg, kg m^2].
+    """
+    moving, turning = x[:3] @ M[:3, :3] @ x[:3], x[3:] @ M[3:, 3:] @ x[3:]
+    share = moving / (moving + turning)
+    if share > 1 - SMALL**2:
+        return f"moves along {axis_words(x[:3])}"
+    if share < SMALL**2:
+        return f"turns about {axis_words(x[3:])}"
+    move, swing = f"moves along {axis_words(x[:3])}", f"turns about {axis_words(x[3:])}"
+    return f"{move} and {swing}" if share > 0.5 else f"{swing} and {move}"
+
+
+def axis_words(v: np.ndarray) -> str:
+    """A direction in words: "z", or "x (0.8) and y (0.6)".
+
+    Args:
+        v: shape (3,), any unit.
+    """
+    v = v / np.linalg.norm(v)
+    order = [i for i in np.argsort(-np.abs(v), kind="stable") if abs(v[i]) > SMALL]
+    if len(order) == 1:
+        return AXES[order[0]]
+    v = v * np.sign(v[order[0]])
+    return " and ".join(f"{AXES[i]} ({v[i]:.2f})" for i in order)
