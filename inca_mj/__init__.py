@@ -31,8 +31,15 @@ _PUBLIC = {
     "load_twin": "twin.saved",
     "read_inca_log": "twin.logs",
     "run_to_log": "twin.logs",
-    "load_environment": "twin.control",
-    "CONTROL_TIMESTEP": "twin.control",
+    "load_environment": "control.environment",
+    "CONTROL_TIMESTEP": "control.controller",
+    "load_gymnasium": "control.gymnasium_env",
+    "Controller": "control.controller",
+    "Gains": "control.controller",
+    "Tensions": "control.inverse",
+    "Point": "control.paths",
+    "Line": "control.paths",
+    "Circle": "control.paths",
     # effects that it may lack
     "CATALOGUE": "effects.catalogue",
     "DRIVES_EACH": "effects.hooks",
@@ -50,6 +57,8 @@ _PUBLIC = {
     "with_spread": "robot.spread",
     "discover": "workflows.discovery",
     "named_twin": "workflows.discovery_model",
+    "track": "workflows.tracking",
+    "Tracking": "workflows.tracking",
     "sensitivity": "workflows.sensitivity",
     "excite": "workflows.excitation",
     "Design": "workflows.excitation",
@@ -67,6 +76,15 @@ _PUBLIC = {
 __all__ = list(_PUBLIC)
 
 if TYPE_CHECKING:  # the same list, for type checkers and editors
+    from inca_mj.control.controller import CONTROL_TIMESTEP as CONTROL_TIMESTEP
+    from inca_mj.control.controller import Controller as Controller
+    from inca_mj.control.controller import Gains as Gains
+    from inca_mj.control.environment import load_environment as load_environment
+    from inca_mj.control.gymnasium_env import load_gymnasium as load_gymnasium
+    from inca_mj.control.inverse import Tensions as Tensions
+    from inca_mj.control.paths import Circle as Circle
+    from inca_mj.control.paths import Line as Line
+    from inca_mj.control.paths import Point as Point
     from inca_mj.effects.catalogue import CATALOGUE as CATALOGUE
     from inca_mj.effects.hooks import DRIVES_EACH as DRIVES_EACH
     from inca_mj.rendering.film import film as film
@@ -84,8 +102,6 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.robot.parameters import GRAVITY as GRAVITY
     from inca_mj.robot.parameters import parameter_set as parameter_set
     from inca_mj.robot.spread import with_spread as with_spread
-    from inca_mj.twin.control import CONTROL_TIMESTEP as CONTROL_TIMESTEP
-    from inca_mj.twin.control import load_environment as load_environment
     from inca_mj.twin.logs import read_inca_log as read_inca_log
     from inca_mj.twin.logs import run_to_log as run_to_log
     from inca_mj.twin.run import Run as Run
@@ -114,6 +130,8 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.workflows.sensitivity import sensitivity as sensitivity
     from inca_mj.workflows.spread import Spread as Spread
     from inca_mj.workflows.spread import spread_of as spread_of
+    from inca_mj.workflows.tracking import Tracking as Tracking
+    from inca_mj.workflows.tracking import track as track
     from inca_mj.workflows.trials import TrialResult as TrialResult
     from inca_mj.workflows.trials import monte_carlo as monte_carlo
     from inca_mj.workflows.trials import trials as trials

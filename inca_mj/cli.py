@@ -19,6 +19,7 @@ from inca_mj.commands.film import Film
 from inca_mj.commands.identify import Identify
 from inca_mj.commands.sensitivity import Sensitivity
 from inca_mj.commands.simulate import Simulate
+from inca_mj.commands.track import Track
 from inca_mj.commands.trials import Trials
 
 Command = (
@@ -31,6 +32,7 @@ Command = (
     | Annotated[Sensitivity, tyro.conf.subcommand("sensitivity")]
     | Annotated[Excite, tyro.conf.subcommand("excite")]
     | Annotated[Trials, tyro.conf.subcommand("trials")]
+    | Annotated[Track, tyro.conf.subcommand("track")]
     | Annotated[Film, tyro.conf.subcommand("film")]
     | Annotated[Demo, tyro.conf.subcommand("demo")]
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import tyro
 
 if TYPE_CHECKING:
+    from identification.effects.effect import Effect
     from identification.model.parameter import ParameterSet
     from inca_mj.robot.geometry import Geometry
 
@@ -62,7 +64,7 @@ class Robot(Values):
     """Largest step of the integrator [s]; stiff cables and light motors need a smaller one."""
 
 
-def _assignment(text: str) -> tuple[str, float]:
+def _assignment(text: str, example: str = "--param m=0.2") -> tuple[str, float]:
     from identification.errors import InputError
 
     name, equals, value = text.partition("=")
@@ -71,7 +73,39 @@ def _assignment(text: str) -> tuple[str, float]:
             raise ValueError
         return name.strip(), float(value)
     except ValueError:
-        raise InputError(f"{text!r} is not NAME=VALUE; write e.g. --param m=0.2") from None
+        raise InputError(f"{text!r} is not NAME=VALUE; write e.g. {example}") from None
+
+
+def effects_of(assignments: Sequence[str]) -> tuple[tuple[Effect, ...], dict[str, float]]:
+    """The effects of the catalogue that NAME.SIZE=VALUE words name, and their values.
+
+    NAME alone stands for its first size, NAME.SIZE@3 for drive 3.
+
+    Raises:
+        InputError: a word is malformed, given twice, or names no effect or parameter of one.
+    """
+    from identification.errors import InputError, unknown_name
+    from inca_mj.effects.catalogue import CATALOGUE
+    from inca_mj.effects.values import records
+
+    known = {effect.name: effect for effect in CATALOGUE}
+    values: dict[str, float] = {}
+    for word, value in (
+        _assignment(a, "--effect load_dependent_friction.mu=0.05") for a in assignments
+    ):
+        name, _, place = word.partition("@")
+        own, _, size = name.partition(".")
+        if own not in known:
+            raise unknown_name("effect", own, known)
+        full = f"{own}.{size or known[own].sizes[0].name}" + (f"@{place}" if place else "")
+        parameters = [p.name for p in records([known[own]])]
+        if full not in parameters:
+            raise unknown_name("parameter of an effect", full, parameters)
+        if full in values:
+            raise InputError(f"--effect gives {full} twice; give it once")
+        values[full] = value
+    named = {name.partition(".")[0] for name in values}
+    return tuple(e for e in CATALOGUE if e.name in named), values
 
 
 def cannot_draw() -> str:

@@ -73,8 +73,10 @@ class Controller:
     ) -> None:
         self.path, self.gains, self.period = path, gains or Gains(), period
         self._inverse, self._observer = Inverse(robot, tensions), Observer(robot)
-        self._error, self._sum, self._step = None, np.zeros(6), 0
-        self.pose: Pose | None = None  # as last seen
+        self._error: np.ndarray | None = None
+        self._sum, self._step = np.zeros(6), 0
+        pose, quaternion = robot.start.pose, np.array(robot.model.qpos0[3:7])
+        self.pose = Pose(pose[:3], quaternion)  # as last seen
         self.needed: Needed | None = None  # as last asked of the inverse
 
     def currents(self, angle: np.ndarray, pose: Pose | None = None) -> np.ndarray:

@@ -145,7 +145,7 @@ class Inverse:
     def _limits(
         self, T: np.ndarray, currents: np.ndarray, R: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Least and largest tensions (8,) [N] for the amplifiers; T at `currents`, dT/di = K_t/R."""
+        """Least and largest tensions (8,) [N] of the amplifiers; T at `currents`, dT/di = K_t/R."""
         slope, wanted = self._K_t / R, self.wanted
         low = np.maximum(wanted.low, T + (LOWEST_CURRENT - currents) * slope)
         high = np.minimum(wanted.high, T + (HIGHEST_CURRENT - currents) * slope)

@@ -13,8 +13,8 @@ every term is asked of the twin's own law, so that an eccentric roller or a pull
 taken into account. What the twin does not have makes the pose wrong, and no feedback mends that.
 
 A controller keeps its cables taut. Where the wound lengths say that one is slack, the twin is wrong
-(by a roller that is 0.3 mm off in its length), and a law that then does nothing would lose the pose:
-tensions below zero make the pose the least-squares one, weighted by stiffness.
+(half a millimetre of one length suffices), and a law that then does nothing would lose the pose.
+With tensions below zero the pose is the least-squares one, weighted by stiffness.
 """
 
 from __future__ import annotations
