@@ -4,9 +4,9 @@
     .venv/bin/python benchmarks/control.py --discover  the model is found by a discovery first
 
 The robot has one effect. Its controller sees motor angles and follows the circle of
-`inca_mj.track`: with the nominal twin as its model (before), and with the twin that has the effect (after). With
---discover the effect is first found in a log of the robot: 10 s of the thesis' PRBS, white noise on
-the angles. One record a case is added to benchmarks/results/control.jsonl.
+`inca_mj.track`: with the nominal twin as its model (before), and with the twin that has the effect
+(after). With --discover the effect is first found in a log of the robot: 10 s of the thesis' PRBS,
+white noise on the angles. One record a case is added to benchmarks/results/control.jsonl.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ RESULTS = Path(__file__).parent / "results" / "control.jsonl"
 NOISE = 2e-4  # of the encoders [rad]
 SECONDS = 12.0  # of the circle: 8 s at the full rate count
 
-# The sizes of the first group are those of simulated practice logs, chosen so that a log shows them;
-# most of the second are ten times as large or more, as of a worn or carelessly built robot.
+# The first group has sizes of simulated practice logs, chosen so that a log just shows them; most
+# of the second are ten times as large or more, as of a worn or carelessly built robot.
 SMALL = (
     {"load_dependent_friction.mu": 0.0038},
     {"spring_hysteresis.eta": 0.013},

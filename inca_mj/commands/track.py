@@ -22,12 +22,12 @@ class Track:
     """Let a robot follow a circle; its controller sees motor angles and believes a model.
 
     Examples:
-        inca track --effect load_dependent_friction.mu=0.05 --out out/track_nominal
-        inca track --effect load_dependent_friction.mu=0.05 --model out/discover --out out/track_found
+        inca track --effect load_dependent_friction.mu=0.05 --out out/nominal
+        inca track --effect load_dependent_friction.mu=0.05 --model out/discover --out out/found
     """
 
     model: Path | None = None
-    """Twin that the controller believes, a folder of inca discover; else the robot without effects."""
+    """Twin that the controller believes, a folder of inca discover; else the nominal one."""
     effect: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME.SIZE=VALUE")] = ()
     """What the robot truly has beside its parameters, such as load_dependent_friction.mu=0.05."""
     radius: float = 0.3
@@ -121,8 +121,9 @@ def summary(result: Tracking) -> dict[str, object]:
 def _text(result: Tracking) -> str:
     run = result.run
     return (
-        f"The handle is {1e3 * result.rms:.3f} mm rms from its path, {1e3 * result.largest:.3f} mm at"
-        f" most; the controller believes {1e3 * result.seen_rms:.3f} mm rms.\n"
+        f"The handle is {1e3 * result.rms:.3f} mm rms from its path,"
+        f" {1e3 * result.largest:.3f} mm at most;"
+        f" the controller believes {1e3 * result.seen_rms:.3f} mm rms.\n"
         f"Currents from {run.currents.min():.2f} to {run.currents.max():.2f} A, tensions from"
         f" {run.tension.min():.1f} to {run.tension.max():.1f} N."
     )

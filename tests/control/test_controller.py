@@ -1,5 +1,7 @@
 """The controlled robot: the linear error equation, exactness, limits, what a wrong model costs."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -43,7 +45,7 @@ def test_the_error_obeys_the_linear_equation_in_the_limit_of_fast_control():
         for period in (0.01, 0.005, 0.0025)
     ]
     assert off[2] < 0.05
-    for coarse, fine in zip(off, off[1:], strict=False):
+    for coarse, fine in pairwise(off):
         assert 0.35 < fine / coarse < 0.65  # a half, by the first order in the period
 
 
@@ -135,7 +137,7 @@ def test_velocity_and_acceleration_are_the_derivatives_of_the_path(path):
 
 
 def test_refusals():
-    with pytest.raises(InputError, match="plane 'zx'.*known: xy, xz, yz"):
+    with pytest.raises(InputError, match=r"plane 'zx'.*known: xy, xz, yz"):
         Circle(plane="zx")
     with pytest.raises(InputError, match="radius of 0 m"):
         Circle(radius=0.0)
@@ -143,7 +145,7 @@ def test_refusals():
         Line(CENTRE, CENTRE, -1.0)
     with pytest.raises(InputError, match="bandwidth of -1"):
         Gains(bandwidth=-1.0)
-    with pytest.raises(InputError, match="path begins at .*, but the robot at"):
+    with pytest.raises(InputError, match=r"path begins at .*, but the robot at"):
         track(path=Circle(centre=(0.2, 0.0, 1.43)))
     with pytest.raises(InputError, match="longer duration"):
         track(duration=3.0)

@@ -69,10 +69,14 @@ def test_a_robot_with_an_effect_accelerates_as_asked(name):
     mujoco.mj_forward(robot.model, data)
     scale = 1 / np.array([0.1725] * 3 + [1e-4] * 3)  # [1/kg], [1/(kg m²)]: 1e-5 N, 1e-6 N m
     assert (np.abs(data.qacc[:6] - asked) < scale * [1e-5] * 6).all()
-    J = -np.array([needed.rate]).T  # the motors must not lag behind what the cables need
-    assert np.isfinite(J).all()
-    ω_dot = data.qacc[6:]
-    assert np.abs(ω_dot).max() < 200
+    if name in ("drum_eccentricity", "pulley_radius"):
+        return  # the motors' way is not that of the nominal geometry
+    J, d = (
+        length_jacobian(CENTRE, np.eye(3), INCA),
+        np.linalg.norm(CENTRE + INCA.B - INCA.A, axis=1),
+    )
+    d_ddot = J @ asked + (v @ v - (J[:, :3] @ v) ** 2) / d  # (thesis 2.18)
+    np.testing.assert_allclose(data.qacc[6:], -d_ddot / 0.0175, atol=0.1)  # 8e-6 N m
 
 
 @pytest.mark.parametrize("name", ["load_dependent_friction", "torque_constant_mismatch"])
