@@ -33,7 +33,7 @@ from inca_mj import (
 
 RESULTS = Path(__file__).parent / "results" / "control.jsonl"
 NOISE = 2e-4  # of the encoders [rad]
-SECONDS = 12.0  # of the circle: 8 s at the full rate count
+SECONDS = 10.5  # of the circle: 6.5 s at the full rate count, a whole turn
 
 # The first group has sizes of simulated practice logs, chosen so that a log just shows them; most
 # of the second are ten times as large or more, as of a worn or carelessly built robot.

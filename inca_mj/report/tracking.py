@@ -56,5 +56,6 @@ def tracking_figure(results: Mapping[str, Tracking]) -> Figure:
         plan.set_title(f"the path, errors drawn {MAGNIFIED:g} times as large", loc="left")
         over_time.set(xlabel="time [s]", ylabel="distance from the path [mm]", ylim=(0, None))
         over_time.axvline(first.counted, color=GREY, lw=0.8, ls=":")
-        over_time.legend(loc="upper left")
+        handles, labels = over_time.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
     return figure

@@ -9,7 +9,7 @@ from identification.errors import InputError
 from inca_mj.control.controller import Controller, Gains
 from inca_mj.control.inverse import HIGHEST_CURRENT, LOWEST_CURRENT
 from inca_mj.control.loop import run_loop
-from inca_mj.control.observer import Observer, Pose
+from inca_mj.control.observer import Observer
 from inca_mj.control.paths import Circle, Line, Point
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.robot.parameters import parameter_set
@@ -31,7 +31,6 @@ def step_response(period, bandwidth=10.0, **values):
     robot = build_twin(parameter_set(values=values), timestep=2.5e-4)
     path = Point((0.002, 0.0, 1.43))
     controller = Controller(robot, path, gains=Gains(bandwidth=bandwidth), period=period)
-    controller.currents(np.zeros(8), Pose(np.array(path.position), np.array([1.0, 0, 0, 0])))
     done = run_loop(robot, controller, 0.5, knows_pose=True)
     run = simulate(robot, done.currents, period)
     e, t = 0.002 - run.position[:, 0], run.time

@@ -71,10 +71,8 @@ def test_a_robot_with_an_effect_accelerates_as_asked(name):
     assert (np.abs(data.qacc[:6] - asked) < scale * [1e-5] * 6).all()
     if name in ("drum_eccentricity", "pulley_radius"):
         return  # the motors' way is not that of the nominal geometry
-    J, d = (
-        length_jacobian(CENTRE, np.eye(3), INCA),
-        np.linalg.norm(CENTRE + INCA.B - INCA.A, axis=1),
-    )
+    J = length_jacobian(CENTRE, np.eye(3), INCA)
+    d = np.linalg.norm(CENTRE + INCA.B - INCA.A, axis=1)
     d_ddot = J @ asked + (v @ v - (J[:, :3] @ v) ** 2) / d  # (thesis 2.18)
     np.testing.assert_allclose(data.qacc[6:], -d_ddot / 0.0175, atol=0.1)  # 8e-6 N m
 
