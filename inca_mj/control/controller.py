@@ -5,7 +5,8 @@
     i = inverse of the twin (a, motion asked, φ measured)
 
 In a robot that is exactly the twin and whose cables are stiff, the error obeys
-ë + K_d ė + K_p e + K_i ∫e = 0, whatever the twin's friction. The terms of the twin are taken at the
+ë + K_d ė + (K_p + K_T) e + K_i ∫e = 0, whatever the twin's friction; K_T = Σ T (1 - s sᵀ)/d over the
+inertia is what taut cables do by themselves to a handle beside its path. The terms of the twin are taken at the
 motion that is asked, and not at the measured one: steep friction at a measured rate, compensated
 10 ms late, would make the loop unstable. ė is the last step's difference.
 
