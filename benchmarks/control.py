@@ -108,8 +108,9 @@ def main():
     asked = parser.parse_args()
     groups = (("found", DISCOVERED),) if asked.discover else (("small", SMALL), ("large", LARGE))
     if not asked.discover and not asked.only:
-        nominal = track(duration=SECONDS)
-        keep({"group": "nominal", "values": {}, "before_rms_mm": round(1e3 * nominal.rms, 4)})
+        for group, noise in (("nominal", 0.0), (f"nominal, encoder noise {NOISE} rad", NOISE)):
+            nominal = track(duration=SECONDS, noise=noise)
+            keep({"group": group, "values": {}, "before_rms_mm": round(1e3 * nominal.rms, 4)})
     for group, cases in groups:
         for values in cases:
             if not next(iter(values)).startswith(asked.only):

@@ -5,10 +5,10 @@
     i = inverse of the twin (a, motion asked, φ measured)
 
 In a robot that is exactly the twin and whose cables are stiff, the error obeys
-ë + K_d ė + (K_p + K_T) e + K_i ∫e = 0, whatever the twin's friction; K_T = Σ T (1 - s sᵀ)/d over the
-inertia is what taut cables do by themselves to a handle beside its path. The terms of the twin are taken at the
-motion that is asked, and not at the measured one: steep friction at a measured rate, compensated
-10 ms late, would make the loop unstable. ė is the last step's difference.
+ë + K_d ė + (K_p + K_T) e + K_i ∫e = 0, whatever the twin's friction. K_T = Σ T (1 - s sᵀ)/d over
+the inertia is what taut cables do by themselves to a handle beside its path. The terms of the twin
+are taken at the motion that is asked, and not at the measured one: steep friction at a measured
+rate, compensated 10 ms late, would make the loop unstable. ė is the last step's difference.
 
 (The computed torque of Luh, Walker, Paul 1980, on the handle's six coordinates; for cable robots
 see Pott 2018, Cable-Driven Parallel Robots.)
