@@ -31,8 +31,6 @@ _PUBLIC = {
     "load_twin": "twin.saved",
     "read_inca_log": "twin.logs",
     "run_to_log": "twin.logs",
-    "load_environment": "twin.control",
-    "CONTROL_TIMESTEP": "twin.control",
     # the twin linearised
     "linearize": "linear.linearization",
     "linearize_along": "linear.linearization",
@@ -43,6 +41,15 @@ _PUBLIC = {
     "InterpolationError": "linear.accuracy",
     "run_error": "linear.accuracy",
     "RunError": "linear.accuracy",
+    "load_environment": "control.environment",
+    "CONTROL_TIMESTEP": "control.controller",
+    "load_gymnasium": "control.gymnasium_env",
+    "Controller": "control.controller",
+    "Gains": "control.controller",
+    "Tensions": "control.inverse",
+    "Point": "control.paths",
+    "Line": "control.paths",
+    "Circle": "control.paths",
     # effects that it may lack
     "CATALOGUE": "effects.catalogue",
     "DRIVES_EACH": "effects.hooks",
@@ -64,6 +71,8 @@ _PUBLIC = {
     "RestingPose": "workflows.poses",
     "log_poses": "workflows.poses",
     "LogPoses": "workflows.poses",
+    "track": "workflows.tracking",
+    "Tracking": "workflows.tracking",
     "sensitivity": "workflows.sensitivity",
     "excite": "workflows.excitation",
     "Design": "workflows.excitation",
@@ -92,6 +101,15 @@ _PUBLIC = {
 __all__ = list(_PUBLIC)
 
 if TYPE_CHECKING:  # the same list, for type checkers and editors
+    from inca_mj.control.controller import CONTROL_TIMESTEP as CONTROL_TIMESTEP
+    from inca_mj.control.controller import Controller as Controller
+    from inca_mj.control.controller import Gains as Gains
+    from inca_mj.control.environment import load_environment as load_environment
+    from inca_mj.control.gymnasium_env import load_gymnasium as load_gymnasium
+    from inca_mj.control.inverse import Tensions as Tensions
+    from inca_mj.control.paths import Circle as Circle
+    from inca_mj.control.paths import Line as Line
+    from inca_mj.control.paths import Point as Point
     from inca_mj.effects.catalogue import CATALOGUE as CATALOGUE
     from inca_mj.effects.hooks import DRIVES_EACH as DRIVES_EACH
     from inca_mj.kinematics.forward import pose_from_lengths as pose_from_lengths
@@ -126,8 +144,6 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.statics.tensions import distribute as distribute
     from inca_mj.statics.workspace import DriveLimits as DriveLimits
     from inca_mj.statics.workspace import workspace as workspace
-    from inca_mj.twin.control import CONTROL_TIMESTEP as CONTROL_TIMESTEP
-    from inca_mj.twin.control import load_environment as load_environment
     from inca_mj.twin.logs import read_inca_log as read_inca_log
     from inca_mj.twin.logs import run_to_log as run_to_log
     from inca_mj.twin.run import Run as Run
@@ -162,6 +178,8 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.workflows.spread import spread_of as spread_of
     from inca_mj.workflows.statics import StaticAnalysis as StaticAnalysis
     from inca_mj.workflows.statics import analyse_statics as analyse_statics
+    from inca_mj.workflows.tracking import Tracking as Tracking
+    from inca_mj.workflows.tracking import track as track
     from inca_mj.workflows.trials import TrialResult as TrialResult
     from inca_mj.workflows.trials import monte_carlo as monte_carlo
     from inca_mj.workflows.trials import trials as trials

@@ -22,6 +22,7 @@ from inca_mj.commands.linearize import Linearize
 from inca_mj.commands.sensitivity import Sensitivity
 from inca_mj.commands.simulate import Simulate
 from inca_mj.commands.statics import Statics
+from inca_mj.commands.track import Track
 from inca_mj.commands.trials import Trials
 
 Command = (
@@ -37,6 +38,7 @@ Command = (
     | Annotated[Linearize, tyro.conf.subcommand("linearize")]
     | Annotated[Trials, tyro.conf.subcommand("trials")]
     | Annotated[Statics, tyro.conf.subcommand("statics")]
+    | Annotated[Track, tyro.conf.subcommand("track")]
     | Annotated[Film, tyro.conf.subcommand("film")]
     | Annotated[Demo, tyro.conf.subcommand("demo")]
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import tyro
 
 if TYPE_CHECKING:
+    from identification.effects.effect import Effect
     from identification.model.parameter import ParameterSet
     from inca_mj.robot.geometry import Geometry
 
@@ -55,12 +57,13 @@ class Robot(Values):
     """Largest step of the integrator [s]; stiff cables and light motors need a smaller one."""
 
 
-def assignments(texts: tuple[str, ...], option: str) -> dict[str, float]:
+def assignments(texts: Sequence[str], option: str, example: str = "m=0.2") -> dict[str, float]:
     """The values of an option that is given as NAME=VALUE.
 
     Args:
         texts: what was given.
         option: its name.
+        example: a right one.
 
     Raises:
         InputError: one is malformed, or a name is given twice.
@@ -76,13 +79,44 @@ def assignments(texts: tuple[str, ...], option: str) -> dict[str, float]:
                 raise ValueError
             value = float(right)
         except ValueError:
-            raise InputError(f"{text!r} is not NAME=VALUE; write e.g. {option} m=0.2") from None
+            raise InputError(f"{text!r} is not NAME=VALUE; write e.g. {option} {example}") from None
         if name in values:
             raise InputError(
                 f"{option} gives {name} twice, {values[name]:g} and {value:g}; give it once"
             )
         values[name] = value
     return values
+
+
+def effects_of(words: Sequence[str]) -> tuple[tuple[Effect, ...], dict[str, float]]:
+    """The effects of the catalogue that NAME.SIZE=VALUE words name, and their values.
+
+    NAME alone stands for its first size, NAME.SIZE@3 for drive 3.
+
+    Raises:
+        InputError: a word is malformed, given twice, or names no effect or parameter of one.
+    """
+    from identification.errors import InputError, unknown_name
+    from inca_mj.effects.catalogue import CATALOGUE
+    from inca_mj.effects.values import records
+
+    known = {effect.name: effect for effect in CATALOGUE}
+    values: dict[str, float] = {}
+    given = assignments(words, "--effect", "load_dependent_friction.mu=0.05")
+    for word, value in given.items():
+        name, _, place = word.partition("@")
+        own, _, size = name.partition(".")
+        if own not in known:
+            raise unknown_name("effect", own, known)
+        full = f"{own}.{size or known[own].sizes[0].name}" + (f"@{place}" if place else "")
+        parameters = [p.name for p in records([known[own]])]
+        if full not in parameters:
+            raise unknown_name("parameter of an effect", full, parameters)
+        if full in values:
+            raise InputError(f"--effect gives {full} twice; give it once")
+        values[full] = value
+    named = {name.partition(".")[0] for name in values}
+    return tuple(e for e in CATALOGUE if e.name in named), values
 
 
 def cannot_draw() -> str:

@@ -6,20 +6,22 @@ pytest.importorskip("dm_control", reason="dm_control runs on neither MuJoCo 4 no
 from dm_control.rl.control import PhysicsError
 
 from identification.errors import InputError
+from inca_mj.control.controller import CONTROL_TIMESTEP, Controller, Gains
+from inca_mj.control.environment import load_environment as load
+from inca_mj.control.inverse import HIGHEST_CURRENT, LOWEST_CURRENT
+from inca_mj.control.paths import Point
+from inca_mj.control.tasks import REACH, START_SPREAD, TASKS
+from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.robot.parameters import parameter_set
-from inca_mj.twin.control import (
-    CONTROL_TIMESTEP,
-    HIGHEST_CURRENT,
-    LOWEST_CURRENT,
-    REACH,
-    START_SPREAD,
-    TASKS,
-    load_environment,
-)
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
 
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
+
+
+def load_environment(task="hold", random=None, **options):
+    """As a test sees it: with what the real robot cannot measure."""
+    return load(task, random, privileged=True, **options)
 
 
 def drive(env, currents):
@@ -41,13 +43,16 @@ def test_it_moves_in_lockstep_with_the_twin():
 
     for name, expected in {
         "motor_angle": run.motor_angle,
-        "motor_rate": run.motor_rate,
         "position": run.position,
         "orientation": run.qpos[:, 3:7],
         "tension": run.tension,
     }.items():
         found = np.array([observation[name] for observation in seen])
         np.testing.assert_allclose(found, expected[1:], rtol=0, atol=1e-9, err_msg=name)
+    rates = np.array([observation["motor_rate"] for observation in seen])
+    np.testing.assert_allclose(
+        rates, np.diff(run.motor_angle, axis=0) / CONTROL_TIMESTEP, atol=1e-6
+    )
 
 
 @pytest.mark.parametrize("task", TASKS)
@@ -71,7 +76,10 @@ def test_a_seed_decides_everything(task):
 
     def positions(seed):
         return np.array(
-            [s.observation["position"] for s in drive(load_environment(task, seed), currents)]
+            [
+                np.concatenate([s.observation["position"], s.observation["target"]])
+                for s in drive(load_environment(task, seed), currents)
+            ]
         )
 
     np.testing.assert_array_equal(positions(5), positions(5))
@@ -115,7 +123,13 @@ def test_the_reward_is_one_at_the_target_and_falls_with_distance():
     env.reset()
     rewards = []
     for shift in (0.0, 0.02, 0.05, 0.1):
-        env.physics.data.qpos[:7] = [*(env.physics.target() + [shift, 0, 0]), 1, 0, 0, 0]
+        env.physics.data.qpos[:7] = [
+            *(env.task.asked(env.physics).position + [shift, 0, 0]),
+            1,
+            0,
+            0,
+            0,
+        ]
         env.physics.forward()
         rewards.append(env.task.get_reward(env.physics))
     assert rewards[0] == 1
@@ -148,5 +162,84 @@ def test_a_current_that_is_no_number_is_refused_and_does_no_harm(tmp_path, monke
 
 
 def test_an_unknown_task_names_the_known():
-    with pytest.raises(InputError, match=r"did you mean 'hold'.*hold, reach"):
+    with pytest.raises(InputError, match=r"did you mean 'hold'.*hold, reach, track"):
         load_environment("hodl")
+
+
+def test_what_the_robot_cannot_measure_is_observed_only_where_asked():
+    plain, all_of_it = (load("track", 0, privileged=p).reset().observation for p in (False, True))
+    assert set(all_of_it) - set(plain) == {"position", "orientation", "tension"}
+    assert all(np.array_equal(plain[name], all_of_it[name]) for name in plain)
+
+
+def test_the_physics_rests_at_once_after_a_reset_and_after_episodes():
+    env = load("hold", random=0)
+    first = env.physics.copy()
+    env.reset()
+    env.step(np.ones(8))
+    for physics in (first, env.physics):
+        physics.reset()
+        begin = physics.data.qpos.copy()
+        np.testing.assert_allclose(begin[:3], [0, 0, 1.43], atol=1e-12)
+        physics.step(200)
+        np.testing.assert_allclose(physics.data.qpos, begin, atol=1e-9)
+
+
+def test_track_asks_for_a_circle_at_one_radian_a_second():
+    env = load("track", random=3)
+    env.reset()
+    asked = [env.step(np.zeros(8)).observation for _ in range(700)][450:]
+    radius = [np.linalg.norm(o["target"] - [0, 0, 1.43]) for o in asked]
+    speed = [np.linalg.norm(o["target_velocity"]) for o in asked]
+    np.testing.assert_allclose(radius, 0.3, rtol=1e-9)
+    np.testing.assert_allclose(speed, 0.3, rtol=1e-9)
+
+
+def test_noise_of_the_encoders_is_observed_and_moves_nothing():
+    quiet, noisy = (
+        drive(load("reach", 5, privileged=True, encoder_noise=n), np.full((40, 8), 0.6))
+        for n in (0.0, 1e-3)
+    )
+    error = np.array(
+        [
+            a.observation["motor_angle"] - b.observation["motor_angle"]
+            for a, b in zip(quiet, noisy, strict=True)
+        ]
+    )
+    assert 0.8e-3 < error.std() < 1.2e-3  # 320 draws: within 4 of its std of 4 %
+    for a, b in zip(quiet, noisy, strict=True):
+        np.testing.assert_array_equal(a.observation["position"], b.observation["position"])
+
+
+@pytest.mark.parametrize(("task", "miss"), [("hold", 1e-3), ("track", 1e-4)])
+def test_the_baseline_controller_does_the_task_from_what_the_robot_measures(task, miss):
+    env = load(task, random=4, time_limit=6.0)
+    seen = env.reset().observation
+    robot = build_twin().with_values(dict(zip(POSE, seen["start"], strict=True)))
+    path = env.task.path if task == "track" else Point(tuple(seen["target"]))
+    controller = Controller(robot, path, gains=Gains(integral=0.5))
+    for _ in range(500):
+        seen = env.step(controller.currents(seen["motor_angle"])).observation
+    error = env.physics.handle_position() - env.task.asked(env.physics).position
+    assert np.linalg.norm(error) < miss
+
+
+def test_a_robot_with_an_effect_moves_as_its_twin_does():
+    (effect,) = (e for e in CATALOGUE if e.name == "load_dependent_friction")
+    robot = build_twin(effects=(effect,)).with_values({"load_dependent_friction.mu": 0.1})
+    currents = np.random.default_rng(2).uniform(0.4, 1.0, (50, 8))
+    env = load("track", 0, robot=robot)
+    seen = np.array([step.observation["motor_angle"] for step in drive(env, currents)])
+    run = simulate(robot, np.vstack([currents, currents[-1:]]), CONTROL_TIMESTEP)
+    np.testing.assert_allclose(seen, run.motor_angle[1:], atol=1e-9)
+
+
+def test_refusals():
+    (delay,) = (e for e in CATALOGUE if e.name == "delay")
+    robot = build_twin(effects=(delay,))
+    load("hold", robot=robot)  # absent: its size is zero
+    with pytest.raises(InputError, match=r"delay acts outside the robot's law.*inca_mj\.track"):
+        load("hold", robot=robot.with_values({"delay.tau": 0.01}))
+    for noise in (-1.0, np.nan):
+        with pytest.raises(InputError, match="encoder noise"):
+            load("hold", encoder_noise=noise)

@@ -1,0 +1,147 @@
+"""inca track: follow a circle under a controller that believes a twin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import tyro
+
+from identification.commands.common import Output, conclude
+from inca_mj.commands.common import Robot, do_not_draw, effects_of, robot_field
+
+if TYPE_CHECKING:
+    from inca_mj.twin.twin import Twin
+    from inca_mj.workflows.tracking import Tracking
+
+
+@dataclass(frozen=True, kw_only=True)
+class Track:
+    """Let a robot follow a circle; its controller sees motor angles and believes a model.
+
+    Examples:
+        inca track --effect load_dependent_friction.mu=0.05 --out out/nominal
+        inca track --effect load_dependent_friction.mu=0.05 --model out/discover --out out/found
+    """
+
+    model: Path | None = None
+    """Twin that the controller believes, a folder of inca discover; else the nominal one."""
+    effect: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME.SIZE=VALUE")] = ()
+    """What the robot truly has beside its parameters, such as load_dependent_friction.mu=0.05."""
+    radius: float = 0.3
+    """Radius of the circle [m]."""
+    rate: float = 1.0
+    """Rate on the circle [rad/s]."""
+    plane: Literal["xy", "xz", "yz"] = "xy"
+    """Plane of the circle; z is up."""
+    duration: float = 12.0
+    """Length of the run [s]; the first 4 s lead to the circle and are not counted."""
+    bandwidth: float = 25.0
+    """Bandwidth of the controller [rad/s]."""
+    noise: float = 0.0
+    """Standard deviation of the encoders' noise [rad]."""
+    seed: int = 0
+    """Seed of the noise."""
+    knows_pose: bool = False
+    """Tell the controller the true pose, which the real robot cannot measure."""
+    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
+        default_factory=lambda: Output(out=Path("out/track"))
+    )
+
+    def run(self) -> int:
+        """Track, write, say."""
+        do_not_draw()
+        from inca_mj.control.controller import CONTROL_TIMESTEP, Gains
+        from inca_mj.control.paths import Circle
+        from inca_mj.twin.saved import load_twin
+        from inca_mj.workflows.comparison import timestep_for
+        from inca_mj.workflows.tracking import track
+
+        step = timestep_for(CONTROL_TIMESTEP, self.robot.step)
+        robot = self._robot(step)
+        model = self._nominal(step) if self.model is None else load_twin(self.model)
+        x, y, z = robot.start.pose[:3]
+        result = track(
+            robot,
+            model,
+            Circle(
+                centre=(float(x), float(y), float(z)),
+                radius=self.radius,
+                rate=self.rate,
+                plane=self.plane,
+            ),
+            duration=self.duration,
+            gains=Gains(bandwidth=self.bandwidth),
+            knows_pose=self.knows_pose,
+            noise=self.noise,
+            seed=self.seed,
+        )
+        text = _text(result)
+        if self.output.out is not None:
+            files = "log.csv, run.npz, figures, model.xml and report.html"
+            text += f"\n{files} are in {self.output.out}"
+        conclude(self, summary(result), text, partial(keep, result))
+        return 0
+
+    def _nominal(self, step: float) -> Twin:
+        from inca_mj.twin.twin import build_twin
+
+        return build_twin(self.robot.parameters(), self.robot.place(), timestep=step)
+
+    def _robot(self, step: float) -> Twin:
+        from inca_mj.twin.twin import build_twin
+
+        effects, values = effects_of(self.effect)
+        robot = build_twin(
+            self.robot.parameters(), self.robot.place(), timestep=step, effects=effects
+        )
+        return robot.with_values(values)
+
+
+def summary(result: Tracking) -> dict[str, object]:
+    """What the command says in JSON."""
+    run = result.run
+    return {
+        "rms": result.rms,
+        "largest": result.largest,
+        "seen_rms": result.seen_rms,
+        "turned": result.turned,
+        "counted_from": result.counted,
+        "seconds_simulated": float(run.time[-1]),
+        "current_min": float(run.currents.min()),
+        "current_max": float(run.currents.max()),
+        "tension_min": float(run.tension.min()),
+        "tension_max": float(run.tension.max()),
+    }
+
+
+def _text(result: Tracking) -> str:
+    run = result.run
+    return (
+        f"The handle is {1e3 * result.rms:.3f} mm rms from its path,"
+        f" {1e3 * result.largest:.3f} mm at most;"
+        f" the controller believes {1e3 * result.seen_rms:.3f} mm rms.\n"
+        f"Currents from {run.currents.min():.2f} to {run.currents.max():.2f} A, tensions from"
+        f" {run.tension.min():.1f} to {run.tension.max():.1f} N."
+    )
+
+
+def keep(result: Tracking, out: Path) -> None:
+    """Write log, run, model, figures and the report into a folder."""
+    from identification import write_log
+    from identification.report.page import save_figures, write_report
+    from inca_mj.report.sections import model_section, run_section
+    from inca_mj.report.tracking import tracking_section
+    from inca_mj.twin.logs import run_to_log
+    from inca_mj.twin.run import save_run
+
+    run = result.run
+    write_log(run_to_log(run, notes="simulated by inca track"), out / "log.csv")
+    save_run(run, out / "run.npz")
+    run.twin.save(out / "model.xml")
+    sections = [tracking_section(result), run_section(run), model_section(run.twin)]
+    save_figures(sections, out)
+    write_report(out / "report.html", "A robot on a path", _text(result).split("\n"), sections)

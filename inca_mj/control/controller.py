@@ -1,0 +1,115 @@
+"""Computed wrench: the handle follows a path, from motor angles to currents at 100 Hz.
+
+    e = (p_d - p, ½ Σ r_j × r_dj)                    error of the pose; r_j the body's axes
+    a = a_d + K_p e + K_d ė + K_i ∫e dt              acceleration that is asked [m/s², rad/s²]
+    i = inverse of the twin (a, motion asked, φ measured)
+
+In a robot that is exactly the twin and whose cables are stiff, the error obeys
+ë + K_d ė + (K_p + K_T) e + K_i ∫e = 0, whatever the twin's friction. K_T = Σ T (1 - s sᵀ)/d over
+the inertia is what taut cables do by themselves to a handle beside its path. The terms of the twin
+are taken at the motion that is asked, and not at the measured one: steep friction at a measured
+rate, compensated 10 ms late, would make the loop unstable. ė is the last step's difference.
+
+(The computed torque of Luh, Walker, Paul 1980, on the handle's six coordinates; for cable robots
+see Pott 2018, Cable-Driven Parallel Robots.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError
+from inca_mj.control.inverse import HIGHEST_CURRENT, LOWEST_CURRENT, Inverse, Needed, Tensions
+from inca_mj.control.observer import Observer, Pose
+from inca_mj.control.paths import Path
+from inca_mj.twin.twin import Twin
+
+CONTROL_TIMESTEP = 0.01  # [s], the sampling time of the robot's own controller
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gains:
+    """How strongly errors are corrected: two poles at -bandwidth.
+
+    Attributes:
+        bandwidth: ω_c, so that K_p = ω_c² and K_d = 2 ω_c [rad/s].
+        integral: K_i/ω_c³; 0.5 removes what a constant force leaves in about a third of a second.
+
+    Raises:
+        InputError: a gain is negative, or no number.
+    """
+
+    bandwidth: float = 25.0
+    integral: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("bandwidth", "integral"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value >= 0):
+                raise InputError(f"a {name} of {value:g}; give a number that is not negative")
+
+
+class Controller:
+    """Follows a path with a robot that it believes to be a twin.
+
+    Args:
+        robot: the twin that is its model; its start is the robot's.
+        path: where the handle should be.
+        gains: of the feedback.
+        tensions: to stay near to, and their limits.
+        period: time between two calls of `currents` [s].
+    """
+
+    def __init__(
+        self,
+        robot: Twin,
+        path: Path,
+        *,
+        gains: Gains | None = None,
+        tensions: Tensions | None = None,
+        period: float = CONTROL_TIMESTEP,
+    ) -> None:
+        self.path, self.gains, self.period = path, gains or Gains(), period
+        self._inverse, self._observer = Inverse(robot, tensions), Observer(robot)
+        self._error: np.ndarray | None = None
+        self._sum, self._step = np.zeros(6), 0
+        pose, quaternion = robot.start.pose, np.array(robot.model.qpos0[3:7])
+        self.pose = Pose(pose[:3], quaternion)  # as last seen
+        self.needed: Needed | None = None  # as last asked of the inverse
+
+    def currents(self, angle: np.ndarray, pose: Pose | None = None) -> np.ndarray:
+        """The currents until the next call, within the limits of the amplifiers.
+
+        Args:
+            angle: φ as measured now, shape (8,) [rad].
+            pose: of the handle, where it is known otherwise; from the angles when None.
+
+        Returns:
+            Shape (8,) [A].
+
+        Raises:
+            InputError: no pose of the handle belongs to the angles.
+        """
+        time = self._step * self.period
+        motion, middle = self.path.at(time), self.path.at(time + self.period / 2)
+        asked = np.concatenate([motion.acceleration, np.zeros(3)])
+        self.pose = pose or self._observer.seen(angle, asked, time)
+        error = np.concatenate(
+            [motion.position - self.pose.position, _turn_to_upright(self.pose.orientation)]
+        )
+        rate = (error - (error if self._error is None else self._error)) / self.period
+        self._sum, self._error, self._step = self._sum + error * self.period, error, self._step + 1
+        ω, ι = self.gains.bandwidth, self.gains.integral
+        more = ω**2 * error + 2 * ω * rate + ι * ω**3 * self._sum
+        self.needed = self._inverse.needed(middle, more, angle, time)
+        return np.clip(self.needed.currents, LOWEST_CURRENT, HIGHEST_CURRENT)
+
+
+def _turn_to_upright(orientation: np.ndarray) -> np.ndarray:
+    """½ Σ r_j × r_dj for axes r_j of the body and those of the frame, shape (3,) [rad]."""
+    R = np.empty(9)
+    mujoco.mju_quat2Mat(R, orientation)
+    return np.cross(R.reshape(3, 3).T, np.eye(3)).sum(axis=0) / 2

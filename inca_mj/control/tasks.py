@@ -1,0 +1,180 @@
+"""Tasks for the robot: hold the handle, reach a target, track a circle.
+
+    reward = near(|p - p_d|) level(angle from upright)        1 near the target, falling to 0.1
+
+What is observed is what the real robot tells: motor angles by its encoders, their last difference
+over the time between, the pose at which the angles are zero (from its homing), and what is asked of
+the handle. Pose and tensions are observed only if that is asked for: `privileged`.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from dm_control.rl import control
+from dm_control.utils import rewards
+from dm_env import specs
+
+from inca_mj.control.inverse import HIGHEST_CURRENT, LOWEST_CURRENT
+from inca_mj.control.paths import Circle, Motion, Path, Point
+from inca_mj.control.physics import TARGET, Physics
+from inca_mj.robot.geometry import DRIVES
+from inca_mj.twin.statics import start
+from inca_mj.twin.twin import Twin
+
+START = ("x", "y", "z", "roll", "pitch", "yaw")
+START_SPREAD = np.array([0.02] * 3 + [0.05] * 3)  # half-width of the start poses [m, rad]
+HAND = (0.5, 2.0)  # least and largest force of the hand [N]; 2 A could hold 8 N
+REACH = np.array([0.2, 0.2, 0.2])  # half-width of the box of targets [m]; all of them can be held
+
+# The reward is 1 within these limits, and falls to 0.1 at the margin beyond them.
+NEAR, NEAR_MARGIN = 0.005, 0.1  # distance of the handle from its target [m]
+LEVEL, LEVEL_MARGIN = 0.02, 0.3  # angle of the handle from upright [rad]
+
+
+class Handle(control.Task):
+    """What all tasks share: the start, the currents, the observations and the reward.
+
+    Args:
+        robot: the twin that is driven.
+        random: seed, or a generator to draw from.
+        privileged: whether position, orientation and tensions are observed too.
+        encoder_noise: std of the noise of the motor angles [rad].
+    """
+
+    spread = START_SPREAD
+
+    def __init__(
+        self,
+        robot: Twin,
+        random: int | np.random.Generator | None = None,
+        *,
+        privileged: bool = False,
+        encoder_noise: float = 0.0,
+    ) -> None:
+        self.robot, self.random = robot, np.random.default_rng(random)
+        self.privileged, self.encoder_noise = privileged, encoder_noise
+        self.begin = robot.start
+        self.path: Path = _still(robot.start.pose[:3])
+        self._angle, self._rate, self._time = np.zeros(DRIVES), np.zeros(DRIVES), 0.0
+
+    def initialize_episode(self, physics: Physics) -> None:
+        """Put the robot at rest near its nominal start, with the pretension for its pose."""
+        own = self.robot.parameters
+        shift = self.random.uniform(-self.spread, self.spread)
+        values = {n: own[n].value + s for n, s in zip(START, shift, strict=True)}
+        self.begin = start(own.with_values(values), self.robot.geometry, self.robot.layout)
+        physics.begin(self.begin)
+        self.path = self.draw_path(self.begin.pose[:3])
+        self._mark(physics)
+        self._angle, self._rate, self._time = self._read(np.zeros(DRIVES)), np.zeros(DRIVES), 0.0
+
+    def draw_path(self, begin: np.ndarray) -> Path:
+        """Where the handle should be in an episode that starts at `begin`, shape (3,) [m]."""
+        raise NotImplementedError
+
+    def action_spec(self, physics: Physics) -> specs.BoundedArray:
+        """Eight currents [A]."""
+        return specs.BoundedArray(
+            (DRIVES,), float, LOWEST_CURRENT, HIGHEST_CURRENT, name="currents [A]"
+        )
+
+    def before_step(self, action: Any, physics: Physics) -> None:
+        """Give the motors their currents; the amplifiers limit them to their range.
+
+        Raises:
+            PhysicsError: a current is not a finite number; the state is left as it was.
+        """
+        currents = np.asarray(action, float)
+        if not np.isfinite(currents).all():
+            raise control.PhysicsError(f"the currents must be finite numbers [A], got {currents}")
+        physics.set_control(np.clip(currents, LOWEST_CURRENT, HIGHEST_CURRENT))
+
+    def after_step(self, physics: Physics) -> None:
+        """Read the encoders, and move the mark of the target."""
+        angle, time = self._read(physics.motor_angle()), physics.data.time
+        self._rate = (angle - self._angle) / (time - self._time)
+        self._angle, self._time = angle, time
+        self._mark(physics)
+
+    def asked(self, physics: Physics) -> Motion:
+        """The motion that is asked of the handle now."""
+        return self.path.at(physics.data.time)
+
+    def get_observation(self, physics: Physics) -> Mapping[str, np.ndarray]:
+        """What the robot measures, and where the handle should be."""
+        asked = self.asked(physics)
+        seen = OrderedDict(
+            motor_angle=self._angle.copy(),
+            motor_rate=self._rate.copy(),
+            start=self.begin.pose.copy(),
+            target=asked.position,
+            target_velocity=asked.velocity,
+            target_acceleration=asked.acceleration,
+        )
+        if self.privileged:
+            seen["position"] = physics.handle_position()
+            seen["orientation"] = physics.handle_orientation()
+            seen["tension"] = physics.tension()
+        return seen
+
+    def get_reward(self, physics: Physics) -> float:
+        """The reward between 0 and 1: it is 1 near the target and upright."""
+        distance = np.linalg.norm(physics.handle_position() - self.asked(physics).position)
+        angle = 2 * np.arccos(np.clip(abs(physics.handle_orientation()[0]), 0, 1))
+        near = rewards.tolerance(distance, (0, NEAR), NEAR_MARGIN)
+        level = rewards.tolerance(angle, (0, LEVEL), LEVEL_MARGIN)
+        return float(near * level)
+
+    def _read(self, angle: np.ndarray) -> np.ndarray:
+        if self.encoder_noise:
+            return angle + self.random.normal(0.0, self.encoder_noise, DRIVES)
+        return angle
+
+    def _mark(self, physics: Physics) -> None:
+        physics.named.model.site_pos[TARGET] = self.asked(physics).position
+
+
+class Hold(Handle):
+    """Keep the handle where it starts, against the constant, unobserved force of a hand."""
+
+    def initialize_episode(self, physics: Physics) -> None:
+        """Start an episode, and let the hand pull in a random direction."""
+        super().initialize_episode(physics)
+        direction = self.random.normal(size=3)
+        force = self.random.uniform(*HAND) * direction / np.linalg.norm(direction)
+        physics.named.data.xfrc_applied["platform", :3] = force
+
+    def draw_path(self, begin: np.ndarray) -> Path:
+        """The target is the start itself."""
+        return _still(begin)
+
+
+class Reach(Handle):
+    """Bring the handle to a target that it can hold."""
+
+    def draw_path(self, begin: np.ndarray) -> Path:
+        """A random target in a box about the nominal start."""
+        own = self.robot.parameters
+        centre = np.array([own[n].value for n in "xyz"])
+        return _still(centre + self.random.uniform(-REACH, REACH))
+
+
+class Track(Handle):
+    """Follow a level circle of 0.3 m radius at 1 rad/s, from rest in its centre."""
+
+    spread = np.zeros(6)
+
+    def draw_path(self, begin: np.ndarray) -> Path:
+        """The circle about the start, its way out in a random direction."""
+        return Circle(centre=tuple(begin), phase=float(self.random.uniform(0, 2 * np.pi)))
+
+
+def _still(position: np.ndarray) -> Point:
+    return Point(tuple(position))
+
+
+TASKS: Mapping[str, type[Handle]] = {"hold": Hold, "reach": Reach, "track": Track}

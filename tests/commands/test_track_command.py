@@ -1,0 +1,55 @@
+"""inca track as a user meets it."""
+
+import json
+
+import numpy as np
+import pytest
+
+from inca_mj.cli import main
+from inca_mj.twin.run import load_run
+
+SHORT = ("--radius", "0.05", "--duration", "5")
+
+
+def test_it_keeps_a_run_that_can_be_loaded_and_says_how_far_off_it_was(tmp_path, capsys):
+    out = tmp_path / "out"
+    assert main(["track", *SHORT, "--json", "--out", str(out)]) == 0
+    said = json.loads(capsys.readouterr().out)
+    kept = json.loads((out / "result.json").read_text())
+    assert {key: kept[key] for key in said} == said
+    assert 0 < said["rms"] < 1e-4
+    assert said["rms"] <= said["largest"]
+    run = load_run(out / "run.npz")
+    distance = np.linalg.norm(run.position[run.time >= said["counted_from"], :2], axis=1)
+    assert abs(distance - 0.05).max() <= said["largest"] + 1e-12
+    assert run.currents.min() == said["current_min"] >= 0
+    assert {p.name for p in out.iterdir()} >= {"log.csv", "model.xml", "report.html"}
+    assert list(out.glob("*.png"))
+
+
+def test_an_effect_by_its_name_alone_is_its_first_size(capsys):
+    said = []
+    for word in ("load_dependent_friction=0.05", "load_dependent_friction.mu=0.05"):
+        assert main(["track", *SHORT, "--effect", word, "--json"]) == 0
+        said.append(json.loads(capsys.readouterr().out))
+    assert said[0] == said[1]
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--effect", "load_dependant_friction=1"), "did you mean 'load_dependent_friction'"),
+        (("--effect", "load_dependent_friction.eta=1"), "load_dependent_friction.mu"),
+        (("--effect", "delay=0.1", "delay.tau=0.2"), "twice"),
+        (("--effect", "delay"), "is not NAME=VALUE"),
+        (("--model", "nowhere"), "inca discover --out DIR writes one"),
+        (("--radius", "-1"), "radius of -1 m"),
+        (("--duration", "3"), "longer duration"),
+        (("--bandwidth", "-1"), "bandwidth of -1"),
+    ],
+)
+def test_bad_input_is_refused_in_one_sentence(words, sentence, capsys, tmp_path):
+    out = tmp_path / "out"
+    assert main(["track", *words, "--out", str(out)]) == 2
+    assert sentence in capsys.readouterr().err
+    assert not out.exists()
