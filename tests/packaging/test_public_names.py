@@ -7,7 +7,7 @@ from pkgutil import iter_modules
 import pytest
 
 PACKAGES = ("identification", "inca_mj", "inca_mj.kinematics")
-OPTIONAL = {"load_environment": "dm_control", "CONTROL_TIMESTEP": "dm_control"}
+OPTIONAL = {"load_environment": "dm_control", "load_gymnasium": "dm_control"}
 
 
 def public(package):
