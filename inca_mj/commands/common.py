@@ -12,6 +12,7 @@ import tyro
 if TYPE_CHECKING:
     from identification.model.parameter import ParameterSet
     from inca_mj.robot.geometry import Geometry
+    from inca_mj.twin.twin import Twin
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,48 @@ class Robot(Values):
     """Largest step of the integrator [s]; stiff cables and light motors need a smaller one."""
 
 
+@dataclass(frozen=True)
+class SavedRobot(Robot):
+    """A robot to be simulated, or one that was saved."""
+
+    model: Path | None = None
+    """Folder of a twin that inca discover or inca calibrate saved; it has values of its own."""
+
+    def twin(self, sampling_time: float) -> Twin:
+        """The robot, with a step that divides the sampling time [s].
+
+        Raises:
+            InputError: there is no such twin, another robot is given beside it, or as `parameters`
+                and `place`.
+        """
+        from inca_mj.twin.twin import build_twin, rebuild
+        from inca_mj.workflows.comparison import timestep_for
+
+        step = timestep_for(sampling_time, self.step)
+        saved = self.saved()
+        if saved is not None:
+            return rebuild(saved, timestep=step)
+        return build_twin(self.parameters(), self.place(), timestep=step)
+
+    def saved(self) -> Twin | None:
+        """The twin that was saved; None where no folder is given.
+
+        Raises:
+            InputError: there is no such twin, or another robot is given beside it.
+        """
+        from identification.errors import InputError
+        from inca_mj.twin.saved import load_twin
+
+        if self.model is None:
+            return None
+        if self.param or self.geometry is not None or self.set != "trial":
+            raise InputError(
+                "--model is a whole robot; leave out --set, --param and --geometry, or change"
+                " values in Python: load_twin(path).with_values({...})"
+            )
+        return load_twin(self.model)
+
+
 def _assignment(text: str) -> tuple[str, float]:
     from identification.errors import InputError
 
@@ -102,3 +145,4 @@ def do_not_draw() -> None:
 
 values_field: Any = field(default_factory=Values)
 robot_field: Any = field(default_factory=Robot)
+saved_robot_field: Any = field(default_factory=SavedRobot)

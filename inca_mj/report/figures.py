@@ -17,19 +17,23 @@ _MARKERS = "osD^vPX*"
 
 
 def simulation_figures(run: Run) -> dict[str, Figure]:
-    """The four figures of the thesis' Figure 2.16, by name.
+    """The currents, and the four figures of the thesis' Figure 2.16, by name.
 
     The caption of part (d) in the thesis repeats "angles of the motors", but its text speaks of
     roll, pitch and yaw; these are shown here.
     """
     drives = range(1, run.motor_angle.shape[1] + 1)
     series: dict[str, tuple[str, np.ndarray, list[str]]] = {
+        "motor_currents": ("motor current i [A]", run.currents, [f"motor {k}" for k in drives]),
         "motor_angles": ("motor angle φ [rad]", run.motor_angle, [f"motor {k}" for k in drives]),
         "cable_tensions": ("cable tension T [N]", run.tension, [f"cable {k}" for k in drives]),
         "platform_position": ("platform position [m]", run.position, ["x", "y", "z"]),
         "platform_angles": ("platform angle [rad]", run.angles, ["roll", "pitch", "yaw"]),
     }
-    return {name: _over_time(run.time, *what) for name, what in series.items()}
+    return {
+        name: over_time(run.time, *what, held=name == "motor_currents")
+        for name, what in series.items()
+    }
 
 
 def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) -> Figure:
@@ -70,12 +74,25 @@ def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) ->
     return figure
 
 
-def _over_time(time: np.ndarray, label: str, values: np.ndarray, names: list[str]) -> Figure:
+def over_time(
+    time: np.ndarray, label: str, values: np.ndarray, names: list[str], *, held: bool = False
+) -> Figure:
+    """Curves over time in one figure.
+
+    Args:
+        time: shape (N,) [s].
+        label: of the vertical axis, with its unit.
+        values: shape (N, n).
+        names: of the n curves.
+        held: whether a value holds until the next sample, as a current does.
+    """
+    how = "steps-post" if held else "default"
     with matplotlib.rc_context(STYLE):
         figure = Figure((6.4, 3.4), layout="constrained")
         ax = figure.subplots()
         for k, name in enumerate(names):
-            ax.plot(time, values[:, k], color=SERIES[k], ls="-" if k < 4 else "--", label=name)
+            ax.plot(time, values[:, k], color=SERIES[k], ls="-" if k < 4 else "--", label=name,
+                    drawstyle=how)  # fmt: skip
         ax.set(xlabel="time [s]", ylabel=label, xlim=(time[0], time[-1]))
         figure.legend(loc="outside upper center", ncols=min(4, len(names)))
     return figure
