@@ -29,6 +29,7 @@ _PUBLIC = {
     "load_run": "twin.run",
     "save_twin": "twin.saved",
     "load_twin": "twin.saved",
+    "build_plain": "twin.plain",
     "read_inca_log": "twin.logs",
     "run_to_log": "twin.logs",
     "load_environment": "twin.control",
@@ -39,10 +40,13 @@ _PUBLIC = {
     # what can be done with it
     "compare": "workflows.comparison",
     "Comparison": "workflows.comparison",
+    "compare_twin": "workflows.comparison",
+    "with_force": "workflows.pulled",
     "identify": "workflows.identification",
     "Identification": "workflows.identification",
     "identify_windows": "workflows.disturbed",
     "identify_innovations": "workflows.disturbed",
+    "identify_as_thesis": "workflows.procedure",
     "calibrate": "workflows.calibration",
     "Calibration": "workflows.calibration",
     "Spread": "workflows.spread",
@@ -57,6 +61,8 @@ _PUBLIC = {
     "trials": "workflows.trials",
     "TrialResult": "workflows.trials",
     "monte_carlo": "workflows.trials",
+    "repeat_thesis": "workflows.thesis_results",
+    "ThesisResults": "workflows.thesis_results",
     "crosscheck": "verification.check",
     "CrossCheck": "verification.result",
     # films
@@ -88,6 +94,7 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.twin.control import load_environment as load_environment
     from inca_mj.twin.logs import read_inca_log as read_inca_log
     from inca_mj.twin.logs import run_to_log as run_to_log
+    from inca_mj.twin.plain import build_plain as build_plain
     from inca_mj.twin.run import Run as Run
     from inca_mj.twin.run import load_run as load_run
     from inca_mj.twin.run import save_run as save_run
@@ -102,6 +109,7 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.workflows.calibration import calibrate as calibrate
     from inca_mj.workflows.comparison import Comparison as Comparison
     from inca_mj.workflows.comparison import compare as compare
+    from inca_mj.workflows.comparison import compare_twin as compare_twin
     from inca_mj.workflows.discovery import discover as discover
     from inca_mj.workflows.discovery_model import named_twin as named_twin
     from inca_mj.workflows.disturbed import identify_innovations as identify_innovations
@@ -111,9 +119,13 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.workflows.identification import Identification as Identification
     from inca_mj.workflows.identification import identify as identify
     from inca_mj.workflows.limits import Limits as Limits
+    from inca_mj.workflows.procedure import identify_as_thesis as identify_as_thesis
+    from inca_mj.workflows.pulled import with_force as with_force
     from inca_mj.workflows.sensitivity import sensitivity as sensitivity
     from inca_mj.workflows.spread import Spread as Spread
     from inca_mj.workflows.spread import spread_of as spread_of
+    from inca_mj.workflows.thesis_results import ThesisResults as ThesisResults
+    from inca_mj.workflows.thesis_results import repeat_thesis as repeat_thesis
     from inca_mj.workflows.trials import TrialResult as TrialResult
     from inca_mj.workflows.trials import monte_carlo as monte_carlo
     from inca_mj.workflows.trials import trials as trials

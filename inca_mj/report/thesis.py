@@ -9,10 +9,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from identification import Log
+from identification.estimation.fit import Fit
 from identification.estimation.metrics import loss
 from identification.report.compare_figure import compare_figure
 from identification.report.page import Section, Table
-from inca_mj.report.figures import over_time, simulation_figures
+from inca_mj.report.figures import currents_figure, over_time, simulation_figures
 from inca_mj.report.identification_json import identification_json
 from inca_mj.report.thesis_tables import (
     fits_table,
@@ -34,6 +35,7 @@ PARTS = {
     "motor_currents": "input: the currents, which the thesis does not draw",
 }
 _FITTING = "The thesis' fitting of a parameter is 100 (1 − |estimate − true|/true)."
+_WIDE = (9.0, 3.6)  # of a figure that has a row of its own [inch]
 _NOT_HIS = (
     "The thesis' column is of the real robot, whose log was never published. The other columns are"
     " of a simulated robot, whose values are known."
@@ -60,7 +62,7 @@ def thesis_sections(found: ThesisResults) -> list[Section]:
     return [
         Section(
             _table("2.1"),
-            "The parameter set `simulation`. The moment of inertia is that of the rotor and the"
+            "The parameter set “simulation”. The moment of inertia is that of the rotor and the"
             " cable and leaves out the pulleys, says the thesis' footnote.",
             table=parameter_table("2.1", "simulation"),
         ),
@@ -72,7 +74,7 @@ def thesis_sections(found: ThesisResults) -> list[Section]:
         ),
         Section(
             _table("3.2"),
-            "The parameter set `trial`, with which the data of the trials are simulated.",
+            "The parameter set “trial”, with which the data of the trials are simulated.",
             table=parameter_table("3.2", "trial"),
         ),
         *_data(found.data, "3.2", "3.3", "Simulated", "5 s of a 4 bit PRBS, 0.25 s a bit, between"
@@ -122,7 +124,7 @@ def _data(log: Log, currents: str, angles: str, whose: str, text: str) -> list[S
             text,
             figures=(
                 (f"{currents}: currents of the motors",
-                 over_time(log.time, "motor current i [A]", log.inputs, drives, held=True)),
+                 currents_figure(log.time, log.inputs, _WIDE)),
             ),
         ),
         Section(
@@ -130,7 +132,7 @@ def _data(log: Log, currents: str, angles: str, whose: str, text: str) -> list[S
             "A positive angle winds the cable in.",
             figures=(
                 (f"{angles}: angles of the motors",
-                 over_time(log.time, "motor angle φ [rad]", log.outputs, drives)),
+                 over_time(log.time, "motor angle φ [rad]", log.outputs, drives, _WIDE)),
             ),
         ),
     ]  # fmt: skip
@@ -141,11 +143,10 @@ def _trial(result: TrialResult) -> list[Section]:
     table, figure = f"3.{n + 2}", f"3.{n + 3}"
     log = fit.estimate.predictor.log
     noisy = " The fits are to the data without their noise." if result.trial.noisy else ""
-    not_known = [f"Of {c} the log knows the product only." for c, _, _ in fit.combinations]
     return [
         Section(
             _table(table),
-            "\n\n".join([_FITTING, *not_known]),
+            _FITTING + _products(fit),
             table=trial_table(table, result),
         ),
         _fits(
@@ -164,7 +165,8 @@ def _steps(found: ThesisResults) -> list[Section]:
         table, estimation, validation = (("3.7", "3.10", "3.11"), ("3.8", "3.12", "3.13"))[k]
         whole, log = found.validation(fit), fit.estimate.predictor.log
         out += [
-            Section(_table(table), f"{_NOT_HIS} {_FREE[k]}", table=step_table(table, fit, true)),
+            Section(_table(table), f"{_NOT_HIS}\n\n{_FREE[k]}{_products(fit)}",
+                    table=step_table(table, fit, true)),
             _fits(
                 estimation, fit.fit_percent, fit.loss, "The first half, from 0 to 5 s.",
                 (f"{estimation} b: estimation of step {k + 1}",
@@ -186,6 +188,13 @@ _FREE = (
     " that what a data sheet or a measurement gives is fixed; the table frees R, λ, K_t and m all"
     " the same, and the table is followed here.",
 )
+
+
+def _products(fit: Fit) -> str:
+    """A sentence for each product of parameters of which the log does not tell the factors."""
+    return "".join(
+        f" Only {c} can be known from the log, and not its factors." for c, _, _ in fit.combinations
+    )
 
 
 def _motor_2(log: Log, model: np.ndarray, fit: np.ndarray) -> Figure:
