@@ -22,12 +22,16 @@ EVERY = [
     *(f"Figure {n}" for n in ("2.16", *(f"3.{k}" for k in range(2, 14)))),
 ]
 NAMES = {"λ": "lambda", "β": "beta"}
+STAND_IN = 0.6  # [s], for 10 s
 
 
 @pytest.fixture(scope="module")
 def found():
-    """Searches that are cut short: the report is the same, and its estimates are worse."""
-    return repeat_thesis(options=Options(horizons=(1.0,), max_evaluations=2))
+    """Short data and searches that are cut short: the report is the same, its estimates worse."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("inca_mj.workflows.thesis.DURATION", 0.3)
+        patch.setattr("inca_mj.workflows.thesis_results.STAND_IN", STAND_IN)
+        return repeat_thesis(options=Options(horizons=(1.0,), max_evaluations=2))
 
 
 @pytest.fixture(scope="module")
@@ -91,9 +95,9 @@ def test_the_steps_free_and_fix_what_the_tables_say(found):
 
 def test_the_procedure_sees_the_first_half_and_is_shown_on_the_whole(found):
     log = found.procedure.fits[0].estimate.predictor.log
-    assert log.duration == pytest.approx(5.0, abs=0.011)
+    assert log.duration == pytest.approx(STAND_IN / 2, abs=0.011)
     whole = found.validation(found.procedure.fits[1])
-    assert whole.log.duration == pytest.approx(10.0)
+    assert whole.log.duration == pytest.approx(STAND_IN)
     np.testing.assert_array_equal(whole.log.outputs, found.stand_in.outputs)
 
 
