@@ -68,7 +68,7 @@ def trial_table(number: str, result: TrialResult) -> Table:
         if names[0] not in found:
             return FIXED, FIXED
         known = [fits[name] for name in names if fits[name] is not None]
-        return _joined(found, names), f"{np.mean(known):.4f} %"
+        return _joined(found, names), f"{np.mean(known):.4f}%"
 
     return _beside(TABLES[number], ("ours", "our fitting"), ours)
 

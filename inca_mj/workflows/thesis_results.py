@@ -93,6 +93,7 @@ def repeat_thesis(
 
     Raises:
         InputError: the seed is negative.
+        DivergenceError: a search ends at values that cannot be simulated.
     """
     refuse_negative("seed", seed)
     say = progress or (lambda line: None)
