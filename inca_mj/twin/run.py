@@ -27,6 +27,7 @@ _WIDTHS = {"currents": 8, "qpos": 15, "qvel": 14, "act": 8, "tension": 8, "lengt
 FEWEST = 2  # samples
 UNEVEN = 1e-6  # of a step, by which steps may differ
 LONGEST = 86400.0  # [s]
+OLDER = {"effects": (), "settled": False}  # of a run that was saved before runs had effects
 _ARRAYS = ("time", "currents", "qpos", "qvel", "act", "tension", "length")
 
 
@@ -179,7 +180,7 @@ def load_run(path: str | Path, effects: Sequence[Effect] = EVERY) -> Run:
     """
     try:
         with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            header: dict[str, Any] = json.loads(str(file["header"]))
+            header: dict[str, Any] = {**OLDER, **json.loads(str(file["header"]))}
             arrays = {name: file[name] for name in _ARRAYS}
         _refuse_damaged(arrays, Path(path))
         return Run(twin=twin_from_record(header, effects, Path(path)), **arrays)

@@ -66,7 +66,7 @@ def twin_from_record(record: Mapping[str, Any], effects: Sequence[Effect], sourc
     """Build the twin that a record describes.
 
     Args:
-        record: made by `twin_to_record`; `settled` and `effects` may be missing.
+        record: made by `twin_to_record`.
         effects: the effects that the twin may have.
         source: the file or folder that the record was read from, for messages.
 
@@ -75,8 +75,8 @@ def twin_from_record(record: Mapping[str, Any], effects: Sequence[Effect], sourc
             of bounds.
         KeyError, TypeError, ValueError: the record is damaged.
     """
-    wanted: list[dict[str, Any]] = record.get("effects", [])
-    own, settled = _known(wanted, effects, source), record.get("settled", False)
+    wanted: list[dict[str, Any]] = record["effects"]
+    own, settled = _known(wanted, effects, source), record["settled"]
     if not isinstance(settled, bool):
         raise TypeError("settled is neither true nor false")
     values = {**record["values"], **{n: v for e in wanted for n, v in e["values"].items()}}
