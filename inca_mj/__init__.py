@@ -29,6 +29,7 @@ _PUBLIC = {
     "load_run": "twin.run",
     "save_twin": "twin.saved",
     "load_twin": "twin.saved",
+    "build_plain": "twin.plain",
     "read_inca_log": "twin.logs",
     "run_to_log": "twin.logs",
     # the twin linearised
@@ -56,10 +57,13 @@ _PUBLIC = {
     # what can be done with it
     "compare": "workflows.comparison",
     "Comparison": "workflows.comparison",
+    "compare_twin": "workflows.comparison",
+    "with_force": "workflows.pulled",
     "identify": "workflows.identification",
     "Identification": "workflows.identification",
     "identify_windows": "workflows.disturbed",
     "identify_innovations": "workflows.disturbed",
+    "identify_as_thesis": "workflows.procedure",
     "calibrate": "workflows.calibration",
     "Calibration": "workflows.calibration",
     "Spread": "workflows.spread",
@@ -80,6 +84,8 @@ _PUBLIC = {
     "trials": "workflows.trials",
     "TrialResult": "workflows.trials",
     "monte_carlo": "workflows.trials",
+    "repeat_thesis": "workflows.thesis_results",
+    "ThesisResults": "workflows.thesis_results",
     "crosscheck": "verification.check",
     "CrossCheck": "verification.result",
     # what its cables can hold, and where
@@ -146,6 +152,7 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.statics.workspace import workspace as workspace
     from inca_mj.twin.logs import read_inca_log as read_inca_log
     from inca_mj.twin.logs import run_to_log as run_to_log
+    from inca_mj.twin.plain import build_plain as build_plain
     from inca_mj.twin.run import Run as Run
     from inca_mj.twin.run import load_run as load_run
     from inca_mj.twin.run import save_run as save_run
@@ -160,6 +167,7 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.workflows.calibration import calibrate as calibrate
     from inca_mj.workflows.comparison import Comparison as Comparison
     from inca_mj.workflows.comparison import compare as compare
+    from inca_mj.workflows.comparison import compare_twin as compare_twin
     from inca_mj.workflows.discovery import discover as discover
     from inca_mj.workflows.discovery_model import named_twin as named_twin
     from inca_mj.workflows.disturbed import identify_innovations as identify_innovations
@@ -173,11 +181,15 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from inca_mj.workflows.poses import RestingPose as RestingPose
     from inca_mj.workflows.poses import log_poses as log_poses
     from inca_mj.workflows.poses import pose_at_rest as pose_at_rest
+    from inca_mj.workflows.procedure import identify_as_thesis as identify_as_thesis
+    from inca_mj.workflows.pulled import with_force as with_force
     from inca_mj.workflows.sensitivity import sensitivity as sensitivity
     from inca_mj.workflows.spread import Spread as Spread
     from inca_mj.workflows.spread import spread_of as spread_of
     from inca_mj.workflows.statics import StaticAnalysis as StaticAnalysis
     from inca_mj.workflows.statics import analyse_statics as analyse_statics
+    from inca_mj.workflows.thesis_results import ThesisResults as ThesisResults
+    from inca_mj.workflows.thesis_results import repeat_thesis as repeat_thesis
     from inca_mj.workflows.tracking import Tracking as Tracking
     from inca_mj.workflows.tracking import track as track
     from inca_mj.workflows.trials import TrialResult as TrialResult

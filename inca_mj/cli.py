@@ -10,6 +10,7 @@ import tyro
 
 from identification.commands.program import run_program
 from inca_mj.commands.calibrate import Calibrate
+from inca_mj.commands.cite import Cite
 from inca_mj.commands.compare import Compare
 from inca_mj.commands.crosscheck import Crosscheck
 from inca_mj.commands.demo import Demo
@@ -22,8 +23,10 @@ from inca_mj.commands.linearize import Linearize
 from inca_mj.commands.sensitivity import Sensitivity
 from inca_mj.commands.simulate import Simulate
 from inca_mj.commands.statics import Statics
+from inca_mj.commands.thesis import Thesis
 from inca_mj.commands.track import Track
 from inca_mj.commands.trials import Trials
+from inca_mj.commands.view import View
 
 Command = (
     Annotated[Simulate, tyro.conf.subcommand("simulate")]
@@ -39,8 +42,11 @@ Command = (
     | Annotated[Trials, tyro.conf.subcommand("trials")]
     | Annotated[Statics, tyro.conf.subcommand("statics")]
     | Annotated[Track, tyro.conf.subcommand("track")]
+    | Annotated[Thesis, tyro.conf.subcommand("thesis")]
     | Annotated[Film, tyro.conf.subcommand("film")]
+    | Annotated[View, tyro.conf.subcommand("view")]
     | Annotated[Demo, tyro.conf.subcommand("demo")]
+    | Annotated[Cite, tyro.conf.subcommand("cite")]
 )
 EXAMPLES = ("inca demo", "inca discover examples/log.csv --spread none --out out/discover")
 

@@ -21,30 +21,39 @@ from identification.files import write_text
 _EXACT = {
     "body": {"pos": "pos", "quat": "quat"},
     "inertial": {"mass": "mass", "pos": "ipos", "quat": "iquat", "diaginertia": "inertia"},
-    "joint": {n: n for n in ("armature", "axis", "pos", "ref", "range")},
+    "joint": {n: n for n in ("armature", "axis", "pos", "ref", "range", "springref")}
+    | {"solreffriction": "solref_friction"},
     "site": {"pos": "pos", "quat": "quat"},
-    "spatial": {"user": "userdata", "range": "range", "armature": "armature"},
+    "spatial": {"user": "userdata"} | {n: n for n in ("range", "armature", "springlength")},
+    "fixed": {"user": "userdata"} | {n: n for n in ("range", "armature", "springlength")},
     "general": {n: n for n in ("gear", "gainprm", "biasprm", "dynprm", "ctrlrange", "forcerange")}
     | {"user": "userdata"},
     "key": {n: n for n in ("qpos", "qvel", "act", "ctrl")},
 }
-_SCALARS = {"joint": ("damping", "stiffness", "frictionloss"), "spatial": ("damping", "stiffness")}
+_TENDON = ("damping", "stiffness")
+_SCALARS = {"joint": (*_TENDON, "frictionloss"), "spatial": _TENDON, "fixed": _TENDON}
 
 
 def to_xml(spec: mujoco.MjSpec) -> str:
     """The MJCF of a spec with exact numbers: compiling the text gives the model of the spec.
 
+    The spec's comment stands at its head, so that a file that is saved again keeps it.
+
     Raises:
         ValueError: the spec does not compile.
     """
     spec.compile()
-    root = ElementTree.fromstring(spec.to_xml())
+    keep = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
+    root = ElementTree.fromstring(spec.to_xml(), keep)
     _settle(root.find("option"), spec.option, {"timestep": "timestep", "gravity": "gravity"})
     for tag, element, found in _elements(root, spec):
         _settle(element, found, _EXACT[tag])
         _settle(element, found, {name: name for name in _SCALARS.get(tag, ())})
-        if tag == "spatial" and found.springlength[0] < 0:  # taken from qpos0 at compilation
-            element.attrib.pop("springlength", None)
+        if tag in ("spatial", "fixed") and found.springlength[0] < 0:
+            element.attrib.pop("springlength", None)  # taken from qpos0 at compilation
+        if tag == "fixed":
+            for part, wrapped in zip(element.findall("joint"), found.path, strict=True):
+                part.set("coef", _join([wrapped.coef]))
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
 
@@ -61,6 +70,7 @@ def _elements(root: Any, spec: mujoco.MjSpec) -> Iterator[tuple[str, Any, Any]]:
         ("joint", spec.joint),
         ("site", spec.site),
         ("spatial", spec.tendon),
+        ("fixed", spec.tendon),
         ("general", spec.actuator),
         ("key", spec.key),
     ):

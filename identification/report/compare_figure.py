@@ -18,6 +18,7 @@ def compare_figure(
     fit_percent: np.ndarray,
     names: Sequence[str],
     unit: str = "rad",
+    labels: tuple[str, str] = ("measured", "simulated"),
 ) -> Figure:
     """Measured and simulated outputs, one panel each with its fit, and the residual below it.
 
@@ -28,6 +29,7 @@ def compare_figure(
         fit_percent: of each output, shape (ny,) [%]; NaN where the output never moves.
         names: of the outputs, ny of them.
         unit: of the outputs.
+        labels: what the two are called.
     """
     channels = len(names)
     columns = min(2, channels)
@@ -47,8 +49,8 @@ def compare_figure(
                 upper.set_axis_off()
                 lower.set_axis_off()
                 continue
-            upper.plot(time, measured[:, k], color=INK, lw=2.2, alpha=0.45, label="measured")
-            upper.plot(time, simulated[:, k], color=SIMULATED, lw=1.1, label="simulated")
+            upper.plot(time, measured[:, k], color=INK, lw=2.2, alpha=0.45, label=labels[0])
+            upper.plot(time, simulated[:, k], color=SIMULATED, lw=1.1, label=labels[1])
             fit = f"{fit_percent[k]:.2f} %" if np.isfinite(fit_percent[k]) else "none: constant"
             upper.set_title(literal(f"{names[k]}   fit {fit}"), loc="left", color=INK)
             upper.set_ylabel(literal(f"[{unit}]"))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -11,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import tyro
 
 if TYPE_CHECKING:
-    from identification.effects.effect import Effect
     from identification.model.parameter import ParameterSet
     from inca_mj.robot.geometry import Geometry
+    from inca_mj.twin.twin import Twin
 
 
 @dataclass(frozen=True)
@@ -33,6 +32,7 @@ class Values:
         Raises:
             InputError: a value is malformed, unknown, given twice or out of bounds.
         """
+        from inca_mj.commands.assignments import assignments
         from inca_mj.robot.parameters import parameter_set
 
         values = assignments(self.param, "--param")
@@ -57,66 +57,46 @@ class Robot(Values):
     """Largest step of the integrator [s]; stiff cables and light motors need a smaller one."""
 
 
-def assignments(texts: Sequence[str], option: str, example: str = "m=0.2") -> dict[str, float]:
-    """The values of an option that is given as NAME=VALUE.
+@dataclass(frozen=True)
+class SavedRobot(Robot):
+    """A robot to be simulated, or one that was saved."""
 
-    Args:
-        texts: what was given.
-        option: its name.
-        example: a right one.
+    model: Path | None = None
+    """Folder of a twin that inca discover or inca calibrate saved; it has values of its own."""
 
-    Raises:
-        InputError: one is malformed, or a name is given twice.
-    """
-    from identification.errors import InputError
+    def twin(self, sampling_time: float) -> Twin:
+        """The robot, with a step that divides the sampling time [s].
 
-    values: dict[str, float] = {}
-    for text in texts:
-        left, equals, right = text.partition("=")
-        name = left.strip()
-        try:
-            if not equals:
-                raise ValueError
-            value = float(right)
-        except ValueError:
-            raise InputError(f"{text!r} is not NAME=VALUE; write e.g. {option} {example}") from None
-        if name in values:
+        Raises:
+            InputError: there is no such twin, another robot is given beside it, or as `parameters`
+                and `place`.
+        """
+        from inca_mj.twin.twin import build_twin, rebuild
+        from inca_mj.workflows.comparison import timestep_for
+
+        step = timestep_for(sampling_time, self.step)
+        saved = self.saved()
+        if saved is not None:
+            return rebuild(saved, timestep=step)
+        return build_twin(self.parameters(), self.place(), timestep=step)
+
+    def saved(self) -> Twin | None:
+        """The twin that was saved; None where no folder is given.
+
+        Raises:
+            InputError: there is no such twin, or another robot is given beside it.
+        """
+        from identification.errors import InputError
+        from inca_mj.twin.saved import load_twin
+
+        if self.model is None:
+            return None
+        if self.param or self.geometry is not None or self.set != "trial":
             raise InputError(
-                f"{option} gives {name} twice, {values[name]:g} and {value:g}; give it once"
+                "--model is a whole robot; leave out --set, --param and --geometry, or change"
+                " values in Python: load_twin(path).with_values({...})"
             )
-        values[name] = value
-    return values
-
-
-def effects_of(words: Sequence[str]) -> tuple[tuple[Effect, ...], dict[str, float]]:
-    """The effects of the catalogue that NAME.SIZE=VALUE words name, and their values.
-
-    NAME alone stands for its first size, NAME.SIZE@3 for drive 3.
-
-    Raises:
-        InputError: a word is malformed, given twice, or names no effect or parameter of one.
-    """
-    from identification.errors import InputError, unknown_name
-    from inca_mj.effects.catalogue import CATALOGUE
-    from inca_mj.effects.values import records
-
-    known = {effect.name: effect for effect in CATALOGUE}
-    values: dict[str, float] = {}
-    given = assignments(words, "--effect", "load_dependent_friction.mu=0.05")
-    for word, value in given.items():
-        name, _, place = word.partition("@")
-        own, _, size = name.partition(".")
-        if own not in known:
-            raise unknown_name("effect", own, known)
-        full = f"{own}.{size or known[own].sizes[0].name}" + (f"@{place}" if place else "")
-        parameters = [p.name for p in records([known[own]])]
-        if full not in parameters:
-            raise unknown_name("parameter of an effect", full, parameters)
-        if full in values:
-            raise InputError(f"--effect gives {full} twice; give it once")
-        values[full] = value
-    named = {name.partition(".")[0] for name in values}
-    return tuple(e for e in CATALOGUE if e.name in named), values
+        return load_twin(self.model)
 
 
 def cannot_draw() -> str:
@@ -147,3 +127,4 @@ def do_not_draw() -> None:
 
 values_field: Any = field(default_factory=Values)
 robot_field: Any = field(default_factory=Robot)
+saved_robot_field: Any = field(default_factory=SavedRobot)

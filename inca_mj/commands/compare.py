@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from identification.commands.common import Output, conclude, note, output_field, table
-from inca_mj.commands.common import Robot, do_not_draw, robot_field
+from inca_mj.commands.common import SavedRobot, do_not_draw, saved_robot_field
 
 if TYPE_CHECKING:
+    from identification import Log
     from inca_mj.workflows.comparison import Comparison
 
 
@@ -22,30 +23,39 @@ class Compare:
 
     Examples:
         inca compare examples/log.csv --out out/compare
-        inca compare examples/log.csv --param K_t=0.085 --json
+        inca compare examples/log.csv --model out/discover --json
     """
 
     log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """Log to explain: CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts."""
-    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
+    robot: Annotated[SavedRobot, tyro.conf.OmitArgPrefixes] = saved_robot_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
     def run(self) -> int:
         """Compare, say and keep the result; 0 unless the input is bad."""
         do_not_draw()
         from inca_mj.twin.logs import read_inca_log
-        from inca_mj.workflows.comparison import compare
 
-        result = compare(
-            read_inca_log(self.log),
-            self.robot.parameters(),
-            self.robot.place(),
-            timestep=self.robot.step,
-        )
+        result = compare_with(self.robot, read_inca_log(self.log))
         conclude(self, result.to_json(), summary(result), partial(keep, result))
         if self.output.out is not None:
             note(f"figure, report, model and result.json are in {self.output.out}")
         return 0
+
+
+def compare_with(robot: SavedRobot, log: Log) -> Comparison:
+    """Compare a log with the robot that the options describe, or with the saved one.
+
+    Raises:
+        InputError: the options describe no robot, or the robot has no pretension.
+        DivergenceError: the simulation left the finite numbers.
+    """
+    from inca_mj.workflows.comparison import compare, compare_twin
+
+    saved = robot.saved()
+    if saved is not None:
+        return compare_twin(log, saved, timestep=robot.step)
+    return compare(log, robot.parameters(), robot.place(), timestep=robot.step)
 
 
 def summary(result: Comparison) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import tyro
 
 from identification.commands.common import Output, say, say_json
-from inca_mj.commands.common import Robot, cannot_draw, robot_field
+from inca_mj.commands.common import SavedRobot, cannot_draw, saved_robot_field
 
 if TYPE_CHECKING:
     from inca_mj.rendering.scene import Scene
@@ -36,7 +36,7 @@ class Film:
     """Draw the motor angles beside the picture."""
     still: tuple[float, ...] = ()
     """Times [s] at which to write a PNG of the picture too."""
-    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
+    robot: Annotated[SavedRobot, tyro.conf.OmitArgPrefixes] = saved_robot_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
         default_factory=lambda: Output(out=Path("out/film"))
     )
@@ -76,14 +76,13 @@ class Film:
 
     def _scene(self) -> Scene:
         """What to film: a saved run, or a log beside the twin with the values that were asked."""
+        from inca_mj.commands.compare import compare_with
         from inca_mj.rendering.scene import make_scene
         from inca_mj.twin.logs import read_inca_log
-        from inca_mj.workflows.comparison import compare
 
         if self.source.suffix == ".npz":
             return make_scene(self.source, self.seconds)
         log = read_inca_log(self.source)
         if self.seconds is not None and 0 < self.seconds < log.duration:
             log = log.between(float("-inf"), float(log.time[0]) + self.seconds)
-        result = compare(log, self.robot.parameters(), self.robot.place(), timestep=self.robot.step)
-        return make_scene(result, self.seconds)
+        return make_scene(compare_with(self.robot, log), self.seconds)

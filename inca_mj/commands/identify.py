@@ -40,7 +40,9 @@ class Identify:
     log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """Log to learn from; its TOML may name the splits estimation and validation."""
     free: Annotated[tuple[str, ...] | None, tyro.conf.arg(metavar="NAME")] = None
-    """Parameters to estimate in one step; the thesis' two-step procedure when none is named."""
+    """Parameters to estimate in one step; the two-step procedure when none is named."""
+    procedure: Literal["usual", "thesis"] = "usual"
+    """Two steps: usual, or with exactly what the thesis' Tables 3.7 and 3.8 free and fix."""
     criterion: Literal["trace", "det"] = "trace"
     """Least squares, or maximum likelihood with the noise covariance estimated."""
     method: Literal["trf", "lm", "dogbox"] = "trf"
@@ -104,6 +106,7 @@ class Identify:
             POSE,
             identify,
         )
+        from inca_mj.workflows.procedure import STEP_1, identify_as_thesis
 
         if self.free == ():
             raise InputError(
@@ -127,6 +130,13 @@ class Identify:
             )
         if self.windows is not None and self.innovations:
             raise InputError("--windows and --innovations are two searches; choose one")
+        if self.procedure == "thesis" and (
+            free or self.windows is not None or self.innovations or self.starts != 1
+        ):
+            raise InputError(
+                "--procedure thesis says what is free and where it begins; leave out --free,"
+                " --windows, --innovations and --starts"
+            )
         log, parameters, place = (
             read_inca_log(self.log), self.robot.parameters(), self.robot.place()
         )  # fmt: skip
@@ -135,12 +145,16 @@ class Identify:
             return identify_windows(log, self.windows, parameters, place, **common)
         if self.innovations:
             return identify_innovations(log, parameters, place, **common)
-        estimated = free or (*MECHANICS, *POSE)
+        thesis = self.procedure == "thesis"
+        estimated = free or (tuple(STEP_1) if thesis else (*MECHANICS, *POSE))
         for name in self.profile:
             if name not in estimated:
                 raise InputError(
                     f"{name!r} is not estimated; profile one of {', '.join(estimated)}"
                 )
+        if thesis:
+            del common["free"]
+            return identify_as_thesis(log, parameters, place, options=options, **common)
         return identify(
             log, parameters, place, options=options, starts=self.starts, seed=self.seed, **common
         )

@@ -90,7 +90,7 @@ class Kinematics:
 
     def _along(self) -> None:
         from identification.errors import InputError
-        from inca_mj.commands.common import assignments
+        from inca_mj.commands.assignments import assignments
         from inca_mj.report.poses import poses_json, poses_verdict
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.poses import log_poses

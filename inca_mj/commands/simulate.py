@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from identification.commands.common import Output, conclude, table
-from inca_mj.commands.common import Robot, do_not_draw, robot_field
+from inca_mj.commands.common import SavedRobot, do_not_draw, saved_robot_field
 
 if TYPE_CHECKING:
     import numpy as np
 
     from inca_mj.twin.run import Run
+    from inca_mj.twin.twin import Twin
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class Simulate:
 
     Examples:
         inca simulate --input prbs --duration 5 --out out/prbs
-        inca simulate --input examples/log.csv --param m=0.2 --out out/heavy
+        inca simulate --figure 2.16 --out out/figure
     """
 
     input: Annotated[str, tyro.conf.arg(metavar="step|prbs|multisine|zero|FILE")] = "step"
@@ -35,7 +36,13 @@ class Simulate:
     """Samples a second of the input and of what is written [Hz]; a FILE has its own."""
     seed: int = 0
     """Seed of the PRBS' and the multisine's phases."""
-    robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
+    figure: Annotated[str | None, tyro.conf.arg(metavar="2.16|3.2|3.3")] = None
+    """A figure of the thesis: with the input, parameter set and duration that it needs."""
+    force: Annotated[tuple[float, float, float] | None, tyro.conf.arg(metavar="FX FY FZ")] = None
+    """Constant external force G on the platform, in the fixed frame [N]."""
+    force_at: Annotated[tuple[float, float, float], tyro.conf.arg(metavar="X Y Z")] = (0, 0, 0)
+    """The point b_G where the force acts, in the platform's frame [m]."""
+    robot: Annotated[SavedRobot, tyro.conf.OmitArgPrefixes] = saved_robot_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
         default_factory=lambda: Output(out=Path("out/simulate"))
     )
@@ -44,12 +51,10 @@ class Simulate:
         """Simulate, write, say."""
         do_not_draw()
         from inca_mj.twin.run import simulate
-        from inca_mj.twin.twin import build_twin
-        from inca_mj.workflows.comparison import timestep_for
 
-        currents, sampling_time, hold = self._currents()
-        parameters, place = self.robot.parameters(), self.robot.place()
-        robot = build_twin(parameters, place, timestep=timestep_for(sampling_time, self.robot.step))
+        now = self._for_figure()
+        currents, sampling_time, hold = now._currents()
+        robot = now._twin(sampling_time)
         result = simulate(robot, currents, sampling_time, hold_kind=hold)
         summary = {
             "samples": len(result.time),
@@ -62,9 +67,57 @@ class Simulate:
         if self.output.out is not None:
             files = "log.csv, run.npz, figures, model.xml and report.html"
             text += f"\n{files} are in {self.output.out}"
-        notes = f"input {self.input}, seed {self.seed}"
-        conclude(self, summary, text, partial(keep, result, notes))
+        conclude(now, summary, text, partial(keep, result, now._notes()))
         return 0
+
+    def _for_figure(self) -> Simulate:
+        """The command with what its figure needs.
+
+        Raises:
+            InputError: there is no such figure, or options are given that would make another.
+        """
+        from identification.errors import InputError
+        from inca_mj.workflows.thesis_figures import figure_settings
+
+        if self.figure is None:
+            return self
+        needs = figure_settings(self.figure)
+        for name, given, usual, right in (
+            ("--input", self.input, "step", needs.input),
+            ("--set", self.robot.set, "trial", needs.set),
+            ("--duration", self.duration, 10.0, needs.duration),
+        ):
+            if given not in (usual, right):
+                raise InputError(
+                    f"Figure {self.figure} is made with {name} {right}, not {given}; leave out"
+                    f" {name}, or leave out --figure"
+                )
+        if self.robot.model is not None:
+            raise InputError("--figure is of the thesis' robot; leave out --model, or --figure")
+        robot = replace(self.robot, set=needs.set)
+        return replace(self, input=needs.input, duration=needs.duration, robot=robot)
+
+    def _twin(self, sampling_time: float) -> Twin:
+        """The robot, with the force on it.
+
+        Raises:
+            InputError: a point is given without a force, or as `SavedRobot.twin` and `with_force`.
+        """
+        from identification.errors import InputError
+        from inca_mj.workflows.pulled import with_force
+
+        if self.force is None and any(self.force_at):
+            raise InputError("--force-at says where a force acts; give the force with --force")
+        robot = self.robot.twin(sampling_time)
+        return robot if self.force is None else with_force(robot, self.force, self.force_at)
+
+    def _notes(self) -> str:
+        said = f"input {self.input}, seed {self.seed}"
+        if self.figure is not None:
+            said = f"Figure {self.figure} of the thesis: {said}, parameter set {self.robot.set}"
+        if self.force is not None:
+            said += f", force {self.force} N at {self.force_at} m"
+        return said
 
     def _currents(self) -> tuple[np.ndarray, float, str]:
         from identification.errors import InputError
@@ -103,7 +156,7 @@ def _text(result: Run) -> str:
 
 
 def keep(result: Run, notes: str, out: Path) -> None:
-    """Write log, run, model, the thesis' four figures and the report into a folder."""
+    """Write log, run, model, figures and the report into a folder."""
     from identification import write_log
     from identification.report.page import save_figures, write_report
     from inca_mj.report.sections import model_section, run_section

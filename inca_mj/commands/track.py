@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import tyro
 
 from identification.commands.common import Output, conclude
-from inca_mj.commands.common import Robot, do_not_draw, effects_of, robot_field
+from inca_mj.commands.assignments import effects_of
+from inca_mj.commands.common import Robot, do_not_draw, robot_field
 
 if TYPE_CHECKING:
     from inca_mj.twin.twin import Twin

@@ -29,6 +29,7 @@ from inca_mj.effects.place import (
     ANCHOR_OFFSET,
     COM_OFFSET,
     EXTERNAL_FORCE,
+    PULL,
     PULLEY_RADIUS,
 )
 from inca_mj.effects.sensor import SENSORS
@@ -62,3 +63,6 @@ CATALOGUE: tuple[Effect, ...] = (
     *JUMPS,
     *SENSORS,
 )
+
+# What a saved twin or run may have: the candidates, and what only a simulation is given.
+EVERY: tuple[Effect, ...] = (*CATALOGUE, PULL)

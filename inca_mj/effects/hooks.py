@@ -34,8 +34,11 @@ Drive: Any = namedtuple(
     " R R_s k_s b_v b_c beta K_t lambda_ b",
 )
 
-# What a hook sees of the platform: position [m], velocity [m/s] in O, body rates [rad/s]
-Platform: Any = namedtuple("Platform", "time x y z vx vy vz wx wy wz")
+# What a hook sees of the platform: position [m], velocity [m/s] in O, body rates [rad/s], and
+# R_AB, which turns body axes into O, row by row
+Platform: Any = namedtuple(
+    "Platform", "time x y z vx vy vz wx wy wz R11 R12 R13 R21 R22 R23 R31 R32 R33"
+)
 
 _XYZ_FORCE = ("force along x [N]", "along y [N]", "along z [N]")
 

@@ -4,6 +4,7 @@
     anchor offset     Δd = |r - o| - |r|                   an exit point is not where it should be
     offset of the centre of mass                           the platform is heavier on one side
     external force    (x, y, z) at the platform's centre   something pulls, always the same way
+    pull              G at the point b_G of the platform, with the torque R b_G × G
     air drag          -c |v|^(n-1) v on the platform
 
 Of the pulley: the cable enters it at A along the vertical and leaves along the tangent towards the
@@ -66,6 +67,16 @@ def external_force(s, p):  # type: ignore[no-untyped-def]
 
 
 @njit
+def pull(s, p):  # type: ignore[no-untyped-def]
+    """(G, R b_G × G): a constant force in O at a point of the platform [N, N m]."""
+    x, y, z = p[0], p[1], p[2]
+    bx = s.R11 * p[3] + s.R12 * p[4] + s.R13 * p[5]
+    by = s.R21 * p[3] + s.R22 * p[4] + s.R23 * p[5]
+    bz = s.R31 * p[3] + s.R32 * p[4] + s.R33 * p[5]
+    return x, y, z, by * z - bz * y, bz * x - bx * z, bx * y - by * x
+
+
+@njit
 def air_drag(s, p):  # type: ignore[no-untyped-def]
     """(-c |v|^(n-1) v, 0) [N], v in m/s."""
     c, n = p
@@ -121,6 +132,25 @@ EXTERNAL_FORCE = Effect(
     phrase="platform: constant force",
     reference="thesis 2.35",
     hooks={"wrench": external_force},
+)
+# The user's own hand in a simulation. It is in no catalogue: a discovery looks for a force at the
+# centre of mass, which is the only place that it need not guess.
+PULL = Effect(
+    "pull",
+    "constant force G = (x, y, z) at the point b_G of the platform, fixed frame",
+    (
+        Size("x", "N", 20.0, 0.05, about="force along x"),
+        Size("y", "N", 20.0, 0.05, about="force along y"),
+        Size("z", "N", 20.0, 0.05, about="force along z"),
+    ),
+    tuple(
+        Shape(f"b_{axis}", "m", (0.0,), -1.0, 1.0, free=False, about=f"b_G along {axis}")
+        for axis in "xyz"
+    ),
+    places=ON_PLATFORM,
+    phrase="platform: constant force at a point",
+    reference="thesis 2.35, 2.36",
+    hooks={"wrench": pull},
 )
 AIR_DRAG = Effect(
     "air_drag",

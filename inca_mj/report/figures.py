@@ -14,10 +14,11 @@ from identification.report.style import GREY, INK, SERIES, STYLE
 from inca_mj.twin.run import Run
 
 _MARKERS = "osD^vPX*"
+STRIP = 0.72  # height of a current's strip, of the distance between strips
 
 
 def simulation_figures(run: Run) -> dict[str, Figure]:
-    """The four figures of the thesis' Figure 2.16, by name.
+    """The currents, and the four figures of the thesis' Figure 2.16, by name.
 
     The caption of part (d) in the thesis repeats "angles of the motors", but its text speaks of
     roll, pitch and yaw; these are shown here.
@@ -29,7 +30,33 @@ def simulation_figures(run: Run) -> dict[str, Figure]:
         "platform_position": ("platform position [m]", run.position, ["x", "y", "z"]),
         "platform_angles": ("platform angle [rad]", run.angles, ["roll", "pitch", "yaw"]),
     }
-    return {name: _over_time(run.time, *what) for name, what in series.items()}
+    drawn = {name: over_time(run.time, *what) for name, what in series.items()}
+    return {"motor_currents": currents_figure(run.time, run.currents), **drawn}
+
+
+def currents_figure(
+    time: np.ndarray, currents: np.ndarray, size: tuple[float, float] = (6.4, 3.4)
+) -> Figure:
+    """The current of each motor in a strip of its own; all strips have one scale.
+
+    Args:
+        time: shape (N,) [s].
+        currents: each holds until the next sample, shape (N, 8) [A].
+        size: of the figure [inch].
+    """
+    low, high = float(currents.min()), float(currents.max())
+    strips = np.arange(currents.shape[1])
+    height = STRIP * (currents - low) / (high - low if high > low else 1.0)
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(size, layout="constrained")
+        ax = figure.subplots()
+        for k in strips:
+            ax.plot(time, height[:, k] - k, color=SERIES[k], drawstyle="steps-post")
+        ax.set_yticks(-strips + STRIP / 2, [f"motor {k + 1}" for k in strips])
+        ax.set(xlabel="time [s]", xlim=(time[0], time[-1]))
+        ax.set_ylabel(f"currents, each strip from {low:g} to {high:g} [A]")
+        ax.grid(visible=False, axis="y")
+    return figure
 
 
 def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) -> Figure:
@@ -70,9 +97,21 @@ def crosscheck_figure(rows: Sequence[Mapping[str, Any]], order: float | None) ->
     return figure
 
 
-def _over_time(time: np.ndarray, label: str, values: np.ndarray, names: list[str]) -> Figure:
+def over_time(
+    time: np.ndarray, label: str, values: np.ndarray, names: list[str],
+    size: tuple[float, float] = (6.4, 3.4),
+) -> Figure:  # fmt: skip
+    """Curves over time in one figure.
+
+    Args:
+        time: shape (N,) [s].
+        label: of the vertical axis, with its unit.
+        values: shape (N, n).
+        names: of the n curves.
+        size: of the figure [inch].
+    """
     with matplotlib.rc_context(STYLE):
-        figure = Figure((6.4, 3.4), layout="constrained")
+        figure = Figure(size, layout="constrained")
         ax = figure.subplots()
         for k, name in enumerate(names):
             ax.plot(time, values[:, k], color=SERIES[k], ls="-" if k < 4 else "--", label=name)

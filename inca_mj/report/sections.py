@@ -62,7 +62,7 @@ def compare_section(result: Comparison) -> Section:
 
 
 def run_section(run: Run) -> Section:
-    """The four pictures of the thesis' Figure 2.16."""
+    """The currents, and the four pictures of the thesis' Figure 2.16."""
     return Section(
         "What the robot does",
         f"{len(run.time)} samples; the least tension is {run.tension.min():.2f} N, the largest"

@@ -107,10 +107,7 @@ def change_at_rest(
             if "radius" in effect.hooks:
                 wider[k] += effect.hooks["radius"](s, tuple(p[:, k]))
         if "wrench" in effect.hooks:
-            x, y, z = pose[:3]
-            still = Platform(
-                time=0.0, x=x, y=y, z=z, vx=0.0, vy=0.0, vz=0.0, wx=0.0, wy=0.0, wz=0.0
-            )
+            still = Platform(0.0, *pose[:3], *np.zeros(6), *R.ravel())
             load -= np.array(effect.hooks["wrench"](still, tuple(p[:, 0])))
     d = np.linalg.norm(r, axis=1) + way[:, 0]
     at_rest = layout.settled

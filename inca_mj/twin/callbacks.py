@@ -14,6 +14,14 @@ as well.
 Candidate effects are terms of the same law (see `inca_mj.effects.hooks`). They are added to the
 quantities that they change: i + Δi, R + ΔR, d + Δd, T + ΔT, τ + Δτ. An empty set of effects costs
 no time.
+
+MuJoCo's reset sets every activation to zero. No cable has the length zero, so a d₀ of exactly zero
+means "just reset", and the law begins there with the cable of tension T(0):
+
+    d₀ = λ d/(λ + T(0))                                                   (thesis 2.24 at rest)
+
+It is the start of the robot where the reset put it into its start pose. States of effects begin at
+zero then.
 """
 
 from __future__ import annotations
@@ -97,6 +105,17 @@ def _act(m, d, i):  # type: ignore[no-untyped-def]
 
 
 @inlined
+def _begin(m, d, i):  # type: ignore[no-untyped-def]
+    """Give the cable of drive i its no-load length after a reset, which left it at zero."""
+    act = _act(m, d, i)
+    if load_double(act) == 0.0:
+        k = np.int64(drive(m, i, law.CABLE))
+        lambda_ = cable(m, k, law.LAMBDA)
+        d_0 = lambda_ * double(d, D.ten_length, k) / (lambda_ + drive(m, i, law.T_0))
+        store_double(act, d_0)
+
+
+@inlined
 def _begun(m, d, i):  # type: ignore[no-untyped-def]
     """Drive i as the hooks before the tension see it."""
     joint, k = integer(m, M.actuator_trnid, 2 * i), np.int64(drive(m, i, law.CABLE))
@@ -106,7 +125,7 @@ def _begun(m, d, i):  # type: ignore[no-untyped-def]
         phi=double(d, D.qpos, integer(m, M.jnt_qposadr, joint)),
         omega=double(d, D.qvel, integer(m, M.jnt_dofadr, joint)),
         i=_current(m, d, i), i_before=np.nan, i_after=np.nan, x=0.0, rx=x, ry=y, rz=z,
-        d=double(d, D.ten_length, k), d_0=load_constant(_act(m, d, i)),
+        d=double(d, D.ten_length, k), d_0=load_double(_act(m, d, i)),  # `_begin` may write it
         strain=np.nan, strain_rate=np.nan, T=np.nan, F_s=np.nan,
         R=drive(m, i, law.R), R_s=drive(m, i, law.R_S), k_s=drive(m, i, law.K_S),
         b_v=double(m, M.dof_damping, integer(m, M.jnt_dofadr, joint)),
@@ -191,6 +210,7 @@ def callbacks(
         for i in range(word(m, M.nactuator)):
             own = _key(m, i)
             if own == key:
+                _begin(m, d, i)
                 body = integer(m, M.site_bodyid, pull(m, d, i))
             elif own == own and not is_compiled(own):
                 store_double(word(d, D.qfrc_passive) + 8 * _motor_dof(m, i), np.nan)

@@ -1,7 +1,8 @@
 """The MJCF of the INCA 6D, built from parameters and geometry.
 
 Bodies `platform` (free) and `drum_1..8` (hinge `motor_i`), tendons `cable_1..8` from the exit
-points to the platform, actuators `current_1..8`, sensors, a keyframe `start`. MuJoCo computes the
+points to the platform, actuators `current_1..8`, sensors, a keyframe `start`; with the law the
+default reset is that start too (see `inca_mj.twin.callbacks`). MuJoCo computes the
 rigid bodies, K_t i (gear), b_v (joint damping), J (armature) and the cable lengths. The tension,
 the no-load length, the drum spring and the Coulomb friction are computed by `inca_mj.robot.law`;
 the builder puts its numbers into `actuator_user` and `tendon_user`.
@@ -25,6 +26,7 @@ from inca_mj.robot.geometry import DRIVES, Geometry
 from inca_mj.robot.parameters import GRAVITY
 from inca_mj.robot.spread import EACH_DRIVE, at_drives, displaced
 from inca_mj.twin.appearance import dress_drum, dress_platform, dress_world
+from inca_mj.twin.file_notes import NEEDS_LAW, law_notes, short_law_note
 from inca_mj.twin.statics import activations, start
 
 TIMESTEP = 1e-3  # [s]; RK4 at 1 ms follows the reference to a few microradians
@@ -45,11 +47,8 @@ def build(
         InputError: the start pose admits no pretension (see `inca_mj.twin.statics.pretension`).
     """
     spec = mujoco.MjSpec()
-    spec.modelname = "inca6d"
-    spec.comment = (
-        f"INCA 6D, parameter set {parameters.name}; geometry: {geometry.source}."
-        " Needs the law of inca_mj (inca_mj.twin.native.install) for its cables to pull."
-    )
+    spec.modelname, spec.comment = NEEDS_LAW, law_notes(parameters, geometry)
+    spec.add_text(name="read_me", data=short_law_note())
     layout = layout or Layout()
     _settings(spec, layout)
     dress_world(spec, geometry)
@@ -87,7 +86,7 @@ def _platform(
     body = spec.worldbody.add_body(name="platform", pos=[p["x"], p["y"], p["z"]])
     body.quat = quaternion(p["roll"], p["pitch"], p["yaw"])
     body.add_freejoint(name="platform")
-    _weigh(body, p["m"], [p["I_x"], p["I_y"], p["I_z"]])
+    weigh(body, p["m"], [p["I_x"], p["I_y"], p["I_z"]])
     body.add_site(name="platform", pos=[0, 0, 0], size=[0.004, 0.004, 0.004])
     placed = displaced(geometry, p)
     for k, connector in enumerate(about_centre(placed, layout.effects, p).connectors, 1):
@@ -115,7 +114,7 @@ def check_inertia(values: Mapping[str, float]) -> None:
         )
 
 
-def _weigh(body: Any, mass: float, inertia: list[float]) -> None:
+def weigh(body: Any, mass: float, inertia: list[float]) -> None:
     """Mass [kg] and principal inertia [kg m^2] about the body's own frame."""
     body.explicitinertial = True
     body.mass, body.inertia, body.ipos = mass, inertia, [0, 0, 0]
@@ -135,7 +134,7 @@ def _drive(
     outward = np.array([exit_point[0], exit_point[1], 0.0])
     outward = outward / np.linalg.norm(outward) if outward.any() else np.array([1.0, 0.0, 0.0])
     drum = spec.worldbody.add_body(name=f"drum_{k}", pos=exit_point + 0.08 * outward)
-    _weigh(drum, ROTOR, [ROTOR, ROTOR, ROTOR])
+    weigh(drum, ROTOR, [ROTOR, ROTOR, ROTOR])
     axis = [-outward[1], outward[0], 0.0]
     drum.add_joint(
         name=f"motor_{k}",

@@ -115,7 +115,7 @@ def wrench(m, d, body, w):  # type: ignore[no-untyped-def]
 @internal
 def platform(d, at, body):  # type: ignore[no-untyped-def]
     """What effects on the platform see; `at` is its first degree of freedom."""
-    v = word(d, D.qvel) + 8 * at
+    v, R = word(d, D.qvel) + 8 * at, word(d, D.xmat) + 72 * body
     return Platform(
         time=load_constant(d + 8 * D.time),
         x=double(d, D.xpos, 3 * body),
@@ -127,4 +127,7 @@ def platform(d, at, body):  # type: ignore[no-untyped-def]
         wx=load_constant(v + 24),
         wy=load_constant(v + 32),
         wz=load_constant(v + 40),
-    )
+        R11=load_constant(R), R12=load_constant(R + 8), R13=load_constant(R + 16),
+        R21=load_constant(R + 24), R22=load_constant(R + 32), R23=load_constant(R + 40),
+        R31=load_constant(R + 48), R32=load_constant(R + 56), R33=load_constant(R + 64),
+    )  # fmt: skip

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,19 +12,22 @@ import mujoco
 import numpy as np
 from mujoco.batch import Batch
 
+from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.files import whole_file
 from identification.model.rollout import State, rollout
+from inca_mj.effects.catalogue import EVERY
 from inca_mj.kinematics.rotations import euler
-from inca_mj.robot.geometry import DRIVES, Geometry, geometry_of
-from inca_mj.robot.parameters import parameter_set
-from inca_mj.twin.twin import Twin, build_twin
+from inca_mj.robot.geometry import DRIVES
+from inca_mj.twin.saved import twin_from_record, twin_to_record
+from inca_mj.twin.twin import Twin
 
 _STAGE = mujoco.mjtStage.mjSTAGE_VEL
 _WIDTHS = {"currents": 8, "qpos": 15, "qvel": 14, "act": 8, "tension": 8, "length": 8}
 FEWEST = 2  # samples
 UNEVEN = 1e-6  # of a step, by which steps may differ
 LONGEST = 86400.0  # [s]
+OLDER = {"effects": (), "settled": False}  # of a run that was saved before runs had effects
 _ARRAYS = ("time", "currents", "qpos", "qvel", "act", "tension", "length")
 
 
@@ -145,7 +148,7 @@ def readings(robot: Twin, at: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def save_run(run: Run, path: str | Path) -> Path:
-    """Write a run to one .npz file: arrays, and the robot's values and geometry as JSON.
+    """Write a run to one .npz file: arrays, and the robot with its effects as JSON.
 
     Args:
         run: the result of `simulate`.
@@ -157,30 +160,30 @@ def save_run(run: Run, path: str | Path) -> Path:
     Raises:
         InputError: the file cannot be written.
     """
-    header = {
-        "values": run.twin.parameters.values(),
-        "set": run.twin.parameters.name,
-        "geometry": asdict(run.twin.geometry),
-        "timestep": run.twin.model.opt.timestep,
-    }
+    header = twin_to_record(run.twin)
     with whole_file(path) as draft, draft.open("wb") as stream:
         arrays = {name: getattr(run, name) for name in _ARRAYS}
         np.savez_compressed(stream, header=json.dumps(header), **arrays)
     return Path(path)
 
 
-def load_run(path: str | Path) -> Run:
+def load_run(path: str | Path, effects: Sequence[Effect] = EVERY) -> Run:
     """Read a run written by `save_run`.
 
+    Args:
+        path: of the file.
+        effects: the effects that its twin may have; the law of an effect is code and is not saved.
+
     Raises:
-        InputError: the file is missing or is not a run.
+        InputError: the file is missing or is not a run, or its twin has an effect that is not among
+            `effects`.
     """
     try:
         with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            header: dict[str, Any] = json.loads(str(file["header"]))
+            header: dict[str, Any] = {**OLDER, **json.loads(str(file["header"]))}
             arrays = {name: file[name] for name in _ARRAYS}
         _refuse_damaged(arrays, Path(path))
-        return Run(twin=_robot(header), **arrays)
+        return Run(twin=twin_from_record(header, effects, Path(path)), **arrays)
     except FileNotFoundError:
         raise InputError(f"no run {path}; inca simulate --out DIR writes one") from None
     except InputError:
@@ -212,14 +215,3 @@ def _refuse_damaged(arrays: Mapping[str, np.ndarray], path: Path) -> None:
         raise InputError(
             f"{path}: its times are not evenly apart within a day; write the run again"
         )
-
-
-def _robot(header: dict[str, Any]) -> Twin:
-    """The robot that the header of a saved run describes."""
-    names = {f.name for f in fields(Geometry)}
-    geometry = geometry_of({k: v for k, v in header["geometry"].items() if k in names})
-    return build_twin(
-        parameter_set(header["set"], header["values"]),
-        geometry,
-        timestep=header["timestep"],
-    )

@@ -8,7 +8,7 @@ own.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.files import write_text
 from identification.model.parameter import Parameter, ParameterSet
-from inca_mj.effects.catalogue import CATALOGUE
+from inca_mj.effects.catalogue import EVERY
 from inca_mj.effects.values import records
 from inca_mj.robot.geometry import geometry_of
 from inca_mj.robot.parameters import parameter_set
@@ -44,9 +44,15 @@ def save_twin(robot: Twin, folder: str | Path) -> tuple[Path, Path]:
         InputError: the folder does not exist or cannot be written to.
     """
     folder = Path(folder)
+    record = {"model": "model.xml", **twin_to_record(robot)}
+    text = json.dumps(record, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    return robot.save(folder / "model.xml"), write_text(folder / "effects.json", text)
+
+
+def twin_to_record(robot: Twin) -> dict[str, Any]:
+    """What is needed to build a twin again, as plain values."""
     values = robot.parameters.values()
-    record = {
-        "model": "model.xml",
+    return {
         "set": robot.parameters.name,
         "values": {p.name: p.value for p in robot.parameters if p.where != "effect"},
         "geometry": asdict(robot.geometry),
@@ -54,11 +60,36 @@ def save_twin(robot: Twin, folder: str | Path) -> tuple[Path, Path]:
         "settled": robot.settled,
         "effects": [_effect(effect, values) for effect in robot.effects],
     }
-    text = json.dumps(record, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
-    return robot.save(folder / "model.xml"), write_text(folder / "effects.json", text)
 
 
-def load_twin(path: str | Path, effects: Sequence[Effect] = CATALOGUE) -> Twin:
+def twin_from_record(record: Mapping[str, Any], effects: Sequence[Effect], source: Path) -> Twin:
+    """Build the twin that a record describes.
+
+    Args:
+        record: made by `twin_to_record`.
+        effects: the effects that the twin may have.
+        source: the file or folder that the record was read from, for messages.
+
+    Raises:
+        InputError: an effect is not among `effects` or has another law in them, or a value is out
+            of bounds.
+        KeyError, TypeError, ValueError: the record is damaged.
+    """
+    wanted: list[dict[str, Any]] = record["effects"]
+    own, settled = _known(wanted, effects, source), record["settled"]
+    if not isinstance(settled, bool):
+        raise TypeError("settled is neither true nor false")
+    values = {**record["values"], **{n: v for e in wanted for n, v in e["values"].items()}}
+    return build_twin(
+        _parameters(record["set"], values, own),
+        geometry_of(record["geometry"]),
+        timestep=record["timestep"],
+        effects=own,
+        settled=settled,
+    )
+
+
+def load_twin(path: str | Path, effects: Sequence[Effect] = EVERY) -> Twin:
     """Read a twin written by `save_twin`; it is the same to the last bit on the same processor.
 
     Its model is computed from effects.json. model.xml must say the same physics, to rounding.
@@ -75,19 +106,8 @@ def load_twin(path: str | Path, effects: Sequence[Effect] = CATALOGUE) -> Twin:
     folder = Path(path).parent if own_file else Path(path)
     record = _read(folder / "effects.json")
     try:
-        geometry, model = geometry_of(record["geometry"]), folder / record["model"]
-        wanted: list[dict[str, Any]] = record["effects"]
-        own = _known(wanted, effects, folder)
-        if not isinstance(record["settled"], bool):
-            raise TypeError("settled is neither true nor false")
-        values = {**record["values"], **{n: v for e in wanted for n, v in e["values"].items()}}
-        robot = build_twin(
-            _parameters(record["set"], values, own),
-            geometry,
-            timestep=record["timestep"],
-            effects=own,
-            settled=record["settled"],
-        )
+        model = folder / record["model"]
+        robot = twin_from_record(record, effects, folder)
     except InputError:
         raise
     except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as error:
@@ -128,20 +148,20 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def _known(
-    wanted: Sequence[dict[str, Any]], effects: Sequence[Effect], folder: Path
+    wanted: Sequence[dict[str, Any]], effects: Sequence[Effect], source: Path
 ) -> tuple[Effect, ...]:
     """The effects of these names, with these laws."""
     at_hand = {e.name: e for e in effects}
     missing = [e["name"] for e in wanted if e["name"] not in at_hand]
     if missing:
         raise InputError(
-            f"the twin in {folder} has effects of which the law is not at hand:"
+            f"the twin in {source} has effects of which the law is not at hand:"
             f" {', '.join(missing)}; pass them, as load_twin(path, effects=(*CATALOGUE, yours))"
         )
     changed = [e["name"] for e in wanted if at_hand[e["name"]].law != e["law"]]
     if changed:
         raise InputError(
-            f"the twin in {folder} was saved with another law of {', '.join(changed)}; pass the"
+            f"the twin in {source} was saved with another law of {', '.join(changed)}; pass the"
             " effect as it was then"
         )
     return tuple(at_hand[e["name"]] for e in wanted)

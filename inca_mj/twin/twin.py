@@ -180,6 +180,28 @@ def build_twin(
     return Twin(parameters, geometry, model, layout.effects, settled)
 
 
+def rebuild(
+    robot: Twin, *, timestep: float | None = None, effects: Sequence[Effect] | None = None
+) -> Twin:
+    """A twin with another step or other effects, its values kept.
+
+    Args:
+        robot: the twin.
+        timestep: of the RK4 integrator [s]; the robot's own when None.
+        effects: effects of its law, those of the robot among them; the robot's own when None.
+
+    Raises:
+        InputError: two effects have one name, or the start has no pretension.
+    """
+    return build_twin(
+        robot.parameters,
+        robot.geometry,
+        timestep=timestep or robot.model.opt.timestep,
+        effects=robot.effects if effects is None else effects,
+        settled=robot.settled,
+    )
+
+
 def write_values(
     model: mujoco.MjModel, parameters: ParameterSet, geometry: Geometry, layout: Layout
 ) -> None:

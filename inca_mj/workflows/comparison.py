@@ -16,7 +16,7 @@ from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.logs import POSE, pose_of
 from inca_mj.twin.mjcf import TIMESTEP
 from inca_mj.twin.run import Run, simulate
-from inca_mj.twin.twin import build_twin
+from inca_mj.twin.twin import Twin, build_twin, rebuild
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,25 @@ def compare(
         DivergenceError: the simulation left the finite numbers.
     """
     parameters = start_of(log, parameters or parameter_set())
-    robot = build_twin(parameters, geometry, timestep=timestep_for(log.sampling_time, timestep))
+    step = timestep_for(log.sampling_time, timestep)
+    return compare_twin(log, build_twin(parameters, geometry, timestep=step), timestep=timestep)
+
+
+def compare_twin(log: Log, robot: Twin, *, timestep: float = TIMESTEP) -> Comparison:
+    """Predict a log's angles from its currents alone with a twin, from the twin's own start.
+
+    Args:
+        log: what was measured.
+        robot: the twin, such as `load_twin` reads one.
+        timestep: largest step of the integrator [s].
+
+    Raises:
+        InputError: `timestep` is not between 1e-6 and 0.1 s.
+        DivergenceError: the simulation left the finite numbers.
+    """
+    step = timestep_for(log.sampling_time, timestep)
+    if step != robot.model.opt.timestep:
+        robot = rebuild(robot, timestep=step)
     run = simulate(robot, log.inputs, log.sampling_time, hold_kind=log.hold)
     predicted = run.motor_angle
     return Comparison(

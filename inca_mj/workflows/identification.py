@@ -2,7 +2,8 @@
 
 Step 1 estimates every parameter and the start. Step 2 estimates only the parameters that no data
 sheet gives; the others are fixed at their nominal values, and the search begins at the result of
-step 1 (thesis section 3.3).
+step 1 (thesis section 3.3). `inca_mj.workflows.procedure` frees and fixes what the thesis' tables
+say, which is not quite what its text says.
 """
 
 from __future__ import annotations
@@ -137,6 +138,10 @@ def identify(
     found = all_of_it.estimate.values
     unknown = (*UNKNOWN, *POSE)
     second = step(unknown, {name: found[name] for name in unknown})
-    fits = (all_of_it, second)
+    return outcome((all_of_it, second), better(all_of_it, second))
+
+
+def better(*fits: Fit) -> int:
+    """Index of the fit with the smallest error on unseen data, or on its own where none is."""
     errors = [fit.rms if fit.validation_rms is None else fit.validation_rms for fit in fits]
-    return outcome(fits, errors.index(min(errors)))
+    return errors.index(min(errors))

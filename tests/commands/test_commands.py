@@ -56,7 +56,7 @@ def test_simulate_keeps_states_tensions_figures_model_and_report(tmp_path: Path)
     assert run("simulate", "--input", "prbs", "--duration", 0.5, "--out", out) == 0
     names = {p.name for p in out.iterdir()}
     assert {"log.csv", "log.toml", "run.npz", "model.xml", "report.html", "result.json"} <= names
-    assert len([n for n in names if n.endswith(".png")]) == 4  # thesis Figure 2.16
+    assert len([n for n in names if n.endswith(".png")]) == 5  # currents, thesis Figure 2.16
     log = read_log(out / "log.csv", CURRENTS, ANGLES, OPTIONAL)
     assert set(log.extras) == set(OPTIONAL)
     again = load_run(out / "run.npz")

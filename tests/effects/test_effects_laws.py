@@ -74,7 +74,7 @@ def test_half_of_a_cable_hangs_on_its_connector():
 
 
 def test_wrenches():
-    at = Platform(time=0, x=0, y=0, z=1, vx=0.3, vy=-0.4, vz=1.2, wx=9, wy=9, wz=9)
+    at = Platform(0, *(0, 0, 1), *(0.3, -0.4, 1.2), *(9, 9, 9), *np.eye(3).ravel())
     drag = BY_NAME["air_drag"].hooks["wrench"].py_func(at, (0.5, 2.0))
     assert drag == pytest.approx((-0.5 * 1.3 * 0.3, 0.5 * 1.3 * 0.4, -0.5 * 1.3 * 1.2, 0, 0, 0))
     force = BY_NAME["external_force"].hooks["wrench"].py_func(at, (1.0, 2.0, 3.0))

@@ -58,6 +58,7 @@ def package_files():
 def test_the_wheel_holds_the_packages_and_the_models_files_and_nothing_else(wheel):
     assert names(wheel) == package_files() | {
         "inca_mj/models/inca6d.xml",
+        "inca_mj/models/inca6d_plain.xml",
         "inca_mj/models/inca6d_spread.toml",
     }
     # type checkers read our annotations only where this file says that they may

@@ -9,10 +9,11 @@ from identification.report.style import save_png, svg
 from inca_mj.report.figures import crosscheck_figure, simulation_figures
 
 
-def test_the_four_figures_of_the_thesis(short_run):
+def test_the_currents_and_the_four_figures_of_the_thesis(short_run):
     figures = simulation_figures(short_run)
     lines = {name: len(figure.axes[0].lines) for name, figure in figures.items()}
     assert lines == {
+        "motor_currents": 8,
         "motor_angles": 8,
         "cable_tensions": 8,
         "platform_position": 3,

@@ -57,7 +57,7 @@ def test_a_report_asks_nothing_of_the_network(page):
 def test_the_verdict_comes_first_and_text_is_escaped(page):
     assert "A &lt;report&gt;" in page
     assert page.index("All &amp; well.") < page.index("First.")
-    assert page.count("<svg") == 8
+    assert page.count("<svg") == 10
     assert "data:video/mp4;base64," in page
     assert '<td class="number">0.0051235</td>' in page
     assert page.index("seed 1") > page.index("Motion again")

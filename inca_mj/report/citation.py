@@ -1,0 +1,130 @@
+"""How to cite the program, and the thesis whose equations it computes.
+
+CITATION.cff at the root of the source is `to_cff()`; a test compares the two.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+
+
+@dataclass(frozen=True)
+class Work:
+    """A work to cite.
+
+    Attributes:
+        key: of its BibTeX entry.
+        kind: software or thesis.
+        title: its title.
+        author: who wrote it; a name or a group.
+        version: of a software, else "".
+        license: SPDX name, or "".
+        where: the institution of a thesis, else "".
+        note: what a reader should know.
+    """
+
+    key: str
+    kind: str
+    title: str
+    author: str
+    version: str = ""
+    license: str = ""
+    where: str = ""
+    note: str = ""
+
+
+THESIS = Work(
+    key="inca_thesis",
+    kind="thesis",
+    title="Modélisation et identification d'un robot à câbles",
+    author="Équipe Automatique, Vision et Robotique (eAVR)",
+    where="Laboratoire des Sciences de l'Image, de l'Informatique et de la Télédétection,"
+    " Strasbourg",
+    note="the title page with the author's name and the year is missing in the text that this"
+    " project works from",
+)
+KEYWORDS = (
+    "MuJoCo",
+    "system identification",
+    "cable-driven parallel robot",
+    "digital twin",
+)
+
+
+def software() -> Work:
+    """This program, in the version that is installed."""
+    try:
+        number = version("inca-mj")
+    except PackageNotFoundError:  # run from a source tree
+        number = ""
+    return Work(
+        key="inca_mj",
+        kind="software",
+        title="inca_mj: the digital twin of a cable robot in MuJoCo, and the search for what it"
+        " lacks",
+        author="The inca_mj authors",
+        version=number,
+        license="Apache-2.0",
+    )
+
+
+def works() -> tuple[Work, ...]:
+    """What to cite: the program and the thesis."""
+    return software(), THESIS
+
+
+def to_text() -> str:
+    """One sentence for each work."""
+    return "\n".join(_sentence(work) for work in works())
+
+
+def to_bibtex() -> str:
+    """A BibTeX entry for each work."""
+    return "\n\n".join(_entry(work) for work in works())
+
+
+def to_cff() -> str:
+    """The text of CITATION.cff (Citation File Format 1.2.0)."""
+    program = software()
+    lines = [
+        "cff-version: 1.2.0",
+        "message: If you use this software, please cite it as below.",
+        "type: software",
+        f'title: "{program.title}"',
+        f"version: {program.version}",
+        f"license: {program.license}",
+        "authors:",
+        f"  - name: {program.author}",
+        "keywords:",
+        *(f"  - {word}" for word in KEYWORDS),
+        "references:",
+        f"  - type: {THESIS.kind}",
+        f'    title: "{THESIS.title}"',
+        "    authors:",
+        f'      - name: "{THESIS.author}"',
+        "    institution:",
+        f'      name: "{THESIS.where}"',
+        f'    notes: "{THESIS.note}"',
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _sentence(work: Work) -> str:
+    about = [work.where, f"version {work.version}" if work.version else "", work.license]
+    rest = "".join(f", {part}" for part in about if part)
+    note = f" ({work.note})" if work.note else ""
+    return f"{work.author}: {work.title}{rest}.{note}"
+
+
+def _entry(work: Work) -> str:
+    fields = {
+        "title": f"{{{work.title}}}",
+        "author": f"{{{work.author}}}",
+        "version": work.version,
+        "school": work.where,
+        "note": work.note or work.license,
+    }
+    kind = "software" if work.kind == "software" else "mastersthesis"
+    body = ",\n".join(f"  {name} = {{{value}}}" for name, value in fields.items() if value)
+    return f"@{kind}{{{work.key},\n{body}\n}}"

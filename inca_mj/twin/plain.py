@@ -1,0 +1,167 @@
+"""The INCA 6D for MuJoCo alone: the twin linearised about its start, as `models/inca6d_plain.xml`.
+
+MuJoCo's spatial tendons cannot be wound up. So each motor is a slide joint with s = R φ, and its
+cable is a tendon whose length is that of the cable plus s, L = d + s:
+
+    T    = k (L - L_0) + b L̇                k = λ/d₀(0),  L_0 = L(0) - T(0)/k       (2.24, 2.30)
+    F_s  = T(0) - k_s (R_s/R)² s            force of the drum spring at the roller  (2.41)
+    τ_c  = b_c clip(β ω, -1, 1)             in place of b_c tanh(β ω)               (2.39)
+    J/R² s̈ = K_t/R i - T + F_s - b_v/R² ṡ - τ_c/R                                   (2.40)
+
+What is left out is of second order in the motion, or smaller: d₀ in λ/d₀ and in ḋ₀ stays d₀(0),
+where the twin has the present one. A slack cable does not push, but it still damps, and the drum
+spring may push, as the twin's may not.
+
+MuJoCo's frictionloss is a constraint that brings the acceleration a of an unconstrained joint to
+(1 - δ) a - δ B ω as long as its force is below its limit b_c. With the impedance δ near zero and
+δ B = b_c β/J that is the viscous start of the thesis' friction; with MuJoCo's defaults the joint
+would stick at rest, which the thesis' friction does not.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from identification.model.export import write_xml
+from identification.model.parameter import ParameterSet
+from inca_mj.kinematics.rotations import quaternion
+from inca_mj.robot.geometry import DRIVES, INCA, Geometry
+from inca_mj.robot.parameters import GRAVITY, parameter_set
+from inca_mj.robot.spread import EACH_DRIVE, at_drives, displaced
+from inca_mj.twin.appearance import MOTOR, dress_platform, dress_world
+from inca_mj.twin.file_notes import PLAIN, plain_notes, short_plain_note
+from inca_mj.twin.mjcf import TIMESTEP, check_inertia, weigh
+from inca_mj.twin.statics import Start, start
+
+IMPEDANCE = 1e-4  # δ, the least that MuJoCo admits: the inertia errs by as much
+SPOOL = 1.0  # length of the wound part of a tendon at the start [m]; no motor turns so far back
+
+
+def build_plain(parameters: ParameterSet | None = None, geometry: Geometry = INCA) -> mujoco.MjSpec:
+    """The linearised robot at rest, as an editable `MjSpec` that needs MuJoCo only.
+
+    Args:
+        parameters: the values; the thesis' Table 3.2 when None.
+        geometry: anchors of the cables; assumed ones by default.
+
+    Raises:
+        InputError: the start pose admits no pretension.
+    """
+    parameters = parameters or parameter_set()
+    begin = start(parameters, geometry)
+    spec = mujoco.MjSpec()
+    spec.modelname, spec.comment = PLAIN, plain_notes(parameters, geometry)
+    spec.add_text(name="read_me", data=short_plain_note())
+    spec.compiler.degree = False
+    spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
+    spec.option.timestep, spec.option.gravity = TIMESTEP, [0, 0, -GRAVITY]
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4  # the others err in tendons' damping
+    spec.option.disableflags = mujoco.mjtDisableBit.mjDSBL_CONTACT
+    dress_world(spec, geometry)
+    _platform(spec, parameters, geometry, begin)
+    for k in range(1, DRIVES + 1):
+        _drive(spec, k, parameters, geometry, begin)
+    _sensors(spec)
+    return spec
+
+
+def save_plain(
+    path: str | Path, parameters: ParameterSet | None = None, geometry: Geometry = INCA
+) -> Path:
+    """Write the linearised robot as MJCF, exact to the last bit; returns the path.
+
+    Raises:
+        InputError: the start pose admits no pretension, or the file cannot be written.
+    """
+    return write_xml(build_plain(parameters, geometry), path)
+
+
+def _platform(
+    spec: mujoco.MjSpec, parameters: ParameterSet, geometry: Geometry, begin: Start
+) -> None:
+    p = parameters.values()
+    check_inertia(p)
+    body = spec.worldbody.add_body(name="platform", pos=begin.pose[:3])
+    body.quat = quaternion(*begin.pose[3:])
+    body.add_freejoint(name="platform")
+    weigh(body, p["m"], [p["I_x"], p["I_y"], p["I_z"]])
+    body.add_site(name="platform", pos=[0, 0, 0], size=[0.004, 0.004, 0.004])
+    for k, connector in enumerate(displaced(geometry, p).connectors, 1):
+        body.add_site(name=f"connector_{k}", pos=connector, size=[0.006, 0.006, 0.006])
+    dress_platform(body, geometry)
+
+
+def _drive(
+    spec: mujoco.MjSpec, k: int, parameters: ParameterSet, geometry: Geometry, begin: Start
+) -> None:
+    """Motor k as a slide joint along a post of the frame, and its cable."""
+    p = parameters.values()
+    own = {name: float(at_drives(name, p)[k - 1]) for name in EACH_DRIVE}
+    R, T_0 = own["R"], float(begin.tension[k - 1])
+    placed = np.array(displaced(geometry, p).exits[k - 1])
+    spec.worldbody.add_site(name=f"exit_{k}", pos=placed, size=[0.012, 0.012, 0.012])
+    up = 1.0 if placed[2] < geometry.A[:, 2].mean() else -1.0  # the wound part lies along the post
+    away = np.array([0.0, 0.0, up])
+    spec.worldbody.add_site(name=f"end_{k}", pos=placed, size=[0.004, 0.004, 0.004])
+
+    spool = spec.worldbody.add_body(name=f"spool_{k}", pos=placed + SPOOL * away)
+    # MuJoCo scales a friction by the mass of the body and leaves the armature out, so J is a mass.
+    weigh(spool, own["J"] / R**2, [own["J"]] * 3)
+    spool.gravcomp = 1.0  # the inertia of a motor has no weight
+    spool.add_site(name=f"spool_{k}", pos=[0, 0, 0], size=[0.004, 0.004, 0.004])
+    spool.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.03, 0.03, 0.05], rgba=MOTOR, contype=0,
+        conaffinity=0, mass=0,
+    )  # fmt: skip
+    k_spring = own["k_s"] * (own["R_s"] / R) ** 2  # of the drum spring, at the roller [N/m]
+    joint: dict[str, Any] = {}
+    if k_spring:
+        joint = {"stiffness": [k_spring, 0, 0], "springref": T_0 / k_spring}
+    spool.add_joint(
+        name=f"spool_{k}",
+        type=mujoco.mjtJoint.mjJNT_SLIDE,
+        axis=away,
+        damping=[own["b_v"] / R**2, 0, 0],
+        frictionloss=own["b_c"] / R,
+        solref_friction=[0.0, -own["b_c"] * own["beta"] / own["J"]],
+        solimp_friction=[IMPEDANCE, IMPEDANCE, 1.0, 0.5, 1.0],
+        **joint,
+    )
+
+    d_0 = float(begin.no_load_length[k - 1])
+    k_cable = own["lambda"] / d_0
+    length = d_0 * (1 + begin.strain[k - 1]) + SPOOL
+    cable = spec.add_tendon(name=f"cable_{k}", width=0.0025, rgba=[0.2, 0.2, 0.22, 1])
+    cable.wrap_site(f"exit_{k}")
+    cable.wrap_site(f"connector_{k}")
+    cable.wrap_pulley(1.0)
+    cable.wrap_site(f"end_{k}")
+    cable.wrap_site(f"spool_{k}")
+    cable.stiffness, cable.damping = [k_cable, 0, 0], [own["b"], 0, 0]
+    cable.springlength = [0.0, length - T_0 / k_cable]  # between them no force: it does not push
+    spec.add_tendon(name=f"motor_{k}").wrap_joint(f"spool_{k}", 1 / R)
+    spec.add_actuator(
+        name=f"current_{k}",
+        target=f"spool_{k}",
+        trntype=mujoco.mjtTrn.mjTRN_JOINT,
+        gear=[own["K_t"] / R, 0, 0, 0, 0, 0],
+    )
+
+
+def _sensors(spec: mujoco.MjSpec) -> None:
+    sensor, of = mujoco.mjtSensor, mujoco.mjtObj
+    kinds = (("angle", sensor.mjSENS_TENDONPOS), ("rate", sensor.mjSENS_TENDONVEL))
+    for name, kind in kinds:
+        for k in range(1, DRIVES + 1):
+            spec.add_sensor(
+                name=f"{name}_{k}", type=kind, objtype=of.mjOBJ_TENDON, objname=f"motor_{k}"
+            )
+    for name, kind in (
+        ("position", sensor.mjSENS_FRAMEPOS),
+        ("orientation", sensor.mjSENS_FRAMEQUAT),
+    ):
+        spec.add_sensor(name=name, type=kind, objtype=of.mjOBJ_SITE, objname="platform")

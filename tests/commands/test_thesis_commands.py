@@ -1,0 +1,128 @@
+"""`inca cite`, figures of the thesis by number, a force, a saved twin, and what is refused."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from inca_mj.cli import main
+from inca_mj.effects.place import PULL
+from inca_mj.report.citation import THESIS, software, to_bibtex, to_cff, to_text
+from inca_mj.robot.inputs import make_input
+from inca_mj.robot.parameters import parameter_set
+from inca_mj.twin.run import load_run, simulate
+from inca_mj.twin.saved import save_twin
+from inca_mj.twin.twin import build_twin
+from inca_mj.workflows.comparison import compare_twin
+from inca_mj.workflows.pulled import with_force
+
+ROOT = Path(__file__).parents[2]
+
+
+def run(*arguments):
+    return main([str(a) for a in arguments])
+
+
+def test_the_citation_file_is_what_the_program_cites():
+    assert (ROOT / "CITATION.cff").read_text(encoding="utf-8") == to_cff()
+    project = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    assert f'version = "{software().version}"' in project
+
+
+@pytest.mark.parametrize("said", [to_text(), to_bibtex(), to_cff()])
+def test_every_citation_names_the_program_and_the_thesis(said):
+    assert software().title in said
+    assert THESIS.title in said
+    assert THESIS.note in said  # that the author is not known
+
+
+def test_cite_prints_text_bibtex_or_json(capsys):
+    assert run("cite") == 0
+    assert capsys.readouterr().out == to_text() + "\n"
+    assert run("cite", "--bibtex") == 0
+    said = capsys.readouterr().out
+    assert re.findall(r"^@(\w+)\{(\w+),", said, flags=re.M) == [
+        ("software", "inca_mj"), ("mastersthesis", "inca_thesis")
+    ]  # fmt: skip
+    assert said.count("{") == said.count("}")
+    assert run("cite", "--json") == 0
+    record = json.loads(capsys.readouterr().out)
+    assert [work["key"] for work in record["works"]] == ["inca_mj", "inca_thesis"]
+
+
+def test_a_figure_takes_the_set_that_it_needs(tmp_path):
+    assert run("simulate", "--figure", "3.3", "--out", tmp_path / "a") == 0
+    data = load_run(tmp_path / "a" / "run.npz")
+    np.testing.assert_array_equal(data.currents, make_input("prbs", 5.0))
+    assert (tmp_path / "a" / "motor-currents.png").stat().st_size > 10_000
+    record = json.loads((tmp_path / "a" / "result.json").read_text())["configuration"]
+    assert (record["input"], record["duration"], record["robot"]["set"]) == ("prbs", 5.0, "trial")
+    assert run("simulate", "--figure", "2.16", "--out", tmp_path / "b") == 0
+    step = load_run(tmp_path / "b" / "run.npz")
+    assert step.twin.parameters.values() == parameter_set("simulation").values()
+    assert (step.currents == [2.0] + 7 * [0.0]).all()
+
+
+def test_a_force_is_in_the_run_and_in_its_file(tmp_path):
+    asked = ("--force", 0, 0, -0.5, "--force-at", 0.01, 0, 0)
+    assert run("simulate", "--input", "zero", "--duration", 0.2, *asked, "--out", tmp_path) == 0
+    kept = load_run(tmp_path / "run.npz")
+    right = with_force(build_twin(), (0, 0, -0.5), (0.01, 0, 0))
+    np.testing.assert_array_equal(kept.qpos, simulate(right, kept.currents).qpos)
+    assert kept.position[-1, 2] < kept.position[0, 2]
+
+
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory):
+    """A twin with an effect, as a discovery leaves it."""
+    folder = tmp_path_factory.mktemp("saved")
+    robot = with_force(build_twin(parameter_set("trial", {"m": 0.2})), (0.2, 0.0, 0.0))
+    save_twin(robot, folder)
+    return folder, robot
+
+
+def test_a_saved_twin_is_simulated_and_compared(saved, tmp_path, capsys):
+    folder, robot = saved
+    asked = ("simulate", "--model", folder, "--input", "prbs", "--duration", 0.5)
+    assert run(*asked, "--out", tmp_path) == 0
+    kept = load_run(tmp_path / "run.npz")
+    np.testing.assert_array_equal(kept.qpos, simulate(robot, make_input("prbs", 0.5)).qpos)
+    assert [e.name for e in kept.twin.effects] == [PULL.name]
+    capsys.readouterr()
+    assert run("compare", tmp_path / "log.csv", "--model", folder, "--json") == 0
+    assert json.loads(capsys.readouterr().out)["rms"] == [0.0] * 8
+
+
+def test_a_finer_step_keeps_the_effects(saved):
+    from inca_mj.twin.logs import run_to_log
+
+    robot = saved[1]
+    log = run_to_log(simulate(robot, make_input("prbs", 0.3)))
+    finer = compare_twin(log, robot, timestep=5e-4)
+    assert finer.run.twin.model.opt.timestep == 5e-4
+    assert 0 < finer.rms.max() < 1e-4
+
+
+@pytest.mark.parametrize(("arguments", "said"), [
+    (["simulate", "--figure", "2.17"], r"unknown figure '2\.17'; did you mean '2\.16'\?"),
+    (["simulate", "--figure", "2.16", "--input", "prbs"], "made with --input step, not prbs"),
+    (["simulate", "--figure", "3.2", "--set", "simulation"], "made with --set trial"),
+    (["simulate", "--force-at", "1", "0", "0"], "give the force with --force"),
+    (["simulate", "--force", "1e9", "0", "0"], "outside its range"),
+    (["simulate", "--force", "nan", "0", "0"], "pull.x"),
+    (["simulate", "--model", "no/such/folder"], r"no .*effects\.json; inca discover --out"),
+    (["simulate", "--model", "x", "--param", "m=0.2"], "--model is a whole robot"),
+    (["compare", "examples/log.csv", "--model", "no/such"], r"no .*effects\.json"),
+    (["identify", "examples/log.csv", "--procedure", "thesis", "--free", "m"], "leave out --free"),
+    (["thesis", "--seed", "-1"], "seed -1 is negative"),
+])  # fmt: skip
+def test_what_cannot_be_is_refused(monkeypatch, capsys, tmp_path, arguments, said):
+    monkeypatch.chdir(ROOT)
+    out = [] if arguments[0] == "view" else ["--out", str(tmp_path / "out")]
+    assert main([*arguments, *out]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert re.search(said, captured.err)
+    assert not (tmp_path / "out").exists()
