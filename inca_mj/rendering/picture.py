@@ -96,8 +96,9 @@ class Lettering:
         self._clock = (left + em, top + em)
         self._legend(pen, robots, left + em, top + int(3.5 * em))
         self._readout = self._clock
-        if magnify is not None:  # under the clock's card where there is room, else beside it
-            at = (left, top + high) if boxes.legend else (left + int(12.5 * em), top)
+        if magnify is not None:  # beside the clock's card where there is room, else under it
+            beside = width >= 26 * em
+            at = (left + int(12.5 * em), top) if beside else (left, top + high)
             paths = [("asked path", ASKED, 0.08), (f"trace, error × {magnify:g}", TRACE, 0.14)]
             self._card(pen, *at, int(12.5 * em), int(4.8 * em))
             self._legend(pen, paths, at[0] + em, at[1] + int(1.05 * em))

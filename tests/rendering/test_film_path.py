@@ -127,12 +127,23 @@ def test_a_path_is_in_the_picture_and_its_colour_too(tmp_path, short_run):
 
 
 @pytest.mark.usefixtures("opengl")
-@pytest.mark.parametrize("how", [{"camera": "handle"}, {"plots": True}])
+@pytest.mark.parametrize(
+    ("size", "camera", "plots"),
+    [((160, 480), "handle", False), ((160, 480), "side", True), ((160, 120), "handle", False)],
+)
+def test_a_path_and_its_legend_fit_narrow_frames(tmp_path, short_run, size, camera, plots):
+    run, how = asked(short_run, np.zeros(3)), {"camera": camera, "plots": plots}
+    (path,) = stills(run, tmp_path, [0.5], size=size, titles=("title",), **how)
+    assert pixels(path).shape == (*size[::-1], 3)
+
+
+@pytest.mark.usefixtures("opengl")
+@pytest.mark.parametrize("how", [{"camera": "handle"}, {"size": (220, 320)}])
 def test_two_pictures_are_the_single_ones_side_by_side(tmp_path, short_run, how):
     """To the pixel, where both have the tensions of the scale that they share."""
     one, two = asked(short_run, np.array([0.001, 0, 0])), short_run
-    size = (160, 240) if "plots" in how else SIZE  # high frames too
-    single = {"size": size, "plots": False, **how}
+    single = {"size": SIZE, "plots": False, **how}
+    size = single["size"]
     both = {**single, "size": (2 * size[0], size[1])}
     (pair,) = stills(one, tmp_path, [0.5], beside=two, titles=("one", "two"), **both)
     pair = pixels(pair)
@@ -156,7 +167,7 @@ def test_two_robots_share_one_scale_of_tensions(tmp_path, short_run, pulled_run)
 @pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")  # imageio-ffmpeg's reader
 def test_two_runs_are_filmed_over_the_time_that_both_have(tmp_path, short_run):
     short = make_scene(short_run).until(0.2)
-    path = film(short_run, tmp_path / "pair.mp4", beside=short, size=PAIR, fps=10)
+    path = film(short_run, tmp_path / "pair.mp4", beside=short, size=PAIR, fps=10, camera="handle")
     reader = imageio_ffmpeg.read_frames(path)
     assert next(reader)["size"] == PAIR
     assert sum(1 for _ in reader) == 3
@@ -185,20 +196,20 @@ def test_a_pair_that_makes_no_sense_is_refused(tmp_path, short_run, how, says):
 @pytest.mark.usefixtures("opengl")
 def test_the_command_films_two_runs_under_the_names_of_their_folders(tmp_path, capsys, short_run):
     sources = []
-    for name, end in (("nominal", 0.04), ("found", 0.06)):
+    for name, end in (("nominal", 0.02), ("found", 0.04)):
         (tmp_path / name).mkdir()
         run = asked(short_run.until(end), np.zeros(3))
         sources.append(str(save_run(run, tmp_path / name / "run.npz")))
-    out = tmp_path / "film"
-    assert main(["film", *sources, "--still", "0", "--json", "--out", str(out)]) == 0
+    out, look = tmp_path / "film", ("--camera", "handle")
+    assert main(["film", *sources, "--still", "0", *look, "--json", "--out", str(out)]) == 0
     said = json.loads(capsys.readouterr().out)
     assert said["titles"] == ["nominal", "found"]
-    assert said["seconds"] == pytest.approx(0.04)
+    assert said["seconds"] == pytest.approx(0.02)
     made = [said["film"], *said["stills"]]
-    assert made == [str(out / "film.mp4"), str(out / "front_0.00s.png")]
+    assert made == [str(out / "film.mp4"), str(out / "handle_0.00s.png")]
     assert pixels(made[1]).shape == (720, 1280, 3)
-    assert main(["film", *sources, "--still", "0.05"]) == 2
-    assert "the film is of 0 to 0.04 s" in capsys.readouterr().err
+    assert main(["film", *sources, "--still", "0.03"]) == 2
+    assert "the film is of 0 to 0.02 s" in capsys.readouterr().err
 
 
 def test_a_scene_of_a_saved_run_keeps_what_was_asked(tmp_path, short_run):
