@@ -1,4 +1,4 @@
-"""inca film LOG|RUN: a film of the robot, drawn without a screen."""
+"""inca film LOG|RUN: a film of the robot, or of two side by side, drawn without a screen."""
 
 from __future__ import annotations
 
@@ -17,15 +17,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Film:
-    """Film a log (measured as ghost, simulated in colour) or a saved run.
+    """Film a log (measured as ghost, simulated in colour) or a saved run, or two side by side.
 
     Examples:
         inca film examples/log.csv --seconds 5 --out out/film
-        inca film out/prbs/run.npz --camera handle --speed 0.25 --still 1.0
+        inca film out/before/run.npz out/after/run.npz --title nominal found --still 8
     """
 
-    source: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG|RUN")]
-    """A log (.csv, .mat), or a run (.npz) that inca simulate or inca compare saved."""
+    source: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="LOG|RUN")]
+    """One or two: a log (.csv, .mat), or a run (.npz) that another command saved."""
+    title: tuple[str, ...] = ()
+    """A line over each picture; else two pictures have the names of their folders."""
     seconds: float | None = None
     """Film only so many seconds from the start."""
     camera: Literal["front", "side", "handle"] = "front"
@@ -33,7 +35,9 @@ class Film:
     speed: float = 1.0
     """Seconds of the run in a second of film; 0.25 is slow motion."""
     plots: bool = True
-    """Draw the motor angles beside the picture."""
+    """Draw the motor angles beside the picture; two pictures have no room for them."""
+    magnify: float = 20.0
+    """By how much the deviation from a path that inca track asked is drawn larger."""
     still: tuple[float, ...] = ()
     """Times [s] at which to write a PNG of the picture too."""
     robot: Annotated[SavedRobot, tyro.conf.OmitArgPrefixes] = saved_robot_field
@@ -50,39 +54,77 @@ class Film:
             raise GraphicsError(blind)
         from identification.errors import InputError
         from identification.folders import whole_folder
-        from inca_mj.rendering.film import film, stills
+        from inca_mj.rendering.film import common_time, film, stills
 
-        scene = self._scene()
-        end = float(scene.run.time[-1])
-        late = [t for t in self.still if not 0 <= t <= end]
-        if late:
-            raise InputError(f"no still at {late[0]:g} s: the run ends at {end:g} s")
+        scenes = [self._scene(source) for source in self._sources()]
+        begin, end = common_time(scenes)
+        off = [t for t in self.still if not begin <= t <= end]
+        if off:
+            raise InputError(f"no still at {off[0]:g} s: the film is of {begin:g} to {end:g} s")
+        scene, beside = scenes[0], scenes[1] if len(scenes) > 1 else None
+        titles = self._titles()
+        plots = None if self.plots else False
         out = self.output.out or Path("out/film")
         with whole_folder(out) as draft:
             path = film(
                 scene,
                 draft / "film.mp4",
+                beside=beside,
+                titles=titles,
                 camera=self.camera,
-                plots=self.plots,
+                plots=plots,
                 speed=self.speed,
+                magnify=self.magnify,
             )
-            pictures = stills(scene, draft, self.still, camera=self.camera, plots=self.plots)
+            pictures = stills(
+                scene,
+                draft,
+                self.still,
+                beside=beside,
+                titles=titles,
+                camera=self.camera,
+                plots=plots,
+                magnify=self.magnify,
+            )
         files = [str(out / p.name) for p in (path, *pictures)]
         if self.output.json:
-            say_json({"film": files[0], "stills": files[1:], "seconds": end})
+            said = {"film": files[0], "stills": files[1:], "seconds": end, "titles": titles}
+            say_json(said)
         else:
             say("\n".join(files))
         return 0
 
-    def _scene(self) -> Scene:
+    def _sources(self) -> tuple[Path, ...]:
+        """One source or two.
+
+        Raises:
+            InputError: there are none, or more than two.
+        """
+        from identification.errors import InputError
+
+        if not self.source:
+            raise InputError("LOG|RUN is missing; write inca film LOG|RUN")
+        if len(self.source) > 2:
+            raise InputError(
+                f"{len(self.source)} logs and runs; a film shows one, or two side by side"
+            )
+        return self.source
+
+    def _titles(self) -> list[str]:
+        """Those given, or the folders of two: run.npz and log.csv are names of many files."""
+        if self.title or len(self.source) == 1:
+            return list(self.title)
+        return [path.resolve().parent.name for path in self.source]
+
+    def _scene(self, source: Path) -> Scene:
         """What to film: a saved run, or a log beside the twin with the values that were asked."""
         from inca_mj.commands.compare import compare_with
         from inca_mj.rendering.scene import make_scene
         from inca_mj.twin.logs import read_inca_log
 
-        if self.source.suffix == ".npz":
-            return make_scene(self.source, self.seconds)
-        log = read_inca_log(self.source)
+        if source.suffix == ".npz":
+            return make_scene(source, self.seconds)
+        log = read_inca_log(source)
         if self.seconds is not None and 0 < self.seconds < log.duration:
             log = log.between(float("-inf"), float(log.time[0]) + self.seconds)
         return make_scene(compare_with(self.robot, log), self.seconds)

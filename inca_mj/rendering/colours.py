@@ -1,4 +1,4 @@
-"""The scale of the tensions."""
+"""Colours of the film: the scale of the tensions, the path that was asked, the trace."""
 
 from __future__ import annotations
 
@@ -8,6 +8,9 @@ from math import ceil, floor
 import numpy as np
 
 SLACK = (0.62, 0.64, 0.66, 1.0)
+ASKED = "#009E73"  # green of Okabe and Ito, which no tension has
+TRACE = "#111111"
+HALO = "#FFFFFF"  # round the trace, which passes dark parts of the robot
 # Plasma is perceptually uniform; its last tenth, a bright yellow, is lost on a light background.
 _COLORMAP, _END = "plasma", 0.88
 

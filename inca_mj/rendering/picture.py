@@ -10,7 +10,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from identification.report.style import INK, MEASURED, SIMULATED
-from inca_mj.rendering.colours import TensionScale, shade
+from inca_mj.rendering.colours import ASKED, TRACE, TensionScale, shade
 
 Box = tuple[int, int, int, int]  # left, top, width, height [px]
 BACKGROUND = (255, 255, 255)
@@ -18,26 +18,45 @@ BACKGROUND = (255, 255, 255)
 
 @dataclass(frozen=True)
 class Layout:
-    """Boxes of a frame; a part that is not shown is None."""
+    """Boxes of a frame; a part that is not shown is None. Without `legend` it is on the scene."""
 
     scene: Box
     handle: Box | None
     plots: Box | None
+    legend: Box | None = None
 
 
-def layout(size: tuple[int, int], camera: str, plots: bool) -> Layout:
-    """The scene on the left; the handle, 15 cm in 3 m, close up; plots below it."""
+def layout(size: tuple[int, int], camera: str, plots: bool, titled: bool = False) -> Layout:
+    """The scene on the left; the handle, 15 cm in 3 m, close up; plots below it.
+
+    A high frame has the scene above, beside its legend, and the rest below. A title has a strip
+    of its own over all of it.
+    """
     width, height = size
     closeup = camera != "handle"
+    strip = 2 * em_of(height) if titled else 0
+    if width < height and (closeup or plots):
+        top = strip + (height - strip) * 11 // 20
+        low, half = height - top, width // 2 if closeup and plots else 0
+        handle = (0, top, width - half, low) if closeup else None
+        beside = (width - (half or width), top, half or width, low) if plots else None
+        legend = min(13 * em_of(height), width // 2)
+        scene = (legend, strip, width - legend, top - strip)
+        return Layout(scene, handle, beside, (0, strip, legend, top - strip))
     if not plots:
         w, h = width * 3 // 10, height * 4 // 10
         corner = (width - w - 12, height - h - 12, w, h)
-        return Layout((0, 0, width, height), corner if closeup else None, None)
+        return Layout((0, strip, width, height - strip), corner if closeup else None, None)
     column = width * 3 // 8
-    top = height * 2 // 5 if closeup else 0
+    top = strip + (height - strip) * 2 // 5 if closeup else strip
     left = width - column
-    handle = (left, 0, column, top) if closeup else None
-    return Layout((0, 0, left, height), handle, (left, top, column, height - top))
+    handle = (left, strip, column, top - strip) if closeup else None
+    return Layout((0, strip, left, height - strip), handle, (left, top, column, height - top))
+
+
+def em_of(height: int) -> int:
+    """The size of letters in a frame of a height [px]."""
+    return max(8, round(height / 42))
 
 
 def paste(frame: np.ndarray, box: Box, picture: np.ndarray) -> None:
@@ -49,18 +68,43 @@ def paste(frame: np.ndarray, box: Box, picture: np.ndarray) -> None:
 class Lettering:
     """What is written on every frame, drawn once, and the clock, drawn each time."""
 
-    def __init__(self, size: tuple[int, int], boxes: Layout, scale: TensionScale, ghost: bool,
-                 assumed: bool) -> None:  # fmt: skip
-        self._em = max(8, round(size[1] / 42))
-        self._at = (boxes.scene[0] + self._em, boxes.scene[1] + self._em)
+    def __init__(self, size: tuple[int, int], boxes: Layout, scale: TensionScale, *, ghost: bool,
+                 assumed: bool, magnify: float | None, title: str) -> None:  # fmt: skip
+        """Draw what does not change.
+
+        Args:
+            size: width and height of the frame [px].
+            boxes: of the frame.
+            scale: of the tensions.
+            ghost: whether there is a measured robot.
+            assumed: whether the geometry is.
+            magnify: by how much a trace magnifies its deviation; None where there is no trace.
+            title: stands over the picture; nothing when empty.
+        """
+        self._em = em_of(size[1])
+        area = boxes.legend or boxes.scene
         image = Image.new("RGBA", size, (*BACKGROUND, 0))
         pen = ImageDraw.Draw(image)
-        left, top, width, height = boxes.scene
+        left, top, width, height = area
         em, below = self._em, top + height
-        self._card(pen, left, top, int(12.5 * em), int(5.8 * em if ghost else 4.4 * em))
+        robots = [
+            ("simulated", SIMULATED, 0.33),
+            *([("measured", MEASURED, 0.33)] if ghost else []),
+        ]
+        high = int((3.0 + 1.4 * len(robots)) * em)
+        self._card(pen, left, top, int(12.5 * em), high)
+        self._clock = (left + em, top + em)
+        self._legend(pen, robots, left + em, top + int(3.5 * em))
+        self._readout = self._clock
+        if magnify is not None:  # beside the clock's card where there is room, else under it
+            beside = width >= 26 * em
+            at = (left + int(12.5 * em), top) if beside else (left, top + high)
+            paths = [("asked path", ASKED, 0.08), (f"trace, error × {magnify:g}", TRACE, 0.14)]
+            self._card(pen, *at, int(12.5 * em), int(4.8 * em))
+            self._legend(pen, paths, at[0] + em, at[1] + int(1.05 * em))
+            self._readout = (at[0] + em, at[1] + int(3.25 * em))
         self._card(pen, left, below - int(5.0 * em), int(12.5 * em), int(5.0 * em))
-        self._legend(pen, ghost)
-        self._bar(image, pen, boxes.scene, scale)
+        self._bar(image, pen, area, scale)
         if assumed:
             at = (left + em, below - int(0.9 * em))
             pen.text(at, "geometry assumed", INK, self._font(0.7), anchor="ls")
@@ -68,19 +112,33 @@ class Lettering:
             left, top, width, height = boxes.handle
             pen.rectangle((left, top, left + width - 1, top + height - 1), outline="#C9CED4")
             pen.text((left + self._em // 2, top + self._em // 2), "handle", INK, self._font(0.75))
+        self._title(pen, title, size[0])
         pixels = np.asarray(image, np.uint16)
         self._rows = np.flatnonzero(pixels[..., 3].any(axis=1))
         alpha = pixels[self._rows][..., 3:]
         self._ink, self._see = pixels[self._rows][..., :3] * alpha, 255 - alpha
 
-    def write(self, frame: np.ndarray, time: float) -> None:
-        """Letter a frame (h, w, 3) of time [s], in place."""
+    def write(self, frame: np.ndarray, time: float, distance: float | None = None) -> None:
+        """Letter a frame (h, w, 3) of time [s], in place; the distance from the path [m] too."""
         frame[self._rows] = (self._ink + frame[self._rows] * self._see) // 255
-        left, top = self._at
-        corner = frame[top : top + 2 * self._em, left : left + 9 * self._em]
+        self._say(frame, self._clock, f"t = {time:.2f} s", 1.15)
+        if distance is not None:
+            self._say(frame, self._readout, f"error {1e3 * distance:.3f} mm", 0.85)
+
+    def _say(self, frame: np.ndarray, at: tuple[int, int], text: str, ems: float) -> None:
+        left, top = at
+        corner = frame[top : top + 2 * self._em, left : left + 11 * self._em]
         image = Image.fromarray(corner)
-        ImageDraw.Draw(image).text((0, 0), f"t = {time:.2f} s", INK, self._font(1.15))
+        ImageDraw.Draw(image).text((0, 0), text, INK, self._font(ems))
         corner[:] = np.asarray(image)
+
+    def _title(self, pen: ImageDraw.ImageDraw, title: str, width: int) -> None:
+        """The title, as much of it as there is room for."""
+        font, room = self._font(1.15), width - 2 * self._em
+        shown = title
+        while shown and pen.textlength(shown, font) > room:
+            shown = shown.removesuffix("…")[:-1] + "…" if len(shown) > 1 else ""
+        pen.text((self._em, self._em), shown, INK, font, anchor="lm")
 
     def _font(self, ems: float) -> ImageFont.FreeTypeFont:
         # matplotlib brings this font, so that every machine writes alike.
@@ -93,13 +151,14 @@ class Lettering:
         box = (left + inset, top + inset, left + width, top + height - inset)
         pen.rounded_rectangle(box, inset, fill=(255, 255, 255, 170))
 
-    def _legend(self, pen: ImageDraw.ImageDraw, ghost: bool) -> None:
-        em, (left, top) = self._em, self._at
-        lines = [("simulated", SIMULATED), *([("measured", MEASURED)] if ghost else [])]
-        for row, (text, colour) in enumerate(lines):
-            y = top + int(2.5 * em + 1.4 * em * row)
-            pen.rounded_rectangle((left, y - em // 3, left + int(1.2 * em), y + em // 3), em // 4,
-                                  fill=colour)  # fmt: skip
+    def _legend(self, pen: ImageDraw.ImageDraw, rows: list[tuple[str, str, float]], left: int,
+                top: int) -> None:  # fmt: skip
+        """Rows of text, colour and half the height of the mark [em]."""
+        em = self._em
+        for row, (text, colour, high) in enumerate(rows):
+            y, half = top + int(1.4 * em * row), max(1, int(high * em))
+            pen.rounded_rectangle((left, y - half, left + int(1.2 * em), y + half),
+                                  min(half, em // 4), fill=colour)  # fmt: skip
             pen.text((left + int(1.7 * em), y), text, INK, self._font(0.85), anchor="lm")
 
     def _bar(self, image: Image.Image, pen: ImageDraw.ImageDraw, box: Box,

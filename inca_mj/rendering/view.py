@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from math import atan, degrees, radians, tan
@@ -15,6 +15,7 @@ from matplotlib.colors import to_rgb
 from identification.errors import unknown_name
 from identification.report.style import MEASURED
 from inca_mj.rendering.graphics import renderer
+from inca_mj.rendering.overlay import Eye, Line, overlay
 
 CAMERAS = ("front", "side", "handle")
 
@@ -37,13 +38,20 @@ class View:
     ghost: mujoco.MjData
     draws: mujoco.Renderer
 
-    def draw(self, qpos: np.ndarray, colours: np.ndarray, ghost: np.ndarray | None) -> np.ndarray:
+    def draw(
+        self,
+        qpos: np.ndarray,
+        colours: np.ndarray,
+        ghost: np.ndarray | None,
+        lines: Sequence[Line] = (),
+    ) -> np.ndarray:
         """The picture, shape (height, width, 3) of bytes.
 
         Args:
             qpos: positions of the simulated robot, shape (15,) [m, -, rad].
             colours: of its cables, shape (8, 4) [0..1].
             ghost: positions of the measured robot, shape (15,); not drawn when None.
+            lines: drawn over the picture, so that the handle does not hide where it should be.
         """
         self.model.tendon_rgba[:] = colours
         _place(self.model, self.robot, qpos)
@@ -55,7 +63,17 @@ class View:
         scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
         scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
         scene.flags[mujoco.mjtRndFlag.mjRND_HAZE] = True
-        return self.draws.render()
+        picture = self.draws.render()
+        return overlay(picture, lines, self.eye()) if lines else picture
+
+    def eye(self) -> Eye:
+        """The camera for the state that was drawn last."""
+        number = self.model.camera(self.camera).id
+        return Eye(
+            self.robot.cam_xpos[number].copy(),
+            self.robot.cam_xmat[number].reshape(3, 3).copy(),
+            radians(self.model.cam_fovy[number]),
+        )
 
     def _add_ghost(self, qpos: np.ndarray) -> None:
         _place(self.model, self.ghost, qpos)

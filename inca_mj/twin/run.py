@@ -23,12 +23,15 @@ from inca_mj.twin.saved import twin_from_record, twin_to_record
 from inca_mj.twin.twin import Twin
 
 _STAGE = mujoco.mjtStage.mjSTAGE_VEL
-_WIDTHS = {"currents": 8, "qpos": 15, "qvel": 14, "act": 8, "tension": 8, "length": 8}
+_WIDTHS = {
+    "currents": 8, "qpos": 15, "qvel": 14, "act": 8, "tension": 8, "length": 8, "asked": 3,
+}  # fmt: skip
 FEWEST = 2  # samples
 UNEVEN = 1e-6  # of a step, by which steps may differ
 LONGEST = 86400.0  # [s]
 OLDER = {"effects": (), "settled": False}  # of a run that was saved before runs had effects
 _ARRAYS = ("time", "currents", "qpos", "qvel", "act", "tension", "length")
+_OPTIONAL = ("asked",)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +47,8 @@ class Run:
         act: no-load lengths d₀, shape (N, 8) [m].
         tension: cable tensions T, shape (N, 8) [N].
         length: cable lengths d, shape (N, 8) [m].
+        asked: positions in O that a controller asked of the handle, shape (N, 3) [m]; None where
+            nothing was asked.
     """
 
     twin: Twin
@@ -54,6 +59,7 @@ class Run:
     act: np.ndarray
     tension: np.ndarray
     length: np.ndarray
+    asked: np.ndarray | None = None
 
     @property
     def position(self) -> np.ndarray:
@@ -84,7 +90,7 @@ class Run:
         n = int(np.searchsorted(self.time, end, side="right"))
         if n < 2:
             raise InputError(f"{end:g} s holds less than two samples; give a longer time")
-        return replace(self, **{name: getattr(self, name)[:n] for name in _ARRAYS})
+        return replace(self, **{name: array[:n] for name, array in _arrays(self).items()})
 
 
 def simulate(
@@ -162,8 +168,7 @@ def save_run(run: Run, path: str | Path) -> Path:
     """
     header = twin_to_record(run.twin)
     with whole_file(path) as draft, draft.open("wb") as stream:
-        arrays = {name: getattr(run, name) for name in _ARRAYS}
-        np.savez_compressed(stream, header=json.dumps(header), **arrays)
+        np.savez_compressed(stream, header=json.dumps(header), **_arrays(run))
     return Path(path)
 
 
@@ -182,6 +187,7 @@ def load_run(path: str | Path, effects: Sequence[Effect] = EVERY) -> Run:
         with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             header: dict[str, Any] = {**OLDER, **json.loads(str(file["header"]))}
             arrays = {name: file[name] for name in _ARRAYS}
+            arrays.update({name: file[name] for name in _OPTIONAL if name in file})
         _refuse_damaged(arrays, Path(path))
         return Run(twin=twin_from_record(header, effects, Path(path)), **arrays)
     except FileNotFoundError:
@@ -193,6 +199,15 @@ def load_run(path: str | Path, effects: Sequence[Effect] = EVERY) -> Run:
             f"{path} is not a run of inca simulate, or is damaged ({type(error).__name__});"
             " write it again"
         ) from error
+
+
+def _arrays(run: Run) -> dict[str, Any]:
+    """The arrays that a run has, by name."""
+    optional = {name: getattr(run, name) for name in _OPTIONAL}
+    return {
+        **{name: getattr(run, name) for name in _ARRAYS},
+        **{name: array for name, array in optional.items() if array is not None},
+    }
 
 
 def _refuse_damaged(arrays: Mapping[str, np.ndarray], path: Path) -> None:

@@ -5,7 +5,7 @@ error_k = |p(t_k) - p_d(t_k)|        of the true handle, counted from the path's
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,7 +26,7 @@ class Tracking:
     """A robot that followed a path.
 
     Attributes:
-        run: what the robot did, N samples.
+        run: what the robot did, N samples; its `asked` is `wanted`.
         model: the twin that the controller believed.
         path: where the handle should have been.
         wanted: positions asked of the handle, shape (N, 3) [m].
@@ -121,11 +121,12 @@ def track(
     controller = Controller(model, path, gains=gains, tensions=tensions)
     done = run_loop(robot, controller, duration, knows_pose=knows_pose, noise=noise, seed=seed)
     run = simulate(robot, done.currents, CONTROL_TIMESTEP)
+    wanted = np.array([path.at(float(t)).position for t in run.time])
     return Tracking(
-        run=run,
+        run=replace(run, asked=wanted),
         model=model,
         path=path,
-        wanted=np.array([path.at(float(t)).position for t in run.time]),
+        wanted=wanted,
         seen=done.seen,
         counted=counted,
     )

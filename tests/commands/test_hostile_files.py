@@ -117,6 +117,7 @@ def broken(run, path, **arrays):
     {"tension": np.full((21, 8), np.nan)}, {"qpos": np.zeros((20, 15))},
     {"currents": np.zeros((21, 8), complex)}, {"time": np.full(21, 1e300)},
     {"time": np.zeros(21)}, {"time": np.zeros((21, 1))}, {"act": np.array("text")},
+    {"asked": np.zeros((20, 3))}, {"asked": np.full((21, 3), np.inf)},
 ])  # fmt: skip
 def test_a_saved_run_that_no_simulation_gives_is_refused(run, tmp_path, arrays):
     with pytest.raises(InputError, match=r"write (the run|it) again"):

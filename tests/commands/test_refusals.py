@@ -18,6 +18,7 @@ WRONG = [
     (inca, "simulate --set none", "--set is 'none'; give one of trial, simulation"),
     (inca, "film log.csv --still x", "--still is 'x'; give a number"),
     (inca, "film", "LOG|RUN is missing; write inca film LOG|RUN"),
+    (inca, "film a.npz b.npz c.npz", "3 logs and runs; a film shows one, or two"),
     (inca, "identify", "LOG is missing; write inca identify LOG"),
     (inca, "compare a.csv b.csv", "b.csv is one argument too many"),
     (inca, "discover a.csv --spread", "--spread has no value; give one behind it"),

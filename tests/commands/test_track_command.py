@@ -22,6 +22,8 @@ def test_it_keeps_a_run_that_can_be_loaded_and_says_how_far_off_it_was(tmp_path,
     run = load_run(out / "run.npz")
     distance = np.linalg.norm(run.position[run.time >= said["counted_from"], :2], axis=1)
     assert abs(distance - 0.05).max() <= said["largest"] + 1e-12
+    error = np.linalg.norm(run.position - run.asked, axis=1)[run.time >= said["counted_from"]]
+    assert error.max() == said["largest"]
     assert run.currents.min() == said["current_min"] >= 0
     assert {p.name for p in out.iterdir()} >= {"log.csv", "model.xml", "report.html"}
     assert list(out.glob("*.png"))

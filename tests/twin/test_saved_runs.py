@@ -1,6 +1,7 @@
 """A run of a twin with effects is saved and read again, whole."""
 
 import json
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -44,6 +45,14 @@ def test_a_run_with_effects_comes_back_to_the_bit(run, tmp_path):
     replay = simulate(again.twin, run.currents)
     np.testing.assert_array_equal(replay.qpos, run.qpos)
     np.testing.assert_array_equal(replay.tension, run.tension)
+
+
+def test_what_was_asked_comes_back_to_the_bit_and_a_run_without_it_too(run, tmp_path):
+    assert load_run(save_run(run, tmp_path / "run.npz")).asked is None
+    asked = run.position + np.random.default_rng(0).standard_normal(3) / 3
+    again = load_run(save_run(replace(run, asked=asked), tmp_path / "asked.npz"))
+    np.testing.assert_array_equal(again.asked, asked)
+    np.testing.assert_array_equal(again.until(0.1).asked, asked[: len(again.until(0.1).time)])
 
 
 def test_an_effect_of_which_the_law_is_not_at_hand_is_named(run, tmp_path):

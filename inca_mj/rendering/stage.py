@@ -1,0 +1,165 @@
+"""Everything that the frames of a film share: views, plots, letters; of one robot or of two."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.errors import InputError
+from inca_mj.rendering.colours import TensionScale, tension_scale
+from inca_mj.rendering.ghost import ghost_positions
+from inca_mj.rendering.panel import Panel
+from inca_mj.rendering.picture import BACKGROUND, Layout, Lettering, layout, paste
+from inca_mj.rendering.scene import Scene
+from inca_mj.rendering.trace import Trace, trace_of
+from inca_mj.rendering.view import View, view
+from inca_mj.twin.run import Run
+
+# Radius that cables are drawn with [m]: their own millimetre would be less than a pixel.
+_CABLE_FAR, _CABLE_NEAR = 0.008, 0.0018
+_THIN = 480  # height of a picture in which the path is one pixel thick
+
+
+@dataclass(frozen=True, kw_only=True)
+class Look:
+    """How films look.
+
+    Attributes:
+        camera: "front", "side" or "handle".
+        size: width and height of the whole frame, even numbers [px].
+        plots: show the motor angles beside the robot; None is yes for one robot, no for two.
+        titles: a line over each picture; none when empty.
+        magnify: by how much the deviation from the path that was asked is drawn larger.
+
+    Raises:
+        InputError: the size is odd or too small, or `magnify` is not positive.
+    """
+
+    camera: str
+    size: tuple[int, int]
+    plots: bool | None
+    titles: Sequence[str]
+    magnify: float
+
+    def __post_init__(self) -> None:
+        width, height = self.size
+        if width % 2 or height % 2 or not (160 <= width <= 7680 and 120 <= height <= 4320):
+            raise InputError(
+                f"a film of {width} x {height} pixels: give even numbers from 160 x 120"
+            )
+        if not (np.isfinite(self.magnify) and self.magnify > 0):
+            raise InputError(f"a deviation drawn {self.magnify:g} times: give a positive number")
+
+
+@contextmanager
+def stage(scenes: Sequence[Scene], look: Look) -> Iterator[Callable[[float], np.ndarray]]:
+    """A function from a time [s] to the frame, shape (height, width, 3) of bytes.
+
+    Pictures of two scenes stand side by side, with one scale of the tensions.
+
+    Raises:
+        InputError: there are other numbers of titles and scenes, the frame is too narrow for two,
+            or the camera is unknown.
+        GraphicsError: no OpenGL context can be made here.
+    """
+    if look.titles and len(look.titles) != len(scenes):
+        raise InputError(
+            f"{len(look.titles)} titles for {len(scenes)} pictures; give one for each, or none"
+        )
+    width, height = look.size
+    size = width // len(scenes), height
+    if size[0] < 160:
+        raise InputError(
+            f"a film of {width} pixels for two pictures; give 320 or more, even numbers"
+        )
+    scale = tension_scale(np.concatenate([s.run.tension for s in scenes]))
+    plots = len(scenes) == 1 if look.plots is None else look.plots
+    with ExitStack() as views:
+        stages = [
+            views.enter_context(_stage(scene, size, look, plots, scale, title))
+            for scene, title in zip(scenes, look.titles or [""] * len(scenes), strict=True)
+        ]
+        yield lambda time: np.hstack([one.frame(time) for one in stages])
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Stage:
+    """Everything that frames of one run share."""
+
+    run: Run
+    ghost: np.ndarray | None
+    trace: Trace | None
+    scale: TensionScale
+    boxes: Layout
+    scene: View
+    handle: View | None
+    panel: Panel | None
+    lettering: Lettering
+    canvas: np.ndarray
+
+    def frame(self, time: float) -> np.ndarray:
+        """The picture at a time [s], shape (height, width, 3) of bytes."""
+        run, frame = self.run, self.canvas.copy()
+        qpos = _between(run.time, run.qpos, time)
+        ghost = None if self.ghost is None else _between(run.time, self.ghost, time)
+        colours = self.scale(_between(run.time, run.tension, time))
+        thickness = max(1.0, len(frame) / _THIN)
+        lines = () if self.trace is None else self.trace.lines(time, thickness)
+        paste(frame, self.boxes.scene, self.scene.draw(qpos, colours, ghost, lines))
+        if self.handle is not None and self.boxes.handle is not None:
+            paste(frame, self.boxes.handle, self.handle.draw(qpos, colours, ghost, lines))
+        if self.panel is not None and self.boxes.plots is not None:
+            paste(frame, self.boxes.plots, self.panel.at(time))
+        self.lettering.write(frame, time, None if self.trace is None else self.trace.distance(time))
+        return frame
+
+
+@contextmanager
+def _stage(
+    shown: Scene, size: tuple[int, int], look: Look, plots: bool, scale: TensionScale, title: str
+) -> Iterator[_Stage]:
+    run, measured = shown.run, shown.angles
+    ghost = None if measured is None else ghost_positions(run.twin, measured, shown.pose)
+    trace = trace_of(run, look.magnify)
+    boxes = layout(size, look.camera, plots, bool(title))
+    panel = None
+    if boxes.plots is not None:
+        panel = Panel(run.time, run.motor_angle, measured, boxes.plots[2:])
+    lettering = Lettering(
+        size, boxes, scale, ghost=ghost is not None, assumed=run.twin.geometry.assumed,
+        magnify=None if trace is None else trace.magnify, title=title,
+    )  # fmt: skip
+    with ExitStack() as open_views:
+        model = run.twin.model
+        near = _CABLE_NEAR if look.camera == "handle" else _CABLE_FAR
+        scene = open_views.enter_context(view(model, look.camera, *boxes.scene[2:], cable=near))
+        handle = None
+        if boxes.handle is not None:
+            handle = open_views.enter_context(
+                view(model, "handle", *boxes.handle[2:], cable=_CABLE_NEAR)
+            )
+        yield _Stage(
+            run=run,
+            ghost=ghost,
+            trace=trace,
+            scale=scale,
+            boxes=boxes,
+            scene=scene,
+            handle=handle,
+            panel=panel,
+            lettering=lettering,
+            canvas=np.full((size[1], size[0], 3), BACKGROUND, np.uint8),
+        )
+
+
+def _between(time: np.ndarray, values: np.ndarray, at: float) -> np.ndarray:
+    """Values (N, m) at a time between samples, on a straight line; drawing norms quaternions."""
+    k = int(np.clip(np.searchsorted(time, at, "right") - 1, 0, len(time) - 2))
+    part = (at - time[k]) / (time[k + 1] - time[k])
+    first, last = values[k], values[k + 1].copy()
+    if values.shape[1] == 15 and first[3:7] @ last[3:7] < 0:
+        last[3:7] *= -1  # the same rotation, the short way round
+    return (1 - part) * first + part * last
