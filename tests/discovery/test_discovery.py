@@ -135,13 +135,15 @@ def test_what_is_proven_and_too_small_to_matter_is_named_where_nothing_else_is_l
     assert {n.candidate.effect.name for n in answer.named} == (set() if vibration else {"offset"})
 
 
-@pytest.mark.parametrize(("gain", "t", "is_left"), [(50, 8, True), (50, 1, False), (-5, 8, False)])
+@pytest.mark.parametrize(
+    ("gain", "chance", "is_left"), [(50, 1e-5, True), (50, 0.2, False), (-5, 1e-5, False)]
+)
 def test_what_is_proven_and_too_small_to_be_named_beside_another_effect_is_something_left(
-    gain, t, is_left
+    gain, chance, is_left
 ):
     end = searched(**OFFSET)[-1]
     spring = Candidate(EFFECTS[0], "joint", {})
-    proof = replace(end.accepted[0].proof, t=float(t), fall=0.001)
+    proof = replace(end.accepted[0].proof, chance=chance, fall=0.001)
     refitted = RejectedEffect(spring, {"k": (0.1, 0.01, "N/m")}, float(gain), proof)
     answer = conclude(replace(end, rejected=(refitted,)))
     assert answer.verdict == "named"

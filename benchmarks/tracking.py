@@ -1,12 +1,12 @@
 """What a hidden effect costs a controller, and what its model with the effect wins back.
 
-    .venv/bin/python benchmarks/control.py            rms error on the circle, case by case
-    .venv/bin/python benchmarks/control.py --discover  the model is found by a discovery first
+    .venv/bin/python benchmarks/tracking.py            rms error on the circle, case by case
+    .venv/bin/python benchmarks/tracking.py --discover  the model is found by a discovery first
 
 The robot has one effect. Its controller sees motor angles and follows the circle of
 `inca_mj.track`: with the nominal twin as its model (before), and with the twin that has the effect
 (after). With --discover the effect is first found in a log of the robot: 10 s of the thesis' PRBS,
-white noise on the angles. One record a case is added to benchmarks/results/control.jsonl.
+white noise on the angles. One record a case is added to benchmarks/results/tracking.jsonl.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from inca_mj import (
     track,
 )
 
-RESULTS = Path(__file__).parent / "results" / "control.jsonl"
+RESULTS = Path(__file__).parent / "results" / "tracking.jsonl"
 NOISE = 2e-4  # of the encoders [rad]
 SECONDS = 10.5  # of the circle: 6.5 s at the full rate count, a whole turn
 
