@@ -60,6 +60,7 @@ def whole_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
     """
     path = Path(path)
     refuse_foreign(path)
+    is_new = not path.exists()
     try:
         path.mkdir(parents=True, exist_ok=True)
         _remove_left_over(path)
@@ -77,6 +78,8 @@ def whole_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
         _add_made(place, new)
     finally:
         rmtree(draft, ignore_errors=True)
+        if is_new and not any(path.iterdir()):
+            path.rmdir()
     if taken:
         raise InputError(
             f"{', '.join(taken[:_SHOWN])} came into {path} or changed there while the program ran;"

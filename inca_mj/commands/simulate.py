@@ -137,6 +137,8 @@ class Simulate:
 
 
 def _text(result: Run) -> str:
+    from inca_mj.workflows.remarks import remarks
+
     rows = [
         (str(k + 1), f"{angle:.3f}", f"{low:.2f}", f"{high:.2f}")
         for k, (angle, low, high) in enumerate(
@@ -152,6 +154,7 @@ def _text(result: Run) -> str:
     return (
         table(("drive", "angle at end [rad]", "least tension [N]", "largest [N]"), rows)
         + f"\nplatform after {result.time[-1]:g} s at ({place}) m"
+        + "".join(f"\n{line}" for line in remarks(result))
     )
 
 

@@ -61,6 +61,9 @@ class Controller:
         gains: of the feedback.
         tensions: to stay near to, and their limits.
         period: time between two calls of `currents` [s].
+
+    Raises:
+        InputError: the bandwidth is beyond 1/period: such a feedback acts on what is long past.
     """
 
     def __init__(
@@ -73,6 +76,11 @@ class Controller:
         period: float = CONTROL_TIMESTEP,
     ) -> None:
         self.path, self.gains, self.period = path, gains or Gains(), period
+        if self.gains.bandwidth * period > 1:
+            raise InputError(
+                f"a bandwidth of {self.gains.bandwidth:g} rad/s is beyond {1 / period:g} rad/s, one"
+                f" over the controller's period of {period:g} s; give less"
+            )
         self._inverse, self._observer = Inverse(robot, tensions), Observer(robot)
         self._error: np.ndarray | None = None
         self._sum, self._step = np.zeros(6), 0

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from identification.errors import DivergenceError
+from identification.errors import DivergenceError, InputError
 from identification.model.rollout import substeps
 from inca_mj.control.controller import Controller
 from inca_mj.control.observer import Pose
@@ -46,10 +46,12 @@ def run_loop(
         seed: of the noise.
 
     Raises:
-        InputError: the model's step does not divide the controller's period, or the controller
-            finds no pose.
+        InputError: the model's step does not divide the controller's period, the noise is negative
+            or no number, or the controller finds no pose.
         DivergenceError: the robot left the finite numbers.
     """
+    if not (np.isfinite(noise) and noise >= 0):
+        raise InputError(f"a noise of {noise:g} rad; give 0 or more")
     model, data = robot.model, mujoco.MjData(robot.model)
     begin, rng = robot.state(), np.random.default_rng(seed)
     data.qpos[:], data.qvel[:], data.act[:] = begin.qpos, begin.qvel, begin.act

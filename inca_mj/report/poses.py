@@ -116,7 +116,8 @@ def poses_verdict(found: LogPoses) -> list[str]:
         said.append(
             f"The lengths disagree by {1e3 * found.length_error:.2g} mm, far more than the"
             f" encoders' {1e3 * encoder:.2g} mm: geometry, start pose or parameters are not those"
-            " of this robot; inca calibrate finds them."
+            " of this robot; inca calibrate finds them, and inca discover"
+            " what a model of them lacks."
         )
     slack = int((~found.taut.all(axis=1)).sum())
     if slack:

@@ -19,14 +19,18 @@ MAGNIFIED = 20.0  # errors in the drawing of the path
 def tracking_section(result: Tracking) -> Section:
     """What a report says of a robot that followed a path."""
     rows = (
-        ("root mean square", 1e3 * result.rms),
-        ("largest", 1e3 * result.largest),
-        ("root mean square, as the controller sees it", 1e3 * result.seen_rms),
+        ("from the asked point, root mean square", 1e3 * result.rms),
+        ("from the asked point, largest", 1e3 * result.largest),
+        (
+            "from the asked point, root mean square by the controller's estimate",
+            1e3 * result.seen_rms,
+        ),
+        ("off the path (cross-track), root mean square", 1e3 * result.cross_track_rms),
     )
     return Section(
         "Asked and done",
-        f"Distance of the handle from its path, from {result.counted:g} s on, when the path is at"
-        " its full rate. The controller sees the motor angles and believes a model.",
+        f"Distance of the handle from where it should be, from {result.counted:g} s on, when the path is at"
+        " its full rate. The controller sees the motor angles and has a model.",
         figures=(("Path and error", tracking_figure({"this run": result})),),
         table=Table(("distance", "[mm]"), rows),
     )
@@ -54,7 +58,9 @@ def tracking_figure(results: Mapping[str, Tracking]) -> Figure:
             over_time.plot(result.run.time, distance, color=SERIES[k], label=label)
         plan.set(xlabel=f"{'xyz'[i]} [m]", ylabel=f"{'xyz'[j]} [m]", aspect="equal")
         plan.set_title(f"the path, errors drawn {MAGNIFIED:g} times as large", loc="left")
-        over_time.set(xlabel="time [s]", ylabel="distance from the path [mm]", ylim=(0, None))
+        over_time.set(
+            xlabel="time [s]", ylabel="distance from the asked point [mm]", ylim=(0, None)
+        )
         over_time.axvline(first.counted, color=GREY, lw=0.8, ls=":")
         handles, labels = over_time.get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))

@@ -1,6 +1,9 @@
 """Let a robot follow a path under a controller, and say how well: `track`.
 
-error_k = |p(t_k) - p_d(t_k)|        of the true handle, counted from the path's full rate on
+e_k = p(t_k) - p_d(t_k)              of the true handle, counted from the path's full rate on
+c_k = e_k - (e_k · t_k) t_k          cross-track error: what is not along the path's tangent t_k
+
+The handle may follow the path well and late: e is then large and c is small.
 """
 
 from __future__ import annotations
@@ -48,13 +51,22 @@ class Tracking:
 
     @property
     def rms(self) -> float:
-        """Root mean square of the distance from the path's point, of the samples that count [m]."""
+        """Root mean square of the distance from the asked point, of the samples that count [m]."""
         return float(np.sqrt(np.mean(self._counted(self.error) ** 2)))
 
     @property
     def largest(self) -> float:
-        """Largest distance from the path's point, of the samples that count [m]."""
+        """Largest distance from the asked point, of the samples that count [m]."""
         return float(self._counted(self.error).max())
+
+    @property
+    def cross_track_rms(self) -> float:
+        """Root mean square of the cross-track error, of the samples that count [m]."""
+        along = np.gradient(self.wanted, self.run.time, axis=0)
+        length = np.linalg.norm(along, axis=1, keepdims=True)
+        tangent = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
+        lag = np.sum(self.error * tangent, axis=1, keepdims=True) * tangent
+        return float(np.sqrt(np.mean(self._counted(self.error - lag) ** 2)))
 
     @property
     def seen_rms(self) -> float:
@@ -98,8 +110,9 @@ def track(
         seed: of the noise.
 
     Raises:
-        InputError: the path begins elsewhere than the robot, the run ends before its errors count,
-            or the controller loses the pose.
+        InputError: the path begins elsewhere than the robot or leaves the room between the exit
+            points, the run ends before its errors count, a number makes no sense, or the
+            controller loses the pose.
         DivergenceError: the robot left the finite numbers.
     """
     robot = robot or build_twin()
@@ -112,12 +125,15 @@ def track(
             f"the path begins at {np.round(begin, 3).tolist()} m, but the robot at"
             f" {np.round(robot.start.pose[:3], 3).tolist()} m; move one to the other"
         )
+    if not np.isfinite(duration):
+        raise InputError(f"a run of {duration:g} s; give a duration in seconds")
     counted = path.full if isinstance(path, Circle) else 0.0
     if not counted < duration:
         raise InputError(
             f"a run of {duration:g} s ends before the path is at its full rate, after {counted:g}"
             " s; give a longer duration"
         )
+    _refuse_outside(path, robot, duration)
     controller = Controller(model, path, gains=gains, tensions=tensions)
     done = run_loop(robot, controller, duration, knows_pose=knows_pose, noise=noise, seed=seed)
     run = simulate(robot, done.currents, CONTROL_TIMESTEP)
@@ -130,3 +146,18 @@ def track(
         seen=done.seen,
         counted=counted,
     )
+
+
+def _refuse_outside(path: Path, robot: Twin, duration: float) -> None:
+    """Refuse a path that no handle between the exit points can follow."""
+    times = np.arange(0.0, duration + CONTROL_TIMESTEP, CONTROL_TIMESTEP)
+    asked = np.array([path.at(float(t)).position for t in times])
+    exits = robot.geometry.A
+    low, high = exits.min(axis=0), exits.max(axis=0)
+    beyond = ((asked < low) | (asked > high)).any(axis=1)
+    if beyond.any():
+        at = np.round(asked[int(np.argmax(beyond))], 3).tolist()
+        raise InputError(
+            f"the path leaves the room between the exit points, at {at} m; the room is from"
+            f" {low.tolist()} to {high.tolist()} m: give a smaller path, or another start"
+        )

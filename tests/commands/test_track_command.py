@@ -24,6 +24,12 @@ def test_it_keeps_a_run_that_can_be_loaded_and_says_how_far_off_it_was(tmp_path,
     assert abs(distance - 0.05).max() <= said["largest"] + 1e-12
     error = np.linalg.norm(run.position - run.asked, axis=1)[run.time >= said["counted_from"]]
     assert error.max() == said["largest"]
+    # On a circle the cross-track error is, to second order, what distance and height say.
+    late = run.position[run.time >= said["counted_from"]]
+    across = np.hypot(np.linalg.norm(late[:, :2], axis=1) - 0.05, late[:, 2] - 1.43)
+    assert said["cross_track_rms"] == pytest.approx(np.sqrt(np.mean(across**2)), rel=0.02)
+    assert said["cross_track_rms"] <= said["rms"]
+    assert said["remarks"] == []
     assert run.currents.min() == said["current_min"] >= 0
     assert {p.name for p in out.iterdir()} >= {"log.csv", "model.xml", "report.html"}
     assert list(out.glob("*.png"))
@@ -47,7 +53,11 @@ def test_an_effect_by_its_name_alone_is_its_first_size(capsys):
         (("--model", "nowhere"), "inca discover --out DIR writes one"),
         (("--radius", "-1"), "radius of -1 m"),
         (("--duration", "3"), "longer duration"),
+        (("--duration", "nan"), "a run of nan s"),
         (("--bandwidth", "-1"), "bandwidth of -1"),
+        (("--bandwidth", "400"), "beyond 100 rad/s"),
+        (("--noise", "-1"), "a noise of -1 rad; give 0 or more"),
+        (("--radius", "2"), "leaves the room between the exit points"),
     ],
 )
 def test_bad_input_is_refused_in_one_sentence(words, sentence, capsys, tmp_path):
