@@ -28,7 +28,7 @@ class Track:
     """
 
     model: Path | None = None
-    """Folder of a twin that is the controller's model (inca discover --out); else the nominal one."""
+    """Folder of a saved twin that is the controller's model; the nominal twin if none."""
     effect: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME.SIZE=VALUE")] = ()
     """What the robot truly has beside its parameters, such as load_dependent_friction.mu=0.05."""
     radius: float = 0.3

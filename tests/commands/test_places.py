@@ -144,12 +144,17 @@ def test_what_cannot_be_drawn_costs_no_result(capsys):
         keep_if_possible("figures", full)
 
 
+def stopped(out):
+    with whole_folder(out) as draft:
+        (draft / "half.txt").write_text("half")
+        raise KeyboardInterrupt
+
+
 def test_a_folder_that_a_stopped_command_made_does_not_stay(tmp_path):
     own = tmp_path / "own"
     own.mkdir()
     for out, stays in ((tmp_path / "new", False), (own, True)):
-        with pytest.raises(KeyboardInterrupt), whole_folder(out) as draft:
-            (draft / "half.txt").write_text("half")
-            raise KeyboardInterrupt
+        with pytest.raises(KeyboardInterrupt):
+            stopped(out)
         assert out.exists() == stays
         assert not stays or not list(out.iterdir())
