@@ -148,7 +148,8 @@ def _worlds(rows: Sequence[Row]) -> list[str]:
                    '"nothing left" said wrongly': lambda r: len(_found(r)) < 3
                    and r["answer"]["verdict"] != "unknown effect"
                    and not r["answer"]["unexplained"]},
-        "unknown": {"a name": lambda r: bool(r["answer"]["named"])},
+        "unknown": {'"unknown effect"': lambda r: r["answer"]["verdict"] == "unknown effect",
+                    "a name": lambda r: bool(r["answer"]["named"])},
     }  # fmt: skip
     for group in sorted({_group(row) for row in done}):
         for kind, title in {**_KINDS, "unknown": "an unlisted effect"}.items():
