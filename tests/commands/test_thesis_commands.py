@@ -111,7 +111,7 @@ def test_a_finer_step_keeps_the_effects(saved):
     (["simulate", "--figure", "3.2", "--set", "simulation"], "made with --set trial"),
     (["simulate", "--force-at", "1", "0", "0"], "give the force with --force"),
     (["simulate", "--force", "1e9", "0", "0"], "outside its range"),
-    (["simulate", "--force", "nan", "0", "0"], "pull.x"),
+    (["simulate", "--force", "nan", "0", "0"], "give finite numbers"),
     (["simulate", "--model", "no/such/folder"], r"no .*effects\.json; inca discover --out"),
     (["simulate", "--model", "x", "--param", "m=0.2"], "--model is a whole robot"),
     (["compare", "examples/log.csv", "--model", "no/such"], r"no .*effects\.json"),
