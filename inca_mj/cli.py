@@ -23,6 +23,7 @@ from inca_mj.commands.linearize import Linearize
 from inca_mj.commands.sensitivity import Sensitivity
 from inca_mj.commands.simulate import Simulate
 from inca_mj.commands.statics import Statics
+from inca_mj.commands.sweep import Sweep
 from inca_mj.commands.thesis import Thesis
 from inca_mj.commands.track import Track
 from inca_mj.commands.trials import Trials
@@ -43,6 +44,7 @@ Command = (
     | Annotated[Statics, tyro.conf.subcommand("statics")]
     | Annotated[Track, tyro.conf.subcommand("track")]
     | Annotated[Thesis, tyro.conf.subcommand("thesis")]
+    | Annotated[Sweep, tyro.conf.subcommand("sweep")]
     | Annotated[Film, tyro.conf.subcommand("film")]
     | Annotated[View, tyro.conf.subcommand("view")]
     | Annotated[Demo, tyro.conf.subcommand("demo")]

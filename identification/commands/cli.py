@@ -12,11 +12,13 @@ from identification.commands.discover import Discover
 from identification.commands.fit import Fit
 from identification.commands.linearize import Linearize
 from identification.commands.program import run_program
+from identification.commands.sweep import SweepCommand
 
 Command = (
     Annotated[Fit, tyro.conf.subcommand("fit")]
     | Annotated[Discover, tyro.conf.subcommand("discover")]
     | Annotated[Linearize, tyro.conf.subcommand("linearize")]
+    | Annotated[SweepCommand, tyro.conf.subcommand("sweep")]
 )
 EXAMPLES = (
     "python -m identification fit robot.toml log.csv",

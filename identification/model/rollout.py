@@ -52,8 +52,11 @@ class State:
 
 
 def threads() -> int:
-    """The number of processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    """The processors that this process may use, or fewer if `INCA_MJ_THREADS` says so."""
+    own = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else ()
+    said = os.environ.get("INCA_MJ_THREADS", "")
+    most = len(own) or os.cpu_count() or 1
+    return min(most, int(said)) if said.isdigit() and int(said) else most
 
 
 def substeps(sampling_time: float, timestep: float) -> int:

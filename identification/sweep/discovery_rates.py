@@ -1,30 +1,19 @@
-"""What a study of discoveries comes to: rates with their intervals, confusions, calibration."""
+"""What discoveries on logs of known truth come to: rates, confusions, calibration of confidence.
+
+A row has `truth` (kind, effects with name, where, sizes) and `answer` (verdict, named effects);
+`identification.sweep.answers.nested` makes one of a record.
+"""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-BINS = 10
+from identification.sweep.statistics import calibration_of, median, rate, wilson
+
 Row = Mapping[str, Any]
-
-
-def wilson(hits: int, of: int, z: float = 1.96) -> dict[str, Any]:
-    """A rate and its 95 % interval (Wilson 1927)."""
-    if not of:
-        return {"value": None, "low": 0.0, "high": 1.0, "hits": 0, "of": 0}
-    p, w = hits / of, z * z / of
-    half = z * math.sqrt(p * (1 - p) / of + w / (4 * of))
-    low, high = ((p + w / 2 + sign * half) / (1 + w) for sign in (-1, 1))
-    return {"value": p, "low": max(0.0, low), "high": min(1.0, high), "hits": hits, "of": of}
-
-
-def rate(rows: Iterable[Row], test: Callable[[Row], bool]) -> dict[str, Any]:
-    """Share of rows that pass a test."""
-    outcomes = [test(row) for row in rows]
-    return wilson(sum(outcomes), len(outcomes))
 
 
 def first(row: Row) -> str:
@@ -102,32 +91,17 @@ def places(rows: Sequence[Row]) -> dict[str, Any]:
 
 def calibration(rows: Sequence[Row]) -> dict[str, Any]:
     """Of the confidence of first names: expected calibration error and Brier score."""
-    pairs = [
-        (r["answer"]["named"][0]["confidence"], right(r)) for r in rows if r["answer"]["named"]
-    ]
-    if not pairs:
-        return {"ece": None, "brier": None, "of": 0, "bins": []}
-    bins: dict[int, list[tuple[float, bool]]] = {}
-    for pair in pairs:
-        bins.setdefault(min(BINS - 1, int(BINS * pair[0])), []).append(pair)
-    means = [
-        {"confidence": sum(c for c, _ in b) / len(b), "right": sum(r for _, r in b) / len(b),
-         "of": len(b)}
-        for _, b in sorted(bins.items())
+    return calibration_of(
+        [(r["answer"]["named"][0]["confidence"], right(r)) for r in rows if r["answer"]["named"]]
+    )
+
+
+def confidences(rows: Sequence[Row]) -> list[tuple[float, bool]]:
+    """Confidence of every name of every row, and whether the name is true."""
+    return [
+        (n["confidence"], n["name"] in {e["name"] for e in r["truth"]["effects"]})
+        for r in rows for n in r["answer"]["named"]
     ]  # fmt: skip
-    return {
-        "ece": sum(m["of"] * abs(m["confidence"] - m["right"]) for m in means) / len(pairs),
-        "brier": sum((c - r) ** 2 for c, r in pairs) / len(pairs),
-        "of": len(pairs),
-        "bins": means,
-    }
-
-
-def median(values: Sequence[float]) -> float | None:
-    """The middle one; None of none."""
-    ordered = sorted(values)
-    n = len(ordered)
-    return (ordered[(n - 1) // 2] + ordered[n // 2]) / 2 if n else None
 
 
 def summary(rows: Sequence[Row]) -> dict[str, Any]:

@@ -1,0 +1,148 @@
+"""A discovery as a flat record, what is true of a log as one, and both as a row of rates.
+
+The lists of one record go together: `named[i]` is at `where[i]` with `confidence[i]`; `sizes[j]` is
+of `size_of[j]`, written as effect.size@place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from identification.sweep.method import Column, Record
+
+ANSWER = {
+    "verdict": Column(str, "the outcome in a word"),
+    "unexplained": Column(bool, "whether something is left that no named effect explains"),
+    "named": Column(list[str], "effects that are named"),
+    "where": Column(list[str], "their places"),
+    "confidence": Column(list[float], "of each name, 0 to 1"),
+    "one_of": Column(list[bool], "whether the data cannot tell it from its first rival"),
+    "rivals": Column(list[str], "the other names of such a set, with | between them, or empty"),
+    "size_of": Column(list[str], "sizes and shapes, as effect.size@place"),
+    "sizes": Column(list[float], "their values [SI]"),
+    "findings": Column(list[str], "kinds of what is left"),
+    "scores": Column(list[str], "the five best candidates before any refit, as effect, place"),
+    "before": Column(float, "rms on unseen data of the nominal model [unit of the outputs]"),
+    "after": Column(float, "rms on unseen data with what is named [unit of the outputs]"),
+    "noise": Column(float, "rms noise of the sensors [unit of the outputs]"),
+}
+PROOF = {  # of a discovery on one free run only
+    "t": Column(list[float], "t of the proof of each name"),
+    "share": Column(list[float], "share of the unseen mean square that it takes away"),
+    "gain": Column(list[float], "by how much it raises the negative BIC"),
+    "gains": Column(list[float], "of the five best candidates"),
+    "disturbance": Column(float, "what unlogged errors of the inputs do [unit of the outputs]"),
+    "gap_closed": Column(float, "share of the mean square above the noise that is closed"),
+}
+TRUTH = {
+    "kind": Column(str, "null, single, pair, triple, unknown, ..."),
+    "ratio": Column(float, "what an effect leaves, over the noise; 0 where there is none"),
+    "hidden": Column(list[str], "effects of the log"),
+    "hidden_where": Column(list[str], "their places; empty where unknown"),
+    "hidden_size_of": Column(list[str], "their sizes, as effect.size@place"),
+    "hidden_sizes": Column(list[float], "their values [SI]"),
+    "other_shape": Column(bool, "whether a law has another shape than that of the catalogue"),
+}
+JUDGED = {
+    "right": Column(bool, "the first name is a true one; null where no listed effect is hidden"),
+    "false_name": Column(bool, "a name is not true"),
+}
+
+
+def answer(found: Any) -> dict[str, Any]:
+    """The columns of `ANSWER`, of a discovery of either kind."""
+    named = [(getattr(n, "effect", n), n) for n in found.named]
+    sizes = {
+        size_name(effect.candidate.effect.name, name, effect.candidate.where): float(p[0])
+        for effect, _ in named for name, p in effect.parameters.items()
+    }  # fmt: skip
+    return {
+        "verdict": found.verdict, "unexplained": bool(found.unexplained),
+        "named": [effect.candidate.effect.name for effect, _ in named],
+        "where": [effect.candidate.where for effect, _ in named],
+        "confidence": [float(effect.confidence) for effect, _ in named],
+        "one_of": [bool(whole.one_of) for _, whole in named],
+        "rivals": ["|".join(_set(effect, whole)) for effect, whole in named],
+        "size_of": [*sizes], "sizes": [*sizes.values()],
+        "findings": [finding.kind.value for finding in found.findings],
+        "scores": [f"{s.candidate.effect.name}, {s.candidate.where}" for s in found.scores[:5]],
+        "before": float(found.before.rms), "after": float(found.after.rms),
+        "noise": float(found.noise_rms),
+    }  # fmt: skip
+
+
+def proof(found: Any) -> dict[str, Any]:
+    """The columns of `PROOF`, of a discovery on a free run."""
+    noise = found.noise_rms**2 + found.disturbance_rms**2
+    above = found.before.rms**2 - min(noise, found.after.rms**2)
+    closed = (found.before.rms**2 - found.after.rms**2) / above if above > 0 else None
+    return {
+        "t": [float(n.proof.t) for n in found.named],
+        "share": [float(n.proof.share) for n in found.named],
+        "gain": [float(n.gain) for n in found.named],
+        "gains": [float(s.gain) for s in found.scores[:5]],
+        "disturbance": float(found.disturbance_rms), "gap_closed": closed,
+    }  # fmt: skip
+
+
+def judged(named: Sequence[str], hidden: Sequence[str], kind: str) -> dict[str, bool | None]:
+    """The columns of `JUDGED`."""
+    listed = bool(hidden) and kind != "unknown"
+    return {
+        "right": (bool(named) and named[0] in hidden) if listed else None,
+        "false_name": any(name not in hidden for name in named),
+    }
+
+
+def nested(record: Record) -> dict[str, Any]:
+    """A record with `TRUTH`, `ANSWER` and `PROOF` as a row that `discovery_rates` counts."""
+    sizes, hidden = (
+        dict(zip(record[a], record[b], strict=True))
+        for a, b in (("size_of", "sizes"), ("hidden_size_of", "hidden_sizes"))
+    )
+    each = zip(*(record[n] for n in ("named", "where", "confidence", "one_of", "rivals")),
+               strict=True)  # fmt: skip
+    return {
+        "truth": {
+            "kind": record["kind"], "ratio": record["ratio"],
+            "duration": record.get("set.duration"), "records": record.get("set.records"),
+            "other_shape": record["other_shape"],
+            "effects": [
+                {"name": name, "where": where or None, "sizes": _of(name, where, hidden)}
+                for name, where in zip(record["hidden"], record["hidden_where"], strict=True)
+            ],
+        },
+        "answer": {
+            "verdict": record["verdict"], "unexplained": record["unexplained"],
+            "gap_closed": record.get("gap_closed"),
+            "named": [
+                {"name": name, "where": where, "confidence": confidence, "one_of": one_of,
+                 "set": rivals.split("|") if rivals else [], "sizes": _of(name, where, sizes)}
+                for name, where, confidence, one_of, rivals in each
+            ],
+        },
+        "seconds": record["run.processor_seconds"],
+    }  # fmt: skip
+
+
+def size_name(effect: str, size: str, where: str) -> str:
+    """How a size of an effect at a place is written: effect.size@place."""
+    return f"{effect}.{size}@{where}"
+
+
+def _of(effect: str, where: str, sizes: Mapping[str, float]) -> dict[str, float]:
+    """Those sizes that are of one effect at one place."""
+    begin, end = f"{effect}.", f"@{where}"
+    return {
+        name[len(begin) : -len(end)]: value for name, value in sizes.items()
+        if name.startswith(begin) and name.endswith(end)
+    }  # fmt: skip
+
+
+def _set(effect: Any, whole: Any) -> list[str]:
+    """The other names of a set that the data cannot tell apart."""
+    if not whole.one_of:
+        return []
+    names = [getattr(r, "candidate", r).effect.name for r in whole.rivals]
+    return [name for name in names if name != effect.candidate.effect.name]

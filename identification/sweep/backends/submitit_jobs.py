@@ -1,0 +1,137 @@
+"""Tasks as jobs of Slurm, by submitit; its local executor runs the same jobs as processes.
+
+Where Slurm stops a job for its time or to give its place to another, submitit puts the job into
+the queue again with what `checkpoint` returns: the tasks that are left, and the outcomes so far.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from itertools import islice
+from pathlib import Path
+from shutil import rmtree
+from typing import Any
+
+from identification.errors import InputError
+from identification.sweep.backends.backend import LostWorkers, Work
+from identification.sweep.extras import needed
+from identification.sweep.task import Task
+from identification.sweep.work import Outcome, one_thread
+
+POLL = 0.2  # [s] between two looks at local jobs; of Slurm submitit asks less often
+TASKS = "tasks_per_job"  # our own option beside those of submitit
+
+
+@dataclass
+class Chunk:
+    """Some tasks that one job runs, and the outcomes of those that have ended.
+
+    Attributes:
+        work: runs a task.
+        tasks: in their order.
+        done: outcomes of the first of them.
+    """
+
+    work: Work
+    tasks: list[Task]
+    done: list[Outcome] = field(default_factory=list)
+
+    def __call__(self) -> list[Outcome]:
+        """Run what is left."""
+        for task in self.tasks[len(self.done) :]:
+            self.done.append(self.work(task))
+        return self.done
+
+    def checkpoint(self) -> Any:
+        """What submitit puts into the queue in place of a job that is stopped."""
+        import submitit
+
+        return submitit.helpers.DelayedSubmission(self)
+
+
+@dataclass(frozen=True)
+class Submitit:
+    """Jobs of submitit.
+
+    Attributes:
+        cluster: "slurm" or "local".
+        jobs: how many are in the queue or run at a time.
+        folder: for what they say; all machines must see it.
+        options: of submitit by name, such as slurm_partition or timeout_min; and `tasks_per_job`.
+    """
+
+    cluster: str
+    jobs: int
+    folder: Path
+    options: dict[str, str]
+
+    def __post_init__(self) -> None:
+        needed("submitit", "cluster", f"--backend {self.cluster}")
+
+    def outcomes(self, work: Work, tasks: Iterable[Task]) -> Iterator[Outcome]:
+        """The outcome of each task, in the order in which their jobs end.
+
+        Raises:
+            InputError: jobs cannot be submitted, an option is unknown, or a job failed.
+        """
+        import submitit
+
+        executor, size = self._executor()
+        waiting = iter(tasks)
+
+        def chunks(count: int) -> list[Any]:
+            made = (Chunk(work, some) for _ in range(count) if (some := [*islice(waiting, size)]))
+            with one_thread():  # the jobs have our environment
+                return [executor.submit(chunk) for chunk in made]
+
+        jobs: list[Any] = []
+        poll = POLL if self.cluster == "local" else 10
+        try:
+            jobs = chunks(self.jobs)
+            while jobs:
+                job = next(submitit.helpers.as_completed(jobs, poll_frequency=poll))
+                jobs.remove(job)
+                outcomes = job.result()
+                jobs += chunks(1)
+                yield from outcomes
+        except (submitit.core.utils.FailedJobError, submitit.core.utils.UncompletedJobError) as e:
+            raise LostWorkers(
+                f"a job failed, and what it said is in {self.folder}: {_last_line(e)}; the records"
+                " that were written are kept: run the same command with --resume"
+            ) from e
+        finally:
+            for job in jobs:
+                job.cancel(check=False)
+        rmtree(self.folder, ignore_errors=True)
+
+    def _executor(self) -> tuple[Any, int]:
+        import submitit
+
+        given: dict[str, Any] = {name: _number(text) for name, text in self.options.items()}
+        size = given.pop(TASKS, 1)
+        if not isinstance(size, int) or size < 1:
+            raise InputError(f"--job {TASKS}={size}: give a whole number, 1 or more")
+        try:
+            executor = submitit.AutoExecutor(folder=self.folder, cluster=self.cluster)
+            executor.update_parameters(**{"timeout_min": 60, "cpus_per_task": 1, **given})
+        except (RuntimeError, NameError, AssertionError, TypeError, OSError) as error:
+            raise InputError(
+                f"submitit cannot submit to {self.cluster}: {' '.join(str(error).split())};"
+                " correct --job, or choose another --backend"
+            ) from error
+        return executor, size
+
+
+def _number(text: str) -> int | float | str:
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
+
+
+def _last_line(error: Exception) -> str:
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    return lines[-1] if lines else type(error).__name__

@@ -1,0 +1,100 @@
+"""A sweep as its TOML describes it: studies, each of a method, over a grid of settings.
+
+seed = 1                              # of the whole sweep
+about = "False names in null worlds"  # the title of the report; may be left out
+[[study]]
+method = "null-score"                 # registered, or "file.py:NAME" of a method of your own
+name = "white"                        # the method's name if not given; each study has another
+count = 10                            # tasks for each point of the grid, each with its own seed
+paired = false                        # true: the k-th task has the same seed at all points
+[study.settings]                      # of the method, the same for all tasks
+duration = 20.0
+[study.grid]                          # settings that vary; every combination is a point
+robot = { first = 1000, count = 200 }
+
+Seeds depend on nothing but this file (`identification.sweep.task`).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from identification.errors import InputError, repeated
+from identification.files import read_toml
+from identification.robot.file_checks import Kinds, check_table
+from identification.sweep.axis import axis
+from identification.sweep.method import Registry, load_method, reference_of
+from identification.sweep.settings import build
+from identification.sweep.task import Study, Sweep
+
+_SWEEP: Kinds = {
+    "seed": (int, "a whole number, 0 or more"),
+    "about": (str, "text in quotes"),
+    "study": (list, "tables [[study]]"),
+}
+_STUDY: Kinds = {
+    "method": (str, "the name of a method in quotes"),
+    "name": (str, "text in quotes"),
+    "count": (int, "a whole number, 1 or more"),
+    "paired": (bool, "true or false"),
+    "settings": (dict, "a table of settings"),
+    "grid": (dict, "a table of axes"),
+}
+
+
+def read_sweep(path: str | Path, known: Registry) -> Sweep:
+    """Read the TOML of a sweep; every point of every grid is checked before anything runs.
+
+    Args:
+        path: of the TOML.
+        known: reference of each registered method, by name.
+
+    Raises:
+        InputError: it cannot be read, has an unknown key, method or setting, or a wrong value.
+    """
+    path = Path(path).absolute()
+    content = read_toml(path)
+    check_table(content, _SWEEP, str(path))
+    tables = content.get("study", [])
+    if not tables or not all(isinstance(table, dict) for table in tables):
+        raise InputError(f"{path} has no [[study]]; give one or more, each with a method")
+    seed = content.get("seed", 0)
+    if seed < 0:
+        raise InputError(f"seed in {path} is negative; give 0 or more")
+    studies = tuple(_study(table, known, path) for table in tables)
+    if twice := repeated([study.name for study in studies]):
+        raise InputError(f"two studies in {path} are called {twice[0]!r}; give each a name")
+    sweep = Sweep(path=path, seed=seed, about=content.get("about", path.stem), studies=studies)
+    first = 0
+    for study in studies:
+        for point in range(study.points):
+            build(study.method.settings, sweep.task(first + point * study.count).settings)
+        first += study.points * study.count
+    return sweep
+
+
+def _study(table: dict[str, Any], known: Registry, path: Path) -> Study:
+    where = f"[[study]] in {path}"
+    check_table({k: v for k, v in table.items() if k != "paired"}, _STUDY, where)
+    paired = table.get("paired", False)
+    if not isinstance(paired, bool):
+        raise InputError(f"paired in {where} must be true or false; correct it there")
+    if "method" not in table:
+        raise InputError(f"{where} does not say 'method'; known: {', '.join(sorted(known))}")
+    word = table["method"]
+    reference = reference_of(word, known, path.parent)
+    name, count = table.get("name", word), table.get("count", 1)
+    if count < 1:
+        raise InputError(f"count in {where} must be 1 or more; correct it there")
+    settings = table.get("settings", {})
+    grid = {
+        key: axis(value, path.parent, f"grid.{key} of study {name!r}")
+        for key, value in table.get("grid", {}).items()
+    }
+    if both := sorted(set(settings) & set(grid)):
+        raise InputError(f"study {name!r} has {both[0]} in settings and in grid; keep one of both")
+    return Study(
+        name=name, word=word, reference=reference, method=load_method(reference), count=count,
+        paired=paired, settings=settings, grid=grid,
+    )  # fmt: skip

@@ -1,0 +1,138 @@
+"""Figures of a sweep: power curves, where they reach a level, confusion, reliability."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from identification.report.style import GREY, INK, MEASURED, SERIES, STYLE, literal
+from identification.sweep.power import LEVEL, Curve, Threshold
+from identification.sweep.statistics import wilson
+
+EDGES = (0.0, 0.3, 0.5, 0.7, 0.9, 1.0)  # of confidence
+WIDE_RANGE = 8.0  # ratio of the largest to the smallest value above which an axis is logarithmic
+MANY = 30  # names on an axis that are still read
+
+
+def power_figure(curves: Sequence[Curve], axis: str, success: str) -> Figure:
+    """The share of successes over a setting, with Wilson's 95 % intervals; a line for each curve.
+
+    Args:
+        curves: each with its label.
+        axis: name of the setting.
+        success: what is counted.
+    """
+    with matplotlib.rc_context(STYLE):
+        figure = Figure((6.4, 3.8), layout="constrained")
+        ax = figure.subplots()
+        for k, curve in enumerate(curves):
+            colour = SERIES[k % len(SERIES)]
+            share, low, high = (
+                np.array([rate[part] for rate in curve.rates]) for part in ("value", "low", "high")
+            )
+            ax.plot(curve.x, share, "o-", ms=4, color=colour, label=literal(curve.label))
+            ax.fill_between(curve.x, low, high, color=colour, alpha=0.12, lw=0)
+        ax.axhline(LEVEL, color=GREY, lw=0.8, ls="--")
+        _scale(ax, [x for curve in curves for x in curve.x])
+        ax.set(ylim=(-0.03, 1.03), xlabel=literal(axis), ylabel=f"share: {literal(success)}")
+        if len(curves) > 1 or curves[0].label:
+            ax.legend(fontsize=8)
+    return figure
+
+
+def threshold_figure(lines: Mapping[str, Sequence[Threshold]], axis: str, against: str) -> Figure:
+    """The smallest value that is found in 80 %, over another setting, with its interval.
+
+    Args:
+        lines: by label.
+        axis: name of the other setting.
+        against: name of the setting whose smallest value is shown.
+    """
+    with matplotlib.rc_context(STYLE):
+        figure = Figure((5.2, 3.6), layout="constrained")
+        ax = figure.subplots()
+        for k, (label, line) in enumerate(lines.items()):
+            found = [(t, t.value) for t in line if t.value is not None]
+            colour = SERIES[k % len(SERIES)]
+            ax.plot([t.at for t, _ in found], [v for _, v in found], "o-", ms=4, color=colour,
+                    label=literal(label))  # fmt: skip
+            for t, value in found:
+                ends = (value if t.low is None else t.low, t.high or t.largest)
+                ax.plot([t.at, t.at], ends, color=colour, lw=1, alpha=0.6)
+            never = [t for t in line if t.value is None]
+            ax.plot([t.at for t in never], [t.largest for t in never], "^", ms=6, mfc="none",
+                    color=colour)  # fmt: skip
+        every = [t for line in lines.values() for t in line]
+        _scale(ax, [t.at for t in every])
+        sizes = [t.largest for t in every]
+        if min(sizes) > 0:
+            ax.set_yscale("log")
+        ax.set(xlabel=literal(axis), ylabel=f"smallest {literal(against)} found in {LEVEL:.0%}")
+        if len(lines) > 1:
+            ax.legend(fontsize=8)
+    return figure
+
+
+def confusion_figure(confusion: Mapping[str, Mapping[str, int]]) -> Figure:
+    """Counts of answers by what is true, one row for each truth.
+
+    Args:
+        confusion: counts by truth and by answer.
+    """
+    true = list(confusion)
+    said = sorted({name for row in confusion.values() for name in row})
+    said = [*(name for name in true if name in said), *(n for n in said if n not in true)]
+    counts = np.array([[confusion[t].get(s, 0) for s in said] for t in true])
+    with matplotlib.rc_context({**STYLE, "axes.grid": False}):
+        size = (3.4 + 0.32 * len(said), 2.2 + 0.26 * len(true))
+        figure = Figure(size, layout="constrained")
+        ax = figure.subplots()
+        shares = counts / counts.sum(axis=1, keepdims=True)
+        ax.imshow(shares, cmap="Blues", vmin=0, vmax=1, aspect="auto")
+        for i, j in zip(*np.nonzero(counts), strict=True):
+            colour = "white" if shares[i, j] > 0.6 else INK
+            ax.text(j, i, str(counts[i, j]), ha="center", va="center", color=colour, fontsize=8)
+        ax.set_xticks(range(len(said)), [literal(s.replace("_", " ")) for s in said], rotation=90)
+        ax.set_yticks(range(len(true)), [literal(t.replace("_", " ")) for t in true])
+        ax.set(xlabel="answer", ylabel="truth")
+    return figure
+
+
+def reliability_figure(pairs: Sequence[tuple[float, bool]]) -> Figure:
+    """Share of right names over confidence, with Wilson's 95 % intervals and counts.
+
+    Args:
+        pairs: a confidence, and whether the name was right.
+    """
+    with matplotlib.rc_context(STYLE):
+        figure = Figure((4.4, 3.9), layout="constrained")
+        ax = figure.subplots()
+        ax.plot([0, 1], [0, 1], color=GREY, lw=1, ls="--", label="calibrated")
+        claimed = np.array([p for p, _ in pairs])
+        hit = np.array([r for _, r in pairs], bool)
+        at = np.clip(np.digitize(claimed, EDGES) - 1, 0, len(EDGES) - 2)
+        for k in np.unique(at):
+            mine = at == k
+            seen = wilson(int(hit[mine].sum()), int(mine.sum()))
+            x, share = claimed[mine].mean(), hit[mine].mean()
+            ax.plot([x, x], [seen["low"], seen["high"]], color=MEASURED, lw=2)
+            ax.plot(x, share, "o", color=MEASURED)
+            ax.annotate(f"{mine.sum()}", (x, share), (5, -12), textcoords="offset points",
+                        color=INK)  # fmt: skip
+        ax.set(xlim=(0, 1.02), ylim=(0, 1.04), xlabel="confidence", ylabel="share that is right")
+        ax.legend(loc="upper left")
+    return figure
+
+
+def _scale(ax: Any, values: Sequence[float]) -> None:
+    """A logarithmic axis where values are positive and far apart; a tick at each of a few."""
+    different = sorted(set(values))
+    if different[0] > 0 and different[-1] > WIDE_RANGE * different[0]:
+        ax.set_xscale("log")
+    if len(different) <= 12:
+        ax.set_xticks(different, [f"{x:g}" for x in different])
+        ax.set_xticks([], minor=True)

@@ -1,0 +1,125 @@
+"""What a worker does: one task at a time, on one thread, from its data to its outcome.
+
+The sums of a BLAS depend on the number of its threads, in the last bits. So a worker uses one, and
+its simulations do too: the tasks beside it have the other processors.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+import threading
+import time
+import traceback
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from identification.sweep.method import Column, load_method
+from identification.sweep.settings import build
+from identification.sweep.task import Task
+
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "INCA_MJ_THREADS")
+_ONE = threading.Lock()  # a Dask worker may have several threads; limits hold for the process
+_PLAIN: dict[Any, type | tuple[type, ...]] = {
+    bool: bool, int: int, float: (int, float), str: str,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a task.
+
+    Attributes:
+        number: of the task.
+        record: an entry for each column of its method; None where it met an error.
+        error: the kind of the error and its message, in a line; None where there was none.
+        run: how it was computed (seconds, host, ...), which no two runs have in common.
+    """
+
+    number: int
+    record: dict[str, Any] | None
+    error: str | None
+    run: dict[str, Any]
+
+
+def work(task: Task) -> Outcome:
+    """Run a task; an error of its method is an outcome too.
+
+    Raises:
+        MemoryError: the machine has too little memory, which says nothing about the task.
+    """
+    from threadpoolctl import threadpool_limits
+
+    with _ONE, one_thread():
+        method = load_method(task.reference)
+        begin, processor = time.perf_counter(), time.process_time()
+        record, error, trace = None, None, None
+        with threadpool_limits(1):
+            try:
+                made = method.run(build(method.settings, task.settings), task.seed)
+                record = checked(made, method.columns)
+            except MemoryError:
+                raise
+            except Exception as caught:
+                error = " ".join(f"{type(caught).__name__}: {caught}".split())
+                trace = traceback.format_exc(limit=-4)
+        run = {
+            "seconds": time.perf_counter() - begin,
+            "processor_seconds": time.process_time() - processor,
+            "ended": time.time(), "host": socket.gethostname(), "process": os.getpid(),
+            "memory": peak_memory(), "trace": trace,
+        }  # fmt: skip
+        return Outcome(task.number, record, error, run)
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """One thread for libraries that are loaded in the block, for simulations, and for children."""
+    before = {name: os.environ.get(name) for name in THREADS}
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name) if value is None else os.environ.update({name: value})
+
+
+def checked(record: Mapping[str, Any], columns: Mapping[str, Column]) -> dict[str, Any]:
+    """A record with plain values of the kinds that its method declares.
+
+    Args:
+        record: of a method.
+        columns: of that method.
+
+    Raises:
+        TypeError: an entry is missing, too many, or of another kind: a fault of the method.
+    """
+    if set(record) != set(columns):
+        raise TypeError(
+            f"the record has the entries {sorted(record)} and not those of its method,"
+            f" {sorted(columns)}"
+        )
+    return {name: _value(name, record[name], column.kind) for name, column in columns.items()}
+
+
+def _value(name: str, value: Any, kind: Any) -> Any:
+    if value is None:
+        return None
+    inner = getattr(kind, "__args__", None)
+    if inner:
+        return [_value(name, v, inner[0]) for v in value]
+    plain: Any = value.item() if hasattr(value, "item") else value  # a number of numpy
+    if not isinstance(plain, _PLAIN[kind]) or (isinstance(plain, bool) and kind is not bool):
+        raise TypeError(f"{name} is {plain!r}, where its method declares {kind.__name__}")
+    return kind(plain)
+
+
+def peak_memory() -> int:
+    """The most memory that this process has held [bytes]."""
+    import resource
+
+    unit = 1 if sys.platform == "darwin" else 1024
+    return unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

@@ -1,0 +1,30 @@
+"""inca sweep CONFIG: thousands of worlds, trials or logs, on one machine or many."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from identification.commands.sweep import SweepCommand
+from inca_mj.commands.common import do_not_draw
+
+
+@dataclass(frozen=True)
+class Sweep(SweepCommand):
+    """Run the tasks of a sweep, keep a record of each, and say what they come to.
+
+    Examples:
+        inca sweep benchmarks/sweeps/trials.toml --jobs 2 --out out/trials
+        inca sweep benchmarks/sweeps/null_score.toml --backend dask --resume
+    """
+
+    def run(self) -> int:
+        """Run, keep, say; 1 where every task met an error."""
+        do_not_draw()
+        return super().run()
+
+    def methods(self) -> Mapping[str, str]:
+        """The methods that a sweep may name: those on any robot, and those on INCA."""
+        from inca_mj.sweeps import METHODS
+
+        return METHODS

@@ -1,0 +1,144 @@
+"""What inputs say of the parameters of robots that differ: std before any fit, and limits kept."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from identification.errors import InputError, unknown_name
+from identification.report.page import Section, Table
+from identification.sweep.method import Column, Findings, Method, Record, Seed
+from identification.sweep.statistics import said, wilson
+
+DESIGNED = "designed"
+VARIED = ("lambda", "b", "J", "b_v", "b_c", "K_t")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExcitationSettings:
+    """An input, and the robots that it meets.
+
+    Attributes:
+        input: "designed" by a search, or one of the standard inputs of `inca excite`.
+        duration: of the experiment [s].
+        noise: std of the noise on each angle [rad].
+        spread: parameters differ from the nominal ones by up to so much, relative.
+        budget: evaluations of the search for a designed input, about a second each.
+
+    Raises:
+        InputError: there is no such input, or a number is out of its range.
+    """
+
+    input: str
+    duration: float = 5.0
+    noise: float = 6.7e-4
+    spread: float = 0.1
+    budget: int = 20
+
+    def __post_init__(self) -> None:
+        from inca_mj.workflows.bench import standard_inputs
+
+        known = [DESIGNED, *(name for name, _ in standard_inputs(2))]
+        if self.input not in known:
+            raise unknown_name("input", self.input, known)
+        if not (self.duration >= 0.2 and self.noise > 0 and 0 <= self.spread < 1):
+            raise InputError("give a duration of 0.2 s or more, noise above 0, spread below 1")
+
+
+def excitation(settings: ExcitationSettings, seed: Seed) -> dict[str, Any]:
+    """Draw a robot and compute the information that the input gives of its parameters.
+
+    Raises:
+        InputError: no input that was tried keeps the limits, or nothing shows in the angles.
+        DivergenceError: the robot cannot be simulated under the input.
+    """
+    from inca_mj.robot.parameters import parameter_set
+    from inca_mj.twin.run import simulate
+    from inca_mj.twin.twin import build_twin
+    from inca_mj.workflows.bench import SAMPLING, Bench, standard_inputs
+    from inca_mj.workflows.excitation import excite
+    from inca_mj.workflows.identification import UNKNOWN
+    from inca_mj.workflows.limits import Limits
+
+    factors = 1 + settings.spread * seed.generator().uniform(-1, 1, len(VARIED))
+    nominal = parameter_set("trial").values()
+    values = {n: f * nominal[n] for n, f in zip(VARIED, factors.tolist(), strict=True)}
+    robot, limits = build_twin(visual=False).with_values(values), Limits()
+    if settings.input == DESIGNED:
+        tried = excite(
+            robot, settings.duration, noise=settings.noise, free=UNKNOWN, limits=limits,
+            budget=settings.budget, seed=seed.number(),
+        ).best  # fmt: skip
+    else:
+        currents = dict(standard_inputs(round(settings.duration / SAMPLING) + 1))[settings.input]
+        bench = Bench(robot, settings.noise, UNKNOWN, limits)
+        tried = bench.attempt(settings.input, simulate(robot, currents, SAMPLING))
+    found = tried.found
+    return {
+        "names": [*found.names[: found.asked]], "std": [*map(float, found.std)],
+        "worst_std": float(found.e_value**-0.5), "allowed": bool(tried.allowed),
+    }  # fmt: skip
+
+
+def excitation_findings(records: Sequence[Record]) -> Findings:
+    """Std of each parameter by input: geometric means over the robots."""
+    inputs = list(dict.fromkeys(r["set.input"] for r in records))
+    names = list(dict.fromkeys(n for r in records for n in r["names"]))
+    found, rows = {}, []
+    for each in inputs:
+        mine = [r for r in records if r["set.input"] == each]
+        std = {
+            n: _mean([r["std"][r["names"].index(n)] for r in mine if n in r["names"]])
+            for n in names
+        }
+        worst = _mean([r["worst_std"] for r in mine])
+        kept = wilson(sum(r["allowed"] for r in mine), len(mine))
+        found[each] = {"std": std, "worst_std": worst, "allowed": kept}
+        rows.append((each, len(mine), worst, *std.values(), said(kept)))
+    head = ("input", "robots", "worst direction", *names, "keeps the limits")
+    text = "Relative std of estimates, from the Fisher information; geometric means over robots."
+    table = Table(head, tuple(rows))
+    return Findings({"inputs": found}, [Section("std by input", text, _figures(found), table)])
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    finite = [v for v in values if np.isfinite(v) and v > 0]
+    return float(np.exp(np.mean(np.log(finite)))) if finite else None
+
+
+def _figures(found: dict[str, Any]) -> tuple[tuple[str, Any], ...]:
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    from identification.report.style import SERIES, STYLE
+
+    names = list(next(iter(found.values()))["std"])
+    with matplotlib.rc_context(STYLE):
+        figure = Figure((7.2, 3.8), layout="constrained")
+        ax = figure.subplots()
+        for k, (each, row) in enumerate(found.items()):
+            at = [i + 0.7 * (k / max(1, len(found) - 1) - 0.5) for i in range(len(names))]
+            ax.plot(at, [row["std"][n] or np.nan for n in names], "o", ms=4, label=each,
+                    color=SERIES[k % len(SERIES)])  # fmt: skip
+        ax.set_yscale("log")
+        ax.set_xticks(range(len(names)), names)
+        ax.set(ylabel="relative std")
+        figure.legend(loc="outside right upper", fontsize=7)
+    return (("Relative std of each parameter by input", figure),)
+
+
+EXCITATION = Method(
+    about="computes what an input says of the parameters of a robot drawn by chance",
+    settings=ExcitationSettings,
+    columns={
+        "names": Column(list[str], "parameters"),
+        "std": Column(list[float], "std of their estimates, relative"),
+        "worst_std": Column(float, "std along the worst determined direction, relative"),
+        "allowed": Column(bool, "whether currents, tensions and pose stay within the limits"),
+    },
+    run=excitation,
+    summary=excitation_findings,
+)
