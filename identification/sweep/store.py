@@ -156,11 +156,9 @@ class Store:
         tasks: list[tuple[Path, set[int]]] = []
         for path in self._files():
             try:
-                table = self._read(path, ["task"])
+                tasks.append((path, self._tasks(path)))
             except (self._pa.ArrowException, OSError):
                 path.unlink()  # not whole, so it is no record
-                continue
-            tasks.append((path, set(table["task"].to_pylist())))
         self.done, self._single = set(), []
         for path, here in sorted(tasks, key=lambda each: -len(each[1])):
             if here <= self.done:
@@ -173,8 +171,10 @@ class Store:
     def _files(self) -> list[Path]:
         return sorted(self.records.glob("*.parquet"))
 
-    def _read(self, path: Path, names: list[str] | None = None) -> Any:
-        return self._parquet.ParquetFile(path, page_checksum_verification=True).read(names)
+    def _tasks(self, path: Path) -> set[int]:
+        """The tasks of a file; every page of it is read and its sum checked."""
+        file = self._parquet.ParquetFile(path, page_checksum_verification=True)
+        return {n for batch in file.iter_batches(_BLOCK) for n in batch["task"].to_pylist()}
 
     def _tables(self, files: Sequence[Path]) -> Iterator[Any]:
         """The rows of some files in the order of their tasks, in blocks."""

@@ -53,7 +53,7 @@ class Dask:
                 return client.submit(work, task, key=f"sweep-{run}-{task.number}", pure=False)
 
             first = [submit(task) for task in islice(waiting, WINDOW * workers)]
-            ended = distributed.as_completed(first)
+            ended = distributed.as_completed(first, loop=client.loop)
             del first  # a future that is held keeps its result in a worker
             try:
                 for future in ended:

@@ -1,0 +1,204 @@
+"""The same records to the bit, wherever tasks run, in whatever order, and whoever dies."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from sweep_cases import read, run, write
+
+from identification.sweep.backends.choice import backend_of
+from identification.sweep.backends.dask_cluster import Dask
+from identification.sweep.backends.processes import Processes
+from identification.sweep.backends.submitit_jobs import Chunk, Submitit
+from identification.sweep.config import read_sweep
+from identification.sweep.work import work
+
+quiet = pytest.mark.filterwarnings("default")  # of Dask and submitit, which are not ours
+
+
+class Shuffled:
+    """In another order than that of the tasks."""
+
+    def outcomes(self, work, tasks):
+        tasks = [*tasks]
+        random.Random(1).shuffle(tasks)
+        return map(work, tasks)
+
+
+@pytest.fixture(scope="module")
+def serial(tmp_path_factory):
+    path = write(tmp_path_factory.mktemp("serial"))
+    return path, run(path, path.parent / "out")
+
+
+@quiet
+@pytest.mark.parametrize("kind", ["shuffled", "1 process", "2 processes", "dask", "submitit"])
+def test_records_are_the_same_to_the_bit(serial, tmp_path, kind, monkeypatch):
+    monkeypatch.setenv("OMP_NUM_THREADS", "2")
+    path, expected = serial
+    backend = {
+        "shuffled": Shuffled(),
+        "1 process": Processes(1),
+        "2 processes": Processes(2),
+        "dask": Dask(None, 2),
+        "submitit": Submitit("local", 2, tmp_path / "jobs", {"tasks_per_job": "4"}),
+    }[kind]
+    assert run(path, tmp_path / "out", backend) == expected
+    assert read(tmp_path / "out") == expected
+    assert json.loads(expected[0])["threads"] == "1"
+    assert os.environ["OMP_NUM_THREADS"] == "2"
+
+
+def test_tasks_are_asked_for_as_there_is_room(serial):
+    path, _ = serial
+    sweep, asked = read_sweep(path, {}), []
+
+    def tasks():
+        for number in range(len(sweep)):
+            asked.append(number)
+            yield sweep.task(number)
+
+    outcomes = Processes(1).outcomes(work, tasks())
+    assert next(outcomes).number in range(3)
+    assert len(asked) <= 6  # three are there, and one more for each that has ended
+    outcomes.close()
+
+
+def test_a_process_that_dies_ends_the_sweep_and_costs_no_record(tmp_path, refusal):
+    text = f"[study.grid]\nmarker = ['{tmp_path / 'died'}']\n"
+    path = write(tmp_path, text, 4)
+    sentence = refusal(run, path, tmp_path / "out", Processes(1))
+    assert "a worker process died" in sentence
+    assert "--resume" in sentence
+    assert run(path, tmp_path / "out", Processes(1), resume=True) == run(path, tmp_path / "whole")
+
+
+@quiet
+def test_a_dask_worker_that_a_task_kills_is_replaced(tmp_path):
+    path = write(tmp_path, f"[study.grid]\nmarker = ['{tmp_path / 'died'}']\n", 4)
+    records = run(path, tmp_path / "out", Dask(None, 1))
+    assert (tmp_path / "died").exists()
+    assert records == run(path, tmp_path / "whole")
+
+
+@quiet
+def test_a_dask_worker_is_killed_in_the_middle(tmp_path, serial):
+    path = write(tmp_path, "[study.settings]\nseconds = 0.1\n", 24)
+    where = tmp_path / "scheduler.json"
+    started = []
+
+    def start(*words):
+        line = [sys.executable, "-m", "dask", *words, "--scheduler-file", str(where)]
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        started.append(subprocess.Popen(line, cwd=tmp_path, **quiet))
+        return started[-1]
+
+    try:
+        start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+        until(where.exists)
+        first, _ = (start("worker", "--nthreads", "1", "--no-nanny", "--no-dashboard")
+                    for _ in range(2))  # fmt: skip
+        address = json.loads(where.read_text())["address"]
+        processes = set()
+
+        class Watching:
+            """Kills the first worker as soon as it has ended a task."""
+
+            def outcomes(self, work, tasks):
+                for outcome in Dask(address, 1).outcomes(work, tasks):
+                    processes.add(outcome.run["process"])
+                    if len(processes) == 2 and first.poll() is None:
+                        first.send_signal(signal.SIGKILL)
+                        first.wait()
+                    yield outcome
+
+        import distributed
+
+        with distributed.Client(address, set_as_default=False) as client:
+            client.wait_for_workers(2, timeout=60)
+        records = run(path, tmp_path / "out", Watching())
+        assert first.returncode == -signal.SIGKILL
+    finally:
+        for process in started:
+            process.kill()
+            process.wait()
+    assert len(records) == 24
+    assert records == run(path, tmp_path / "whole")
+
+
+def until(ready):
+    for _ in range(600):
+        if ready():
+            return
+        time.sleep(0.1)
+    raise AssertionError("nothing came in a minute")
+
+
+def test_a_stopped_job_goes_on_where_it_was(serial):
+    path, _ = serial
+    sweep = read_sweep(path, {})
+    tasks = [sweep.task(n) for n in range(4)]
+    chunk, seen = Chunk(work, tasks), []
+
+    class Preempted(Exception):
+        pass
+
+    def stop(task):
+        if task.number == 2:
+            raise Preempted
+        seen.append(task.number)
+        return work(task)
+
+    chunk.work = stop
+    with pytest.raises(Preempted):
+        chunk()
+    again = chunk.checkpoint().function
+    again.work = work
+    assert [outcome.number for outcome in again()] == [0, 1, 2, 3]
+    assert seen == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("word", "jobs", "options", "words"),
+    [
+        ("dusk", None, {}, "unknown backend 'dusk'; did you mean 'dask'"),
+        ("processes", 0, {}, "--jobs 0: give 1 or more"),
+        ("processes", 1, {"timeout_min": "3"}, "--job is for --backend slurm"),
+        ("submitit-local", 1, {"tasks_per_job": "0"}, "give a whole number, 1 or more"),
+        ("submitit-local", 1, {"no_such": "0"}, "submitit cannot submit to local"),
+        ("slurm", 1, {}, "submitit cannot submit to slurm"),
+        ("dask://127.0.0.1:1", 1, {}, "no Dask scheduler with a worker answers at tcp://127"),
+    ],
+)
+@quiet
+def test_what_a_backend_refuses(serial, tmp_path, refusal, monkeypatch, word, jobs, options, words):
+    monkeypatch.setattr("identification.sweep.backends.dask_cluster.WAIT", 1)
+    path, _ = serial
+
+    def call():
+        return run(path, tmp_path / "out", backend_of(word, jobs, tmp_path, options))
+
+    assert words in refusal(call)
+
+
+@pytest.mark.parametrize(
+    ("module", "call", "extra"),
+    [
+        ("distributed", lambda: Dask(None, 1), "cluster"),
+        ("submitit", lambda: Submitit("local", 1, None, {}), "cluster"),
+    ],
+)
+def test_a_missing_package_is_told(monkeypatch, refusal, module, call, extra):
+    monkeypatch.setitem(sys.modules, module, None)
+    assert f"pip install 'inca-mj[{extra}]'" in refusal(call)
+
+
+def test_without_pyarrow_no_sweep(monkeypatch, tmp_path, refusal):
+    path = write(tmp_path)
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    assert "a sweep needs pyarrow" in refusal(run, path, tmp_path / "out")
