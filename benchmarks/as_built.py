@@ -4,6 +4,7 @@ discovery find, against the truth; rows and a page.
     python benchmarks/as_built.py calibrate --data FOLDER [--robot robot_00 ...] [--records abc]
     python benchmarks/as_built.py discover --data FOLDER [--records a] [--spread usual|none]
     python benchmarks/as_built.py time --data FOLDER [--robot robot_00 ...] [--records abc]
+    python benchmarks/as_built.py --take FOLDER    of inca sweep benchmarks/sweeps/as_built.toml
     python benchmarks/as_built.py --only-page
 
 FOLDER holds logs `robot_NN_a.csv`, `_b`, `_c` of one robot each, and labels.json with the truth. A
@@ -148,6 +149,31 @@ def rows_of(path: Path) -> list[dict[str, Any]]:
     return list({row["key"]: row for row in rows}.values())
 
 
+def worlds_of(folder: Path) -> list[dict[str, Any]]:
+    """Rows of the page from the records of a sweep over worlds."""
+    from pyarrow.dataset import dataset
+
+    from identification.sweep.answers import nested
+
+    rows = []
+    for record in dataset(folder / "records").to_table().sort_by("task").to_pylist():
+        if record["error"] is None:
+            key = f"world/{record['world']}/{record['kind']}/{record['ratio']:g}"
+            key += "/beside the spread" * record["set.as_built"]
+            key += f"/{record['set.duration']:g} s/{record['set.records']} records"
+            rows.append({"key": key, **nested(record)})
+    return rows
+
+
+def take(folder: Path, path: Path) -> None:
+    """Add those rows to a file that does not have them."""
+    there = {row["key"] for row in rows_of(path)}
+    with path.open("a", encoding="utf-8") as file:
+        for row in worlds_of(folder):
+            if row["key"] not in there:
+                file.write(json.dumps(row) + "\n")
+
+
 def main() -> int:
     """Run what is not done, write the page."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
@@ -161,8 +187,11 @@ def main() -> int:
     add("--out", type=Path, default=RESULTS)
     add("--page", type=Path, default=PAGE)
     add("--only-page", action="store_true")
+    add("--take", type=Path, help="folder of a sweep over worlds, for the page")
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
+    if given.take is not None:
+        take(given.take, given.out / "worlds.jsonl")
     if given.verb and not given.only_page:
         labels = json.loads((given.data / "labels.json").read_text())
         path = given.out / f"{given.verb}.jsonl"

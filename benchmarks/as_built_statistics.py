@@ -6,10 +6,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from discovery_statistics import in_set, rate, right, size_errors
-from discovery_tasks import USUAL
+
+from identification.sweep.discovery_rates import in_set, right, size_errors
+from identification.sweep.statistics import rate
 
 Row = Mapping[str, Any]
+USUAL = 20.0  # length of a world's log where nothing is said [s]
 CLOSE = 0.15  # relative error of a size that is called right
 HEAD = """# Robots as they are built
 
@@ -30,7 +32,7 @@ def page(
     worlds: Sequence[Row] = (),
     times: Sequence[Row] = (),
 ) -> str:
-    """The page, from all rows: those of labelled robots, and those of `benchmarks/discovery.py`."""
+    """The page, from all rows: those of labelled robots, and those of sweeps over worlds."""
     parts = (
         _calibrations(calibrations), _discoveries(discoveries), _worlds(worlds), _times(times),
     )  # fmt: skip
@@ -129,10 +131,10 @@ def _worlds(rows: Sequence[Row]) -> list[str]:
         return []
     lines = [
         "## Worlds of our own, as built", "",
-        "    python benchmarks/discovery.py --worlds N --as-built --ratio 20 --spread usual", "",
+        "    inca sweep benchmarks/sweeps/as_built.toml", "",
         "Robots, inputs and effects are drawn by chance; one in six has nothing hidden, and one in"
-        " six an effect that no catalogue lists. With `--effects 3` three are hidden, and"
-        " `--records 3` makes three logs of one robot. Sizes are such that 20 times the noise is"
+        " six an effect that no catalogue lists. With `effects = 3` three are hidden, and"
+        " `records = 3` makes three logs of one robot. Sizes are such that 20 times the noise is"
         " left when base parameters and start are tuned again and parts deviate as parts do, each"
         " at the price of its usual std. Older rows count base parameters and start only: their"
         " effects are smaller, and some are within the spread.", "",

@@ -6,9 +6,8 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from discovery_statistics import median, rate
-
 from identification.prediction.twins import LEVEL, TWINS
+from identification.sweep.statistics import median, rate, said
 
 WORSE = 1.02  # of an error: two searches that end at the same minimum differ by less
 NULL = "nothing"
@@ -103,13 +102,6 @@ def confusion(rows: Sequence[Row]) -> dict[str, dict[str, int]]:
     return {true: dict(counts[true].most_common()) for true in sorted(counts)}
 
 
-def _said(share: dict[str, Any]) -> str:
-    if not share["of"]:
-        return "-"
-    return (f"{share['hits']} of {share['of']}"
-            f" [{100 * share['low']:.0f}, {100 * share['high']:.0f} %]")  # fmt: skip
-
-
 ROWS = (
     ("right_first", "the right name first, goal 85 %"),
     ("right_or_alike", "or in a set of two"),
@@ -124,8 +116,8 @@ ROWS = (
 
 def section(rows: Sequence[Row]) -> str:
     """The section of the page, Markdown."""
-    said = summary(rows)
-    robots = [n for n in ("pendulum", "cart", "two_link", "arm") if n in said]
+    found = summary(rows)
+    robots = [n for n in ("pendulum", "cart", "two_link", "arm") if n in found]
     columns = [*robots, "all"]
     lines = [
         "## Hidden effects of other robots",
@@ -146,21 +138,21 @@ def section(rows: Sequence[Row]) -> str:
         "|---" * (len(columns) + 1) + "|",
     ]
     for key, words in ROWS:
-        lines.append(f"| {words} | " + " | ".join(_said(said[c][key]) for c in columns) + " |")
+        lines.append(f"| {words} | " + " | ".join(said(found[c][key]) for c in columns) + " |")
     times = " | ".join(
-        "-" if said[c]["longest"] is None
-        else f"{said[c]['processor_seconds']:.0f} s, {said[c]['longest']:.0f} s"
+        "-" if found[c]["longest"] is None
+        else f"{found[c]['processor_seconds']:.0f} s, {found[c]['longest']:.0f} s"
         for c in columns
     )  # fmt: skip
     lines += [
         f"| processor time of fit and discovery: median, longest | {times} |",
         "",
-        f"{said['worlds']} worlds; {said['failed']} more met an error, and {said['unseen']} could"
-        " not be made because no size shows enough.",
+        f"{found['worlds']} worlds; {found['failed']} more met an error, and {found['unseen']}"
+        " could not be made because no size shows enough.",
         "",
         "| hidden | first name or verdict |",
         "|---|---|",
     ]
-    for true, counts in said["confusion"].items():
+    for true, counts in found["confusion"].items():
         lines.append(f"| {true} | " + ", ".join(f"{n} {k}" for k, n in counts.items()) + " |")
     return "\n".join(lines) + "\n"

@@ -6,6 +6,7 @@
     python benchmarks/measured.py ur10e --null 20 --few 1 the same with one record of each kind
     python benchmarks/measured.py --write FOLDER          records as CSV, models and TOML
     python benchmarks/measured.py --again                 all but fits and discoveries anew
+    python benchmarks/measured.py --take FOLDER           records of the sweep sweeps/measured.toml
     python benchmarks/measured.py --only-page             the page anew, from the JSON records
 
 A robot whose data are absent is skipped, with a sentence. What the page tells is in the JSON
@@ -38,7 +39,9 @@ def main() -> int:
     if unknown:
         print(f"unknown robot {unknown[0]!r}; known: {', '.join(ROBOTS)}", file=sys.stderr)
         return 2
-    if not given.only_page:
+    if given.take is not None:
+        take(given)
+    elif not given.only_page:
         for name in given.robots or ROBOTS:
             try:
                 robot = reader(name)(given.data)
@@ -89,6 +92,21 @@ def work(robot: MeasuredRobot, given: argparse.Namespace) -> None:
             keep(given, f"{robot.name}_start_{slug}", poorer, start=what)
 
 
+def take(given: argparse.Namespace) -> None:
+    """Keep the JSON records of a sweep, as those of a run of this program."""
+    from datetime import UTC, datetime
+
+    from pyarrow.dataset import dataset
+    from robots.measurement import when
+
+    for row in dataset(given.take / "records").to_table().to_pylist():
+        if row["error"] is None:
+            ending = "" if row["set.split"] == 1 else f"_split_{row['set.split']}"
+            day = datetime.fromtimestamp(row["run.ended"], UTC).date().isoformat()
+            own = {**when(), "date": day, "seconds": row["run.seconds"]}
+            keep(given, row["set.robot"] + ending, {**json.loads(row["record"]), **own})
+
+
 def keep(given: argparse.Namespace, name: str, record: dict[str, Any], **more: str) -> None:
     """Write a JSON record."""
     record = {**record, **more}
@@ -116,6 +134,7 @@ def parsed() -> argparse.Namespace:
     parser.add_argument("--write", type=Path, metavar="FOLDER")
     parser.add_argument("--again", action="store_true")
     parser.add_argument("--only-page", action="store_true")
+    parser.add_argument("--take", type=Path, metavar="FOLDER", help="of a sweep")
     return parser.parse_args()
 
 

@@ -52,7 +52,7 @@ def measure(robot: MeasuredRobot, say: Callable[[str], None]) -> dict[str, Any]:
         DivergenceError: the nominal model cannot be simulated.
     """
     record: dict[str, Any] = {
-        "robot": robot.name, "title": robot.title, "source": robot.source, **_when(),
+        "robot": robot.name, "title": robot.title, "source": robot.source, **when(),
         "horizon": robot.horizon, "fit": [log.name for log in robot.fit],
         "confirm": [log.name for log in robot.confirm], "expected": list(robot.expected),
         "unit": robot.unit or robot.fit[0].output_unit,
@@ -132,7 +132,7 @@ def _sizes(compiled: Robot, found: RecordsDiscovery, published: dict[str, float]
     return sizes
 
 
-def _when() -> dict[str, str]:
+def when() -> dict[str, str]:
     """Date and version of what was run."""
     here = Path(__file__).parent
     try:

@@ -14,6 +14,11 @@ TWO = f"seed = 3\n[[study]]\nname='one'\nmethod='{METHOD}:TOSS'\ncount=4\n{{}}\n
 )
 
 
+TRIAL = "[[study]]\nmethod = 'trial'"
+PRACTICE = "[[study]]\nmethod = 'practice-discovery'"
+WORLDS = "[[study]]\nmethod = 'world-score'"
+
+
 def of(tmp_path, text, known=()):
     path = tmp_path / "sweep.toml"
     path.write_text(text)
@@ -91,24 +96,24 @@ def test_files_of_a_folder_are_an_axis(tmp_path, monkeypatch):
         ("[[study]]\nmethod = 'trail'", "unknown method 'trail'; did you mean 'trial'"),
         ("[[study]]\nmethod = 'no.py:M'", "there is no file .*no.py"),
         (f"[[study]]\nmethod = '{METHOD}:toss'", "names no method; .* has TOSS, WRONG"),
-        ("[[study]]\nmethod = 'trial'\ncounts = 2", "unknown key in .*'counts'"),
-        ("[[study]]\nmethod = 'trial'\ncount = 0", "count in .* must be 1 or more"),
-        ("[[study]]\nmethod = 'trial'\npaired = 1", "paired in .* must be true or false"),
-        ("[[study]]\nmethod = 'trial'\n[study.settings]\ntrials = 4", "unknown setting .*'trials'"),
-        ("[[study]]\nmethod = 'trial'\n[study.settings]\ntrial = '4'", "trial in .* a whole number"),
-        ("[[study]]\nmethod = 'trial'\n[study.settings]\ntrial = true", "trial in .* a whole number"),
-        ("[[study]]\nmethod = 'trial'\n[study.grid]\ntrial = [3, 9]", "unknown trial '9'"),
-        ("[[study]]\nmethod = 'trial'\n[study.grid]\ntrial = 3", "must be a list of values"),
-        ("[[study]]\nmethod = 'trial'\n[study.grid]\ntrial = []", "has no values"),
-        ("[[study]]\nmethod = 'trial'\n[study.grid]\ntrial = [4, 4]", "has a value twice"),
-        ("[[study]]\nmethod = 'trial'\n[study.grid]\ntrial = { first = 1 }", "both first and count"),
-        ("[[study]]\nmethod='trial'\n[study.settings]\ntrial=4\n[study.grid]\ntrial=[4]", "in grid"),
+        (TRIAL + "\ncounts = 2", "unknown key in .*'counts'"),
+        (TRIAL + "\ncount = 0", "count in .* must be 1 or more"),
+        (TRIAL + "\npaired = 1", "paired in .* must be true or false"),
+        (TRIAL + "\n[study.settings]\ntrials = 4", "unknown setting .*'trials'"),
+        (TRIAL + "\n[study.settings]\ntrial = '4'", "trial in .* a whole number"),
+        (TRIAL + "\n[study.settings]\ntrial = true", "trial in .* a whole number"),
+        (TRIAL + "\n[study.grid]\ntrial = [3, 9]", "unknown trial '9'"),
+        (TRIAL + "\n[study.grid]\ntrial = 3", "must be a list of values"),
+        (TRIAL + "\n[study.grid]\ntrial = []", "has no values"),
+        (TRIAL + "\n[study.grid]\ntrial = [4, 4]", "has a value twice"),
+        (TRIAL + "\n[study.grid]\ntrial = { first = 1 }", "both first and count"),
+        (TRIAL + "\n[study.settings]\ntrial=4\n[study.grid]\ntrial=[4]", "in grid"),
         ("[[study]]\nmethod='null-score'", "does not say 'robot'"),
-        ("[[study]]\nmethod='practice-discovery'\n[study.grid]\nlog={files='no/*.csv'}", "no values"),
-        ("[[study]]\nmethod='practice-discovery'\n[study.settings]\nlog='$NO_SUCH/a.csv'",
+        (PRACTICE + "\n[study.grid]\nlog={files='no/*.csv'}", "no values"),
+        (PRACTICE + "\n[study.settings]\nlog='$NO_SUCH/a.csv'",
          "needs the variable NO_SUCH"),
-        ("[[study]]\nmethod='world-score'\n[study.grid]\nkind=['mixed','nul']", "did you mean 'null'"),
-        ("[[study]]\nmethod = 'trial'\n[[study]]\nmethod = 'trial'", "are called 'trial'"),
+        (WORLDS + "\n[study.grid]\nkind=['mixed','nul']", "did you mean 'null'"),
+        (TRIAL + "\n" + TRIAL, "are called 'trial'"),
     ],
 )  # fmt: skip
 def test_bad_sweeps_are_refused_before_anything_runs(tmp_path, refusal, text, words):
