@@ -6,7 +6,7 @@
 
 T, the temperature, is above 1 because the likelihood believes its noise model. The confidence has
 an upper limit because no effect is certain that was confirmed under one kind of input only. Both
-are judgement; `benchmarks/discovery.py` prints how well the confidence is calibrated.
+are judgement; a sweep over hidden worlds says how well the confidence is calibrated.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 SAID = {
     "first_name_right": "the right name first",
-    "right_or_in_set": "or in a set of two",
+    "right_or_in_set_of_two": "or in a set of two",
     "wrong_name_accepted": "a wrong name first",
     "singles_exactly": "one effect, and exactly it named",
     "pairs_exactly": "two effects, and exactly they named",

@@ -1,0 +1,151 @@
+"""`inca sweep` and `python -m identification sweep` as a user meets them."""
+
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from sweep_cases import METHOD, read, run, write
+
+from identification.__main__ import main as identification
+from identification.sweep.config import read_sweep
+from inca_mj.cli import main as inca
+from inca_mj.sweeps import METHODS
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
+KEYS = set(re.findall(r"`(\w+)`", PAGE.split("## sweep\n")[1].split("\n## ")[0]))
+SLOW = "[study.settings]\nseconds = 0.15\n"
+NAMED = ("errors", "settings", "rates", "quantiles", "summary")  # what these hold has other names
+LINE = [sys.executable, "-m", "identification", "sweep"]
+
+
+def keys_of(value, inside=""):
+    if isinstance(value, list):
+        return set().union(*(keys_of(v, inside) for v in value))
+    if not isinstance(value, dict):
+        return set()
+    own = set() if inside in NAMED else set(value)
+    return own.union(*(keys_of(v, k) for k, v in value.items() if inside != "summary"))
+
+
+@pytest.mark.parametrize("main", [inca, identification])
+def test_a_sweep_prints_json_and_leaves_a_folder(tmp_path, capsys, main):
+    path, out = write(tmp_path, count=8), tmp_path / "out"
+    line = ["sweep", str(path), "--backend", "serial", "--out", str(out), "--json"]
+    assert main(line) == 0
+    record = json.loads(capsys.readouterr().out)
+    assert keys_of(record) == KEYS - {"null"}
+    assert record["records"] == record["tasks"] == 48
+    (study,) = record["studies"]
+    shares = [group["rates"]["found"] for group in study["groups"]]
+    assert sum(share["hits"] for share in shares) == study["summary"]["heads"]
+    assert {curve["settings"]["word"] for curve in study["power"]} == {"a", "b"}
+    names = {file.name for file in out.iterdir()}
+    assert {"report.html", "result.json", "records"} <= names
+    (figure,) = [name for name in names if name.endswith(".png")]
+    assert figure.endswith("found-over-size.png")
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "tossed." in page
+    assert len(read(out)) == 48
+
+    (out / "report.html").unlink()
+    assert main([*line, "--summary"]) == 0  # nothing runs
+    assert json.loads(capsys.readouterr().out) == record | {"path": record["path"]}
+    assert (out / "report.html").exists()
+
+
+def test_killed_twice_and_resumed_it_has_the_records_of_one_run(tmp_path):
+    path, out = write(tmp_path, SLOW, 14), tmp_path / "out"
+    line = [*LINE, str(path), "--out", str(out), "--jobs", "1", "--quiet", "--resume"]
+    for count in (3, 7):
+        process = subprocess.Popen(line, cwd=tmp_path, start_new_session=True)
+        kept = until(out / "records", count)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        assert kept <= len(read(out)) < 14
+    done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert "14 of 14 tasks have a record." in done.stdout
+    assert read(out) == run(path, tmp_path / "whole")
+
+
+def until(folder, count):
+    """Wait for so many records; how many there are."""
+    for _ in range(1200):
+        if len(files := [*folder.glob("*.parquet")]) >= count:
+            return len(files)
+        time.sleep(0.05)
+    raise AssertionError("no records came in a minute")
+
+
+def test_ctrl_c_ends_with_130_and_keeps_the_records(tmp_path):
+    path, out = write(tmp_path, SLOW, 40), tmp_path / "out"
+    line = [*LINE, str(path), "--out", str(out), "--jobs", "1"]
+    process = subprocess.Popen(line, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    until(out / "records", 2)
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "stopping" in error
+    assert "Traceback" not in error
+    kept = read(out)
+    assert 2 <= len(kept) < 40
+    assert kept == run(path, tmp_path / "whole")[: len(kept)]
+
+
+def test_progress_is_told_in_lines_and_errors_are_counted(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("identification.sweep.run.EVERY", 0.0)
+    path, out = write(tmp_path, "[study.grid]\nbad = [false, true]\n", 1), tmp_path / "out"
+    line = ["sweep", str(path), "--backend", "serial", "--out", str(out)]
+    assert identification(line) == 0
+    said = capsys.readouterr()
+    assert re.search(r"1 of 2 tasks, \d+ s left", said.err)
+    assert "2 of 2 tasks, 1 with an error, 0 s left" in said.err
+    assert "2 of 2 tasks have a record; 1 of them met an error." in said.out
+    assert json.loads((out / "result.json").read_text())["errors"] == {
+        "ValueError: this task is bad": 1
+    }
+    assert identification([*line, "--resume", "--again", "--quiet"]) == 0
+    path = write(tmp_path, "[study.settings]\nbad = true\n", 1)
+    assert identification(["sweep", str(path), "--backend", "serial", "--out", str(out) + "2"]) == 1
+    assert "every task met an error" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        (["--backend", "dusk"], "unknown backend 'dusk'; did you mean 'dask'"),
+        (["--job", "x"], "'x' is not NAME=VALUE"),
+        (["--summary"], "there is no folder"),
+        (["--jobs", "0"], "--jobs 0: give 1 or more"),
+    ],
+)
+def test_what_is_refused_leaves_no_records(tmp_path, capsys, more, words):
+    line = ["sweep", str(write(tmp_path)), "--out", str(tmp_path / "out"), *more]
+    assert inca(line) == 2
+    assert words in capsys.readouterr().err
+    assert not [*tmp_path.rglob("*.parquet")]
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "benchmarks" / "sweeps").glob("*.toml")),
+                         ids=lambda path: path.stem)  # fmt: skip
+def test_the_sweeps_of_the_project_are_right(path, tmp_path, monkeypatch):
+    for folder in ("practice_prbs", "practice_multisine"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "log_000.csv").touch()
+    for name in ("PRACTICE", "MEASURED"):
+        monkeypatch.setenv(name, str(tmp_path))
+    sweep = read_sweep(path, METHODS)
+    assert len(sweep) > 0
+    assert sweep.about != path.stem
+
+
+def test_a_users_own_method_lies_beside_its_sweep(tmp_path):
+    (tmp_path / "mine.py").write_text(METHOD.read_text())
+    (tmp_path / "mine.toml").write_text("[[study]]\nmethod = 'mine.py:TOSS'\ncount = 2\n")
+    sweep = read_sweep(tmp_path / "mine.toml", {})
+    assert sweep.studies[0].reference == f"{tmp_path / 'mine.py'}:TOSS"
