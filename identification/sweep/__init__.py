@@ -3,5 +3,37 @@
 A *method* is a function of settings and a seed that returns one record. A *sweep* is a TOML that
 says which methods run with which settings, and how often. Its *tasks* are plain data, so that a
 *backend* may run them anywhere and in any order; the records are the same to the bit. They are kept
-as Parquet as each task ends.
+as Parquet as each task ends. The public names; `docs/sweeps.md` shows their use.
 """
+
+from typing import TYPE_CHECKING
+
+from identification.lazy import lazy
+
+_PUBLIC = {
+    "Method": "method",
+    "Column": "method",
+    "Seed": "method",
+    "Findings": "method",
+    "Sweep": "task",
+    "read_sweep": "config",
+    "Store": "store",
+    "run_sweep": "run",
+    "Backend": "backends.backend",
+    "backend_of": "backends.choice",
+}
+__all__ = list(_PUBLIC)
+
+if TYPE_CHECKING:  # the same list, for type checkers and editors
+    from identification.sweep.backends.backend import Backend as Backend
+    from identification.sweep.backends.choice import backend_of as backend_of
+    from identification.sweep.config import read_sweep as read_sweep
+    from identification.sweep.method import Column as Column
+    from identification.sweep.method import Findings as Findings
+    from identification.sweep.method import Method as Method
+    from identification.sweep.method import Seed as Seed
+    from identification.sweep.run import run_sweep as run_sweep
+    from identification.sweep.store import Store as Store
+    from identification.sweep.task import Sweep as Sweep
+else:
+    __getattr__, __dir__ = lazy(__name__, _PUBLIC)

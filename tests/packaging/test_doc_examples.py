@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("identification", "inca_mj", "inca_mj.kinematics")
+PACKAGES = ("identification", "inca_mj", "inca_mj.kinematics", "identification.sweep")
 SLOW = {"discover", "fit", "identify", "trials", "film", "crosscheck"}  # searches, and drawing
 BLOCKS = [
     pytest.param(text, id=f"{path.name}-{number}")

@@ -6,7 +6,7 @@ from pkgutil import iter_modules
 
 import pytest
 
-PACKAGES = ("identification", "inca_mj", "inca_mj.kinematics")
+PACKAGES = ("identification", "inca_mj", "inca_mj.kinematics", "identification.sweep")
 OPTIONAL = {"load_environment": "dm_control", "load_gymnasium": "dm_control"}
 
 
