@@ -4,7 +4,7 @@ seed = 1                              # of the whole sweep
 about = "False names in null worlds"  # the title of the report; may be left out
 [[study]]
 method = "null-score"                 # registered, or "file.py:NAME" of a method of your own
-name = "white"                        # the method's name if not given; each study has another
+name = "white"                        # the method's if not given; each study has another
 count = 10                            # tasks for each point of the grid, each with its own seed
 paired = false                        # true: the k-th task has the same seed at all points
 [study.settings]                      # of the method, the same for all tasks
@@ -84,7 +84,7 @@ def _study(table: dict[str, Any], known: Registry, path: Path) -> Study:
         raise InputError(f"{where} does not say 'method'; known: {', '.join(sorted(known))}")
     word = table["method"]
     reference = reference_of(word, known, path.parent)
-    name, count = table.get("name", word), table.get("count", 1)
+    name, count = table.get("name", word.rpartition(":")[2]), table.get("count", 1)
     if count < 1:
         raise InputError(f"count in {where} must be 1 or more; correct it there")
     settings = table.get("settings", {})

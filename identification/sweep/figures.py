@@ -10,38 +10,60 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from identification.report.style import GREY, INK, MEASURED, SERIES, STYLE, literal
-from identification.sweep.power import LEVEL, Curve, Threshold
+from identification.sweep.power import IN_WORDS, LEVEL, Curve, Threshold
 from identification.sweep.statistics import wilson
 
 EDGES = (0.0, 0.3, 0.5, 0.7, 0.9, 1.0)  # of confidence
 WIDE_RANGE = 8.0  # ratio of the largest to the smallest value above which an axis is logarithmic
+TOGETHER = 3  # curves in one panel, whose bands can still be told apart
 MANY = 30  # names on an axis that are still read
 
 
 def power_figure(curves: Sequence[Curve], axis: str, success: str) -> Figure:
     """The share of successes over a setting, with Wilson's 95 % intervals; a line for each curve.
 
+    Many curves have a panel each, with the others in grey.
+
     Args:
         curves: each with its label.
         axis: name of the setting.
         success: what is counted.
     """
+    panels = [[*curves]] if len(curves) <= TOGETHER else [[curve] for curve in curves]
+    across = min(4, len(panels))
+    down = -(-len(panels) // across)
     with matplotlib.rc_context(STYLE):
-        figure = Figure((6.4, 3.8), layout="constrained")
-        ax = figure.subplots()
-        for k, curve in enumerate(curves):
-            colour = SERIES[k % len(SERIES)]
-            share, low, high = (
-                np.array([rate[part] for rate in curve.rates]) for part in ("value", "low", "high")
-            )
-            ax.plot(curve.x, share, "o-", ms=4, color=colour, label=literal(curve.label))
-            ax.fill_between(curve.x, low, high, color=colour, alpha=0.12, lw=0)
-        ax.axhline(LEVEL, color=GREY, lw=0.8, ls="--")
-        _scale(ax, [x for curve in curves for x in curve.x])
-        ax.set(ylim=(-0.03, 1.03), xlabel=literal(axis), ylabel=f"share: {literal(success)}")
-        if len(curves) > 1 or curves[0].label:
-            ax.legend(fontsize=8)
+        size = (6.4, 3.8) if len(panels) == 1 else (2.6 * across + 0.6, 2.3 * down + 0.4)
+        figure = Figure(size, layout="constrained")
+        every = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False).flat
+        for ax, mine in zip(every, panels, strict=False):
+            for curve in curves if len(panels) > 1 else ():
+                ax.plot(curve.x, _part(curve, "value"), color=GREY, lw=0.7, alpha=0.5)
+            for k, curve in enumerate(mine):
+                _draw(ax, curve, SERIES[k % len(SERIES)])
+            ax.axhline(LEVEL, color=GREY, lw=0.8, ls="--")
+            _scale(ax, [x for curve in curves for x in curve.x])
+            ax.set(ylim=(-0.03, 1.03))
+            if len(panels) > 1:
+                ax.set_title(literal(mine[0].label))
+            elif mine[0].label:
+                ax.legend(fontsize=8)
+        for ax in [*every][len(panels) :]:
+            ax.set_visible(False)
+        figure.supxlabel(literal(axis), fontsize=9)
+        figure.supylabel(f"share: {literal(success)}", fontsize=9)
     return figure
+
+
+def _draw(ax: Any, curve: Curve, colour: str) -> None:
+    ax.plot(curve.x, _part(curve, "value"), "o-", ms=4, color=colour, label=literal(curve.label))
+    ax.fill_between(
+        curve.x, _part(curve, "low"), _part(curve, "high"), color=colour, alpha=0.15, lw=0
+    )
+
+
+def _part(curve: Curve, part: str) -> list[float]:
+    return [rate[part] for rate in curve.rates]
 
 
 def threshold_figure(lines: Mapping[str, Sequence[Threshold]], axis: str, against: str) -> Figure:
@@ -55,26 +77,32 @@ def threshold_figure(lines: Mapping[str, Sequence[Threshold]], axis: str, agains
     with matplotlib.rc_context(STYLE):
         figure = Figure((5.2, 3.6), layout="constrained")
         ax = figure.subplots()
+        places = [t.at for line in lines.values() for t in line]
+        beside = 0.012 * (max(places) - min(places))
         for k, (label, line) in enumerate(lines.items()):
-            found = [(t, t.value) for t in line if t.value is not None]
+            apart = (k - (len(lines) - 1) / 2) * beside  # so that intervals do not hide others
             colour = SERIES[k % len(SERIES)]
-            ax.plot([t.at for t, _ in found], [v for _, v in found], "o-", ms=4, color=colour,
+            found = [(t.at + apart, t.value, t) for t in line if t.value is not None]
+            ax.plot(*_points([(x, y) for x, y, _ in found]), "o-", ms=4, color=colour,
                     label=literal(label))  # fmt: skip
-            for t, value in found:
+            for x, value, t in found:
                 ends = (value if t.low is None else t.low, t.high or t.largest)
-                ax.plot([t.at, t.at], ends, color=colour, lw=1, alpha=0.6)
-            never = [t for t in line if t.value is None]
-            ax.plot([t.at for t in never], [t.largest for t in never], "^", ms=6, mfc="none",
-                    color=colour)  # fmt: skip
+                ax.plot([x, x], ends, color=colour, lw=1, alpha=0.6)
+            never = [(t.at + apart, t.largest) for t in line if t.value is None]
+            ax.plot(*_points(never), "^", ms=6, mfc="none", color=colour)
         every = [t for line in lines.values() for t in line]
         _scale(ax, [t.at for t in every])
         sizes = [t.largest for t in every]
         if min(sizes) > 0:
             ax.set_yscale("log")
-        ax.set(xlabel=literal(axis), ylabel=f"smallest {literal(against)} found in {LEVEL:.0%}")
+        ax.set(xlabel=literal(axis), ylabel=f"smallest {literal(against)} found in {IN_WORDS}")
         if len(lines) > 1:
             ax.legend(fontsize=8)
     return figure
+
+
+def _points(pairs: Sequence[tuple[float, float]]) -> tuple[list[float], list[float]]:
+    return [x for x, _ in pairs], [y for _, y in pairs]
 
 
 def confusion_figure(confusion: Mapping[str, Mapping[str, int]]) -> Figure:

@@ -17,6 +17,7 @@ from identification.sweep.settings import Plain
 from identification.sweep.statistics import crossing, wilson
 
 LEVEL = 0.8
+IN_WORDS = f"{100 * LEVEL:g} %"
 FEW = 12  # an axis with more values repeats a task; it is no axis of a curve
 
 

@@ -9,7 +9,7 @@ from identification.quantities import finite_or_none
 from identification.report.page import Section, Table
 from identification.sweep.method import Record
 from identification.sweep.power import (
-    LEVEL,
+    IN_WORDS,
     Curve,
     Threshold,
     axes,
@@ -54,11 +54,11 @@ def power_section(
          f"above {t.largest:g}" if t.high is None else f"{t.high:.3g}")
         for curve, t in zip(found, at, strict=True)
     )  # fmt: skip
-    head = (*others, "tasks", f"{axis} found in {LEVEL:.0%}", "from", "to")
+    head = (*others, "tasks", f"{axis} found in {IN_WORDS}", "from", "to")
     text = (
         f"The share of tasks with {method.success} ({method.columns[method.success].about}) over"
         f" {axis}, with Wilson's 95 % intervals. The table has the smallest {axis} at which it"
-        f" reaches {LEVEL:.0%}, made to rise and interpolated; its interval is from the ends of"
+        f" reaches {IN_WORDS}, made to rise and interpolated; its interval is from the ends of"
         " Wilson's intervals. A triangle stands where the largest value is not found so often."
     )
     section = Section(f"{study.name}: power", text, tuple(figures), Table(head, rows))

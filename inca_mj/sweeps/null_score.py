@@ -3,8 +3,8 @@
 The nominal model is fitted once to a log of a robot that lacks nothing, and the sensitivities of
 all candidates are computed once. Each task is then another draw of the noise: a simulation of that
 model, its inputs in error where so asked, seen through encoders. Scores are without refits and
-proof, which can only lower the rate. A worker keeps the fit of the last robots, so a sweep names
-the robots in its grid and has as many draws of each as `count` says.
+proof, which can only lower the rate. A worker keeps the fit of the last robot, so a sweep names
+the robots first in its grid and has as many draws of each as `count` says.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ def _setting(settings: NullSettings) -> HiddenSetting:
     )
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=1)  # the sensitivities of all candidates are hundreds of megabytes
 def _fitted(settings: NullSettings) -> tuple[Any, Any]:
     """The fit of a robot and the sensitivities of all candidates; the same in every worker."""
     from inca_mj.sweeps.scoring import fit_nominal
