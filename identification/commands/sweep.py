@@ -53,6 +53,8 @@ class SweepCommand:
         from identification.sweep.config import read_sweep
         from identification.sweep.store import Store
 
+        if self.again and not self.resume:
+            raise InputError("--again runs tasks of an earlier start once more; write --resume too")
         sweep = read_sweep(self.config, self.methods())
         folder = self.output.out or Path("out") / self.config.stem
         kept = replace(self, output=replace(self.output, out=folder))
@@ -60,7 +62,7 @@ class SweepCommand:
         if self.summary and not folder.is_dir():
             raise InputError(f"--summary needs records, and there is no folder {folder}")
         with Store(sweep, folder) as store:
-            if self.again and self.resume:
+            if self.again:
                 self.output.tell(f"{store.drop_errors()} tasks with an error run again")
             if not self.summary:
                 self._compute(sweep, store)

@@ -20,6 +20,7 @@ from identification.errors import InputError
 from identification.robot.file_checks import Kinds, check_table
 from identification.sweep.settings import Plain, place
 
+MOST = 100_000  # values of an axis
 _ROW: Kinds = {"first": (int, "a whole number"), "count": (int, "a whole number above zero")}
 _FILES: Kinds = {"files": (str, "a pattern in quotes"), "label": (dict, "a table")}
 
@@ -44,6 +45,8 @@ def axis(value: Any, folder: Path, where: str) -> tuple[Plain, ...]:
         check_table(value, _ROW, where)
         if not {"first", "count"} <= set(value):
             raise InputError(f"{where} must have both first and count; correct it there")
+        if value["count"] > MOST:
+            raise InputError(f"{where} has {value['count']} values; give {MOST} at most")
         values = tuple(range(value["first"], value["first"] + value["count"]))
     else:
         raise InputError(

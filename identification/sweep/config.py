@@ -17,6 +17,7 @@ Seeds depend on nothing but this file (`identification.sweep.task`).
 
 from __future__ import annotations
 
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,8 @@ from identification.sweep.method import Registry, load_method, reference_of
 from identification.sweep.settings import build
 from identification.sweep.task import Study, Sweep
 
+POINTS = 100_000  # of a grid; each is checked before anything runs
+TASKS = 10**9  # numbers of nine digits
 _SWEEP: Kinds = {
     "seed": (int, "a whole number, 0 or more"),
     "about": (str, "text in quotes"),
@@ -94,6 +97,11 @@ def _study(table: dict[str, Any], known: Registry, path: Path) -> Study:
     }
     if both := sorted(set(settings) & set(grid)):
         raise InputError(f"study {name!r} has {both[0]} in settings and in grid; keep one of both")
+    if (points := prod(map(len, grid.values()))) > POINTS or points * count > TASKS:
+        raise InputError(
+            f"study {name!r} has {points} points and {points * count} tasks; give {POINTS} points"
+            f" and {TASKS} tasks at most"
+        )
     return Study(
         name=name, word=word, reference=reference, method=load_method(reference), count=count,
         paired=paired, settings=settings, grid=grid,

@@ -151,7 +151,9 @@ def reliability_figure(pairs: Sequence[tuple[float, bool]]) -> Figure:
             ax.plot(x, share, "o", color=MEASURED)
             ax.annotate(f"{mine.sum()}", (x, share), (5, -12), textcoords="offset points",
                         color=INK)  # fmt: skip
-        ax.set(xlim=(0, 1.02), ylim=(-0.04, 1.04), xlabel="confidence", ylabel="share that is right")
+        ax.set(
+            xlim=(0, 1.02), ylim=(-0.04, 1.04), xlabel="confidence", ylabel="share that is right"
+        )
         ax.legend(loc="upper left")
     return figure
 

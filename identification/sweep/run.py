@@ -44,6 +44,8 @@ def run_sweep(
     before = frozenset(store.done)  # the other changes as records come
     todo = (number for number in range(len(sweep)) if number not in before)
     clock = _Clock(len(sweep) - done)
+    if not clock.total:
+        return 0  # no cluster is started for nothing
     with stage("tasks", clock.total) as advance:
         for outcome in backend.outcomes(work, map(sweep.task, todo)):
             store.add(row(sweep, outcome))

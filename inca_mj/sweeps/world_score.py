@@ -1,6 +1,6 @@
 """Power by score: whether the best candidate of a hidden world is the true one, without refits.
 
-A tenth of the time of a whole search, so that many sizes, lengths and rates can be compared. A
+It takes less time than a whole search, so that many sizes, lengths and rates can be compared. A
 whole search finds more, because it refits rivals, and names less, because it asks for proof.
 """
 

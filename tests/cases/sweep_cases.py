@@ -23,9 +23,9 @@ def write(folder, text=GRID, count=2, name="TOSS", head="seed = 7\n"):
     return path
 
 
-def run(path, folder, backend=None, **how):
+def run(path, folder, backend=None, known=(), **how):
     """Run a sweep; the text of its records without times."""
-    with Store(read_sweep(path, {}), folder) as store:
+    with Store(read_sweep(path, dict(known)), folder) as store:
         run_sweep(store, backend or Serial(), **how)
         store.finish()
         return [*comparable(store.rows())]

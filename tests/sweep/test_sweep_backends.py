@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 
+import dask
 import pytest
 from sweep_cases import read, run, write
 
@@ -84,6 +85,16 @@ def test_a_dask_worker_that_a_task_kills_is_replaced(tmp_path):
     records = run(path, tmp_path / "out", Dask(None, 1))
     assert (tmp_path / "died").exists()
     assert records == run(path, tmp_path / "whole")
+
+
+@quiet
+def test_a_task_that_dask_gives_up_ends_the_sweep_and_costs_no_record(tmp_path, refusal):
+    path = write(tmp_path, f"[study.grid]\nmarker = ['{tmp_path / 'died'}']\n", 4)
+    with dask.config.set({"distributed.scheduler.allowed-failures": 0}):
+        sentence = refusal(run, path, tmp_path / "out", Dask(None, 1))
+    assert "Dask gave a task up" in sentence
+    assert "--resume" in sentence
+    assert run(path, tmp_path / "out", resume=True) == run(path, tmp_path / "whole")
 
 
 @quiet

@@ -108,6 +108,8 @@ def test_files_of_a_folder_are_an_axis(tmp_path, monkeypatch):
         (TRIAL + "\n[study.grid]\ntrial = [4, 4]", "has a value twice"),
         (TRIAL + "\n[study.grid]\ntrial = { first = 1 }", "both first and count"),
         (TRIAL + "\n[study.settings]\ntrial=4\n[study.grid]\ntrial=[4]", "in grid"),
+        (TRIAL + "\n[study.grid]\nnoise_seed = { first = 1, count = 200000 }", "100000 at most"),
+        (TRIAL + "\ncount = 2000000000", "1000000000 tasks at most"),
         ("[[study]]\nmethod='null-score'", "does not say 'robot'"),
         (PRACTICE + "\n[study.grid]\nlog={files='no/*.csv'}", "no values"),
         (PRACTICE + "\n[study.settings]\nlog='$NO_SUCH/a.csv'",

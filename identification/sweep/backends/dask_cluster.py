@@ -7,6 +7,7 @@ configuration `distributed.scheduler.allowed-failures`, 3 if nobody changed it).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from concurrent.futures import CancelledError
 from contextlib import ExitStack
 from dataclasses import dataclass
 from itertools import islice
@@ -60,7 +61,7 @@ class Dask:
                     outcome = future.result()
                     ended.update([submit(task) for task in islice(waiting, 1)])
                     yield outcome
-            except (distributed.KilledWorker, MemoryError, OSError) as error:
+            except (distributed.KilledWorker, CancelledError, MemoryError, OSError) as error:
                 raise LostWorkers(
                     f"Dask gave a task up: {' '.join(str(error).split())}; the records that were"
                     " written are kept: run the same command with --resume"
