@@ -1,22 +1,21 @@
 """The folder of records: Parquet files that are written whole, so that a kill costs no record.
 
-FOLDER/records/part-000000012.parquet     one record, written as its task ended
+FOLDER/records/part-000000012-….parquet   one record, written as its task ended
 FOLDER/records/rows-….parquet             many of them, put together
 FOLDER/.sweep.json                        whose records these are
 
-A file is written under a hidden name, brought to the disk, and renamed; a file that is not whole
-is none, and its tasks run again. While a sweep runs its single records are put together now and
-then, and at its end all are one file. `pandas.read_parquet(FOLDER / "records")` reads them at any
-time. If the program is killed while it puts files together, some records are there twice, until the
-sweep is resumed.
+A file is written under a hidden name, brought to the disk, and renamed. Its name ends with a digest
+of its content, so a file that is not whole is none, and its tasks run again. While a sweep runs,
+its single records are put together now and then, and at its end all are one file.
+`pandas.read_parquet(FOLDER / "records")` reads them at any time. If the program is killed while it
+puts files together, some records are there twice, until the sweep is resumed.
 """
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -25,6 +24,7 @@ from uuid import uuid4
 from identification.errors import InputError
 from identification.files import write_text
 from identification.sweep.extras import needed
+from identification.sweep.parquet import read_tables, read_tasks, write_whole
 from identification.sweep.rows import schema
 from identification.sweep.task import Sweep
 
@@ -32,7 +32,6 @@ RECORDS = "records"
 KEY = ".sweep.json"
 _LOCK = ".sweep.lock"
 TOGETHER = 256  # single records that are put into one file
-_BLOCK = 20_000  # rows that are held at once
 
 
 class Store:
@@ -45,7 +44,6 @@ class Store:
 
     def __init__(self, sweep: Sweep, folder: Path) -> None:
         self._pa: Any = needed("pyarrow", "sweep", "a sweep")
-        self._parquet: Any = needed("pyarrow.parquet", "sweep", "a sweep")
         self.sweep, self.folder = sweep, folder
         self._schema = schema(sweep)
         self._lock: int | None = None
@@ -90,8 +88,8 @@ class Store:
 
     def add(self, row: dict[str, Any]) -> None:
         """Write the record of a task; it is on the disk when this returns."""
-        path = self.records / f"part-{row['task']:09d}.parquet"
-        self._write(path, [self._pa.Table.from_pylist([row], schema=self._schema)])
+        table = self._pa.Table.from_pylist([row], schema=self._schema)
+        path = write_whole(self.records, f"part-{row['task']:09d}", self._schema, [table])
         self.done.add(row["task"])
         self._single.append(path)
         if len(self._single) >= TOGETHER:
@@ -112,20 +110,13 @@ class Store:
     def drop_errors(self) -> int:
         """Remove the records of tasks that met an error, so that they run again; how many."""
         compute: Any = needed("pyarrow.compute", "sweep", "a sweep")
-        files, kept = self._files(), 0
-        before = len(self.done)
-        path = self.records / f"rows-{uuid4().hex}.parquet"
-        with self._writer(path) as write:
-            for table in self._tables(files):
-                good = table.filter(compute.is_null(table["error"]))
-                kept += len(good)
-                write(good)
+        files, before = self._files(), len(self.done)
+        good = (table.filter(compute.is_null(table["error"])) for table in self._tables(files))
+        write_whole(self.records, f"rows-{uuid4().hex}", self._schema, good)
         for file in files:
             file.unlink()
-        if not kept:
-            path.unlink()
         self._look()
-        return before - kept
+        return before - len(self.done)
 
     def _refuse_other(self) -> None:
         key = self.folder / KEY
@@ -156,8 +147,8 @@ class Store:
         tasks: list[tuple[Path, set[int]]] = []
         for path in self._files():
             try:
-                tasks.append((path, self._tasks(path)))
-            except (self._pa.ArrowException, OSError):
+                tasks.append((path, read_tasks(path)))
+            except OSError:
                 path.unlink()  # not whole, so it is no record
         self.done, self._single = set(), []
         for path, here in sorted(tasks, key=lambda each: -len(each[1])):
@@ -171,61 +162,15 @@ class Store:
     def _files(self) -> list[Path]:
         return sorted(self.records.glob("*.parquet"))
 
-    def _tasks(self, path: Path) -> set[int]:
-        """The tasks of a file; every page of it is read and its sum checked."""
-        file = self._parquet.ParquetFile(path, page_checksum_verification=True)
-        return {n for batch in file.iter_batches(_BLOCK) for n in batch["task"].to_pylist()}
-
     def _tables(self, files: Sequence[Path]) -> Iterator[Any]:
-        """The rows of some files in the order of their tasks, in blocks."""
-        dataset = needed("pyarrow.dataset", "sweep", "a sweep")
-        if not files:
-            return
-        every = dataset.dataset([str(file) for file in files], schema=self._schema)
-        task = dataset.field("task")
-        for first in range(0, len(self.sweep), _BLOCK):
-            inside = (task >= first) & (task < first + _BLOCK)
-            table = every.to_table(filter=inside).sort_by("task")
-            if len(table):
-                yield table
+        return read_tables(files, self._schema, len(self.sweep))
 
     def _merge(self, files: Sequence[Path]) -> Path:
-        path = self.records / f"rows-{uuid4().hex}.parquet"
-        self._write(path, self._tables(files))
+        name = f"rows-{uuid4().hex}"
+        path = write_whole(self.records, name, self._schema, self._tables(files))
         for file in files:
             file.unlink()
         return path
-
-    def _write(self, path: Path, tables: Iterable[Any]) -> None:
-        with self._writer(path) as write:
-            for table in tables:
-                write(table)
-
-    @contextmanager
-    def _writer(self, path: Path) -> Iterator[Any]:
-        """Writes tables into a file that is there whole when the block has ended, or not at all."""
-        draft = path.with_name(f".{path.stem}.tmp")
-        with draft.open("wb") as stream:
-            with self._parquet.ParquetWriter(
-                stream, self._schema, write_page_checksum=True, compression="zstd"
-            ) as writer:
-                yield writer.write_table
-            stream.flush()
-            os.fsync(stream.fileno())
-        draft.replace(path)
-        _sync_folder(path.parent)
-
-
-def _sync_folder(folder: Path) -> None:
-    """Bring the names in a folder to the disk, where the system can."""
-    try:
-        number = os.open(folder, os.O_RDONLY)
-    except OSError:
-        return
-    try:
-        os.fsync(number)
-    finally:
-        os.close(number)
 
 
 def _lock(number: int, folder: Path) -> None:
