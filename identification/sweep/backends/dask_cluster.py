@@ -75,7 +75,7 @@ class Dask:
             where = stack.enter_context(
                 distributed.LocalCluster(
                     n_workers=self.jobs, threads_per_worker=1, processes=True,
-                    dashboard_address=None, host="127.0.0.1",
+                    dashboard_address="127.0.0.1:0", host="127.0.0.1",
                 )
             )  # fmt: skip
         try:
