@@ -16,6 +16,7 @@ FOLLOWED = {  # by an error of the inputs: keys of `input_error.list_families`
     "own input": "its own input",
     "output": "its output",
     "output rate": "the rate of its output",
+    "output and direction": "its output, with another sign in each direction",
 }
 REGRESSORS = {  # of a missing force: keys of `location.list_regressors`
     "time": "time",
