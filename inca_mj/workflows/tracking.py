@@ -29,10 +29,9 @@ class Tracking:
     """A robot that followed a path.
 
     Attributes:
-        run: what the robot did, N samples; its `asked` is `wanted`.
+        run: what the robot did, N samples, and the positions that were asked of it.
         model: the twin that the controller believed.
         path: where the handle should have been.
-        wanted: positions asked of the handle, shape (N, 3) [m].
         seen: positions as the controller saw them, shape (N, 3) [m].
         counted: from when on errors count [s].
     """
@@ -40,14 +39,18 @@ class Tracking:
     run: Run
     model: Twin
     path: Path
-    wanted: np.ndarray
     seen: np.ndarray
     counted: float
 
     @property
+    def asked(self) -> np.ndarray:
+        """Positions asked of the platform, shape (N, 3) [m]."""
+        return np.asarray(self.run.asked)
+
+    @property
     def error(self) -> np.ndarray:
         """True position less that asked, shape (N, 3) [m]."""
-        return self.run.position - self.wanted
+        return self.run.position - self.asked
 
     @property
     def rms(self) -> float:
@@ -62,7 +65,7 @@ class Tracking:
     @property
     def cross_track_rms(self) -> float:
         """Root mean square of the cross-track error, of the samples that count [m]."""
-        along = np.gradient(self.wanted, self.run.time, axis=0)
+        along = np.gradient(self.asked, self.run.time, axis=0)
         length = np.linalg.norm(along, axis=1, keepdims=True)
         tangent = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
         lag = np.sum(self.error * tangent, axis=1, keepdims=True) * tangent
@@ -71,7 +74,7 @@ class Tracking:
     @property
     def seen_rms(self) -> float:
         """Root mean square of what the controller sees of the error [m]."""
-        return float(np.sqrt(np.mean(self._counted(self.seen - self.wanted) ** 2)))
+        return float(np.sqrt(np.mean(self._counted(self.seen - self.asked) ** 2)))
 
     @property
     def turned(self) -> float:
@@ -137,12 +140,11 @@ def track(
     controller = Controller(model, path, gains=gains, tensions=tensions)
     done = run_loop(robot, controller, duration, knows_pose=knows_pose, noise=noise, seed=seed)
     run = simulate(robot, done.currents, CONTROL_TIMESTEP)
-    wanted = np.array([path.at(float(t)).position for t in run.time])
+    asked = np.array([path.at(float(t)).position for t in run.time])
     return Tracking(
-        run=replace(run, asked=wanted),
+        run=replace(run, asked=asked),
         model=model,
         path=path,
-        wanted=wanted,
         seen=done.seen,
         counted=counted,
     )
