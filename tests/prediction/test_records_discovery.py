@@ -9,7 +9,7 @@ from pendulum_robot import TOML, make_folder, written
 from records_cases import nominal_model, pendulum, record, records
 
 from identification.__main__ import main
-from identification.discovery.findings.evidence import ShiftedRecord
+from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.effects.joint_plant import candidates
 from identification.errors import InputError
 from identification.prediction.discovery import discover_records
