@@ -23,6 +23,7 @@ from inca_mj.report.linear_figures import (
     handle_share,
     shape_figure,
 )
+from inca_mj.twin.logs import UNITS
 
 HANDLE_HEAD = ("frequency [Hz]", "damping", "the handle moves along", "share of the handle")
 
@@ -87,7 +88,10 @@ def model_sections(models: Sequence[LinearModel], labels: Sequence[str], rate: f
         table=Table(HANDLE_HEAD, tuple(handle_rows(models[0]))),
         figures=(("Shapes of the handle's modes", shape_figure(models[0])),),
     )
-    return [shapes, *linear_sections([m.system for m in models], labels, rate)]
+    systems = [m.system for m in models]
+    names = (*systems[0].inputs, *systems[0].outputs)
+    units = {name: UNITS[name.rstrip("_12345678")] for name in names}
+    return [shapes, *linear_sections(systems, labels, rate, units)]
 
 
 def grid_to_json(

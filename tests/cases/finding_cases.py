@@ -24,11 +24,15 @@ EVIDENCE_OF = {
         "output rate", "current_3", "A", 0.004, 0.4
     ),
     FindingKind.DOUBTFUL_EFFECT: evidence.DoubtfulEffect(REJECTED),
-    FindingKind.OVERSIZED_EFFECT: evidence.OversizedEffect(score_of(LATE, 0.3, 412.0), {"tau": 0.1}),
+    FindingKind.OVERSIZED_EFFECT: evidence.OversizedEffect(
+        score_of(LATE, 0.3, 412.0), {"tau": 0.1}
+    ),
     FindingKind.REMAINING_ERROR: records_evidence.RemainingError(7.1),
     FindingKind.DIFFERENT_RECORD: records_evidence.DifferentRecord("c.csv", 4.2, 1e-6),
     FindingKind.SHIFTED_RECORD: records_evidence.ShiftedRecord("c.csv", -0.014, 0.003, 0.3, 1e-5),
     FindingKind.WORSE_FIT: records_evidence.WorseFit(7.96),
-    FindingKind.UNPROVEN_EFFECT: records_evidence.UnprovenEffect("stiffness", "joint a", 0.2, 1.9, "chance"),
+    FindingKind.UNPROVEN_EFFECT: records_evidence.UnprovenEffect(
+        "stiffness", "joint a", 0.2, 1.9, "chance"
+    ),
 }  # fmt: skip
 FINDINGS = tuple(Finding(kind, EVIDENCE_OF[kind]) for kind in FindingKind)
