@@ -34,7 +34,7 @@ class Linearize:
     """Where along the log's free run; without a time, at the rest nearest to the start."""
     input: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME=VALUE")] = ()
     """Inputs that act at rest, by actuator; zero where not given."""
-    rate: float | None = None
+    rate: Annotated[float | None, tyro.conf.arg(metavar="HZ")] = None
     """Samples a second of the discrete model [Hz]; that of the log when not given."""
     trust: Annotated[tuple[str, ...], tyro.conf.arg(metavar="WORD")] = ()
     """What you know better than a check of the log: sensors, start, steps, time, units, wiring."""

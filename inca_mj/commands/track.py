@@ -27,7 +27,7 @@ class Track:
         inca track --effect load_dependent_friction.mu=0.05 --model out/discover --out out/found
     """
 
-    model: Path | None = None
+    model: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     """Folder of a saved twin that is the controller's model; the nominal twin if none."""
     effect: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME.SIZE=VALUE")] = ()
     """What the robot truly has beside its parameters, such as load_dependent_friction.mu=0.05."""

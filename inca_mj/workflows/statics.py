@@ -184,6 +184,13 @@ def analyse_statics(
 
 def _held(robot: Robot, at: Lines, load: np.ndarray, limits: DriveLimits) -> Held:
     low, high = tension_limits(robot, at.d, limits)
+    weak = int(np.argmin(high))
+    if limits.taut > high[weak]:
+        raise InputError(
+            f"every cable shall keep {limits.taut:g} N, but with the largest current of"
+            f" {limits.current[1]:g} A cable {weak + 1} has only {high[weak]:.3g} N at this pose;"
+            " give a smaller tension (--taut) or a larger current (--current)"
+        )
     w = robot.weight - load
     T = distribute(at.W, w, low, high)
     springs = pull(robot, at.d).tension  # a current adds K_t i/R, and the drum does not turn
