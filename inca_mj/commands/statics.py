@@ -35,9 +35,9 @@ class Statics:
     log: Annotated[Path | None, tyro.conf.arg(metavar="LOG")] = None
     """Log along which cables may come near to each other."""
     force_on_handle: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Force on the handle beside its weight, in the frame of the room [N]."""
+    """Force on the platform beside its weight, in the frame of the room [N]."""
     torque_on_handle: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Torque on the handle, in the frame of the room [N m]."""
+    """Torque on the platform, in the frame of the room [N m]."""
     current: tuple[float, float] = (-2.0, 2.0)
     """Smallest and largest current of a motor [A]."""
     taut: float = 0.5

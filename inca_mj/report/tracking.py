@@ -29,7 +29,7 @@ def tracking_section(result: Tracking) -> Section:
     )
     return Section(
         "Asked and done",
-        f"Distance of the handle from where it should be, from {result.counted:g} s on, when the"
+        f"Distance of the platform from where it should be, from {result.counted:g} s on, when the"
         " path is at its full rate. The controller sees the motor angles and has a model.",
         figures=(("Path and error", tracking_figure({"this run": result})),),
         table=Table(("distance", "[mm]"), rows),

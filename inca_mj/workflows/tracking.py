@@ -1,9 +1,9 @@
 """Let a robot follow a path under a controller, and say how well: `track`.
 
-e_k = p(t_k) - p_d(t_k)              of the true handle, counted from the path's full rate on
+e_k = p(t_k) - p_d(t_k)              of the true platform, counted from the path's full rate on
 c_k = e_k - (e_k · t_k) t_k          cross-track error: what is not along the path's tangent t_k
 
-The handle may follow the path well and late: e is then large and c is small.
+The platform may follow the path well and late: e is then large and c is small.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Tracking:
     Attributes:
         run: what the robot did, N samples, and the positions that were asked of it.
         model: the twin that the controller believed.
-        path: where the handle should have been.
+        path: where the platform should have been.
         seen: positions as the controller saw them, shape (N, 3) [m].
         counted: from when on errors count [s].
     """
@@ -78,7 +78,7 @@ class Tracking:
 
     @property
     def turned(self) -> float:
-        """Largest angle of the handle from upright, of the samples that count [rad]."""
+        """Largest angle of the platform from upright, of the samples that count [rad]."""
         w = np.abs(self.run.qpos[self.run.time >= self.counted, 3])
         return float(2 * np.arccos(np.clip(w, 0, 1)).max())
 
@@ -151,7 +151,7 @@ def track(
 
 
 def _refuse_outside(path: Path, robot: Twin, duration: float) -> None:
-    """Refuse a path that no handle between the exit points can follow."""
+    """Refuse a path that no platform between the exit points can follow."""
     times = np.arange(0.0, duration + CONTROL_TIMESTEP, CONTROL_TIMESTEP)
     asked = np.array([path.at(float(t)).position for t in times])
     exits = robot.geometry.A
