@@ -49,7 +49,7 @@ class Discover:
     """Film the final twin against the log; only with --out."""
     settled: bool = False
     """The robot stood at rest by itself, with what the twin lacks, when the log began."""
-    options: Path | None = None
+    options: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None
     """TOML file with judgement constants, such as min_proof_t = 3.0 (docs/discovery.md)."""
     robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field

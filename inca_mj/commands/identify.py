@@ -55,7 +55,7 @@ class Identify:
     """How many starts each search may try, until one ends near the noise floor."""
     seed: int = 0
     """Of the starts after the first."""
-    windows: float | None = None
+    windows: Annotated[float | None, tyro.conf.arg(metavar="SECONDS")] = None
     """Length [s] of windows that each begin anywhere; one free run when not given."""
     innovations: bool = False
     """Also estimate an unlogged error of the currents, by a Kalman predictor."""

@@ -51,7 +51,7 @@ class View:
             qpos: positions of the simulated robot, shape (15,) [m, -, rad].
             colours: of its cables, shape (8, 4) [0..1].
             ghost: positions of the measured robot, shape (15,); not drawn when None.
-            lines: drawn over the picture, so that the handle does not hide where it should be.
+            lines: drawn over the picture, so that the platform does not hide where it should be.
         """
         self.model.tendon_rgba[:] = colours
         _place(self.model, self.robot, qpos)

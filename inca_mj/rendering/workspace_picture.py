@@ -43,7 +43,7 @@ def workspace_picture(
         path: where to write.
         parameters: of the robot.
         geometry: anchors of the cables.
-        pose: where the handle is drawn, shape (6,) [m, rad]; at the start when None.
+        pose: where the platform is drawn, shape (6,) [m, rad]; at the start when None.
         tension: colours the cables, shape (8,) [N]; grey when None.
         camera: "front" or "side".
         size: width and height [px].

@@ -47,7 +47,7 @@ class Run:
         act: no-load lengths d₀, shape (N, 8) [m].
         tension: cable tensions T, shape (N, 8) [N].
         length: cable lengths d, shape (N, 8) [m].
-        asked: positions in O that a controller asked of the handle, shape (N, 3) [m]; None where
+        asked: positions in O that a controller asked of the platform, shape (N, 3) [m]; None where
             nothing was asked.
     """
 
