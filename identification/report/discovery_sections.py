@@ -51,6 +51,7 @@ def gap_section(found: Discovery) -> Section:
         "Measured minus simulated, from the inputs alone, over samples that no fit has seen. The"
         " grey band is what the sensors, and disturbances that were not logged, do to a model that"
         " lacks nothing.",
+        first=True,
         figures=(("Error on unseen data, before and after", figure),),
         table=Table(
             ("model", f"rms [{unit}]" if unit else "rms", "times the noise", "mean fit [%]"),

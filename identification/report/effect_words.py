@@ -18,7 +18,7 @@ FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
 def describe_effect(candidate: Candidate) -> str:
     """An effect and its place in words."""
     said = candidate.effect.phrase or candidate.effect.name.replace("_", " ")
-    return f"{said}, {candidate.where}"
+    return f"{said.replace(': ', ' – ', 1)}, {candidate.where}"
 
 
 def describe_sizes(found: NamedEffect | RejectedEffect) -> str:

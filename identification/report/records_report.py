@@ -36,6 +36,7 @@ def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
     return write_report(
         folder / "report.html", f"{names}: what the model lacks", records_verdict(found), shown,
         good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
+        data=[r.log.name for r in found.records],
     )  # fmt: skip
 
 
@@ -65,6 +66,7 @@ def _candidates(found: RecordsDiscovery) -> Section:
     figure = gains_figure(
         [describe_effect(s.candidate) for s in best], np.array([s.fall for s in best]),
         [s.candidate.effect.name in named for s in best],
+        "share of the mean square of the fitted error",
     )  # fmt: skip
     return Section("Who could explain it", text, figures=(("Share of the fitted error", figure),))
 

@@ -27,7 +27,7 @@ class Demo:
     )
     """The log."""
     film: bool = True
-    """Film the final twin against the log."""
+    """Film the model before and after against unseen seconds of the log."""
     robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
         default_factory=lambda: Output(out=Path("out/demo"))
