@@ -40,7 +40,9 @@ class ForceAlong:
         rate: shape (M, n) [rad/s or m/s].
         time: of each record, shape (M, n) [s].
         kind: of the joints, `mujoco.mjtJoint`.
-        is_timed: whether the first force would be another one at another time.
+        late: the first force at the same states and inputs, had the clock run backwards,
+            shape (M, n).
+        late_time: what that clock would say, shape (M, n) [s].
     """
 
     dofs: tuple[int, ...]
@@ -52,7 +54,14 @@ class ForceAlong:
     rate: np.ndarray
     time: np.ndarray
     kind: int
-    is_timed: bool
+    late: np.ndarray
+    late_time: np.ndarray
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether the first force would be another one at another time."""
+        force = self.forces[0]
+        return bool(np.abs(self.late - force).max() > ACTS * np.abs(force).max())
 
 
 def force_along(
@@ -106,7 +115,8 @@ def force_along(
         rate=np.vstack([a.qvel[:, dofs] for a in along]),
         time=np.concatenate([a.time for a in along])[:, None] * np.ones(len(dofs)),
         kind=kind,
-        is_timed=bool(np.abs(np.vstack(later) - forces[0]).max() > ACTS * np.abs(forces[0]).max()),
+        late=np.vstack(later)[:, dofs],
+        late_time=np.concatenate([a.time[::-1] for a in along])[:, None] * np.ones(len(dofs)),
     )
 
 

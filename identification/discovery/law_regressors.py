@@ -22,6 +22,7 @@ from identification.effects.effect import Candidate
 from identification.logs.log import Log
 
 ENOUGH = 0.01
+MOST = 0.8  # of the points: where a joint is held, no law of friction shows
 HELD = 0.01  # of the top speed: below it a friction may hold the joint
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
@@ -76,8 +77,11 @@ def find_regressor(
             along=what, values=of, moving=moving, turn=turn, unit=unit, force_unit=f
         )  # fmt: skip
 
-    options = [follows("time", along.time, turn, "s")
-               for turn in (plain, against) if along.is_timed]  # fmt: skip
+    options = [
+        follows("time", along.time, turn, "s")
+        for turn in (plain, against)
+        if along.is_timed and _is_of_time(along, turn)
+    ]
     options.append(follows("rate", v, plain, f"{x}/s"))
     if (n := _waves(candidate, values)) is not None:
         options.append(follows("phase", np.mod(n * q, 2 * np.pi), plain, "rad"))
@@ -122,6 +126,15 @@ def unexplained(regressor: Regressor, force: np.ndarray) -> float:
     x, f = regressor.samples(force)
     jumps = np.diff(f[np.argsort(x, kind="stable")])
     return float(np.sum(jumps**2) / (2 * max(np.sum(f**2), 1e-300)))
+
+
+def _is_of_time(along: ForceAlong, turn: np.ndarray) -> bool:
+    """Whether a force, turned, is the same at all states that a joint has at one time."""
+    time, f = along.time.ravel(), (turn * along.forces[0]).ravel()
+    order = np.argsort(time, kind="stable")
+    expected = np.interp(along.late_time.ravel(), time[order], f[order])
+    off = (turn * along.late).ravel() - expected
+    return float(np.quantile(np.abs(off), MOST)) < ENOUGH * float(np.abs(f).max())
 
 
 def _waves(candidate: Candidate, values: Mapping[str, float]) -> float | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from identification.discovery.result import Discovery
@@ -14,7 +15,7 @@ from identification.report.discovery_tables import (
     unseen_section,
 )
 from identification.report.discovery_verdict import discovery_verdict
-from identification.report.law_section import law_sections
+from identification.report.law_section import LAWS, law_sections
 from identification.report.page import Section, save_figures, write_report
 
 
@@ -56,6 +57,8 @@ def write_discovery_report(
         InputError: a file cannot be written.
     """
     shown = [*discovery_sections(found, files), *sections]
+    if all(section.video is None for section in shown):  # the law stands where a film would
+        shown = [replace(s, first=s.first or s.title == LAWS) for s in shown]
     save_figures(shown, folder)
     return write_report(
         folder / "report.html",

@@ -9,6 +9,7 @@ import numpy as np
 from identification.discovery.result import Discovery
 from identification.discovery.scoring.scores import Score
 from identification.logs.log import halves
+from identification.quantities import held
 from identification.report.discovery_figures import (
     force_figure,
     gains_figure,
@@ -56,7 +57,7 @@ def gap_section(found: Discovery) -> Section:
         table=Table(
             ("model", f"rms [{unit}]" if unit else "rms", "times the noise", "mean fit [%]"),
             tuple(
-                (name, gap.rms, _ratio(gap.rms, floor_rms(found)),
+                (name, held(gap.rms), _ratio(gap.rms, floor_rms(found)),
                  float(fit.mean()) if len(fit) else None)
                 for (name, gap), fit in zip(gaps, fits, strict=True)
             ),
@@ -146,5 +147,5 @@ def _rms(e: np.ndarray) -> np.ndarray:
     return np.asarray(np.sqrt(np.mean(e**2, axis=0)))
 
 
-def _ratio(rms: float, floor: float) -> float | None:
-    return rms / floor if floor > 0 else None
+def _ratio(rms: float, floor: float) -> str | None:
+    return held(rms / floor) if floor > 0 else None

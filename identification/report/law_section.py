@@ -15,6 +15,7 @@ from identification.report.page import Section
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+LAWS = "The physics that was found"
 HOW = (
     "The points are the force that the data ask for: in the place of the law the fit got a curve"
     " whose nodes are free, so that nothing holds the points near the law. All other parameters are"
@@ -47,7 +48,7 @@ def law_sections(found: Discovery) -> list[Section]:
         what = "error" if "reading" in named.candidate.effect.hooks else "force"
         figures.append((f"Missing {what} and its law: {effect}", law_figure(of)))
         said.append(f"{effect[0].upper()}{effect[1:]}: {named.candidate.effect.law}.")
-    return [Section("The physics that was found", "\n\n".join(said), figures=tuple(figures))]
+    return [Section(LAWS, "\n\n".join(said), figures=tuple(figures))]
 
 
 def _recovered(found: Discovery, named: NamedEffect) -> RecoveredForce | None:

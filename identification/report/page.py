@@ -53,7 +53,7 @@ class Section:
         figures: figures by caption.
         table: shown below the text; a long one is folded.
         video: an mp4 file, shown last.
-        poster: a picture of the film, shown before it plays and on paper.
+        poster: a picture of the film, shown on paper.
         first: its figures and its film stand above all sections, under the verdict.
     """
 

@@ -15,6 +15,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 import matplotlib
+from matplotlib.ticker import FixedLocator
 
 from identification.report.style import STYLE
 
@@ -98,7 +99,7 @@ def _tell(
 def _range(axis: Axis, ends: tuple[float, float]) -> list[float | str]:
     """First and last value of an axis, and its kind: one with words for ticks is fixed."""
     kind = axis.get_scale()
-    words = isinstance(axis.get_major_formatter(), matplotlib.ticker.FixedFormatter)
+    words = isinstance(axis.get_major_locator(), FixedLocator)
     known = kind in ("linear", "log") and not words and ends[0] < ends[1]
     return [float(f"{ends[0]:.8g}"), float(f"{ends[1]:.8g}"), kind if known else "fixed"]
 
