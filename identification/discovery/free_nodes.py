@@ -15,9 +15,10 @@ import numpy as np
 from identification.discovery.force_along import ForceAlong
 from identification.discovery.law_regressors import Regressor
 
-NODES = 14
-APART = 0.03  # of the range of x: nodes nearer than this are one
-LEAST = 10  # samples on one side of zero, below which it has no nodes
+NODES = 20
+APART = 2e-3  # of the range of x: nodes nearer than this are one
+LEAST = 10  # samples between two nodes
+MOST = 4000  # places at which a law is looked at for its bends
 
 
 @dataclass(frozen=True)
@@ -43,33 +44,38 @@ class Nodes:
         return out
 
 
-def place_nodes(regressor: Regressor) -> Nodes:
-    """Nodes where the samples are: some evenly, some with equally many samples between them.
+def place_nodes(regressor: Regressor, force: np.ndarray) -> Nodes:
+    """Nodes where the samples are, and as many where a law bends, so that they show it.
 
-    Of a rate, those that would be even are dense about zero, where frictions bend.
+    Args:
+        regressor: what the force follows.
+        force: of the law, shape (M, n); it says where the nodes are, and not what is found there.
     """
-    x = regressor.values[regressor.moving]
-    if regressor.along != "rate" or regressor.turn.min() < 0:
-        at = _between(x, np.linspace(0, 1, NODES // 2 + 1), NODES)
+    x, f = regressor.samples(force)
+    order = np.argsort(x, kind="stable")
+    x, f = x[order], f[order]
+    if regressor.along != "rate":
+        at = _between(x, f, NODES)
         return Nodes(at, np.zeros(len(at), int))
-    parts = [(s, s * x[s * x > 0]) for s in (-1, 1)]
-    even = np.linspace(0, 1, NODES // 2 + 1) ** 2
-    each = [(s, _between(of, even, NODES // 2)) for s, of in parts if len(of) >= LEAST]
+    parts = [(s, s * x > 0) for s in (-1, 1)]
+    each = [(s, _between(x[of], f[of], NODES // 2)) for s, of in parts if of.sum() >= LEAST]
     return Nodes(
-        np.concatenate([np.sort(s * at) for s, at in each]),
+        np.concatenate([at for _, at in each]),
         np.concatenate([np.full(len(at), s) for s, at in each]),
     )
 
 
-def _between(x: np.ndarray, even: np.ndarray, count: int) -> np.ndarray:
-    """Some nodes over the range of x; `even` are shares of it, from 0 to 1."""
-    first, last = x.min(), x.max()
-    tried = np.union1d(
-        np.quantile(x, np.linspace(0, 1, count // 2 + 1)), first + even * (last - first)
-    )
-    kept = [tried[0]]
-    for node in tried[1:]:
-        if node - kept[-1] > APART * (last - first):
+def _between(x: np.ndarray, force: np.ndarray, count: int) -> np.ndarray:
+    """Some nodes over the range of ascending x: half by the samples, half by the law's changes."""
+    share = np.linspace(0, 1, count // 2 + 1)
+    few = x[:: max(1, len(x) // MOST)]
+    law = np.interp(few, x, force)
+    changed = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(law)))])
+    bends = np.interp(share * changed[-1], changed, few)
+    kept = [x[0]]
+    for node in np.union1d(np.quantile(x, share), bends):
+        between = np.searchsorted(x, node) - np.searchsorted(x, kept[-1])
+        if node - kept[-1] > APART * (x[-1] - x[0]) and between >= LEAST:
             kept.append(node)
     return np.array(kept)
 

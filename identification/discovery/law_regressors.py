@@ -23,7 +23,7 @@ from identification.logs.log import Log
 
 ENOUGH = 0.01
 MOST = 0.8  # of the points: where a joint is held, no law of friction shows
-HELD = 0.01  # of the top speed: below it a friction may hold the joint
+HELD = 2e-3  # of the top speed: below it a friction may hold the joint
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 

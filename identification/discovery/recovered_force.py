@@ -22,7 +22,7 @@ from threadpoolctl import threadpool_limits
 
 from identification.discovery.effect_results import Rival
 from identification.discovery.force_along import ACTS, force_along
-from identification.discovery.free_nodes import Nodes, place_nodes, respond
+from identification.discovery.free_nodes import MOST, Nodes, place_nodes, respond
 from identification.discovery.law_regressors import (
     Regressor,
     find_reading,
@@ -115,7 +115,8 @@ def recover_force(
             return None
         c, std = _solve(fit, fit.point.log.outputs - shown.predicted, shown.response)
     x, nodes = shown.follows, shown.nodes
-    lines = [_line(x, force) for force in shown.forces]
+    edges = _edges(x, shown.forces[0])
+    lines = [_line(x, force, edges) for force in shown.forces]
     return RecoveredForce(
         candidate=candidate,
         along=x.along,
@@ -150,7 +151,7 @@ def _of_forces(
     if along is None:
         return None
     x = find_regressor(candidate, values, along)
-    nodes = place_nodes(x)
+    nodes = place_nodes(x, along.forces[0])
     return _Shown(x, nodes, along.forces, along.predicted, respond(along, x, nodes))
 
 
@@ -170,7 +171,7 @@ def _of_readings(
     if not rms.max() > 0:
         return None
     x = find_reading(predictor.log, own, errors[0], at.tolist())
-    nodes = place_nodes(x)
+    nodes = place_nodes(x, errors[0][:, at])
     S = np.zeros((*own.shape, len(nodes.x)))
     S[:, at] = nodes.hats(x.values)
     return _Shown(x, nodes, tuple(e[:, at] for e in errors), others[0], S)
@@ -199,13 +200,23 @@ def _solve(fit: Refit, e: np.ndarray, S: np.ndarray) -> tuple[np.ndarray, np.nda
     return covariance @ (F.T @ E), std
 
 
-def _line(x: Regressor, force: np.ndarray) -> LawLine:
+def _edges(x: Regressor, law: np.ndarray) -> np.ndarray:
+    """Bins of what is followed: even ones, ones of equally many samples, ones where a law bends."""
+    at, f = x.samples(law)
+    order = np.argsort(at, kind="stable")
+    few = at[order][:: max(1, len(at) // MOST)]
+    force = np.interp(few, at[order], f[order])
+    changed = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(force)))])
+    share = np.linspace(0, 1, LINE + 1)
+    bends = np.interp(share * changed[-1], changed, few)
+    even = at.min() + share * np.ptp(at)
+    turn = [0.0] if x.along == "rate" and at.min() < 0 < at.max() else []
+    return np.unique(np.concatenate([even, np.quantile(at, share), bends, turn]))
+
+
+def _line(x: Regressor, force: np.ndarray, edges: np.ndarray) -> LawLine:
     """A force (M, n) along what it follows: means over bins."""
     at, f = x.samples(force)
-    even = np.linspace(at.min(), at.max(), LINE + 1)
-    edges = np.union1d(even, np.quantile(at, np.linspace(0, 1, LINE + 1)))
-    if x.along == "rate":
-        edges = np.union1d(edges, [0.0])
     which = np.clip(np.searchsorted(edges, at, side="right") - 1, 0, len(edges) - 2)
     count = np.bincount(which, minlength=len(edges) - 1)
     seen = count > 0

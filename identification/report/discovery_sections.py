@@ -9,7 +9,7 @@ import numpy as np
 from identification.discovery.result import Discovery
 from identification.discovery.scoring.scores import Score
 from identification.logs.log import halves
-from identification.quantities import held
+from identification.quantities import HELD, alike, held
 from identification.report.discovery_figures import (
     force_figure,
     gains_figure,
@@ -46,6 +46,7 @@ def gap_section(found: Discovery) -> Section:
     gaps = [("nominal model, fitted", found.before)]
     if after is not None:
         gaps.append(("with what was missing", found.after))
+    rms = alike([gap.rms for _, gap in gaps], unit, HELD)
     fits = [g.fit_percent[np.isfinite(g.fit_percent)] for _, g in gaps]
     return Section(
         "The gap on unseen data",
@@ -55,11 +56,11 @@ def gap_section(found: Discovery) -> Section:
         first=True,
         figures=(("Error on unseen data, before and after", figure),),
         table=Table(
-            ("model", f"rms [{unit}]" if unit else "rms", "times the noise", "mean fit [%]"),
+            ("model", "rms", "times the noise", "mean fit [%]"),
             tuple(
-                (name, held(gap.rms), _ratio(gap.rms, floor_rms(found)),
+                (name, size, _ratio(gap.rms, floor_rms(found)),
                  float(fit.mean()) if len(fit) else None)
-                for (name, gap), fit in zip(gaps, fits, strict=True)
+                for (name, gap), size, fit in zip(gaps, rms, fits, strict=True)
             ),
         ),
     )  # fmt: skip

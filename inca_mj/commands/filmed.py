@@ -15,7 +15,7 @@ from inca_mj.twin.twin import Twin
 from inca_mj.workflows.discovery_model import named_twin, nominal_twin, rerun
 
 FILMED = 6.0  # [s]; drawing costs several times as long
-FPS = 20
+FPS = 15
 TITLES = ("before: the model, fitted", "after: with what was missing")
 
 

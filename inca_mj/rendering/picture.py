@@ -87,7 +87,7 @@ class Lettering:
         pen = ImageDraw.Draw(image)
         left, top, width, height = area
         em, below = self._em, top + height
-        robots = [("handle, simulated", HANDLE, 0.33), ("drums", DRUMS, 0.33)]
+        robots = [("handle, simulated", HANDLE, 0.33), ("frame and drums", DRUMS, 0.33)]
         robots += [("measured robot", "", 0.33)] if ghost else []
         high = int((3.0 + 1.4 * len(robots) + (2.9 if ghost else 0.0)) * em)
         self._card(pen, left, top, int(12.5 * em), high)
