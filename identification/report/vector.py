@@ -15,6 +15,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 import matplotlib
+import numpy as np
 from matplotlib.ticker import FixedLocator
 
 from identification.report.style import STYLE
@@ -65,7 +66,7 @@ def _name_lines(ax: Axes, k: int) -> list[dict[str, str]]:
     """Names of the lines of some axes, under which a drawing has them, and their labels."""
     out = []
     for i, line in enumerate(ax.get_lines()):
-        if len(line.get_xdata(orig=False)) > 2:
+        if np.size(line.get_xdata(orig=False)) > 2:
             line.set_gid(f"line{k}.{i}")
             label = str(line.get_label()).replace(r"\$", "$")
             out.append({"id": f"line{k}.{i}", "label": "" if label.startswith("_") else label})
