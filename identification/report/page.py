@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _LARGEST_SVG = 600_000  # characters; a figure of more points is shown as pixels
 _LARGEST_VIDEO = 64 * 2**20  # bytes
 _NUMBER = re.compile(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?")
+_NONE = ("–", "unknown", None)  # in the place of a number
 LONG = 12  # rows: a table of more is folded
 WIDE = 9.0  # a figure of so many inches has a row of its own
 
@@ -191,15 +192,19 @@ def _columns(table: Table) -> list[tuple[str, bool]]:
     """Headings, and whether numbers stand below them."""
     cells = zip(*table.rows, strict=True) if table.rows else ((),) * len(table.columns)
     return [
-        (heading, any(map(_is_number, column)))
+        (heading, _holds_numbers(column))
         for heading, column in zip(table.columns, cells, strict=True)
     ]
 
 
-def _is_number(cell: object) -> bool:
-    if isinstance(cell, str):
-        return bool(_NUMBER.fullmatch(cell))
-    return isinstance(cell, int | float) and not isinstance(cell, bool)
+def _holds_numbers(column: Iterable[object]) -> bool:
+    """Whether some of the cells are numbers, or all of them are written numbers."""
+    cells = list(column)
+    written = [isinstance(c, str) and bool(_NUMBER.fullmatch(c)) for c in cells]
+    numbers = [isinstance(c, int | float) and not isinstance(c, bool) for c in cells]
+    return any(numbers) or (
+        any(written) and all(w or c in _NONE for w, c in zip(written, cells, strict=True))
+    )
 
 
 def _text(cell: object) -> str:

@@ -18,9 +18,9 @@ from identification.report.records_values import value_table
 
 BEST = 10  # candidates shown
 NOT_DRAWN = (
-    "The missing force is drawn for a free run of one log only. Over a horizon each window begins in"
-    " a state of its own, which is fitted together with the force; how much the named effects explain"
-    " stands in the table above."
+    "The missing force is drawn for a free run of one log only. Over a horizon each window begins"
+    " in a state of its own, which is fitted together with the force. How much the named effects"
+    " explain stands in the table above."
 )
 
 
