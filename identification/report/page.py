@@ -165,7 +165,7 @@ def _picture(figure: Figure, prefix: str, caption: str) -> Any:
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=150)
     source = "data:image/png;base64," + b64encode(stream.getvalue()).decode()
-    said = '<img role="img" src="{}" alt="{}" title="{}" />'
+    said = '<img src="{}" role="img" alt="{}" title="{}" />'
     return Markup(said).format(source, caption, caption)
 
 

@@ -8,6 +8,7 @@ import pytest
 from joint_cases import DAMPING, MASS, SLIDER, STEP, run, slider_log
 from joint_cases import slider as every_slider
 
+from identification.discovery.effect_results import Rival
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.recovered_force import recover_force
 from identification.effects.effect import Candidate
@@ -102,6 +103,17 @@ def test_points_leave_a_wrong_law_for_the_true_one():
     wrong = np.interp(of.points.x, of.law.x, of.law.force) - truth
     right = of.points.force - truth
     assert np.linalg.norm(right) < 0.5 * np.linalg.norm(wrong)
+
+
+def test_a_rival_is_drawn_with_all_values_of_its_own_fit():
+    fit, candidate = fitted("hardening", {"hardening.k_3@slide": 8.0})
+    same = Rival(candidate, 0.3, 1.0, fit.point.values)
+    damped = Rival(candidate, 0.2, 1.0, {**fit.point.values, "damping": 4.0})
+    unknown = Rival(candidate, 0.1, 1.0)
+    of = recover_force(fit, candidate, (same, damped, unknown))
+    (_, first), (_, second) = of.rivals
+    np.testing.assert_allclose(first.force, of.law.force, rtol=1e-9, atol=1e-12)
+    assert np.abs(second.force - of.law.force).max() > 0.1  # more damping is a force too
 
 
 def test_what_has_no_force_is_not_drawn():
