@@ -26,7 +26,7 @@ class Demo:
     log: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")] = None
     """The log; the one that comes with the program when none is given."""
     film: bool = True
-    """Film the final twin against the log."""
+    """Film the model before and after against unseen seconds of the log."""
     robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
         default_factory=lambda: Output(out=Path("out/demo"))

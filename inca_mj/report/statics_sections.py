@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from identification.quantities import quantity
 from identification.report.page import Section, Table
 from inca_mj.report.statics_figures import (
     NAMES,
@@ -36,8 +37,8 @@ def statics_verdict(found: StaticAnalysis) -> list[str]:
     if found.workspace is not None:
         w = found.workspace
         said.append(
-            f"The {NAMES[w.kind]} workspace at this orientation has {w.volume:.2f} ± {w.std:.2f} m³"
-            " (standard error of stratified sampling)."
+            f"The {NAMES[w.kind]} workspace at this orientation has"
+            f" {quantity(w.volume, w.std, 'm³')} (standard error of stratified sampling)."
         )
     said += _near_words("At the pose", found.nearness)
     if found.nearness_along is not None:
@@ -102,8 +103,8 @@ def statics_sections(found: StaticAnalysis) -> list[Section]:
         sections.append(
             Section(
                 "Workspace",
-                f"Slices through the pose. Volume {found.workspace.volume:.3f} ±"
-                f" {found.workspace.std:.3f} m³.",
+                "Slices through the pose. Volume"
+                f" {quantity(found.workspace.volume, found.workspace.std, 'm³')}.",
                 figures=(("Slices of the workspace", slices_figure(found.robot, found, kinds)),),
             )
         )

@@ -76,7 +76,7 @@ def test_a_record_that_repeats_another_is_no_further_witness():
     assert "the highest that is ever said, because no rival was near enough" in said
     (other,) = (e for e in candidates(pendulum(), ("J", "d")) if e.name == "offset")
     twin = replace(answer, named=(replace(named, same_as=other),))
-    assert '(or "force: constant": below the Coulomb friction it is' in records_text(twin)
+    assert '(or "force – constant": below the Coulomb friction it is' in records_text(twin)
     assert records_to_json(twin)["effects"][0]["same_as"] == "offset"
     beside = replace(answer, named=(replace(named, compared=2),))
     assert "beside 2 rivals that were refitted in its place" in records_text(beside)

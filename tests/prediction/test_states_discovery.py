@@ -69,7 +69,7 @@ def test_a_record_of_the_nominal_robot_stays_silent():
 
 def test_an_answer_with_states_can_be_told_and_written():
     answer = found(PRESLIDING)
-    assert "friction: gives before it slips" in records_text(answer)
+    assert "friction – gives before it slips" in records_text(answer)
     assert "presliding" in str(records_to_json(answer))
 
 
