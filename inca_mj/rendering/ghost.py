@@ -47,7 +47,7 @@ def ghost_errors(
             angles for cables that do not stretch, and that of the simulated robot is taken so too.
 
     Returns:
-        The distance of the handle, shape (N,) [m], and the rms of the eight motor angles' errors,
+        The distance of the platform, shape (N,) [m], and the rms of the eight motor angles' errors,
         shape (N,) [rad].
     """
     own = simulated if is_pose_measured else ghost_positions(robot, simulated[:, 7:], None)

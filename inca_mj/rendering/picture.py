@@ -87,7 +87,7 @@ class Lettering:
         pen = ImageDraw.Draw(image)
         left, top, width, height = area
         em, below = self._em, top + height
-        robots = [("handle, simulated", HANDLE, 0.33), ("frame and drums", DRUMS, 0.33)]
+        robots = [("platform, simulated", HANDLE, 0.33), ("frame and drums", DRUMS, 0.33)]
         robots += [("measured robot", "", 0.33)] if ghost else []
         high = int((3.0 + 1.4 * len(robots) + (2.9 if ghost else 0.0)) * em)
         self._card(pen, left, top, int(12.5 * em), high)
@@ -124,14 +124,14 @@ class Lettering:
         Args:
             frame: shape (h, w, 3) of bytes.
             time: [s].
-            distance: of the handle from the path that was asked [m].
-            off: of the simulated robot from the measured one: the handle [m], the motors [rad].
+            distance: of the platform from the path that was asked [m].
+            off: of the simulated robot from the measured one: the platform [m], the motors [rad].
         """
         frame[self._rows] = (self._ink + frame[self._rows] * self._see) // 255
         self._say(frame, self._clock, f"t = {time:.2f} s", 1.15)
         if off is not None:
             left, top = self._off
-            self._say(frame, (left, top), f"handle off {1e3 * off[0]:.2f} mm", 0.85)
+            self._say(frame, (left, top), f"platform off {1e3 * off[0]:.2f} mm", 0.85)
             row = top + int(1.35 * self._em)
             self._say(frame, (left, row), f"motors off {1e3 * off[1]:.1f} mrad", 0.85)
         if distance is not None:
