@@ -3,12 +3,14 @@
 - Links that leave docs/ work in a folder of files, and on a site they would lead nowhere. Those to
   CONTRIBUTING.md and CHANGELOG.md lead to pages made of these files; any other shows its path.
 - The public names of a package, with the headings of its own list, become an API reference.
-- Notebooks are executed, and each becomes a page. One that fails stops the build.
+- Notebooks are executed, and each becomes a page. One that fails stops the build. NOTEBOOKS=off in
+  the environment shows them without results, for those who write pages.
 - The finished site is searched for scripts, styles, fonts and pictures of another computer.
 """
 
 from __future__ import annotations
 
+import os
 import posixpath
 import re
 from html.parser import HTMLParser
@@ -79,7 +81,8 @@ def run_notebook(path: Path) -> dict[str, str | bytes]:
 
     notebook = nbformat.read(path, as_version=4)
     where = {"metadata": {"path": str(ROOT)}}
-    NotebookClient(notebook, timeout=SECONDS, resources=where).execute()
+    if os.environ.get("NOTEBOOKS") != "off":
+        NotebookClient(notebook, timeout=SECONDS, resources=where).execute()
     files = {"output_files_dir": ".", "unique_key": path.stem}
     text, more = MarkdownExporter().from_notebook_node(notebook, resources=files)
     pictures = {Path(name).name: content for name, content in more["outputs"].items()}

@@ -53,7 +53,7 @@ def record(seed, seconds=12.0):
 
 def write(folder):
     """Write both logs into a folder."""
-    for name, seed in (("first", 1), ("second", 2)):
+    for name, seed in (("first", 1), ("second", 3)):
         np.savetxt(
             Path(folder) / f"{name}.csv", record(seed), "%.6g", ",", header="time,current,angle",
             comments="",
