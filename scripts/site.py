@@ -55,7 +55,8 @@ def turned(found: re.Match[str], folder: str, page: str) -> str:
     place = posixpath.normpath(posixpath.join(folder, path))
     inside = PAGES.get(place) or (place[5:] if place.startswith("docs/") else None)
     if inside is None:
-        return text if "`" in text or text == place else f"{text} (`{place}`)"
+        bare = text.strip("`")
+        return f"`{place}`" if place.endswith(bare) else f"{text} (`{place}`)"
     way = posixpath.relpath(inside, posixpath.dirname(page) or ".")
     return f"{picture}[{text}]({way}{'#' + anchor if anchor else ''})"
 
