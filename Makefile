@@ -4,7 +4,7 @@
 PYTHON_OF_VENV := .venv/bin/python
 INSTALL := -m pip install -qq --disable-pip-version-check --no-input --no-deps --no-build-isolation
 
-.PHONY: help setup demo test test-mujoco4 test-wheel lint bench fuzz lock clean system-packages
+.PHONY: help setup demo test test-mujoco4 test-wheel lint docs bench fuzz lock clean system-packages
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1|\2/p' Makefile | awk -F'|' '{printf "%-20s %s\n", $$1, $$2}'
@@ -30,6 +30,10 @@ lint: .venv/.complete  ## check style, format, types and layers
 	@.venv/bin/mypy
 	@.venv/bin/lint-imports --no-cache --no-logo
 
+docs: .venv-docs/.complete  ## build the pages of docs/ into site/, and run the notebooks
+	@NO_MKDOCS_2_WARNING=1 .venv-docs/bin/mkdocs build --strict --quiet $(ARGS)
+	@echo "Ready: site/index.html"
+
 bench: .venv/.complete  ## measure how near the limit all runs; ARGS=--quick for a step only
 	@$(PYTHON_OF_VENV) benchmarks/speed.py $(ARGS)
 
@@ -40,7 +44,7 @@ lock:  ## write the lock files anew; ARGS=--upgrade takes the newest packages
 	@sh scripts/lock.sh $(ARGS)
 
 clean:  ## remove environments, caches and builds
-	@rm -rf .venv .venv-* dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf .venv .venv-* dist build site .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 system-packages:
@@ -53,6 +57,10 @@ system-packages:
 
 .venv-mujoco4/.locked: requirements-mujoco4.lock
 	@sh scripts/environment.sh .venv-mujoco4 requirements-mujoco4.lock
+	@touch $@
+
+.venv-docs/.locked: requirements-docs.lock
+	@sh scripts/environment.sh .venv-docs requirements-docs.lock
 	@touch $@
 
 %/.complete: %/.locked pyproject.toml
