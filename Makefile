@@ -4,7 +4,7 @@
 PYTHON_OF_VENV := .venv/bin/python
 INSTALL := -m pip install -qq --disable-pip-version-check --no-input --no-deps --no-build-isolation
 
-.PHONY: help setup demo test test-mujoco4 lint bench fuzz lock clean system-packages
+.PHONY: help setup demo test test-mujoco4 test-wheel lint docs bench fuzz lock clean system-packages
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1|\2/p' Makefile | awk -F'|' '{printf "%-20s %s\n", $$1, $$2}'
@@ -21,14 +21,21 @@ test: system-packages .venv/.complete  ## run the tests, a process on each core
 test-mujoco4: system-packages .venv-mujoco4/.complete  ## run the tests with MuJoCo 4
 	@.venv-mujoco4/bin/python -m pytest -n auto --dist loadfile $(ARGS)
 
+test-wheel: .venv/.complete  ## install the wheel in an empty environment and run its demo; ARGS=python3.13
+	@sh scripts/try_wheel.sh $(ARGS)
+
 lint: .venv/.complete  ## check style, format, types and layers
 	@.venv/bin/ruff check $(ARGS)
 	@.venv/bin/ruff format --check
 	@.venv/bin/mypy
 	@.venv/bin/lint-imports --no-cache --no-logo
 
-bench: .venv/.complete  ## measure the speed of the twin
-	@$(PYTHON_OF_VENV) benchmarks/twin.py $(ARGS)
+docs: .venv-docs/.complete  ## build the pages of docs/ into site/, and run the notebooks
+	@NO_MKDOCS_2_WARNING=1 .venv-docs/bin/mkdocs build --strict --quiet $(ARGS)
+	@echo "Ready: site/index.html"
+
+bench: .venv/.complete  ## measure how near the limit all runs; ARGS=--quick for a step only
+	@$(PYTHON_OF_VENV) benchmarks/speed.py $(ARGS)
 
 fuzz: .venv/.complete  ## read 200 000 damaged files; ARGS="--cases 5000 --reader robot" for fewer
 	@$(PYTHON_OF_VENV) tests/fuzz $(ARGS)
@@ -37,7 +44,7 @@ lock:  ## write the lock files anew; ARGS=--upgrade takes the newest packages
 	@sh scripts/lock.sh $(ARGS)
 
 clean:  ## remove environments, caches and builds
-	@rm -rf .venv .venv-* dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf .venv .venv-* dist build site .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 system-packages:
@@ -50,6 +57,10 @@ system-packages:
 
 .venv-mujoco4/.locked: requirements-mujoco4.lock
 	@sh scripts/environment.sh .venv-mujoco4 requirements-mujoco4.lock
+	@touch $@
+
+.venv-docs/.locked: requirements-docs.lock
+	@sh scripts/environment.sh .venv-docs requirements-docs.lock
 	@touch $@
 
 %/.complete: %/.locked pyproject.toml

@@ -1,4 +1,4 @@
-"""Hold the handle against a hand: a PID law on the pose, shared among eight cables that only pull.
+"""Hold the platform against a hand: a PID law on the pose, shared among eight pulling cables.
 
     w = K_p e + K_i ∫e dt - K_d v + (0, 0, m g, 0, 0, 0)      wrench to give [N, N m]
     T = t₀ + W⁺ (w - W t₀)                                    tensions nearest to t₀
@@ -54,7 +54,7 @@ class Controller:
 
 
 def hold(seconds=5.0, seed=0, task="hold"):
-    """Distance of the handle from its target [m] and reward, one each control step."""
+    """Distance of the platform from its target [m] and reward, one each control step."""
     env = load_environment(task, random=seed, privileged=True)  # the pose is given to it
     control, step, history = Controller(), env.reset(), []
     for _ in range(round(seconds / CONTROL_TIMESTEP)):

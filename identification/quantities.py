@@ -12,7 +12,9 @@ _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 _TAKE = ("N", "m", "s", "A", "g", "V", "W", "Hz")  # units that take a prefix where they lead
 _SMALL = ("rad",)  # those that take small ones only: nobody says kiloradian
 _LEAST = 1e-3  # smaller numbers, in units without a prefix, are said as powers of ten
+_LARGE = 1e6  # a larger value in a table is a power of ten
 _FINEST = 1e-5  # a smaller std is said as a power of ten
+_MOST = 15  # decimals, beyond which a number of a computer has none
 _DIGITS = 3  # of a value whose std is not known
 HELD = 2  # digits of the error of a model that are said (docs/identification.md)
 
@@ -35,12 +37,31 @@ def quantity(value: float, std: float = float("nan"), unit: str = "") -> str:
     known = isfinite(std) and std > 0
     factor, unit = _scale(max(abs(value), std if known else 0.0), unit, exact=std == 0)
     value, std = value / factor, std / factor
-    if known and std < _FINEST:
-        return f"{value:.6g} ± {std:.1e} {unit}".strip()
     if not known:
         return f"{_plain(value, _DIGITS)} {unit}".strip()
-    places = max(0, _decimals(std))
+    places = min(max(0, _decimals(std)), _MOST)
+    if std < _FINEST:
+        return f"{value:.{places}f} ± {std:.1e} {unit}".strip()
     return f"{value:.{places}f} ± {std:.{places}f} {unit}".strip()
+
+
+def matched(value: float, std: float, sign: str = "") -> tuple[str, str]:
+    """A value and its std for two columns of a table: the value has the digits of the std.
+
+    Args:
+        value: in its unit.
+        std: in the same unit; where it is not finite, or zero, the value has six digits.
+        sign: "+" where the sign is always written.
+    """
+    if not isfinite(std):
+        return f"{value:{sign}.6g}", "unknown"
+    if std <= 0:
+        return f"{value:{sign}.6g}", f"{std:.2g}"
+    places = _decimals(std)
+    if std < _FINEST or abs(value) >= _LARGE:  # a power of ten, with the std's digits
+        lead = floor(log10(max(abs(value), std)))
+        return f"{value:{sign}.{min(max(0, lead + places), _MOST)}e}", f"{std:.1e}"
+    return f"{value:{sign}.{max(0, places)}f}", f"{std:.{max(0, places)}f}"
 
 
 def probability(p: float) -> str:

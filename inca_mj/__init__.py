@@ -1,4 +1,4 @@
-"""The digital twin of the INCA 6D: eight elastic cables, eight motors with drums, a handle.
+"""The digital twin of the INCA 6D: eight elastic cables, eight motors with drums, a platform.
 
 The public names. Each is imported when it is first asked for, so that `inca --help` is quick.
 """

@@ -7,19 +7,38 @@ from pathlib import Path
 from identification.errors import InputError
 
 _HERE = Path(__file__).resolve().parent
-# In a wheel the models lie inside the package, in a checkout beside it, where a user looks first.
-_FOLDERS = (_HERE / "models", _HERE.parent / "models")
 
 
 def model_path(name: str = "inca6d.xml") -> Path:
     """The path of a model that comes with the program, installed or in a checkout.
 
+    Args:
+        name: of the file.
+
     Raises:
         InputError: the file is not there: the installation is not whole.
     """
-    for folder in _FOLDERS:
-        if (folder / name).is_file():
-            return folder / name
+    return _shipped("models", name)
+
+
+def example_path(name: str = "log.csv") -> Path:
+    """The path of an example that comes with the program, installed or in a checkout.
+
+    Args:
+        name: of the file; a wheel holds `log.csv` with its `log.toml`, a checkout holds more.
+
+    Raises:
+        InputError: the file is not there: the installation is not whole.
+    """
+    return _shipped("examples", name)
+
+
+def _shipped(folder: str, name: str) -> Path:
+    """In a wheel the folders lie in the package, in a checkout beside it, where a user looks."""
+    places = (_HERE / folder, _HERE.parent / folder)
+    for place in places:
+        if (place / name).is_file():
+            return place / name
     raise InputError(
-        f"the model {name} is in neither {' nor '.join(map(str, _FOLDERS))}; install inca-mj again"
+        f"the file {name} is in neither {' nor '.join(map(str, places))}; install inca-mj again"
     )

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Write both lock files anew from pyproject.toml; `--upgrade` takes the newest packages.
+# Write the lock files anew from pyproject.toml; `--upgrade` takes the newest packages.
 set -eu
 tools=.venv-lock
 [ -x $tools/bin/uv ] || { "${PYTHON:-python3}" -m venv $tools && $tools/bin/pip install -q uv; }
@@ -18,3 +18,8 @@ sed -n 's/^\([a-z0-9.-]*==[^\\]*\).*/\1/p' requirements.lock | grep -v '^mujoco=
 echo 'mujoco==4.0.0' >>$pins
 rm -f requirements-mujoco4.lock
 compile --group test --group build --constraint $pins --output-file requirements-mujoco4.lock
+
+# The site of the documents: the same packages, and those that build pages and run notebooks.
+sed -i 's/^mujoco==.*/mujoco==3.17.0/' $pins
+rm -f requirements-docs.lock
+compile --extra docs --group build --constraint $pins --output-file requirements-docs.lock

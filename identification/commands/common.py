@@ -8,7 +8,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, is_dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+import tyro
 
 
 @dataclass(frozen=True)
@@ -17,7 +19,7 @@ class Output:
 
     json: bool = False
     """Print one JSON object on stdout and nothing else."""
-    out: Path | None = None
+    out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     """Folder for the results, result.json among them; made when missing."""
     quiet: bool = False
     """Say nothing of the progress."""

@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+import tyro
 
 from identification.commands.common import (
     keep_if_possible,
@@ -31,7 +33,7 @@ class Discover(OnRobot):
         python -m identification discover robot.toml a.csv b.csv --confirm c.csv --out out/mine
     """
 
-    options: Path | None = None
+    options: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None
     """TOML file with judgement constants, such as min_proof_t = 3.0 (docs/discovery.md)."""
 
     def run(self) -> int:

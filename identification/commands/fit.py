@@ -48,8 +48,10 @@ class Fit(OnRobot):
 
 
 def _text(record: dict[str, Any]) -> str:
+    from identification.quantities import matched
+
     cells = [
-        (name, f"{p['value']:.6g}", "unknown" if p["std"] is None else f"{p['std']:.2g}", p["unit"],
+        (name, *matched(p["value"], float("inf") if p["std"] is None else p["std"]), p["unit"],
          f"{p['initial']:.6g}", "at bound" if p["at_bound"] else "")
         for name, p in record["parameters"].items()
     ]  # fmt: skip

@@ -12,7 +12,7 @@ import tyro
 from identification.commands.common import Output, conclude, output_field, table
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from identification.linear.system import LinearSystem
 
@@ -34,7 +34,7 @@ class Linearize:
     """Where along the log's free run; without a time, at the rest nearest to the start."""
     input: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME=VALUE")] = ()
     """Inputs that act at rest, by actuator; zero where not given."""
-    rate: float | None = None
+    rate: Annotated[float | None, tyro.conf.arg(metavar="HZ")] = None
     """Samples a second of the discrete model [Hz]; that of the log when not given."""
     trust: Annotated[tuple[str, ...], tyro.conf.arg(metavar="WORD")] = ()
     """What you know better than a check of the log: sensors, start, steps, time, units, wiring."""
@@ -64,8 +64,9 @@ class Linearize:
                 for t, s in zip(points.time.tolist(), systems, strict=True)
             ]
         }
+        units = {} if log is None else log.units
         text = "\n".join(said(s, label) for s, label in zip(systems, labels, strict=True))
-        conclude(self, record, text, partial(keep, systems, labels, rate))
+        conclude(self, record, text, partial(keep, systems, labels, rate, units))
         return 0
 
 
@@ -82,14 +83,18 @@ def said(system: LinearSystem, label: str) -> str:
 
 
 def keep(
-    systems: Sequence[LinearSystem], labels: Sequence[str], rate: float | None, out: Path
+    systems: Sequence[LinearSystem],
+    labels: Sequence[str],
+    rate: float | None,
+    units: Mapping[str, str],
+    out: Path,
 ) -> None:
     """Write the systems for Python and MATLAB, figures and the one-file report into a folder."""
     from identification.linear.modes import modes
     from identification.report.linear_sections import linear_sections, slowest_and_fastest
     from identification.report.page import save_figures, write_report
 
-    sections = linear_sections(systems, labels, rate)
+    sections = linear_sections(systems, labels, rate, units)
     save_systems(systems, rate, out)
     save_figures(sections, out)
     verdict = [slowest_and_fastest(modes(systems[0]))]

@@ -91,17 +91,28 @@ def _sentence(text: str, name: str, arguments: Sequence[str], commands: dict[str
             return str(unknown_name(f"option of {name} {command}:", found[1], options))
         return f"{found[1]} is one argument too many{see}"
     if found := re.search(r"Error parsing (\S+?):", text):
-        kind = re.search(rf"\b({'|'.join(_KINDS)})\b", text)
-        wanted = _KINDS[kind[1]] if kind else "another value"
-        return f"{found[1]} is {_given(found[1], arguments)!r}; give {wanted}{see}"
+        given = _given(found[1], arguments)
+        if given.endswith((".csv", ".mat")) and "log" in _options(commands[command]):
+            return f"{found[1]} is {given!r}; write a log behind --log, as --log {given}{see}"
+        return f"{found[1]} is {given!r}; give {_wanted(text)}{see}"
     if found := re.search(r"invalid choice (.+) for argument '([^']+)'.*\((.+)\)", text):
-        words = ", ".join(re.findall(r"'([^']*)'", found[3]))
+        words = ", ".join(w for w in re.findall(r"'([^']*)'", found[3]) if w != "None")
         return f"{found[2]} is {found[1]}; give one of {words}"
     if found := re.search(r"Missing value for argument '([^']+)'", text):
         return f"{found[1]} has no value; give one behind it{see}"
     if found := re.search(r"Missing from [^:]+: (\S+)", text):
         return f"{found[1]} is missing; write {name} {command} {found[1]}{see}"
     return f"{text.partition('. ')[0].rstrip('.')}{see}"
+
+
+def _wanted(text: str) -> str:
+    """What an option takes: in words where it is one thing, else the words of its help."""
+    taken = re.search(r"Argument helptext: --\S+ ((?:[A-Z]+ )+)", text)
+    words = taken[1].split() if taken else []
+    if len(words) > 1 and len(words[-1]) > 1:
+        return " ".join(words)
+    kind = re.search(rf"\b({'|'.join(_KINDS)})\b", text.replace("to float:", "FLOAT"))
+    return _KINDS[kind[1]] if kind else " ".join(words) or "another value"
 
 
 def _unboxed(text: str) -> str:

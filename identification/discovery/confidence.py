@@ -80,8 +80,8 @@ def _name(
         parameters=collect_parameters(task, final, mine),
         confidence=float(own * min(1.0, max(0.0, explained))),
         rivals=tuple(
-            Rival(r, float(p), cosine)
-            for r, p, cosine in zip(rivals, of_rivals, cosines, strict=True)
+            Rival(m.candidates[-1], float(p), cosine, m.refit.point.values)
+            for m, p, cosine in zip(others, of_rivals, cosines, strict=True)
         ),
         one_of=bool(others and of_rivals.max() > options.set_confidence),
         gain=effect.gain,

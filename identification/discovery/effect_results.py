@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -60,11 +60,14 @@ class Rival:
         confidence: probability that it is the right one of those considered.
         alike: cosine between its sensitivity and that of the named effect, with the nominal
             model's parameters projected out.
+        values: of all parameters of the fit with it in the named effect's place, by name, in their
+            units.
     """
 
     candidate: Candidate
     confidence: float
     alike: float
+    values: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -102,18 +102,24 @@ def gear_numbers(
     """
     series, slip = np.zeros((5, n)), np.zeros(n)
     for effect in (e for e in effects if e.state):
-        numbers = [np.broadcast_to(x, n) for x in numbers_at(effect, joint, values)]
+        numbers = [_each(x, n) for x in numbers_at(effect, joint, values)]
         (law,) = effect.hooks.values()
         told = law.py_func(Gear(inertia), tuple(numbers))  # type: ignore[attr-defined]
         if effect.state == "grip":
             slip = slip + told
             continue
-        here, told = numbers[0] != 0, np.array([np.broadcast_to(x, n) for x in told])
+        here, told = numbers[0] != 0, np.array([_each(x, n) for x in told])
         series[:2] += told[:2]
         for k in (2, 3, 4):
             series[k] = np.maximum(series[k], np.where(here, told[k], 0.0))
     c, gap, J, zeta, side = series
     return GearNumbers(c=c, gap=gap, J=J, zeta=zeta, side=side, slip=slip)
+
+
+def _each(x: float | np.ndarray, n: int) -> np.ndarray:
+    """One number or n of them as n, shape (n,)."""
+    x = np.asarray(x)
+    return x if x.shape == (n,) else np.full(n, x)  # numpy's broadcast_to takes ten times as long
 
 
 def deflected(g: GearNumbers, s: np.ndarray, axis: Axis) -> np.ndarray:

@@ -65,13 +65,12 @@ class Whitener:
             return np.array(e)
         columns = e.reshape(*e.shape[:2], -1)
         z = np.zeros((self.A.shape[1], columns.shape[2]))
-        out = np.empty_like(columns)
-        for k in range(len(columns)):
-            innovation = columns[k] - self.C @ z
-            out[k] = self.L[k] @ innovation
+        innovations = np.empty_like(columns)
+        for k, innovation in enumerate(innovations):
+            np.subtract(columns[k], self.C @ z, out=innovation)
             if k + 1 < len(columns):
                 z = self.A[k] @ (z + self.K[k] @ innovation)
-        return out.reshape(e.shape)
+        return np.asarray(self.L[: len(columns)] @ innovations).reshape(e.shape)
 
 
 def augment(
@@ -106,15 +105,16 @@ def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Wh
     if noise.ratio == 0:
         return Whitener(np.empty((0, 0, 0)), plant.C, np.empty(0), np.empty(0), 0.0)
     A, C, P, Q = augment(plant, noise, sampling_time)
-    K, L, log_determinant = np.empty((n + 1, len(P), ny)), np.empty((n + 1, ny, ny)), 0.0
+    K, L = np.empty((n + 1, len(P), ny)), np.empty((n + 1, ny, ny))
+    one, diagonals = np.eye(ny), np.empty((n + 1, ny))
     for k in range(n + 1):
         PC = P @ C.T
-        S = C @ PC + np.eye(ny)
-        factor = dpotrf(S, lower=1)[0]  # numpy's own takes ten times as long for 8 outputs
-        L[k] = dtrtri(factor, lower=1)[0]
-        K[k] = PC @ L[k].T @ L[k]
-        log_determinant += 2 * np.log(np.diag(factor)).sum()
+        factor = dpotrf(C @ PC + one, lower=1)[0]  # numpy's own takes ten times as long
+        L_k, K_k = L[k], K[k]
+        L_k[:] = dtrtri(factor, lower=1)[0]
+        K_k[:] = PC @ L_k.T @ L_k
+        diagonals[k] = factor.diagonal()
         if k < n:
-            P = A[k] @ (P - K[k] @ PC.T) @ A[k].T + Q[k]
+            P = A[k] @ (P - K_k @ PC.T) @ A[k].T + Q[k]
             P = (P + P.T) / 2
-    return Whitener(A, C, K, L, log_determinant)
+    return Whitener(A, C, K, L, sum((2 * np.log(diagonals).sum(axis=1)).tolist()))

@@ -18,7 +18,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import t as student
 
-from identification.discovery.findings.evidence import ShiftedRecord
+from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.errors import InputError

@@ -7,14 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.stats import ttest_ind
 
-from identification.discovery.findings.evidence import (
+from identification.discovery.findings.finding import Finding, FindingKind
+from identification.discovery.findings.records_evidence import (
     DifferentRecord,
     RemainingError,
     ShiftedRecord,
     UnprovenEffect,
     WorseFit,
 )
-from identification.discovery.findings.finding import Finding, FindingKind
 from identification.prediction.clocks import told_shifts
 from identification.prediction.result import (
     RefittedEffect,

@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 
 from identification.discovery.effect_results import Gap
-from identification.discovery.findings.evidence import ShiftedRecord
 from identification.discovery.findings.finding import Finding
+from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate, Effect
 from identification.prediction.model import WindowModel

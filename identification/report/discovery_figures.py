@@ -13,6 +13,7 @@ from identification.report.style import GREY, INK, MEASURED, SIMULATED, STYLE, l
 
 BEFORE, AFTER = SIMULATED, MEASURED
 BAND = "#C9CED6"
+GAIN = "gain: twice the log likelihood that it adds, at once"
 FAR = 20.0  # a bar shorter than another by this factor needs a logarithmic axis
 
 
@@ -40,7 +41,7 @@ def gap_figure(
     cuts = np.flatnonzero(np.diff(time) > 1.5 * step) + 1
     shown = np.insert(time, cuts, np.nan)
     with matplotlib.rc_context(STYLE):
-        figure = Figure((9.0, 0.7 + 1.35 * rows), layout=ConstrainedLayoutEngine(wspace=0.05))
+        figure = Figure((7.0, 0.9 + 1.1 * rows), layout=ConstrainedLayoutEngine(wspace=0.05))
         axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         panels = [axes[row, column] for column in range(columns) for row in range(rows)]
         for k, ax in enumerate(panels):
@@ -136,13 +137,18 @@ def rms_figure(
     return figure
 
 
-def gains_figure(labels: Sequence[str], gains: np.ndarray, named: Sequence[bool]) -> Figure:
+def gains_figure(
+    labels: Sequence[str], gains: np.ndarray, named: Sequence[bool], what: str = GAIN
+) -> Figure:
     """Horizontal bars of how much each candidate would explain, the best on top.
+
+    The axis is logarithmic where the bars of several candidates would vanish.
 
     Args:
         labels: of the candidates.
-        gains: twice the log likelihood that each adds.
+        gains: what each adds.
         named: which were named.
+        what: they add, as the axis says it.
     """
     place = np.arange(len(labels))[::-1]
     with matplotlib.rc_context(STYLE):
@@ -150,10 +156,15 @@ def gains_figure(labels: Sequence[str], gains: np.ndarray, named: Sequence[bool]
         ax = figure.subplots()
         shown = np.maximum(np.asarray(gains, float), 0.0)
         colours = [AFTER if is_named else GREY for is_named in named]
+        small = (shown > 0) & (FAR * shown < shown.max(initial=0.0))
+        if small.sum() > 1:  # bars that would vanish
+            ax.set_xscale("log")
+            ax.set_xlim(0.5 * shown[shown > 0].min(), 1.5 * shown.max())
+            ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
         ax.barh(place, shown, 0.7, color=colours)
         ax.set_yticks(place, list(map(literal, labels)), fontsize=8)
         ax.grid(axis="y", visible=False)
-        ax.set_xlabel("gain: twice the log likelihood that it adds, at once")
+        ax.set_xlabel(what)
         if any(named):
             handles = [matplotlib.patches.Patch(color=c) for c in (AFTER, GREY)]
             figure.legend(handles, ["named", "not named"], loc="outside upper center", ncols=2)

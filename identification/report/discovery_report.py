@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from identification.discovery.result import Discovery
+from identification.logs.joined import records_of
 from identification.report.discovery_sections import gap_section, rivals_section, where_section
 from identification.report.discovery_tables import (
     diff_section,
@@ -13,6 +15,7 @@ from identification.report.discovery_tables import (
     unseen_section,
 )
 from identification.report.discovery_verdict import discovery_verdict
+from identification.report.law_section import LAWS, law_sections
 from identification.report.page import Section, save_figures, write_report
 
 
@@ -25,6 +28,7 @@ def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
     """
     return [
         gap_section(found),
+        *law_sections(found),
         where_section(found),
         rivals_section(found),
         diff_section(found, files),
@@ -53,6 +57,8 @@ def write_discovery_report(
         InputError: a file cannot be written.
     """
     shown = [*discovery_sections(found, files), *sections]
+    if all(section.video is None for section in shown):  # the law stands where a film would
+        shown = [replace(s, first=s.first or s.title == LAWS) for s in shown]
     save_figures(shown, folder)
     return write_report(
         folder / "report.html",
@@ -60,4 +66,5 @@ def write_discovery_report(
         [*discovery_verdict(found), *sentences],
         shown,
         good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
+        data=[log.name for _, log in records_of(found.log)],
     )

@@ -9,6 +9,7 @@ import numpy as np
 from identification.discovery.result import Discovery
 from identification.discovery.scoring.scores import Score
 from identification.logs.log import halves
+from identification.quantities import HELD, alike, held
 from identification.report.discovery_figures import (
     force_figure,
     gains_figure,
@@ -45,19 +46,21 @@ def gap_section(found: Discovery) -> Section:
     gaps = [("nominal model, fitted", found.before)]
     if after is not None:
         gaps.append(("with what was missing", found.after))
+    rms = alike([gap.rms for _, gap in gaps], unit, HELD)
     fits = [g.fit_percent[np.isfinite(g.fit_percent)] for _, g in gaps]
     return Section(
         "The gap on unseen data",
         "Measured minus simulated, from the inputs alone, over samples that no fit has seen. The"
         " grey band is what the sensors, and disturbances that were not logged, do to a model that"
         " lacks nothing.",
+        first=True,
         figures=(("Error on unseen data, before and after", figure),),
         table=Table(
-            ("model", f"rms [{unit}]" if unit else "rms", "times the noise", "mean fit [%]"),
+            ("model", "rms", "times the noise", "mean fit [%]"),
             tuple(
-                (name, gap.rms, _ratio(gap.rms, floor_rms(found)),
+                (name, size, _ratio(gap.rms, floor_rms(found)),
                  float(fit.mean()) if len(fit) else None)
-                for (name, gap), fit in zip(gaps, fits, strict=True)
+                for (name, gap), size, fit in zip(gaps, rms, fits, strict=True)
             ),
         ),
     )  # fmt: skip
@@ -145,5 +148,5 @@ def _rms(e: np.ndarray) -> np.ndarray:
     return np.asarray(np.sqrt(np.mean(e**2, axis=0)))
 
 
-def _ratio(rms: float, floor: float) -> float | None:
-    return rms / floor if floor > 0 else None
+def _ratio(rms: float, floor: float) -> str | None:
+    return held(rms / floor) if floor > 0 else None

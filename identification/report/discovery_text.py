@@ -18,6 +18,7 @@ from identification.report.discovery_verdict import (
 )
 from identification.report.effect_words import describe_chance, describe_effect, describe_rejected
 from identification.report.finding_words import describe_finding
+from identification.report.fitted_values import shown_values, unknown_shares
 from identification.report.record_gaps import record_lines
 from identification.report.records_text import records_text
 from identification.report.records_values import text_table
@@ -81,12 +82,17 @@ def _gap(found: Discovery) -> list[str]:
 
 
 def _values(found: Discovery) -> list[str]:
-    """The parameters, each as the model had it, and as it was fitted: value ± std and unit."""
+    """The parameters, each as the model had it, and as it was fitted; few of single parts."""
     found_table = parameters_section(found).table
     if found_table is None or not found_table.rows:
         return []
     rows = [[str(cell) for cell in row] for row in found_table.rows]
-    return ["fitted values:", *text_table(found_table.columns, rows)]
+    shown, rest = shown_values(rows, unknown_shares(found.final))
+    return [
+        "fitted values:",
+        *text_table(found_table.columns, shown),
+        *([f"  {rest}"] if rest else []),
+    ]
 
 
 def _detectable(found: Discovery) -> list[str]:

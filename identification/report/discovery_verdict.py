@@ -15,6 +15,7 @@ from identification.report.effect_words import (
     describe_effect,
     describe_outside,
     describe_sizes,
+    phrase,
 )
 from identification.report.finding_words import describe_finding, sentence
 
@@ -54,7 +55,7 @@ def nothing(found: Discovery) -> str:
         said += f" The log would have shown, in 9 cases of 10, effects as small as: {listed}."
     said += hiding(found)
     if unseen:
-        names = _unique(d.candidate.effect.phrase or d.candidate.effect.name for d in unseen)
+        names = _unique(phrase(d.candidate.effect) for d in unseen)
         said += f" No plausible size would show in it of these: {'; '.join(names)}."
     return said
 

@@ -9,7 +9,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
 from identification.discovery.scoring.scores import Score
 from identification.discovery.scoring.significance import correct_p_value
-from identification.effects.effect import Candidate
+from identification.effects.effect import Candidate, Effect
 from identification.quantities import probability, quantity
 
 FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
@@ -17,8 +17,13 @@ FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
 
 def describe_effect(candidate: Candidate) -> str:
     """An effect and its place in words."""
-    said = candidate.effect.phrase or candidate.effect.name.replace("_", " ")
-    return f"{said}, {candidate.where}"
+    return f"{phrase(candidate.effect)}, {candidate.where}"
+
+
+def phrase(effect: Effect) -> str:
+    """An effect in words without a colon, because sentences have their own before it."""
+    said = effect.phrase or effect.name.replace("_", " ")
+    return said.replace(": ", " – ", 1)
 
 
 def describe_sizes(found: NamedEffect | RejectedEffect) -> str:

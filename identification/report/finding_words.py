@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from identification.discovery.findings import evidence as records
+from identification.discovery.findings import evidence, records_evidence
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.quantities import alike, probability, quantity
 from identification.report.effect_words import describe_chance, describe_effect, describe_sizes
@@ -16,6 +16,7 @@ FOLLOWED = {  # by an error of the inputs: keys of `input_error.list_families`
     "own input": "its own input",
     "output": "its output",
     "output rate": "the rate of its output",
+    "output and direction": "its output, with another sign in each direction",
 }
 REGRESSORS = {  # of a missing force: keys of `location.list_regressors`
     "time": "time",
@@ -40,7 +41,7 @@ def sentence(clause: str) -> str:
     return clause[:1].upper() + clause[1:] + end
 
 
-def _worst_output(e: records.WorstOutput) -> str:
+def _worst_output(e: evidence.WorstOutput) -> str:
     return (
         f"on the fitted samples the error is largest on {e.output}: {quantity(e.rms, unit=e.unit)}"
         f" rms, {100 * e.share:.0f} % of the power over all outputs, {e.noise_ratio:.1f} times the"
@@ -48,15 +49,15 @@ def _worst_output(e: records.WorstOutput) -> str:
     )
 
 
-def _worst_interval(e: records.WorstInterval) -> str:
+def _worst_interval(e: evidence.WorstInterval) -> str:
     return f"it is largest from {e.start:.1f} to {e.end:.1f} s ({100 * e.share:.0f} % of its power)"
 
 
-def _median_frequency(e: records.MedianFrequency) -> str:
+def _median_frequency(e: evidence.MedianFrequency) -> str:
     return f"half of its power lies below {e.frequency:.2g} Hz"
 
 
-def _missing_force(e: records.ForceEvidence) -> str:
+def _missing_force(e: evidence.ForceEvidence) -> str:
     sizes = " and ".join(f"{rms:.2g} {unit}" for rms, unit in zip(e.rms, e.units, strict=True))
     said = (
         f"generalised forces of {sizes} rms on {e.where} would explain {100 * e.share:.0f} % of it"
@@ -67,7 +68,7 @@ def _missing_force(e: records.ForceEvidence) -> str:
     return f"{said}, and {follows}"
 
 
-def _input_hold(e: records.InputHold) -> str:
+def _input_hold(e: evidence.InputHold) -> str:
     then, now = alike([e.rms, e.rms_now], e.unit)
     return (
         f"if the inputs {HOLDS[e.hold]}, they would have to err by only {then} rms and not by {now}"
@@ -75,31 +76,31 @@ def _input_hold(e: records.InputHold) -> str:
     )
 
 
-def _spectral_line(e: records.SpectralLine) -> str:
+def _spectral_line(e: evidence.SpectralLine) -> str:
     return (
         f"the innovations of {e.output} have a line at {e.frequency:.2f} Hz that no candidate"
         f" explains (chance {probability(e.p_value)})"
     )
 
 
-def _noisy_output(e: records.NoisyOutput) -> str:
+def _noisy_output(e: evidence.NoisyOutput) -> str:
     return f"the output {e.output} is noisier than the others (chance {probability(e.p_value)})"
 
 
-def _correlated_innovations(e: records.CorrelatedInnovations) -> str:
+def _correlated_innovations(e: evidence.CorrelatedInnovations) -> str:
     return (
         f"the innovations are not white: {100 * e.share:.0f} % of their power follows from the"
         f" samples before (chance {probability(e.p_value)})"
     )
 
 
-def _parameters_at_limit(e: records.ParametersAtLimit) -> str:
+def _parameters_at_limit(e: evidence.ParametersAtLimit) -> str:
     names = " and ".join(e.parameters)
     end = f"parameters {names} end" if len(e.parameters) > 1 else f"parameter {names} ends"
     return f"the {end} at the limit of what is plausible, by the nominal values that were given"
 
 
-def _large_input_error(e: records.LargeInputError) -> str:
+def _large_input_error(e: evidence.LargeInputError) -> str:
     return (
         f"the inputs would have to err by {quantity(e.rms, unit=e.unit)} rms beside what the log"
         f" says, {100 * e.share:.0f} % of their own motion, for {e.correlation_time:.2g} s at a"
@@ -107,7 +108,7 @@ def _large_input_error(e: records.LargeInputError) -> str:
     )
 
 
-def _robot_change(e: records.RobotChange) -> str:
+def _robot_change(e: evidence.RobotChange) -> str:
     return (
         f"from about {e.time:.3g} s on the unseen samples are predicted worse than the fitted ones,"
         f" with errors {e.ratio:.3g} times as large one sample ahead: the robot changed, or it does"
@@ -115,7 +116,7 @@ def _robot_change(e: records.RobotChange) -> str:
     )
 
 
-def _structured_input_error(e: records.StructuredInputError) -> str:
+def _structured_input_error(e: evidence.StructuredInputError) -> str:
     return (
         f"an unlogged error of the inputs, {quantity(e.rms, unit=e.unit)} rms, is not random:"
         f" it follows {FOLLOWED[e.regressor]}, most of all on {e.input}, and with it the mean"
@@ -123,7 +124,7 @@ def _structured_input_error(e: records.StructuredInputError) -> str:
     )
 
 
-def _doubtful_effect(e: records.DoubtfulEffect) -> str:
+def _doubtful_effect(e: evidence.DoubtfulEffect) -> str:
     r = e.rejected
     return (
         f"{describe_effect(r.candidate)}, {describe_sizes(r)}, explains the fitted samples"
@@ -132,7 +133,7 @@ def _doubtful_effect(e: records.DoubtfulEffect) -> str:
     )
 
 
-def _oversized_effect(e: records.OversizedEffect) -> str:
+def _oversized_effect(e: evidence.OversizedEffect) -> str:
     units = {s.name: s.unit for s in e.score.candidate.effect.sizes}
     values = dict(zip(units, e.score.size, strict=True))
     said = ", ".join(
@@ -146,14 +147,14 @@ def _oversized_effect(e: records.OversizedEffect) -> str:
     )
 
 
-def _different_record(e: records.DifferentRecord) -> str:
+def _different_record(e: records_evidence.DifferentRecord) -> str:
     return (
         f"record {e.record} is predicted {e.ratio:.2g} times worse than the others (rms of windows,"
         " geometric means): something is different in it; look at it, or leave it out"
     )
 
 
-def _shifted_record(e: records.ShiftedRecord) -> str:
+def _shifted_record(e: records_evidence.ShiftedRecord) -> str:
     which, shift = "later" if e.shift > 0 else "earlier", quantity(abs(e.shift), e.std, "s")
     return (
         f"record {e.record} looks as if its inputs acted {shift} {which} than their time stamps"
@@ -162,14 +163,14 @@ def _shifted_record(e: records.ShiftedRecord) -> str:
     )
 
 
-def _worse_fit(e: records.WorseFit) -> str:
+def _worse_fit(e: records_evidence.WorseFit) -> str:
     return (
         "without effects the fitted values predicted unseen data worse than those of the model"
         f" (mean square {100 * e.rise:+.0f} %), so that the search began with the latter"
     )
 
 
-def _remaining_error(e: records.RemainingError) -> str:
+def _remaining_error(e: records_evidence.RemainingError) -> str:
     return (
         f"an error on unseen data that is {e.noise_ratio:.3g} times the sensors' noise is left, and"
         " no candidate explains it"
@@ -190,7 +191,7 @@ DOUBTS = {
 }
 
 
-def _unproven_effect(e: records.UnprovenEffect) -> str:
+def _unproven_effect(e: records_evidence.UnprovenEffect) -> str:
     return (
         f"{e.name.replace('_', ' ')}, {e.where}, predicts unseen data better on average (mean"
         f" square {-100 * e.fall:+.0f} %, t = {e.t:.1f}), but is not proven: {DOUBTS[e.doubt]}"

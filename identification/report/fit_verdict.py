@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from identification.estimation.identifiability import in_words
-from identification.quantities import held
+from identification.quantities import held, matched
 
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
@@ -67,10 +67,11 @@ def identifiable_sentences(fit: Fit) -> list[str]:
             " it."
         )
     for combination, value, std in fit.combinations:
-        error = f" ± {std:.2g}" if np.isfinite(std) else " (its std is not known)"
+        told, known = matched(value, std)
+        error = f" ± {known}" if np.isfinite(std) else " (its std is not known)"
         sentences.append(
             f"Of {' and '.join(combination.exponents)} only {combination} can be known from this"
-            f" log: {value:.6g}{error}; fix one of them."
+            f" log: {told}{error}; fix one of them."
         )
     if k := len(found.unresolved):
         count = f"{k} more" if found.symmetries else f"{felt}; {k}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import matplotlib
 import numpy as np
@@ -40,31 +40,47 @@ def eigenvalue_figure(systems: Sequence[LinearSystem], labels: Sequence[str]) ->
     return figure
 
 
-def response_figure(system: LinearSystem, discrete: LinearSystem | None = None) -> Figure:
-    """Gains of the outputs from the inputs with the same number, over frequency.
+def response_figure(
+    system: LinearSystem,
+    discrete: LinearSystem | None = None,
+    units: Mapping[str, str] | None = None,
+) -> Figure:
+    """Magnitude and phase of the outputs from the inputs with the same number, over frequency.
 
     Args:
         system: continuous.
         discrete: the same for inputs that are held, shown up to half its rate.
+        units: of inputs and outputs by name, as far as they are known.
     """
     rates = [m.frequency for m in modes(system) if m.frequency > 0] or [1.0]
     top = max(rates) * BEYOND
     f = np.geomspace(max(min(rates) / BEYOND, top / WIDEST), top, POINTS)
-    pairs = min(len(system.inputs), len(system.outputs), len(SERIES))
+    pairs = list(zip(system.outputs, system.inputs, SERIES, strict=False))
     with matplotlib.rc_context(STYLE):
-        figure = Figure((7.5, 3.4), layout="constrained")
-        axis = figure.subplots()
+        figure = Figure((7.5, 5.4), layout="constrained")
+        magnitude, phase = figure.subplots(2, 1, sharex=True)
         for of, style in ((system, "-"), (discrete, "--")):
-            if of is None:
+            at = f if of is None or of.sampling_time is None else f[f < 0.5 / of.sampling_time]
+            if of is None or not len(at):
                 continue
-            at = f if of.sampling_time is None else f[f < 0.5 / of.sampling_time]
-            gain = np.abs(of.response(at)) if len(at) else np.zeros((0, pairs, pairs))
-            for k in range(pairs):
-                name = f"{system.outputs[k]} / {system.inputs[k]}"
-                label = literal(name) if style == "-" else None
-                axis.loglog(at, gain[:, k, k], style, color=SERIES[k], lw=1, label=label)
-        axis.set(xlabel="frequency [Hz]", ylabel="gain")
+            G = of.response(at)
+            for k, (output, driven, color) in enumerate(pairs):
+                label = literal(f"{output} / {driven}") if style == "-" else None
+                magnitude.loglog(at, np.abs(G[:, k, k]), style, color=color, lw=1, label=label)
+                turned = np.degrees(np.unwrap(np.angle(G[:, k, k])))
+                phase.semilogx(at, turned, style, color=color, lw=1)
+        magnitude.set_ylabel(literal(f"magnitude [{_unit_of(pairs, units or {})}]"))
+        phase.set(xlabel="frequency [Hz]", ylabel="phase [°]")
         title = "dashed: inputs held between samples" if discrete is not None else ""
-        axis.set_title(title, loc="left", color=INK)
-        axis.legend(fontsize=7)
+        magnitude.set_title(title, loc="left", color=INK)
+        figure.legend(loc="outside lower center", ncols=4, fontsize=7)
     return figure
+
+
+def _unit_of(pairs: Sequence[tuple[str, str, str]], units: Mapping[str, str]) -> str:
+    """The unit that all pairs of output and input share, else what it is made of."""
+    told = {(units.get(output, ""), units.get(driven, "")) for output, driven, _ in pairs}
+    over, under = told.pop() if len(told) == 1 else ("", "")
+    if not (over and under):
+        return "unit of the output / unit of the input"
+    return f"{over}/({under})" if " " in under else f"{over}/{under}"

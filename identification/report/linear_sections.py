@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from identification.linear.minimal import Minimal, minimal
 from identification.linear.modes import Mode, modes
@@ -45,7 +45,10 @@ def minimal_sentence(small: Minimal, order: int) -> str:
 
 
 def linear_sections(
-    systems: Sequence[LinearSystem], labels: Sequence[str], rate: float | None
+    systems: Sequence[LinearSystem],
+    labels: Sequence[str],
+    rate: float | None,
+    units: Mapping[str, str] | None = None,
 ) -> list[Section]:
     """What a report says of linear systems at some operating points.
 
@@ -53,6 +56,7 @@ def linear_sections(
         systems: continuous.
         labels: what each operating point is called.
         rate: of the samples of the discrete form of the first one [Hz]; none when None.
+        units: of inputs and outputs by name, as far as they are known.
     """
     first = systems[0]
     held = None if rate is None else first.discrete(rate)
@@ -67,7 +71,7 @@ def linear_sections(
         ),
         Section(
             f"From inputs to outputs, {labels[0]}",
-            figures=(("Frequency response", response_figure(first, held)),),
+            figures=(("Frequency response", response_figure(first, held, units)),),
         ),
     ]
 

@@ -11,12 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 from identification.errors import InputError
 from identification.files import write_text
+from identification.report.origin import origin
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_LARGEST_SVG = 1_500_000  # characters; a figure of more points is shown as pixels
+_LARGEST_SVG = 600_000  # characters; a figure of more points is shown as pixels
 _LARGEST_VIDEO = 64 * 2**20  # bytes
+_NUMBER = re.compile(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?")
+_NONE = ("–", "unknown", None)  # in the place of a number
+LONG = 12  # rows: a table of more is folded
 WIDE = 9.0  # a figure of so many inches has a row of its own
 
 
@@ -48,8 +52,10 @@ class Section:
         title: its heading.
         text: paragraphs, parted by empty lines.
         figures: figures by caption.
-        table: shown below the text.
+        table: shown below the text; a long one is folded.
         video: an mp4 file, shown last.
+        poster: a picture of the film, shown on paper.
+        first: its figures and its film stand above all sections, under the verdict.
     """
 
     title: str
@@ -57,6 +63,8 @@ class Section:
     figures: tuple[tuple[str, Figure], ...] = ()
     table: Table | None = None
     video: Path | None = None
+    poster: Path | None = None
+    first: bool = False
 
 
 def write_report(
@@ -67,6 +75,7 @@ def write_report(
     *,
     good: bool | None = None,
     footer: str = "",
+    data: Sequence[str] = (),
 ) -> Path:
     """Write a report, whole or not at all.
 
@@ -76,12 +85,18 @@ def write_report(
         verdict: sentences; the reader sees them first.
         sections: in order.
         good: colours the verdict: True passed, False failed, None neither.
-        footer: versions, seed, command.
+        footer: what is said at its foot, before version, command and date.
+        data: names of the logs that it rests on.
 
     Raises:
         InputError: a video cannot be read or is too large, or the file cannot be written.
     """
+    from importlib.resources import files
+
     from jinja2 import Environment, PackageLoader, StrictUndefined
+    from markupsafe import Markup
+
+    from identification.report.vector import DARK
 
     environment = Environment(
         loader=PackageLoader("identification.report"),
@@ -95,7 +110,9 @@ def write_report(
         verdict=list(verdict),
         sections=[_section(section, number) for number, section in enumerate(sections, 1)],
         mood={True: "good", False: "bad", None: "plain"}[good],
-        footer=footer,
+        footer="\n".join(filter(None, [footer, origin(data)])),
+        dark=DARK,
+        script=Markup((files("identification.report") / "templates" / "figures.js").read_text()),
     )
     return write_text(path, page)
 
@@ -115,6 +132,8 @@ def _section(section: Section, number: int) -> dict[str, Any]:
     table = section.table
     return {
         "title": section.title,
+        "name": f"part-{number}",
+        "first": section.first,
         "paragraphs": [part.strip() for part in section.text.split("\n\n") if part.strip()],
         "figures": [
             (
@@ -126,7 +145,9 @@ def _section(section: Section, number: int) -> dict[str, Any]:
         ],
         "columns": _columns(table) if table else [],
         "rows": [[_text(cell) for cell in row] for row in table.rows] if table else [],
+        "folded": table is not None and len(table.rows) > LONG,
         "video": _video(section.video) if section.video else None,
+        "poster": _image(section.poster) if section.poster else None,
     }
 
 
@@ -136,18 +157,23 @@ def _picture(figure: Figure, prefix: str, caption: str) -> Any:
 
     from markupsafe import Markup
 
-    from identification.report.style import svg
+    from identification.report.vector import svg
 
-    drawing = svg(figure)
-    if len(drawing) > _LARGEST_SVG:
-        stream = io.BytesIO()
-        figure.savefig(stream, format="png", dpi=150)
-        source = "data:image/png;base64," + b64encode(stream.getvalue()).decode()
-        return Markup('<img src="{}" alt="{}" />').format(source, caption)
-    # Names inside a drawing are unique in their own file only; here many share one page.
-    drawing = re.sub(r'\bid="', f'id="{prefix}', drawing)
-    drawing = re.sub(r'href="#', f'href="#{prefix}', drawing)
-    return Markup(re.sub(r"url\(#", f"url(#{prefix}", drawing))
+    drawing = svg(figure, prefix, caption)
+    if len(drawing) <= _LARGEST_SVG:
+        return Markup(drawing)
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=150)
+    source = "data:image/png;base64," + b64encode(stream.getvalue()).decode()
+    said = '<img src="{}" role="img" alt="{}" title="{}" />'
+    return Markup(said).format(source, caption, caption)
+
+
+def _image(path: Path) -> str:
+    try:
+        return "data:image/jpeg;base64," + b64encode(path.read_bytes()).decode()
+    except OSError as error:
+        raise InputError(f"cannot read the picture {path}: {error.strerror}") from error
 
 
 def _video(path: Path) -> str:
@@ -166,13 +192,19 @@ def _columns(table: Table) -> list[tuple[str, bool]]:
     """Headings, and whether numbers stand below them."""
     cells = zip(*table.rows, strict=True) if table.rows else ((),) * len(table.columns)
     return [
-        (heading, any(map(_is_number, column)))
+        (heading, _holds_numbers(column))
         for heading, column in zip(table.columns, cells, strict=True)
     ]
 
 
-def _is_number(cell: object) -> bool:
-    return isinstance(cell, int | float) and not isinstance(cell, bool)
+def _holds_numbers(column: Iterable[object]) -> bool:
+    """Whether some of the cells are numbers, or all of them are written numbers."""
+    cells = list(column)
+    written = [isinstance(c, str) and bool(_NUMBER.fullmatch(c)) for c in cells]
+    numbers = [isinstance(c, int | float) and not isinstance(c, bool) for c in cells]
+    return any(numbers) or (
+        any(written) and all(w or c in _NONE for w, c in zip(written, cells, strict=True))
+    )
 
 
 def _text(cell: object) -> str:

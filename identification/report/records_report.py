@@ -11,11 +11,17 @@ from identification.prediction.scores import WindowScore
 from identification.quantities import quantity
 from identification.report.discovery_figures import gains_figure
 from identification.report.effect_words import describe_effect
+from identification.report.law_section import LAWS
 from identification.report.page import Section, Table, save_figures, write_report
 from identification.report.records_text import describe_refitted, records_verdict, steps_taken
 from identification.report.records_values import value_table
 
 BEST = 10  # candidates shown
+NOT_DRAWN = (
+    "The missing force is drawn for a free run of one log only. Over a horizon each window begins"
+    " in a state of its own, which is fitted together with the force. How much the named effects"
+    " explain stands in the table above."
+)
 
 
 def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
@@ -28,7 +34,8 @@ def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
     Raises:
         InputError: a file cannot be written.
     """
-    shown = [_records(found), _candidates(found), _values(found)]
+    law = [Section(LAWS, NOT_DRAWN)] if found.named else []
+    shown = [_records(found), *law, _candidates(found), _values(found)]
     if found.shifts:
         shown.append(_shifts(found))
     save_figures(shown, folder)
@@ -36,6 +43,7 @@ def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
     return write_report(
         folder / "report.html", f"{names}: what the model lacks", records_verdict(found), shown,
         good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
+        data=[r.log.name for r in found.records],
     )  # fmt: skip
 
 
@@ -65,6 +73,7 @@ def _candidates(found: RecordsDiscovery) -> Section:
     figure = gains_figure(
         [describe_effect(s.candidate) for s in best], np.array([s.fall for s in best]),
         [s.candidate.effect.name in named for s in best],
+        "share of the mean square of the fitted error",
     )  # fmt: skip
     return Section("Who could explain it", text, figures=(("Share of the fitted error", figure),))
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
 from identification.quantities import alike, quantity
-from identification.report.effect_words import describe_effect
+from identification.report.effect_words import describe_effect, phrase
 from identification.report.finding_words import DOUBTS, describe_finding, sentence
 from identification.report.records_values import text_table, value_table, value_with_std
 from identification.windows.coarse import OUTPUT_ERROR
@@ -106,7 +106,7 @@ def _twin(named: NamedByPrediction) -> str:
     if named.same_as is None:
         return ""
     return (
-        f' (or "{named.same_as.phrase}": below the Coulomb friction it is the same force, and no'
+        f' (or "{phrase(named.same_as)}": below the Coulomb friction it is the same force, and no'
         " record tells which of the two it is)"
     )
 

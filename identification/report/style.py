@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import io
-import re
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 from matplotlib.figure import Figure
 
 from identification.files import whole_file
@@ -62,13 +59,3 @@ def save_png(figure: Figure, path: str | Path, dpi: float = 150) -> Path:
     with whole_file(path) as draft, draft.open("wb") as stream:
         figure.savefig(stream, format="png", dpi=dpi)
     return Path(path)
-
-
-def svg(figure: Figure) -> str:
-    """A figure as an `<svg>` element that stands in HTML: no XML header, no foreign address."""
-    stream = io.StringIO()
-    nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
-    with matplotlib.rc_context(STYLE):
-        figure.savefig(stream, format="svg", metadata=nothing)
-    text = stream.getvalue()
-    return re.sub(r"<metadata>.*?</metadata>\s*", "", text[text.index("<svg") :], flags=re.DOTALL)

@@ -23,7 +23,7 @@ class Values:
     """Parameter set: the thesis' Table 3.2 (trial) or Table 2.1 (simulation)."""
     param: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME=VALUE")] = ()
     """Values of your own in SI units, such as m=0.2 lambda=26000."""
-    geometry: Path | None = None
+    geometry: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None
     """TOML file with exit points and connectors; the built-in ones are assumed."""
 
     def parameters(self) -> ParameterSet:
@@ -61,7 +61,7 @@ class Robot(Values):
 class SavedRobot(Robot):
     """A robot to be simulated, or one that was saved."""
 
-    model: Path | None = None
+    model: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     """Folder of a twin that inca discover or inca calibrate saved; it has values of its own."""
 
     def twin(self, sampling_time: float) -> Twin:

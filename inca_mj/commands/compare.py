@@ -90,4 +90,5 @@ def keep(result: Comparison, out: Path) -> None:
         f"{result.log.name}: measured against simulated",
         compare_verdict(result),
         sections,
+        data=[result.log.name],
     )

@@ -11,6 +11,7 @@ import tyro
 from identification.commands.common import Output
 from inca_mj.commands.common import Values, values_field
 from inca_mj.commands.discover import Discover
+from inca_mj.files import example_path
 
 
 @dataclass(frozen=True)
@@ -22,12 +23,10 @@ class Demo:
         inca demo examples/log.csv --no-film --out out/mine
     """
 
-    log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")] = Path(
-        "examples/log.csv"
-    )
-    """The log."""
+    log: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")] = None
+    """The log; the one that comes with the program when none is given."""
     film: bool = True
-    """Film the final twin against the log."""
+    """Film the model before and after against unseen seconds of the log."""
     robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
         default_factory=lambda: Output(out=Path("out/demo"))
@@ -35,12 +34,5 @@ class Demo:
 
     def run(self) -> int:
         """Do all of it, say the verdict first and where the report lies last."""
-        return Discover(
-            (_shipped(self.log),), film=self.film, robot=self.robot, output=self.output
-        ).run()
-
-
-def _shipped(log: Path) -> Path:
-    """The log, or the one of that name that came with the source."""
-    source = Path(__file__).parents[2] / log
-    return source if not log.exists() and source.exists() else log
+        log = self.log or example_path()
+        return Discover((log,), film=self.film, robot=self.robot, output=self.output).run()

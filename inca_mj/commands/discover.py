@@ -21,10 +21,9 @@ from inca_mj.commands.common import Values, cannot_draw, do_not_draw, values_fie
 
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery
-    from inca_mj.twin.run import Run
+    from identification.report.page import Section
     from inca_mj.twin.twin import Twin
 
-FILMED = 6.0  # [s]; drawing costs several times as long
 FILES = "The model with it is in model.xml and effects.json; inca_mj.load_twin reads them."
 
 
@@ -46,10 +45,10 @@ class Discover:
     spread: str = "usual"
     """How much the drives and points of one robot differ: none, usual, or a TOML file."""
     film: bool = True
-    """Film the final twin against the log; only with --out."""
+    """Film the model before and after against unseen seconds of the log; only with --out."""
     settled: bool = False
     """The robot stood at rest by itself, with what the twin lacks, when the log began."""
-    options: Path | None = None
+    options: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None
     """TOML file with judgement constants, such as min_proof_t = 3.0 (docs/discovery.md)."""
     robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
@@ -114,9 +113,9 @@ def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
 def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, Path]:
     """Write report, figures, model, effects, result and film into a folder; the paths by kind."""
     from identification.report.discovery_report import write_discovery_report
-    from inca_mj.report.sections import film_section, model_section
+    from inca_mj.report.sections import model_section
     from inca_mj.twin.saved import save_twin
-    from inca_mj.workflows.discovery_model import named_twin, rerun
+    from inca_mj.workflows.discovery_model import named_twin
 
     robot = named_twin(found)
     model, effects = save_twin(robot, out)
@@ -124,9 +123,9 @@ def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, 
     files = {"model": model, "effects": effects}
 
     def draw() -> None:
-        drawn = _film(found, robot, rerun(robot, found.log), out) if film else None
-        more = [*([film_section(drawn)] if drawn else []), model_section(_without_zeros(robot))]
-        files.update({"film": drawn} if drawn else {})
+        drawn = _film(found, out) if film else None
+        more = [*([drawn[1]] if drawn else []), model_section(_without_zeros(robot))]
+        files.update({"film": drawn[0]} if drawn else {})
         files["report"] = write_discovery_report(found, out, sections=more, files=FILES)
 
     keep_if_possible("figures and report", draw)
@@ -142,18 +141,13 @@ def _without_zeros(robot: Twin) -> Twin:
     return replace(robot, parameters=replace(robot.parameters, records=shown))
 
 
-def _film(found: Discovery, robot: Twin, run: Run, out: Path) -> Path | None:
-    """The final twin over the start of the log; None, and a sentence, where it cannot be."""
-    from identification.errors import GraphicsError, InputError
-    from identification.logs.joined import records_of
-    from inca_mj.rendering.film import film
-    from inca_mj.rendering.scene import Scene
-    from inca_mj.twin.logs import pose_of
+def _film(found: Discovery, out: Path) -> tuple[Path, Section] | None:
+    """The film and its section; None, and a sentence, where it cannot be drawn."""
+    from identification.errors import DivergenceError, GraphicsError, InputError
+    from inca_mj.commands.filmed import film_discovery
 
-    log = records_of(found.log)[0][1]
-    scene = Scene(run, log.outputs, pose_of(log))
     try:
-        return film(scene, out / "film.mp4", seconds=FILMED)
-    except (GraphicsError, InputError) as error:
+        return film_discovery(found, out)
+    except (DivergenceError, GraphicsError, InputError) as error:
         note(f"no film: {error}")
         return None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
-from identification.commands.common import Output, say, say_json
+from identification.commands.common import Output, say, say_json, write_result
 from inca_mj.commands.common import SavedRobot, cannot_draw, saved_robot_field
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ class Film:
     """One or two: a log (.csv, .mat), or a run (.npz) that another command saved."""
     title: tuple[str, ...] = ()
     """A line over each picture; else two pictures have the names of their folders."""
-    seconds: float | None = None
+    seconds: Annotated[float | None, tyro.conf.arg(metavar="SECONDS")] = None
     """Film only so many seconds from the start."""
     camera: Literal["front", "side", "handle"] = "front"
     """Where to look from."""
@@ -86,10 +86,12 @@ class Film:
                 plots=plots,
                 magnify=self.magnify,
             )
-        files = [str(out / p.name) for p in (path, *pictures)]
+            names = [p.name for p in (path, *pictures)]
+            record = {"film": names[0], "stills": names[1:], "seconds": end, "titles": titles}
+            write_result(draft / "result.json", self, record)
+        files = [str(out / name) for name in names]
         if self.output.json:
-            said = {"film": files[0], "stills": files[1:], "seconds": end, "titles": titles}
-            say_json(said)
+            say_json({**record, "film": files[0], "stills": files[1:]})
         else:
             say("\n".join(files))
         return 0
@@ -118,12 +120,18 @@ class Film:
 
     def _scene(self, source: Path) -> Scene:
         """What to film: a saved run, or a log beside the twin with the values that were asked."""
+        from identification.errors import InputError
         from inca_mj.commands.compare import compare_with
         from inca_mj.rendering.scene import make_scene
         from inca_mj.twin.logs import read_inca_log
 
         if source.suffix == ".npz":
             return make_scene(source, self.seconds)
+        if source.suffix not in (".csv", ".mat"):
+            raise InputError(
+                f"{source} is neither a log nor a run; give a log (.csv, .mat), or the run.npz"
+                " that inca simulate and inca track keep in their folder --out"
+            )
         log = read_inca_log(source)
         if self.seconds is not None and 0 < self.seconds < log.duration:
             log = log.between(float("-inf"), float(log.time[0]) + self.seconds)

@@ -55,7 +55,7 @@ class Identify:
     """How many starts each search may try, until one ends near the noise floor."""
     seed: int = 0
     """Of the starts after the first."""
-    windows: float | None = None
+    windows: Annotated[float | None, tyro.conf.arg(metavar="SECONDS")] = None
     """Length [s] of windows that each begin anywhere; one free run when not given."""
     innovations: bool = False
     """Also estimate an unlogged error of the currents, by a Kalman predictor."""
@@ -163,11 +163,12 @@ class Identify:
 def summary(result: Identification, fit: Fit) -> str:
     """A fit as a text table and its verdict."""
     from identification.estimation.metrics import mean_fit
+    from identification.quantities import matched
     from identification.report.fit_verdict import fit_verdict
     from inca_mj.report.identification_json import identification_verdict, rows
 
     cells = [
-        (name, f"{value:.6g}", "unknown" if std == float("inf") else f"{std:.2g}", unit,
+        (name, *matched(value, std), unit,
          f"{first:.6g}", "at bound" if bound else "")
         for name, value, std, unit, first, bound in rows(result, fit)
     ]  # fmt: skip
@@ -209,4 +210,5 @@ def keep(result: Identification, profiles: Sequence[Profile], out: Path, robot: 
         f"{result.log.name}: identified",
         identification_verdict(result),
         sections,
+        data=[result.log.name],
     )

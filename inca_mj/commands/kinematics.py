@@ -33,7 +33,7 @@ class Kinematics:
     """A pose, six numbers x y z [m] roll pitch yaw [rad], or one log of currents and angles."""
     pulley: float = 0.0
     """Of a pose: radius of a swivelling pulley at each exit point [m]; 0: straight cables."""
-    noise: float | None = None
+    noise: Annotated[float | None, tyro.conf.arg(metavar="RAD")] = None
     """Of a log: std of each angle [rad]; seen in the log when not given."""
     std: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME=STD")] = ()
     """Of a log: how well parameters are known, such as R=1e-4 x=0.002; exact when not given."""
@@ -54,12 +54,17 @@ class Kinematics:
         """The six numbers, or None where a log is named.
 
         Raises:
-            InputError: it is neither.
+            InputError: nothing is given, or what is given is neither.
         """
         import numpy as np
 
         from identification.errors import InputError
 
+        if not self.what:
+            raise InputError(
+                "no pose and no log is given; write inca kinematics X Y Z ROLL PITCH YAW [m, rad],"
+                " such as inca kinematics 0 0 1.43 0 0 0, or inca kinematics LOG"
+            )
         if len(self.what) == 1 and Path(self.what[0]).suffix in (".csv", ".mat"):
             return None
         try:

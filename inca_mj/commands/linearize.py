@@ -34,9 +34,9 @@ class Linearize:
     """Log under whose currents the twin runs, to be linearised at --time."""
     time: Annotated[tuple[float, ...], tyro.conf.arg(metavar="SECONDS")] = ()
     """Times of the log."""
-    rate: float | None = None
+    rate: Annotated[float | None, tyro.conf.arg(metavar="HZ")] = None
     """Samples a second of the discrete model [Hz]; that of the log, or 100."""
-    grid: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME=LOW:HIGH:POINTS")] = ()
+    grid: Annotated[tuple[str, ...] | None, tyro.conf.arg(metavar="NAME=LOW:HIGH:POINTS")] = None
     """Axes of an LPV model, of x y z [m] roll pitch yaw [rad]."""
     interpolation: Literal["linear", "cubic"] = "cubic"
     """Between the points of the grid."""
@@ -56,7 +56,7 @@ class Linearize:
             model_to_json,
         )
 
-        self._refuse_both()
+        self._refuse_unclear()
         if self.rate is not None:
             sampling_time_of(self.rate)
         models, labels, rate = self._models()
@@ -72,9 +72,14 @@ class Linearize:
         conclude(self, record, "\n".join(said), partial(keep, models, labels, rate, grid, said))
         return 0
 
-    def _refuse_both(self) -> None:
+    def _refuse_unclear(self) -> None:
         from identification.errors import InputError
 
+        if self.grid == ():
+            raise InputError(
+                "--grid has no axis; give one or more as NAME=LOW:HIGH:POINTS, such as --grid"
+                " x=-0.4:0.4:5 z=1:1.8:5, of x y z [m] roll pitch yaw [rad]"
+            )
         if self.log is not None and (self.pose or self.grid):
             other = "--pose" if self.pose else "--grid"
             raise InputError(f"--log and {other} are two ways to an operating point; give one")
@@ -105,7 +110,7 @@ class Linearize:
         from inca_mj.twin.logs import POSE
         from inca_mj.workflows.linearization import grid_axes
 
-        axes = grid_axes(self.grid)
+        axes = grid_axes(self.grid or ())
         grid = linearize_grid(model.robot, axes, self.interpolation)
         point = random_points(grid, 1, seed=1)[0]
         if self.pose:

@@ -31,7 +31,7 @@ class Sensitivity:
         "lambda", "b", "J", "b_v", "b_c", "beta",
     )  # fmt: skip
     """Parameters to look at; the start pose is taken as unknown too."""
-    noise: float | None = None
+    noise: Annotated[float | None, tyro.conf.arg(metavar="RAD")] = None
     """Std of the noise on each motor angle [rad]; seen in the log, or 6.7e-4 without one."""
     duration: float = 5.0
     """Length of the PRBS [s]; a log has its own."""

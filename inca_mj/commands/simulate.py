@@ -5,18 +5,29 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
 from identification.commands.common import Output, conclude, table
-from inca_mj.commands.common import SavedRobot, do_not_draw, saved_robot_field
+from inca_mj.commands.common import SavedRobot, do_not_draw
 
 if TYPE_CHECKING:
     import numpy as np
 
     from inca_mj.twin.run import Run
     from inca_mj.twin.twin import Twin
+
+
+OneOf = Annotated[Literal["trial", "simulation"] | None, tyro.conf.arg(metavar="trial|simulation")]
+
+
+@dataclass(frozen=True)
+class FigureRobot(SavedRobot):
+    """A robot whose parameter set may be that of a figure."""
+
+    set: OneOf = None  # type: ignore[assignment]
+    """Parameter set: the thesis' Table 3.2 (trial, when not given) or Table 2.1 (simulation)."""
 
 
 @dataclass(frozen=True)
@@ -28,10 +39,10 @@ class Simulate:
         inca simulate --figure 2.16 --out out/figure
     """
 
-    input: Annotated[str, tyro.conf.arg(metavar="step|prbs|multisine|zero|FILE")] = "step"
-    """Currents: 2 A in motor 1 (step), the thesis' PRBS, a multisine, none, or those of a log."""
-    duration: float = 10.0
-    """Length of the run [s]; a FILE has its own."""
+    input: Annotated[str | None, tyro.conf.arg(metavar="step|prbs|multisine|zero|FILE")] = None
+    """Currents: 2 A in motor 1 (step, when not given), PRBS, multisine, none, or those of a log."""
+    duration: Annotated[float | None, tyro.conf.arg(metavar="SECONDS")] = None
+    """Length of the run [s]; 10 s when not given; a FILE has its own."""
     rate: float = 100.0
     """Samples a second of the input and of what is written [Hz]; a FILE has its own."""
     seed: int = 0
@@ -42,7 +53,7 @@ class Simulate:
     """Constant external force G on the platform, in the fixed frame [N]."""
     force_at: Annotated[tuple[float, float, float], tyro.conf.arg(metavar="X Y Z")] = (0, 0, 0)
     """The point b_G where the force acts, in the platform's frame [m]."""
-    robot: Annotated[SavedRobot, tyro.conf.OmitArgPrefixes] = saved_robot_field
+    robot: Annotated[FigureRobot, tyro.conf.OmitArgPrefixes] = field(default_factory=FigureRobot)
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
         default_factory=lambda: Output(out=Path("out/simulate"))
     )
@@ -52,7 +63,7 @@ class Simulate:
         do_not_draw()
         from inca_mj.twin.run import simulate
 
-        now = self._for_figure()
+        now = self._resolved()
         currents, sampling_time, hold = now._currents()
         robot = now._twin(sampling_time)
         result = simulate(robot, currents, sampling_time, hold_kind=hold)
@@ -70,8 +81,8 @@ class Simulate:
         conclude(now, summary, text, partial(keep, result, now._notes()))
         return 0
 
-    def _for_figure(self) -> Simulate:
-        """The command with what its figure needs.
+    def _resolved(self) -> Simulate:
+        """The command with what its figure needs, or with what is usual where nothing is given.
 
         Raises:
             InputError: there is no such figure, or options are given that would make another.
@@ -80,14 +91,15 @@ class Simulate:
         from inca_mj.workflows.thesis_figures import figure_settings
 
         if self.figure is None:
-            return self
+            robot = replace(self.robot, set=self.robot.set or "trial")
+            return replace(self, input=self._input(), duration=self._seconds(), robot=robot)
         needs = figure_settings(self.figure)
-        for name, given, usual, right in (
-            ("--input", self.input, "step", needs.input),
-            ("--set", self.robot.set, "trial", needs.set),
-            ("--duration", self.duration, 10.0, needs.duration),
+        for name, given, right in (
+            ("--input", self.input, needs.input),
+            ("--set", self.robot.set, needs.set),
+            ("--duration", self.duration, needs.duration),
         ):
-            if given not in (usual, right):
+            if given not in (None, right):
                 raise InputError(
                     f"Figure {self.figure} is made with {name} {right}, not {given}; leave out"
                     f" {name}, or leave out --figure"
@@ -119,20 +131,25 @@ class Simulate:
             said += f", force {self.force} N at {self.force_at} m"
         return said
 
+    def _input(self) -> str:
+        return self.input or "step"
+
+    def _seconds(self) -> float:
+        return 10.0 if self.duration is None else self.duration
+
     def _currents(self) -> tuple[np.ndarray, float, str]:
         from identification.errors import InputError
         from inca_mj.robot.inputs import INPUTS, make_input, sampling_time_of
         from inca_mj.twin.logs import read_inca_log
 
-        if self.input in INPUTS:
+        given = self._input()
+        if given in INPUTS:
             sampling_time = sampling_time_of(self.rate)
-            currents = make_input(self.input, self.duration, sampling_time, seed=self.seed)
+            currents = make_input(given, self._seconds(), sampling_time, seed=self.seed)
             return currents, sampling_time, "zoh"
-        if not Path(self.input).suffix:
-            raise InputError(
-                f"unknown input {self.input!r}; known: {', '.join(INPUTS)}, or a log file"
-            )
-        log = read_inca_log(self.input)
+        if not Path(given).suffix:
+            raise InputError(f"unknown input {given!r}; known: {', '.join(INPUTS)}, or a log file")
+        log = read_inca_log(given)
         return log.inputs, log.sampling_time, log.hold
 
 

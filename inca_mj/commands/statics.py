@@ -25,16 +25,19 @@ class Statics:
         inca statics --pose 0.3 0.2 1.2 0 0 0.1 --force-on-handle 0 0 -2
     """
 
-    pose: tuple[float, float, float, float, float, float] | None = None
+    pose: Annotated[
+        tuple[float, float, float, float, float, float] | None,
+        tyro.conf.arg(metavar="X Y Z ROLL PITCH YAW"),
+    ] = None
     """x y z [m] roll pitch yaw [rad]; the start pose when it is not given."""
     workspace: Literal["none", "closure", "feasible", "static"] = "none"
     """Workspace at the orientation of the pose."""
-    log: Path | None = None
+    log: Annotated[Path | None, tyro.conf.arg(metavar="LOG")] = None
     """Log along which cables may come near to each other."""
     force_on_handle: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Force on the handle beside its weight, in the frame of the room [N]."""
+    """Force on the platform beside its weight, in the frame of the room [N]."""
     torque_on_handle: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Torque on the handle, in the frame of the room [N m]."""
+    """Torque on the platform, in the frame of the room [N m]."""
     current: tuple[float, float] = (-2.0, 2.0)
     """Smallest and largest current of a motor [A]."""
     taut: float = 0.5

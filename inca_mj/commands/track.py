@@ -27,7 +27,7 @@ class Track:
         inca track --effect load_dependent_friction.mu=0.05 --model out/discover --out out/found
     """
 
-    model: Path | None = None
+    model: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     """Folder of a saved twin that is the controller's model; the nominal twin if none."""
     effect: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME.SIZE=VALUE")] = ()
     """What the robot truly has beside its parameters, such as load_dependent_friction.mu=0.05."""
@@ -128,7 +128,7 @@ def _text(result: Tracking) -> str:
 
     run = result.run
     return (
-        f"The handle is {1e3 * result.rms:.3f} mm rms from the point that is asked,"
+        f"The platform is {1e3 * result.rms:.3f} mm rms from the point that is asked,"
         f" {1e3 * result.largest:.3f} mm at most, and {1e3 * result.cross_track_rms:.3f} mm rms off"
         f" the path; by the controller's own estimate {1e3 * result.seen_rms:.3f} mm rms.\n"
         f"Currents from {run.currents.min():.2f} to {run.currents.max():.2f} A, tensions from"

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class View:
-    """Open the interactive viewer: pull at the handle and give currents, or play a log or a run.
+    """Open the interactive viewer: pull at the platform and give currents, or play a log or a run.
 
     Examples:
         inca view

@@ -1,4 +1,4 @@
-"""Computed wrench: the handle follows a path, from motor angles to currents at 100 Hz.
+"""Computed wrench: the platform follows a path, from motor angles to currents at 100 Hz.
 
     e = (p_d - p, ½ Σ r_j × r_dj)                    error of the pose; r_j the body's axes
     a = a_d + K_p e + K_d ė + K_i ∫e dt              acceleration that is asked [m/s², rad/s²]
@@ -6,11 +6,12 @@
 
 In a robot that is exactly the twin and whose cables are stiff, the error obeys
 ë + K_d ė + (K_p + K_T) e + K_i ∫e = 0, whatever the twin's friction. K_T = Σ T (1 - s sᵀ)/d over
-the inertia is what taut cables do by themselves to a handle beside its path. The terms of the twin
-are taken at the motion that is asked, and not at the measured one: steep friction at a measured
-rate, compensated 10 ms late, would make the loop unstable. ė is the last step's difference.
+the inertia is what taut cables do by themselves to a platform beside its path. The terms of the
+twin are taken at the motion that is asked, and not at the measured one: steep friction at a
+measured rate, compensated 10 ms late, would make the loop unstable. ė is the last
+step's difference.
 
-(The computed torque of Luh, Walker, Paul 1980, on the handle's six coordinates; for cable robots
+(The computed torque of Luh, Walker, Paul 1980, on the platform's six coordinates; for cable robots
 see Pott 2018, Cable-Driven Parallel Robots.)
 """
 
@@ -57,7 +58,7 @@ class Controller:
 
     Args:
         robot: the twin that is its model; its start is the robot's.
-        path: where the handle should be.
+        path: where the platform should be.
         gains: of the feedback.
         tensions: to stay near to, and their limits.
         period: time between two calls of `currents` [s].
@@ -93,13 +94,13 @@ class Controller:
 
         Args:
             angle: φ as measured now, shape (8,) [rad].
-            pose: of the handle, where it is known otherwise; from the angles when None.
+            pose: of the platform, where it is known otherwise; from the angles when None.
 
         Returns:
             Shape (8,) [A].
 
         Raises:
-            InputError: no pose of the handle belongs to the angles.
+            InputError: no pose of the platform belongs to the angles.
         """
         time = self._step * self.period
         motion, middle = self.path.at(time), self.path.at(time + self.period / 2)

@@ -2,10 +2,10 @@
 
     env = inca_mj.load_environment("track", random=0)
 
-There are three tasks (`inca_mj.control.tasks`). `hold`: keep the handle where it starts, while a
-hand pulls at it with a constant force that is not observed. `reach`: bring the handle to a target.
-`track`: follow a circle. The module needs dm_control: pip install inca-mj[control]. To draw without
-a display, set MUJOCO_GL=egl before MuJoCo is imported.
+There are three tasks (`inca_mj.control.tasks`). `hold`: keep the platform where it starts, while a
+hand pulls at it with a constant force that is not observed. `reach`: bring the platform to a
+target. `track`: follow a circle. The module needs dm_control: pip install inca-mj[control]. To
+draw without a display, set MUJOCO_GL=egl before MuJoCo is imported.
 """
 
 from __future__ import annotations

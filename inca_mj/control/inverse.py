@@ -1,4 +1,4 @@
-"""The inverse of a twin: the currents that make its handle move as asked, whatever is in its law.
+"""The inverse of a twin: the currents that make its platform move as asked, whatever is in its law.
 
     M a + c = f + W T                      platform: f all that is not a cable's pull
     T = argmin |T - t₀|²,  W T = M a + c - f,  low <= T <= high
@@ -32,7 +32,7 @@ from inca_mj.twin.twin import Twin
 
 PULLED = 1e-5  # of its length, by which a cable is shortened to see what its tension does
 TIGHTENINGS = 200  # steps until a slack cable is taut
-# The drum springs hold the handle without current. A positive current winds the cable in, so that
+# The drum springs hold the platform without current. A positive current winds the cable in, so that
 # no current below zero is needed, and no current slackens a cable at rest. 2 A is the largest
 # current of the thesis (Figure 2.16); it is assumed that the motors can bear it continuously.
 LOWEST_CURRENT, HIGHEST_CURRENT = 0.0, 2.0  # [A]
@@ -107,7 +107,7 @@ class Inverse:
         """What an upright motion needs, at measured motor angles.
 
         Args:
-            motion: of the handle.
+            motion: of the platform.
             more: acceleration that is asked beside that of the motion, linear in O and angular,
                 shape (6,) [m/s², rad/s²].
             angle: φ, shape (8,) [rad].

@@ -24,7 +24,7 @@ class Controlled:
 
     Attributes:
         currents: shape (N, 8) [A]; sample k is held until k+1.
-        seen: position of the handle as the controller saw it, shape (N, 3) [m].
+        seen: position of the platform as the controller saw it, shape (N, 3) [m].
     """
 
     currents: np.ndarray

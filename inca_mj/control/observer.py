@@ -1,4 +1,4 @@
-"""Where the handle is, from the motor angles alone, through elastic cables.
+"""Where the platform is, from the motor angles alone, through elastic cables.
 
     d₀ ← d₀ + (∂d₀/∂φ) Δφ,    ∂d₀/∂φ = -R d₀/d at the middle angle          (thesis 2.30)
     W T(d(x), d₀) + f(x) = M a + c           solved for the pose x by Newton steps
@@ -7,10 +7,11 @@
 
 The robot has encoders and nothing else. Each cable's no-load length follows from how far its motor
 has wound it, from the start on, where the pose is known (the robot's homing). The pose is then
-where the cables' pull balances gravity and the acceleration a that is asked of the handle: forward
-kinematics through elastic cables at rest, with d'Alembert's force. As in `inca_mj.control.inverse`,
-every term is asked of the twin's own law, so that an eccentric roller or a pulley of the twin is
-taken into account. What the twin does not have makes the pose wrong, and no feedback mends that.
+where the cables' pull balances gravity and the acceleration a that is asked of the platform:
+forward kinematics through elastic cables at rest, with d'Alembert's force. As in
+`inca_mj.control.inverse`, every term is asked of the twin's own law, so that an eccentric roller or
+a pulley of the twin is taken into account. What the twin does not have makes the pose wrong, and no
+feedback mends that.
 
 A controller keeps its cables taut. Where the wound lengths say that one is slack, the twin is wrong
 (half a millimetre of one length suffices), and a law that then does nothing would lose the pose.
@@ -38,7 +39,7 @@ STEPS, NEAR = 20, 1e-9  # Newton steps, and the last of them [m, rad]
 
 @dataclass(frozen=True)
 class Pose:
-    """Where the handle is.
+    """Where the platform is.
 
     Attributes:
         position: in O, shape (3,) [m].
@@ -71,12 +72,12 @@ class Observer:
 
         Args:
             angle: φ as measured, shape (8,) [rad].
-            acceleration: that the handle is asked to have, linear in O and angular, shape (6,)
+            acceleration: that the platform is asked to have, linear in O and angular, shape (6,)
                 [m/s², rad/s²].
             time: of the record [s].
 
         Raises:
-            InputError: no pose of the handle belongs to these angles.
+            InputError: no pose of the platform belongs to these angles.
         """
         self._data.time = time
         self._wind(np.asarray(angle, float))
@@ -89,7 +90,7 @@ class Observer:
             if np.abs(step).max() < NEAR:
                 return Pose(self._qpos[:3].copy(), self._qpos[3:].copy())
         raise InputError(
-            "no pose of the handle belongs to the motor angles"
+            "no pose of the platform belongs to the motor angles"
             f" {np.round(self._angle, 2).tolist()} rad; check the geometry, the start pose and the"
             " sign of the angles (positive winds in)"
         )

@@ -1,11 +1,11 @@
-"""Where the handle should be: a point, a line, a circle, each with velocity and acceleration.
+"""Where the platform should be: a point, a line, a circle, each with velocity and acceleration.
 
     circle    p = c + r S(t/T) (cos θ, sin θ) in its plane,    θ̇ = Ω S(t/T - 1)
     line      p = p₀ + (p₁ - p₀) S(t/T)
     S(x) = 10 x³ - 15 x⁴ + 6 x⁵, 0 before and 1 after      (Flash, Hogan 1985: least jerk)
 
-The handle stays upright. Every path starts at rest, so that a robot at rest can follow it from the
-beginning; velocity and acceleration have no jumps.
+The platform stays upright. Every path starts at rest, so that a robot at rest can follow it from
+the beginning; velocity and acceleration have no jumps.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ PLANES = {"xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}  # the axes that cos θ and 
 
 @dataclass(frozen=True)
 class Motion:
-    """Where the handle should be at one time, and how it should move there.
+    """Where the platform should be at one time, and how it should move there.
 
     Attributes:
         position: in O, shape (3,) [m].
@@ -37,7 +37,7 @@ class Motion:
 
 
 class Path(Protocol):
-    """A motion of the handle over time."""
+    """A motion of the platform over time."""
 
     def at(self, time: float) -> Motion:
         """The motion at a time [s] since the start."""
@@ -46,7 +46,7 @@ class Path(Protocol):
 
 @dataclass(frozen=True)
 class Point:
-    """The handle stays where it is.
+    """The platform stays where it is.
 
     Attributes:
         position: in O, three numbers [m].
@@ -135,7 +135,7 @@ class Circle:
 
     @property
     def full(self) -> float:
-        """The time from which on the handle goes round at the full rate [s]."""
+        """The time from which on the platform goes round at the full rate [s]."""
         return 2 * self.ramp
 
 

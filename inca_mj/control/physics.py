@@ -69,11 +69,11 @@ class Physics(dm_mujoco.Physics):
         return self._drives("tension")
 
     def handle_position(self) -> np.ndarray:
-        """Position of the handle in O, shape (3,) [m]."""
+        """Position of the platform in O, shape (3,) [m]."""
         return self.named.data.sensordata["position"].copy()
 
     def handle_orientation(self) -> np.ndarray:
-        """Orientation of the handle, unit quaternion w, x, y, z, shape (4,)."""
+        """Orientation of the platform, unit quaternion w, x, y, z, shape (4,)."""
         return self.named.data.sensordata["orientation"].copy()
 
     def _drives(self, sensor: str) -> np.ndarray:

@@ -1,10 +1,10 @@
-"""Tasks for the robot: hold the handle, reach a target, track a circle.
+"""Tasks for the robot: hold the platform, reach a target, track a circle.
 
     reward = near(|p - p_d|) level(angle from upright)        1 near the target, falling to 0.1
 
 What is observed is what the real robot tells: motor angles by its encoders, their last difference
 over the time between, the pose at which the angles are zero (from its homing), and what is asked of
-the handle. Pose and tensions are observed only if that is asked for: `privileged`.
+the platform. Pose and tensions are observed only if that is asked for: `privileged`.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ HAND = (0.5, 2.0)  # least and largest force of the hand [N]; 2 A could hold 8 N
 REACH = np.array([0.2, 0.2, 0.2])  # half-width of the box of targets [m]; all of them can be held
 
 # The reward is 1 within these limits, and falls to 0.1 at the margin beyond them.
-NEAR, NEAR_MARGIN = 0.005, 0.1  # distance of the handle from its target [m]
-LEVEL, LEVEL_MARGIN = 0.02, 0.3  # angle of the handle from upright [rad]
+NEAR, NEAR_MARGIN = 0.005, 0.1  # distance of the platform from its target [m]
+LEVEL, LEVEL_MARGIN = 0.02, 0.3  # angle of the platform from upright [rad]
 
 
 class Handle(control.Task):
@@ -73,7 +73,7 @@ class Handle(control.Task):
         self._angle, self._rate, self._time = self._read(np.zeros(DRIVES)), np.zeros(DRIVES), 0.0
 
     def draw_path(self, begin: np.ndarray) -> Path:
-        """Where the handle should be in an episode that starts at `begin`, shape (3,) [m]."""
+        """Where the platform should be in an episode that starts at `begin`, shape (3,) [m]."""
         raise NotImplementedError
 
     def action_spec(self, physics: Physics) -> specs.BoundedArray:
@@ -101,11 +101,11 @@ class Handle(control.Task):
         self._mark(physics)
 
     def asked(self, physics: Physics) -> Motion:
-        """The motion that is asked of the handle now."""
+        """The motion that is asked of the platform now."""
         return self.path.at(physics.data.time)
 
     def get_observation(self, physics: Physics) -> Mapping[str, np.ndarray]:
-        """What the robot measures, and where the handle should be."""
+        """What the robot measures, and where the platform should be."""
         asked = self.asked(physics)
         seen = OrderedDict(
             motor_angle=self._angle.copy(),
@@ -139,7 +139,7 @@ class Handle(control.Task):
 
 
 class Hold(Handle):
-    """Keep the handle where it starts, against the constant, unobserved force of a hand."""
+    """Keep the platform where it starts, against the constant, unobserved force of a hand."""
 
     def initialize_episode(self, physics: Physics) -> None:
         """Start an episode, and let the hand pull in a random direction."""
@@ -154,7 +154,7 @@ class Hold(Handle):
 
 
 class Reach(Handle):
-    """Bring the handle to a target that it can hold."""
+    """Bring the platform to a target that it can hold."""
 
     def draw_path(self, begin: np.ndarray) -> Path:
         """A random target in a box about the nominal start."""

@@ -9,7 +9,7 @@ a relative 1e-11 of 2 m of cable is 3e-7 N in the worst case. Measured over 10 s
 1e-13: angles right to 1e-11 rad, tensions to 3e-10 N, four digits below the 1e-7 rad to which the
 twin is compared, in 2 to 3 s. Tighter costs much (ten times at 1e-13): with strains of 1e-4 the
 rounding of (d − d₀)/d₀ is seen as an error. 1e-9 halves the time and keeps 2e-11 rad, as most
-steps are bounded by stability (the stiff, damped rotation of the handle), not by accuracy.
+steps are bounded by stability (the stiff, damped rotation of the platform), not by accuracy.
 """
 
 from __future__ import annotations

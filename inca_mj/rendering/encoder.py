@@ -30,7 +30,7 @@ def encoder(
     writer = imageio_ffmpeg.write_frames(
         str(path), size, fps=fps, codec="libx264", quality=None, macro_block_size=2,
         ffmpeg_log_level="error",
-        output_params=["-crf", "20", "-preset", "veryfast", "-movflags", "+faststart"],
+        output_params=["-crf", "26", "-preset", "veryfast", "-movflags", "+faststart"],
     )  # fmt: skip
 
     def send(frame: np.ndarray | None) -> None:

@@ -1,4 +1,4 @@
-"""A film of a run: the simulated robot in full colour, the measured one as a ghost over it.
+"""A film of a run: the simulated robot in full colour, the measured one as an outline over it.
 
 Two runs are filmed side by side, at the same times.
 """
@@ -36,6 +36,7 @@ def film(
     plots: bool | None = None,
     speed: float = 1.0,
     magnify: float = MAGNIFY,
+    picture: str | Path | None = None,
     progress: Progress | None = None,
 ) -> Path:
     """Write a log or a run as an mp4 film, whole or not at all.
@@ -54,6 +55,7 @@ def film(
         plots: show the motor angles beside the robot; None is yes for one robot, no for two.
         speed: seconds of the run in a second of film; 0.25 is slow motion.
         magnify: by how much the deviation from a path that was asked is drawn larger.
+        picture: a .jpg file to which the frame in the middle is written; none when None.
         progress: told the frames done and the frames in all.
 
     Returns:
@@ -65,6 +67,8 @@ def film(
         DivergenceError: the twin cannot be simulated under a log's currents.
         GraphicsError: no OpenGL context can be made here.
     """
+    from PIL import Image
+
     path = Path(path)
     if path.suffix.lower() != ".mp4":
         raise InputError(f"a film is written as .mp4, not {path.name!r}; change its ending")
@@ -87,7 +91,11 @@ def film(
         encoder(draft, size, fps) as send,
     ):
         for done, time in enumerate(counted(times, "frames", len(times)), 1):
-            send(frame(time))
+            drawn = frame(time)
+            send(drawn)
+            if picture is not None and done == (len(times) + 1) // 2:
+                with whole_file(picture) as other:
+                    Image.fromarray(drawn).save(other, format="jpeg", quality=85)
             if progress is not None:
                 progress(done, len(times))
     return path

@@ -34,6 +34,28 @@ def ghost_positions(robot: Twin, angles: np.ndarray, poses: np.ndarray | None) -
     return np.hstack([poses[:, :3], turned, angles])
 
 
+def ghost_errors(
+    robot: Twin, simulated: np.ndarray, ghost: np.ndarray, is_pose_measured: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """How far a simulated robot is from the measured one, sample by sample.
+
+    Args:
+        robot: the twin.
+        simulated: MuJoCo positions of the simulated robot, shape (N, 15) [m, -, rad].
+        ghost: of the measured one, shape (N, 15).
+        is_pose_measured: whether the pose of the ghost was measured; else it follows from the
+            angles for cables that do not stretch, and that of the simulated robot is taken so too.
+
+    Returns:
+        The distance of the platform, shape (N,) [m], and the rms of the eight motor angles' errors,
+        shape (N,) [rad].
+    """
+    own = simulated if is_pose_measured else ghost_positions(robot, simulated[:, 7:], None)
+    distance = np.linalg.norm(own[:, :3] - ghost[:, :3], axis=1)
+    turned = np.sqrt(np.mean((simulated[:, 7:] - ghost[:, 7:]) ** 2, axis=1))
+    return distance, turned
+
+
 def _table(values: np.ndarray, what: str, columns: int) -> np.ndarray:
     table = np.asarray(values, float)
     if table.ndim != 2 or table.shape[1] != columns or not np.isfinite(table).all():

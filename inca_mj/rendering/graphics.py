@@ -12,7 +12,7 @@ import os
 import sys
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
 from identification.errors import GraphicsError
@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
 _OFF = ("disable", "disabled", "off", "false", "0")
 _WINDOW = ("", "enable", "enabled", "on", "true", "1", "glfw", "glx")
-_LIBRARY = {"egl": "EGL", "osmesa": "OSMesa"}
+# Libraries of which each backend needs one of each group: PyOpenGL asks for OpenGL's functions
+# beside those of EGL, and MuJoCo's import dies where it finds them nowhere.
+_LIBRARIES = {"egl": (("EGL",), ("OpenGL", "GL")), "osmesa": (("OSMesa",),)}
 _FIX = (
     "apt-get install libegl1 libopengl0 libgl1-mesa-dri, or set MUJOCO_GL to egl, osmesa or glfw;"
     " everything that does not draw still works"
@@ -49,15 +51,16 @@ def choose_backend() -> str:
         raise GraphicsError(f"MUJOCO_GL={backend} switches drawing off; unset it or set it to egl")
     if not sys.platform.startswith("linux"):
         return backend
-    if backend not in (*_WINDOW, *_LIBRARY):
+    if backend not in (*_WINDOW, *_LIBRARIES):
         raise GraphicsError(f"MUJOCO_GL={backend} is no OpenGL backend; set egl, osmesa or glfw")
     if not backend and not _display():
         backend = os.environ["MUJOCO_GL"] = "egl"
-    if backend in _LIBRARY:
-        _require(_LIBRARY[backend])
+    if backend in _LIBRARIES:
+        for names in _LIBRARIES[backend]:
+            _require(*names)
     elif not _display():
         raise GraphicsError(f"MUJOCO_GL={backend} needs a display and there is none; set egl")
-    if "mujoco" in sys.modules and backend in _LIBRARY:
+    if "mujoco" in sys.modules and backend in _LIBRARIES:
         _rebind(backend)
     return backend
 
@@ -90,14 +93,17 @@ def _display() -> bool:
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def _require(library: str) -> None:
-    found = ctypes.util.find_library(library)
-    try:
-        if found is None:
-            raise OSError
-        ctypes.CDLL(found)
-    except OSError:
-        raise GraphicsError(f"no OpenGL for the film (lib{library} is missing): {_FIX}") from None
+def _require(*names: str) -> None:
+    """Refuse to draw where none of some libraries can be loaded."""
+    for name in names:
+        found = ctypes.util.find_library(name)
+        with suppress(OSError):
+            if found is not None:
+                ctypes.CDLL(found)
+                return
+    missing = " and ".join(f"lib{name}" for name in names)
+    are = "are" if len(names) > 1 else "is"
+    raise GraphicsError(f"no OpenGL for the film ({missing} {are} missing): {_FIX}")
 
 
 def _rebind(backend: str) -> None:

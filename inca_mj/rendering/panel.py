@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from identification.report.style import GREY, INK, MEASURED, SIMULATED
 from inca_mj.robot.geometry import DRIVES
@@ -44,7 +45,12 @@ class Panel:
             ax.set_xlim(time[0], time[-1])
         inch = dpi / size[1]  # in parts of the height
         figure.suptitle("motor angles [rad] over time [s]", fontsize=8.5, color=INK, va="center",
-                        y=1 - 0.14 * inch)  # fmt: skip
+                        x=0.03, ha="left", y=1 - 0.14 * inch)  # fmt: skip
+        lines = [Line2D([], [], color=SIMULATED, lw=0.9)]
+        if measured is not None:
+            lines.append(Line2D([], [], color=MEASURED, lw=2.2, alpha=0.55))
+        figure.legend(lines, ["simulated", "measured"][: len(lines)], fontsize=7, frameon=False,
+                      loc="upper right", ncols=2, borderaxespad=0.1)  # fmt: skip
         figure.subplots_adjust(left=0.08, right=0.97, top=1 - 0.45 * inch, bottom=0.26 * inch,
                                hspace=0.5, wspace=0.18)  # fmt: skip
         canvas.draw()

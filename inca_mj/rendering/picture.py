@@ -9,8 +9,8 @@ import matplotlib
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from identification.report.style import INK, MEASURED, SIMULATED
-from inca_mj.rendering.colours import ASKED, TRACE, TensionScale, shade
+from identification.report.style import INK, MEASURED
+from inca_mj.rendering.colours import ASKED, DRUMS, HANDLE, TRACE, TensionScale, shade
 
 Box = tuple[int, int, int, int]  # left, top, width, height [px]
 BACKGROUND = (255, 255, 255)
@@ -87,15 +87,14 @@ class Lettering:
         pen = ImageDraw.Draw(image)
         left, top, width, height = area
         em, below = self._em, top + height
-        robots = [
-            ("simulated", SIMULATED, 0.33),
-            *([("measured", MEASURED, 0.33)] if ghost else []),
-        ]
-        high = int((3.0 + 1.4 * len(robots)) * em)
+        robots = [("platform, simulated", HANDLE, 0.33), ("frame and drums", DRUMS, 0.33)]
+        robots += [("measured robot", "", 0.33)] if ghost else []
+        high = int((3.0 + 1.4 * len(robots) + (2.9 if ghost else 0.0)) * em)
         self._card(pen, left, top, int(12.5 * em), high)
         self._clock = (left + em, top + em)
         self._legend(pen, robots, left + em, top + int(3.5 * em))
         self._readout = self._clock
+        self._off = (left + em, top + int((3.1 + 1.4 * len(robots)) * em))
         if magnify is not None:  # beside the clock's card where there is room, else under it
             beside = width >= 26 * em
             at = (left + int(12.5 * em), top) if beside else (left, top + high)
@@ -118,10 +117,23 @@ class Lettering:
         alpha = pixels[self._rows][..., 3:]
         self._ink, self._see = pixels[self._rows][..., :3] * alpha, 255 - alpha
 
-    def write(self, frame: np.ndarray, time: float, distance: float | None = None) -> None:
-        """Letter a frame (h, w, 3) of time [s], in place; the distance from the path [m] too."""
+    def write(self, frame: np.ndarray, time: float, distance: float | None = None,
+              off: np.ndarray | None = None) -> None:  # fmt: skip
+        """Letter a frame in place.
+
+        Args:
+            frame: shape (h, w, 3) of bytes.
+            time: [s].
+            distance: of the platform from the path that was asked [m].
+            off: of the simulated robot from the measured one: the platform [m], the motors [rad].
+        """
         frame[self._rows] = (self._ink + frame[self._rows] * self._see) // 255
         self._say(frame, self._clock, f"t = {time:.2f} s", 1.15)
+        if off is not None:
+            left, top = self._off
+            self._say(frame, (left, top), f"platform off {1e3 * off[0]:.2f} mm", 0.85)
+            row = top + int(1.35 * self._em)
+            self._say(frame, (left, row), f"motors off {1e3 * off[1]:.1f} mrad", 0.85)
         if distance is not None:
             self._say(frame, self._readout, f"error {1e3 * distance:.3f} mm", 0.85)
 
@@ -153,12 +165,15 @@ class Lettering:
 
     def _legend(self, pen: ImageDraw.ImageDraw, rows: list[tuple[str, str, float]], left: int,
                 top: int) -> None:  # fmt: skip
-        """Rows of text, colour and half the height of the mark [em]."""
+        """Rows of text, colour and half the height of the mark [em]; no colour is the outline."""
         em = self._em
         for row, (text, colour, high) in enumerate(rows):
             y, half = top + int(1.4 * em * row), max(1, int(high * em))
-            pen.rounded_rectangle((left, y - half, left + int(1.2 * em), y + half),
-                                  min(half, em // 4), fill=colour)  # fmt: skip
+            box, corner = (left, y - half, left + int(1.2 * em), y + half), min(half, em // 4)
+            if colour:
+                pen.rounded_rectangle(box, corner, fill=colour)
+            else:
+                pen.rounded_rectangle(box, corner, outline=MEASURED, width=max(1, em // 6))
             pen.text((left + int(1.7 * em), y), text, INK, self._font(0.85), anchor="lm")
 
     def _bar(self, image: Image.Image, pen: ImageDraw.ImageDraw, box: Box,
@@ -169,7 +184,7 @@ class Lettering:
         colours = np.round(255 * shade(np.linspace(0, 1, width))).astype(np.uint8)
         image.paste(Image.fromarray(np.tile(colours, (height, 1, 1)), "RGBA"), (left, top))
         font = self._font(0.7)
-        pen.text((left, top - em // 4), "tension [N]; grey: slack", INK, font, anchor="ls")
+        pen.text((left, top - em // 4), "cables: tension [N]; grey: slack", INK, font, anchor="ls")
         y = top + height + em // 4
         for part, anchor in ((0.0, "la"), (0.5, "ma"), (1.0, "ra")):
             value = scale.low + part * (scale.high - scale.low)

@@ -10,7 +10,7 @@ import numpy as np
 from identification.errors import InputError
 from identification.logs.log import Log
 from inca_mj.twin.logs import pose_of, read_inca_log
-from inca_mj.twin.run import Run, load_run
+from inca_mj.twin.run import Run, load_run, rows_of
 from inca_mj.workflows.comparison import Comparison, compare
 
 
@@ -46,13 +46,20 @@ class Scene:
         Raises:
             InputError: fewer than two samples are left.
         """
-        run = self.run.until(end)
-        n = len(run.time)
+        return self.between(float("-inf"), end)
+
+    def between(self, start: float, end: float) -> Scene:
+        """The samples from `start` to `end` [s], both included.
+
+        Raises:
+            InputError: fewer than two samples are left.
+        """
+        rows = rows_of(self.run.time, start, end)
         return replace(
             self,
-            run=run,
-            angles=None if self.angles is None else self.angles[:n],
-            pose=None if self.pose is None else self.pose[:n],
+            run=self.run.between(start, end),
+            angles=None if self.angles is None else self.angles[rows],
+            pose=None if self.pose is None else self.pose[rows],
         )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from identification.errors import InputError
 from inca_mj.rendering.colours import TensionScale, tension_scale
-from inca_mj.rendering.ghost import ghost_positions
+from inca_mj.rendering.ghost import ghost_errors, ghost_positions
 from inca_mj.rendering.panel import Panel
 from inca_mj.rendering.picture import BACKGROUND, Layout, Lettering, layout, paste
 from inca_mj.rendering.scene import Scene
@@ -91,6 +91,7 @@ class _Stage:
 
     run: Run
     ghost: np.ndarray | None
+    errors: np.ndarray | None
     trace: Trace | None
     scale: TensionScale
     boxes: Layout
@@ -113,7 +114,9 @@ class _Stage:
             paste(frame, self.boxes.handle, self.handle.draw(qpos, colours, ghost, lines))
         if self.panel is not None and self.boxes.plots is not None:
             paste(frame, self.boxes.plots, self.panel.at(time))
-        self.lettering.write(frame, time, None if self.trace is None else self.trace.distance(time))
+        off = None if self.errors is None else _between(run.time, self.errors, time)
+        distance = None if self.trace is None else self.trace.distance(time)
+        self.lettering.write(frame, time, distance, off)
         return frame
 
 
@@ -123,6 +126,10 @@ def _stage(
 ) -> Iterator[_Stage]:
     run, measured = shown.run, shown.angles
     ghost = None if measured is None else ghost_positions(run.twin, measured, shown.pose)
+    errors = None
+    if ghost is not None:
+        of = ghost_errors(run.twin, run.qpos, ghost, shown.pose is not None)
+        errors = np.stack(of, axis=1)
     trace = trace_of(run, look.magnify)
     boxes = layout(size, look.camera, plots, bool(title))
     panel = None
@@ -144,6 +151,7 @@ def _stage(
         yield _Stage(
             run=run,
             ghost=ghost,
+            errors=errors,
             trace=trace,
             scale=scale,
             boxes=boxes,

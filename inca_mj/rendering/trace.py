@@ -1,4 +1,4 @@
-"""The path that was asked of the handle and the handle's trace, as lines of a picture.
+"""The path that was asked of the platform and the platform's trace, as lines of a picture.
 
 e = p - p_d        true position less that asked
 p_d + k e          is drawn: a deviation of 2 mm is nothing in a frame of 3 m, 20 times it is seen
@@ -23,11 +23,11 @@ _MOST = 2000  # corners of a line, of a long run too
 
 @dataclass(frozen=True)
 class Trace:
-    """How a handle follows what is asked.
+    """How a platform follows what is asked.
 
     Attributes:
         time: sample times, shape (N,) [s].
-        asked: positions asked of the handle, shape (N, 3) [m].
+        asked: positions asked of the platform, shape (N, 3) [m].
         error: true positions less those, shape (N, 3) [m].
         magnify: k, by which the error is drawn larger.
     """

@@ -1,4 +1,4 @@
-"""One camera's picture of the robot, with its measured ghost."""
+"""One camera's picture of the robot, with the measured one as an outline over it."""
 
 from __future__ import annotations
 
@@ -10,22 +10,18 @@ from math import atan, degrees, radians, tan
 
 import mujoco
 import numpy as np
-from matplotlib.colors import to_rgb
 
 from identification.errors import unknown_name
 from identification.report.style import MEASURED
 from inca_mj.rendering.graphics import renderer
+from inca_mj.rendering.outline import draw_outline, outline_of
 from inca_mj.rendering.overlay import Eye, Line, overlay
 
 CAMERAS = ("front", "side", "handle")
 
-_GHOST_RGB = np.array(to_rgb(MEASURED))
-_GHOST_BODY, _GHOST_CABLE = 0.24, 0.35  # opacity
-_HALO, _THREAD = 1.3, 0.6  # the ghost is a halo where it agrees; its cables do not hide colours
+_EDGE = 1 / 480  # of the height: the line round the measured robot
 _SAMPLES = 4  # antialiasing; software OpenGL knows 0 and 4, and 0 breaks cables into dots
 _WIDE = 1.15  # width to height that a camera is made for
-_DYNAMIC = mujoco.mjtCatBit.mjCAT_DYNAMIC
-_TENDON, _CYLINDER = mujoco.mjtObj.mjOBJ_TENDON, mujoco.mjtGeom.mjGEOM_CYLINDER
 
 
 @dataclass(frozen=True)
@@ -50,21 +46,27 @@ class View:
         Args:
             qpos: positions of the simulated robot, shape (15,) [m, -, rad].
             colours: of its cables, shape (8, 4) [0..1].
-            ghost: positions of the measured robot, shape (15,); not drawn when None.
-            lines: drawn over the picture, so that the handle does not hide where it should be.
+            ghost: positions of the measured robot, shape (15,), which is drawn as an outline over
+                it; not drawn when None.
+            lines: drawn over the picture, so that the platform does not hide where it should be.
         """
         self.model.tendon_rgba[:] = colours
         _place(self.model, self.robot, qpos)
         self.draws.update_scene(self.robot, self.camera)
-        if ghost is not None:
-            self._add_ghost(ghost)
         scene = self.draws.scene
         # On a CPU each of these costs several times the rest of the picture.
         scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
         scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
         scene.flags[mujoco.mjtRndFlag.mjRND_HAZE] = True
-        picture = self.draws.render()
-        return overlay(picture, lines, self.eye()) if lines else picture
+        picture, eye = self.draws.render(), self.eye()
+        if lines:
+            picture = overlay(picture, lines, eye)
+        if ghost is None:
+            return picture
+        _place(self.model, self.ghost, ghost)
+        size = (picture.shape[1], picture.shape[0])
+        outline = outline_of(self.model, self.ghost, eye, size)
+        return draw_outline(picture, outline, MEASURED, max(1.0, _EDGE * size[1]))
 
     def eye(self) -> Eye:
         """The camera for the state that was drawn last."""
@@ -74,22 +76,6 @@ class View:
             self.robot.cam_xmat[number].reshape(3, 3).copy(),
             radians(self.model.cam_fovy[number]),
         )
-
-    def _add_ghost(self, qpos: np.ndarray) -> None:
-        _place(self.model, self.ghost, qpos)
-        scene, option = self.draws.scene, mujoco.MjvOption()
-        first = scene.ngeom
-        mujoco.mjv_addGeoms(
-            self.model, self.ghost, option, mujoco.MjvPerturb(), _DYNAMIC.value, scene
-        )
-        for geom in scene.geoms[first : scene.ngeom]:
-            cable = geom.objtype == _TENDON
-            geom.rgba[:3] = _GHOST_RGB
-            geom.rgba[3] = _GHOST_CABLE if cable else _GHOST_BODY
-            geom.size[:2] *= _THREAD if cable else _HALO
-            geom.transparent = 1
-            if geom.type == _CYLINDER:  # a drum stays where it is: only the mark on its rim turns
-                geom.rgba[3] = 0.0
 
 
 @contextmanager

@@ -11,6 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 from identification.errors import InputError
 from identification.files import whole_file
 from identification.model.parameter import ParameterSet
+from identification.quantities import quantity
 from identification.report.style import INK
 from inca_mj.kinematics.rotations import quaternion
 from inca_mj.rendering.colours import tension_scale
@@ -43,7 +44,7 @@ def workspace_picture(
         path: where to write.
         parameters: of the robot.
         geometry: anchors of the cables.
-        pose: where the handle is drawn, shape (6,) [m, rad]; at the start when None.
+        pose: where the platform is drawn, shape (6,) [m, rad]; at the start when None.
         tension: colours the cables, shape (8,) [N]; grey when None.
         camera: "front" or "side".
         size: width and height [px].
@@ -96,7 +97,7 @@ def _letter(image: Image.Image, found: Workspace, assumed: bool) -> None:
     file = Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
     roll, pitch, yaw = found.orientation
     lines = [
-        f"{NAMES[found.kind]} workspace: {found.volume:.2f} ± {found.std:.2f} m³",
+        f"{NAMES[found.kind]} workspace: {quantity(found.volume, found.std, 'm³')}",
         f"roll {roll:.2f}, pitch {pitch:.2f}, yaw {yaw:.2f} rad",
         *(["geometry assumed"] if assumed else []),
     ]

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from identification.quantities import alike, quantity
+from identification.quantities import alike, matched, quantity
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES, EACH_DRIVE, POINTS
 from inca_mj.twin.logs import POSE
@@ -153,8 +153,8 @@ def _by_place(names: Any, row: Any, unit: str) -> dict[str, list[Mapping[str, An
 
 
 def _percent(found: Calibration, name: str) -> str:
-    return f"{100 * found.values[name]:+.1f} ± {100 * found.std[name]:.1f}"
+    return " ± ".join(matched(100 * found.values[name], 100 * found.std[name], "+"))
 
 
 def _millimetres(found: Calibration, name: str) -> str:
-    return f"{1e3 * found.values[name]:+.2f} ± {1e3 * found.std[name]:.2f}"
+    return " ± ".join(matched(1e3 * found.values[name], 1e3 * found.std[name], "+"))

@@ -1,4 +1,4 @@
-"""Figures of the robot's linear models: shapes of the handle's modes, and errors between a grid."""
+"""Figures of the robot's linear models: shapes of the platform's modes, errors between a grid."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from inca_mj.linear.thesis_states import EULER, PLATFORM, POSITION
 from inca_mj.robot.geometry import Geometry
 from inca_mj.robot.spread import displaced
 
-SHOWN = 6  # modes: a rigid handle has as many
+SHOWN = 6  # modes: a rigid platform has as many
 REACH = 0.03  # largest motion of a connector in the picture [m]
 STUB = 0.1  # of each cable that is drawn [m]
 POSE_WORDS = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -29,7 +29,7 @@ def handle_share(mode: Mode) -> float:
 
 
 def handle_modes(model: LinearModel) -> list[Mode]:
-    """The swinging modes in which the handle has the largest share, the slowest first.
+    """The swinging modes in which the platform has the largest share, the slowest first.
 
     Args:
         model: of the robot.
@@ -40,7 +40,7 @@ def handle_modes(model: LinearModel) -> list[Mode]:
 
 
 def handle_motion(mode: Mode, arm: float) -> str:
-    """Which motions of the handle a mode has: those of at least half the largest.
+    """Which motions of the platform a mode has: those of at least half the largest.
 
     Args:
         mode: the mode.
@@ -52,7 +52,7 @@ def handle_motion(mode: Mode, arm: float) -> str:
 
 
 def shape_figure(model: LinearModel) -> Figure:
-    """The handle at both ends of its swing in each of its modes, with the cables' first part.
+    """The platform at both ends of its swing in each of its modes, with the cables' first part.
 
     Args:
         model: of the robot.
@@ -69,9 +69,9 @@ def shape_figure(model: LinearModel) -> Figure:
 
 
 def _draw_mode(axis: Any, model: LinearModel, mode: Mode, placed: Geometry) -> None:
-    """One mode: the handle at rest in grey, and both ends of its swing in colour."""
+    """One mode: the platform at rest in grey, and both ends of its swing in colour."""
     p, e = model.system.x[POSITION], model.system.x[EULER]
-    # The phase at which the handle is farthest out.
+    # The phase at which the platform is farthest out.
     shape = np.concatenate([mode.shape[POSITION], mode.shape[EULER]])
     lead = shape[np.abs(shape).argmax()]
     shape = np.real(shape * np.abs(lead) / lead)
@@ -105,7 +105,7 @@ def _draw_mode(axis: Any, model: LinearModel, mode: Mode, placed: Geometry) -> N
 def _draw_handle(
     axis: Any, at: np.ndarray, centre: np.ndarray, exits: np.ndarray, colour: str, width: float
 ) -> None:
-    """The arms of the handle, and the first part of each cable."""
+    """The arms of the platform, and the first part of each cable."""
     for point, far in zip(at, exits, strict=True):
         axis.plot(*np.stack([centre, point], axis=1), color=colour, lw=width)
         way = (far - point) / np.linalg.norm(far - point)

@@ -23,8 +23,9 @@ from inca_mj.report.linear_figures import (
     handle_share,
     shape_figure,
 )
+from inca_mj.twin.logs import UNITS
 
-HANDLE_HEAD = ("frequency [Hz]", "damping", "the handle moves along", "share of the handle")
+HANDLE_HEAD = ("frequency [Hz]", "damping", "the platform moves along", "share of the platform")
 
 
 def model_to_json(model: LinearModel, rate: float) -> dict[str, Any]:
@@ -46,7 +47,7 @@ def model_to_json(model: LinearModel, rate: float) -> dict[str, Any]:
 
 
 def handle_rows(model: LinearModel) -> list[tuple[str, str, str, str]]:
-    """The handle's modes: frequency, damping, motion, and the handle's share in them."""
+    """The platform's modes: frequency, damping, motion, and the platform's share in them."""
     arm = float(np.linalg.norm(model.robot.geometry.B, axis=1).max())
     return [
         (f"{m.frequency:.1f}", f"{m.damping:.3f}", handle_motion(m, arm), f"{handle_share(m):.2f}")
@@ -81,13 +82,16 @@ def model_sections(models: Sequence[LinearModel], labels: Sequence[str], rate: f
         rate: of the samples of the discrete form of the first one [Hz].
     """
     shapes = Section(
-        f"The modes of the handle, {labels[0]}",
+        f"The modes of the platform, {labels[0]}",
         "Grey: at rest. Blue and red: both ends of the swing, enlarged so that a connector moves by"
         " 3 cm; thin lines are the cables' first 10 cm.",
         table=Table(HANDLE_HEAD, tuple(handle_rows(models[0]))),
-        figures=(("Shapes of the handle's modes", shape_figure(models[0])),),
+        figures=(("Shapes of the platform's modes", shape_figure(models[0])),),
     )
-    return [shapes, *linear_sections([m.system for m in models], labels, rate)]
+    systems = [m.system for m in models]
+    names = (*systems[0].inputs, *systems[0].outputs)
+    units = {name: UNITS[name.rstrip("_12345678")] for name in names}
+    return [shapes, *linear_sections(systems, labels, rate, units)]
 
 
 def grid_to_json(

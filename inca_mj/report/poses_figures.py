@@ -59,7 +59,7 @@ def poses_figure(found: LogPoses) -> Figure:
                 right.fill_between(found.log.time, -2 * std, 2 * std, color=color, alpha=0.15, lw=0)
                 right.plot(found.log.time, error, color=color, lw=0.7)
             left.set_ylabel(f"{about} [{unit}]")
-            left.legend(loc="upper right", ncols=3)
+            left.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
             what = "std of the" if found.measured is None else "error and ± 2 std of the"
             right.set_ylabel(f"{what} {about} [{small}]")
         for ax in axes[1]:

@@ -1,8 +1,7 @@
-"""Sections of reports: one for a comparison, a run, a cross-check, a film, and a model."""
+"""Sections of reports: one for a comparison, a run, a cross-check, and a model."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -98,14 +97,4 @@ def model_section(robot: Twin) -> Section:
             ("parameter", "value", "unit", "what", "source"),
             tuple((p.name, p.value, p.unit, p.about, p.source) for p in robot.parameters),
         ),
-    )
-
-
-def film_section(path: Path) -> Section:
-    """The film."""
-    return Section(
-        "The film",
-        "In colour: the twin, its cables coloured by tension. Translucent: the pose that the"
-        " measured angles imply for cables that do not stretch.",
-        video=path,
     )

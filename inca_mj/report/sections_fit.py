@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from identification.estimation.fit import Fit
 from identification.estimation.profiles import Profile
+from identification.quantities import matched
 from identification.report.fit_verdict import fit_verdict
 from identification.report.page import Section, Table
 from identification.report.profile_figure import profile_figure
@@ -28,8 +27,7 @@ def fit_section(result: Identification, fit: Fit, title: str) -> Section:
             tuple(
                 (
                     name,
-                    value,
-                    std if np.isfinite(std) else "unknown",
+                    *matched(value, std),
                     unit,
                     first,
                     "at bound" if bound else "",

@@ -110,14 +110,14 @@ def cable_mass_figure(found: StaticAnalysis) -> Figure:
 
 
 def frequency_figure(found: StaticAnalysis) -> Figure:
-    """Frequencies of the handle and of its cables."""
+    """Frequencies of the platform and of its cables."""
     rows: list[tuple[str, np.ndarray, str]] = [
-        ("handle and drums", found.modes_free.frequency, INK),
-        ("handle, drums locked", found.modes.frequency, MEASURED),
+        ("platform and drums", found.modes_free.frequency, INK),
+        ("platform, drums locked", found.modes.frequency, MEASURED),
     ]
     for rho, c in zip(found.rho, found.cable_modes, strict=True):
         name = f"{1e3 * rho:g} g/m"
-        rows += [(f"handle, swinging cables of {name}", c.coupled, "#009E73"),
+        rows += [(f"platform, swinging cables of {name}", c.coupled, "#009E73"),
                  (f"cables of {name}, ends at rest", c.cables, SIMULATED)]  # fmt: skip
     with matplotlib.rc_context(STYLE):
         figure = Figure((6.4, 0.9 + 0.32 * len(rows)), layout="constrained")

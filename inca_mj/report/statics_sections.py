@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from identification.quantities import quantity
 from identification.report.page import Section, Table
 from inca_mj.report.statics_figures import (
     NAMES,
@@ -22,22 +23,22 @@ def statics_verdict(found: StaticAnalysis) -> list[str]:
     said = [
         f"The cables have rank {found.closure.rank} and closure: the best internal tension has a"
         f" smallest tension of {found.closure.margin:.2f} of the largest.",
-        f"Tensions from {held.within.min():.2f} to {held.within.max():.2f} N hold the handle, with"
-        f" currents from {held.current.min():.2f} to {held.current.max():.2f} A.",
+        f"Tensions from {held.within.min():.2f} to {held.within.max():.2f} N hold the platform,"
+        f" with currents from {held.current.min():.2f} to {held.current.max():.2f} A.",
         f"With the power off it rests at ({x:.3f}, {y:.3f}, {z:.3f}) m,"
         f" {'stable' if rest.stable else 'NOT stable'}; Coulomb friction may hold it up to"
         f" {1e3 * rest.friction_band[:3].max():.0f} mm away from there.",
         f"With locked drums the softest direction is {push.words[0]}, {push.values[0] / 1e3:.1f}"
         f" N/mm, and the stiffest {push.words[-1]}, {push.values[-1] / 1e3:.1f} N/mm; the softest"
         f" turn is {found.twist.words[0]}, {found.twist.values[0]:.1f} N m/rad.",
-        f"The slowest mode with locked drums has {found.modes.frequency[0]:.1f} Hz: the handle"
+        f"The slowest mode with locked drums has {found.modes.frequency[0]:.1f} Hz: the platform"
         f" {found.modes.words[0]}.",
     ]
     if found.workspace is not None:
         w = found.workspace
         said.append(
-            f"The {NAMES[w.kind]} workspace at this orientation has {w.volume:.2f} ± {w.std:.2f} m³"
-            " (standard error of stratified sampling)."
+            f"The {NAMES[w.kind]} workspace at this orientation has"
+            f" {quantity(w.volume, w.std, 'm³')} (standard error of stratified sampling)."
         )
     said += _near_words("At the pose", found.nearness)
     if found.nearness_along is not None:
@@ -55,7 +56,7 @@ def mass_verdict(found: StaticAnalysis) -> list[str]:
         where = f"from {min(enough):g} N on" if enough else "at none of the tensions"
         said.append(
             f"Cables of {1e3 * rho:g} g/m are straight to the noise of a log {where}; their weight"
-            f" moves a free handle by {1e3 * rows[0].moved:.1f} mm."
+            f" moves a free platform by {1e3 * rows[0].moved:.1f} mm."
         )
     return said
 
@@ -67,7 +68,7 @@ def _near_words(begin: str, found: Interference) -> list[str]:
     touch = f"clears it by {1e3 * gap:.0f} mm" if gap > 0 else "TOUCHES it"
     return [
         f"{begin} the nearest cables are {i} and {j}, {1e3 * found.between.min():.0f} mm apart;"
-        f" cable {cable} is nearest to the handle and {touch}."
+        f" cable {cable} is nearest to the platform and {touch}."
     ]
 
 
@@ -91,9 +92,9 @@ def statics_sections(found: StaticAnalysis) -> list[Section]:
         ),
         Section(
             "Stiffness and modes",
-            "Stiffness against a force while the handle may turn, against a torque while it may"
+            "Stiffness against a force while the platform may turn, against a torque while it may"
             " move; drums locked. Modes have no damping here.",
-            figures=(("Frequencies of handle and cables", frequency_figure(found)),),
+            figures=(("Frequencies of platform and cables", frequency_figure(found)),),
             table=Table(("what", "value", "unit"), _stiffness_rows(found)),
         ),
     ]  # fmt: skip
@@ -102,8 +103,8 @@ def statics_sections(found: StaticAnalysis) -> list[Section]:
         sections.append(
             Section(
                 "Workspace",
-                f"Slices through the pose. Volume {found.workspace.volume:.3f} ±"
-                f" {found.workspace.std:.3f} m³.",
+                "Slices through the pose. Volume"
+                f" {quantity(found.workspace.volume, found.workspace.std, 'm³')}.",
                 figures=(("Slices of the workspace", slices_figure(found.robot, found, kinds)),),
             )
         )
@@ -120,7 +121,7 @@ def statics_sections(found: StaticAnalysis) -> list[Section]:
 
 MASS_COLUMNS = (
     "ρ [g/m]", "tension [N]", "length [µm]", "angle [mrad]", "force [mN]",
-    "force, half weight [mN]", "stiffness lost [%]", "handle moves [mm]", "straight is enough",
+    "force, half weight [mN]", "stiffness lost [%]", "platform moves [mm]", "straight is enough",
 )  # fmt: skip
 
 

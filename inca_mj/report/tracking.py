@@ -29,7 +29,7 @@ def tracking_section(result: Tracking) -> Section:
     )
     return Section(
         "Asked and done",
-        f"Distance of the handle from where it should be, from {result.counted:g} s on, when the"
+        f"Distance of the platform from where it should be, from {result.counted:g} s on, when the"
         " path is at its full rate. The controller sees the motor angles and has a model.",
         figures=(("Path and error", tracking_figure({"this run": result})),),
         table=Table(("distance", "[mm]"), rows),
@@ -48,10 +48,10 @@ def tracking_figure(results: Mapping[str, Tracking]) -> Figure:
     with matplotlib.rc_context(STYLE):
         figure = Figure((9.5, 4.2), layout="constrained")
         plan, over_time = figure.subplots(1, 2, width_ratios=(1, 1.4))
-        plan.plot(first.wanted[:, i], first.wanted[:, j], color=GREY, lw=1, label="asked")
+        plan.plot(first.asked[:, i], first.asked[:, j], color=GREY, lw=1, label="asked")
         for k, (name, result) in enumerate(results.items()):
             late = result.run.time >= (result.counted if circle else 0.0)
-            shown = result.wanted + MAGNIFIED * result.error
+            shown = result.asked + MAGNIFIED * result.error
             plan.plot(shown[late, i], shown[late, j], color=SERIES[k], label=name)
             distance = 1e3 * np.linalg.norm(result.error, axis=1)
             label = f"{name}: {1e3 * result.rms:.3g} mm rms"

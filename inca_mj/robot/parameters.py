@@ -1,7 +1,7 @@
 """The parameters of the INCA 6D: what the thesis says of each, and where it goes in the model.
 
 Two sets: `simulation` is Table 2.1, `trial` is Table 3.2. Both share R, R_s, k_s, the frictions
-b_c and beta, and the handle; they differ in lambda, b, J, b_v and K_t.
+b_c and beta, and the platform; they differ in lambda, b, J, b_v and K_t.
 
 Columns of `user` data (see `inca_mj.robot.law`): a drive keeps its numbers in the `actuator_user`
 row of its current actuator, a cable in the `tendon_user` row of its tendon.

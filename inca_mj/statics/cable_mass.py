@@ -8,8 +8,8 @@ What a line without mass gets wrong, for a cable that has the tension T at its c
     stiffness   λ_eq/λ by Ernst
 
 A log of angles with white noise σ shows an error of length where it exceeds σ, here 0.5 mrad on a
-roller of 17.5 mm, which are 8.8 µm of cable. An error of force moves the handle: with free drums it
-moves where the springs of the drums take the force, δx = K⁻¹ δw, and the drums turn by s_i·δx/R.
+roller of 17.5 mm, which are 8.8 µm of cable. An error of force moves the platform: with free drums
+it moves where the springs of the drums take the force, δx = K⁻¹ δw, and the drums turn by s_i·δx/R.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class LineError:
         force_half: the same where half of the cable's weight hangs on the connector [N].
         sag: of the cable below the middle of its chord, by Irvine's parabola [m].
         stiffness_lost: 1 − λ_eq/λ by Ernst.
-        moved: how far the weight of all cables moves the handle against free drums [m].
+        moved: how far the weight of all cables moves the platform against free drums [m].
         moved_angle: the largest turn of a drum by that [rad].
     """
 

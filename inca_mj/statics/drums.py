@@ -1,4 +1,4 @@
-"""A cable between the handle and a drum that turns freely against its spring, at rest.
+"""A cable between the platform and a drum that turns freely against its spring, at rest.
 
     T = B − κ φ,   B = T(0) + K_t i/R,   κ = k_s R_s²/R          (thesis 2.40, 2.41 at rest)
     R dφ = −(1 + ε) dd₀,   ε = T/λ = (d − d₀)/d₀                 (2.25, 2.30)

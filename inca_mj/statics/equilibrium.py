@@ -1,4 +1,4 @@
-"""Where the handle rests with constant currents, by default with the power off.
+"""Where the platform rests with constant currents, by default with the power off.
 
     W(x) T(x) + f = 0,   f = weight and load;   T_i from the drum in balance (see `drums`)
 
@@ -82,14 +82,14 @@ def equilibrium(
     low, high = robot.geometry.A.min(axis=0), robot.geometry.A.max(axis=0)
     if not ((low < pose[:3]) & (pose[:3] < high)).all():
         raise InputError(
-            f"the handle would rest at {np.round(pose[:3], 3).tolist()} m, outside the frame, whose"
-            f" exit points span {low.tolist()} to {high.tolist()} m; give a smaller load"
+            f"the platform would rest at {np.round(pose[:3], 3).tolist()} m, outside the frame,"
+            f" whose exit points span {low.tolist()} to {high.tolist()} m; give a smaller load"
         )
     at = lines(pose, robot.geometry)
     found = pull(robot, at.d, current)
     if found.tension.min() <= 0:
         raise InputError(
-            f"cable {found.tension.argmin() + 1} is slack where the handle would rest,"
+            f"cable {found.tension.argmin() + 1} is slack where the platform would rest,"
             f" {np.round(pose, 4).tolist()}; give a smaller load, or currents that wind it in"
         )
     K = stiffness(at, found.tension, found.stiffness)

@@ -1,4 +1,4 @@
-"""How near cables come to each other and to the handle.
+"""How near cables come to each other and to the platform.
 
 Cables, arms and the grip are straight segments p + t u, q + t' v with t, t' in [0, 1]. The nearest
 points of two segments are either inside of both, where the connection is perpendicular to both, or
@@ -85,17 +85,17 @@ class Interference:
         return self.pairs[pair], int(pose)
 
     def nearest_to_platform(self) -> tuple[int, int]:
-        """The cable that comes nearest to the handle, from 1, and the number of the pose."""
+        """The cable that comes nearest to the platform, from 1, and the number of the pose."""
         pose, cable = np.unravel_index(self.platform.argmin(), self.platform.shape)
         return int(cable) + 1, int(pose)
 
 
 def interference(poses: np.ndarray, geometry: Geometry) -> Interference:
-    """Distances between cables, and of cables from the handle, at poses.
+    """Distances between cables, and of cables from the platform, at poses.
 
     Args:
         poses: x, y, z [m], roll, pitch, yaw [rad], shape (N, 6).
-        geometry: anchors of the cables; the handle is that of `inca_mj.robot.handle`.
+        geometry: anchors of the cables; the platform is that of `inca_mj.robot.handle`.
     """
     poses = np.atleast_2d(np.asarray(poses, float))
     at = lines_of_many(poses, geometry)

@@ -1,4 +1,4 @@
-"""How stiffly the cables hold the handle, and how it would swing on them.
+"""How stiffly the cables hold the platform, and how it would swing on them.
 
 With x = (δp, δθ) a small displacement and turn in O, and f the wrench on the platform, δf = −K x.
 J = [s_iᵀ, (r_i × s_i)ᵀ], A_i = [1, −[r_i]×] the displacement of a connector, P_i = 1 − s_i s_iᵀ:
@@ -11,13 +11,13 @@ J = [s_iᵀ, (r_i × s_i)ᵀ], A_i = [1, −[r_i]×] the displacement of a conne
 
 K is symmetric at an equilibrium without external torque (Behzadipour, Khajepour 2006, Stiffness of
 cable-based parallel manipulators). Forces and torques cannot be compared, so K as a whole has no
-eigenvectors that mean anything. What has a meaning: the stiffness against a force while the handle
-may turn, against a torque while it may move, and, with the mass matrix M, its modes,
+eigenvectors that mean anything. What has a meaning: the stiffness against a force while the
+platform may turn, against a torque while it may move, and, with the mass matrix M, its modes,
 
     K_pp − K_pθ K_θθ⁻¹ K_θp [N/m],   K_θθ − K_θp K_pp⁻¹ K_pθ [N m/rad],   K x = ω² M x.
 
 Modes with free drums need the inertia of the drums too (`with_drums`): J/R² = 0.26 kg is more than
-the handle has.
+the platform has.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def geometric_stiffness(at: Lines, tension: np.ndarray) -> np.ndarray:
 
 
 def mass_matrix(robot: Robot, pose: np.ndarray) -> np.ndarray:
-    """M of the handle in O about its centre of mass, shape (6, 6) [kg, kg m^2].
+    """M of the platform in O about its centre of mass, shape (6, 6) [kg, kg m^2].
 
     Args:
         robot: its numbers.
@@ -82,7 +82,7 @@ def mass_matrix(robot: Robot, pose: np.ndarray) -> np.ndarray:
 
 
 def with_drums(robot: Robot, at: Lines, tension: np.ndarray, no_load: np.ndarray) -> np.ndarray:
-    """Stiffness of handle and drums together, in the coordinates (δp, δθ, φ_1 … φ_8).
+    """Stiffness of platform and drums together, in the coordinates (δp, δθ, φ_1 … φ_8).
 
     A turn φ of a drum stretches its cable by R φ, and its spring by R_s φ:
 
@@ -119,18 +119,18 @@ class Axes:
 
 
 def principal(K: np.ndarray) -> tuple[Axes, Axes]:
-    """Stiffness against forces (the handle may turn) and against torques (it may move).
+    """Stiffness against forces (the platform may turn) and against torques (it may move).
 
     Args:
         K: stiffness at an equilibrium, shape (6, 6) [N/m, N, N m/rad].
 
     Raises:
-        InputError: the handle is held in no way along some direction.
+        InputError: the platform is held in no way along some direction.
     """
     K = (K + K.T) / 2
     pp, pt, tt = K[:3, :3], K[:3, 3:], K[3:, 3:]
     if min(np.linalg.svd(part, compute_uv=False)[-1] for part in (pp, tt)) <= 0:
-        raise InputError("the cables do not hold the handle along some direction here; move it")
+        raise InputError("the cables do not hold the platform along some direction here; move it")
     push, twist = pp - pt @ np.linalg.solve(tt, pt.T), tt - pt.T @ np.linalg.solve(pp, pt)
     found = []
     for part, begin in ((push, "along"), (twist, "about")):
@@ -143,7 +143,7 @@ def principal(K: np.ndarray) -> tuple[Axes, Axes]:
 
 @dataclass(frozen=True)
 class Modes:
-    """How the handle swings without damping, the slowest first.
+    """How the platform swings without damping, the slowest first.
 
     Attributes:
         frequency: shape (6,) [Hz]; NaN where the equilibrium is not stable.
@@ -157,7 +157,7 @@ class Modes:
 
 
 def modes(K: np.ndarray, M: np.ndarray, count: int = 6) -> Modes:
-    """The slowest modes of K x = ω² M x; the first six coordinates are those of the handle.
+    """The slowest modes of K x = ω² M x; the first six coordinates are those of the platform.
 
     Args:
         K: stiffness, shape (n, n) [N/m, N, N m/rad].
@@ -171,11 +171,11 @@ def modes(K: np.ndarray, M: np.ndarray, count: int = 6) -> Modes:
 
 
 def mode_words(x: np.ndarray, M: np.ndarray) -> str:
-    """A mode of the handle in words, by its share in the kinetic energy.
+    """A mode of the platform in words, by its share in the kinetic energy.
 
     Args:
         x: displacement and turn, shape (6,), in the units of M.
-        M: mass matrix of the handle, shape (6, 6) [kg, kg m^2].
+        M: mass matrix of the platform, shape (6, 6) [kg, kg m^2].
     """
     moving, turning = x[:3] @ M[:3, :3] @ x[:3], x[3:] @ M[3:, 3:] @ x[3:]
     share = moving / (moving + turning)

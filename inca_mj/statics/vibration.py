@@ -1,4 +1,4 @@
-"""Cables with mass swing sideways: at which frequencies, and what that does to the handle's modes.
+"""Cables with mass swing sideways: at which frequencies, and what that does to its modes.
 
 A taut string between two points that stand still, c = √(T/ρ), swings at
 
@@ -9,16 +9,16 @@ modes of odd n (Irvine, Caughey 1974, The linear theory of free vibrations of a 
 
     tan(ω̄/2) = ω̄/2 − (4/Λ²)(ω̄/2)³,   ω = ω̄ c/d,   Λ² = (ρ g ℓ/T)² λ/T   (short for d ≈ d_e)
 
-The connector of a real cable moves with the handle. The sideways motion of the string is a straight
-line to the moving end and N sines (Craig, Bampton 1968),
+The connector of a real cable moves with the platform. The sideways motion of the string is a
+straight line to the moving end and N sines (Craig, Bampton 1968),
 
     u(s, t) = (s/d) u_B + Σ q_n sin(n π s/d)
     kinetic:  ρ d/3 of u_B,   ρ d/2 of each q_n,   −(−1)ⁿ ρ d/(n π) between u_B and q_n
     elastic:  T/d of u_B (the geometric part of K),   T n² π²/(2 d) of each q_n
 
 in two directions of each cable; along itself the cable moves like a rod, and only ρ d/3 counts,
-because its waves are far faster. So M and K of handle and cables together are finite, and converge
-with N.
+because its waves are far faster. So M and K of platform and cables together are finite, and
+converge with N.
 """
 
 from __future__ import annotations
@@ -87,14 +87,14 @@ def in_plane_frequency(d: float, span: float, tension: float, rho: float, lambda
 
 @dataclass(frozen=True)
 class Coupled:
-    """The handle's modes with massless cables, and with swinging ones; drums locked.
+    """The platform's modes with massless cables, and with swinging ones; drums locked.
 
     Attributes:
-        massless: frequencies of the handle alone, shape (6,) [Hz].
+        massless: frequencies of the platform alone, shape (6,) [Hz].
         added: frequencies where a third of each cable's mass moves with its connector, shape (6,)
-            [Hz]: right for cables that are much faster than the handle.
-        coupled: frequencies of the modes in which the handle moves most, shape (6,) [Hz].
-        share: part of the kinetic energy of each that the handle has, shape (6,).
+            [Hz]: right for cables that are much faster than the platform.
+        coupled: frequencies of the modes in which the platform moves most, shape (6,) [Hz].
+        share: part of the kinetic energy of each that the platform has, shape (6,).
         cables: lowest frequency of each cable between ends at rest, shape (8,) [Hz].
         in_plane: the same in the vertical plane, where sag stretches the cable, shape (8,) [Hz].
     """
@@ -110,7 +110,7 @@ class Coupled:
 def coupled_modes(
     robot: Robot, pose: np.ndarray, at: Lines, tension: np.ndarray, rho: float, sines: int = SINES
 ) -> Coupled:
-    """The modes of handle and cables together.
+    """The modes of platform and cables together.
 
     Args:
         robot: its numbers.

@@ -1,4 +1,4 @@
-"""Where the handle can be at one orientation: three workspaces, as a field of margins.
+"""Where the platform can be at one orientation: three workspaces, as a field of margins.
 
     closure    every wrench can be exerted, if tensions may be as large as they like
     feasible   a set of wrenches can be exerted within the tension limits
@@ -41,13 +41,13 @@ MOST = 200  # cells along an edge: beyond, memory ends before patience
 
 @dataclass(frozen=True, kw_only=True)
 class DriveLimits:
-    """What the drives may do, and what the handle shall bear.
+    """What the drives may do, and what the platform shall bear.
 
     Attributes:
         current: smallest and largest current of a motor [A].
         taut: every cable keeps at least this tension [N].
-        force: largest force on the handle, in any direction [N]; of the feasible workspace.
-        torque: largest torque on the handle, about any axis [N m]; of the feasible workspace.
+        force: largest force on the platform, in any direction [N]; of the feasible workspace.
+        torque: largest torque on the platform, about any axis [N m]; of the feasible workspace.
 
     Raises:
         InputError: a number is not finite or negative, or the smallest current is the larger one.
@@ -95,7 +95,7 @@ def margin(kind: Kind, robot: Robot, poses: np.ndarray, limits: DriveLimits) -> 
         kind: "closure", "feasible" or "static".
         robot: its numbers.
         poses: x, y, z [m], roll, pitch, yaw [rad], shape (N, 6).
-        limits: of the drives, and what the handle shall bear.
+        limits: of the drives, and what the platform shall bear.
 
     Raises:
         InputError: the kind is unknown.
@@ -159,7 +159,7 @@ def workspace(
         kind: "closure", "feasible" or "static".
         robot: its numbers.
         orientation: roll, pitch, yaw, shape (3,) [rad].
-        limits: of the drives, and what the handle shall bear; the usual ones when None.
+        limits: of the drives, and what the platform shall bear; the usual ones when None.
         cells: along the longest edge of the box of the exit points.
         seed: of the random points that measure the volume.
 

@@ -29,7 +29,7 @@ _LAW = """
   or, with the parameters at hand: robot = inca_mj.build_twin(); inca_mj.simulate(robot, currents).
   In a viewer: inca view
 
-  In `python -m mujoco.viewer` there is no law: no cable pulls, and the handle falls through the
+  In `python -m mujoco.viewer` there is no law: no cable pulls, and the platform falls through the
   floor, since contacts are switched off. For programs without inca_mj there is inca6d_plain.xml: it
   needs MuJoCo only and follows the twin in small motions.
 
@@ -67,7 +67,7 @@ def short_law_note() -> str:
     """The text `read_me` of a model that needs the law; MJCF keeps it in one line."""
     return (
         "The cables pull only with the law of inca_mj (in Python: inca_mj.build_twin()). In MuJoCo"
-        " alone the handle falls; inca6d_plain.xml is the approximation that needs MuJoCo only."
+        " alone the platform falls; inca6d_plain.xml is the approximation that needs MuJoCo only."
     )
 
 

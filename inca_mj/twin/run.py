@@ -47,7 +47,7 @@ class Run:
         act: no-load lengths d₀, shape (N, 8) [m].
         tension: cable tensions T, shape (N, 8) [N].
         length: cable lengths d, shape (N, 8) [m].
-        asked: positions in O that a controller asked of the handle, shape (N, 3) [m]; None where
+        asked: positions in O that a controller asked of the platform, shape (N, 3) [m]; None where
             nothing was asked.
     """
 
@@ -87,10 +87,32 @@ class Run:
         Raises:
             InputError: fewer than two samples are left.
         """
-        n = int(np.searchsorted(self.time, end, side="right"))
-        if n < 2:
-            raise InputError(f"{end:g} s holds less than two samples; give a longer time")
-        return replace(self, **{name: array[:n] for name, array in _arrays(self).items()})
+        return self.between(float("-inf"), end)
+
+    def between(self, start: float, end: float) -> Run:
+        """The samples from `start` to `end` [s], both included.
+
+        Raises:
+            InputError: fewer than two samples are left.
+        """
+        rows = rows_of(self.time, start, end)
+        return replace(self, **{name: array[rows] for name, array in _arrays(self).items()})
+
+
+def rows_of(time: np.ndarray, start: float, end: float) -> slice:
+    """The samples from `start` to `end` [s], both included.
+
+    Raises:
+        InputError: they are fewer than two.
+    """
+    rows = slice(
+        int(np.searchsorted(time, start, side="left")),
+        int(np.searchsorted(time, end, side="right")),
+    )
+    if rows.stop - rows.start < 2:
+        first = "" if start == float("-inf") else f"from {start:g} s "
+        raise InputError(f"{first}{end:g} s holds less than two samples; give a longer time")
+    return rows
 
 
 def simulate(

@@ -13,7 +13,7 @@ from inca_mj.verification.trajectories import CASES, Row
 DERIVATIVE_LIMIT = 1e-9  # relative
 STEPS_JUDGED = (1e-3, 5e-4)  # the twin's step, and half of it [s]
 # Largest angle error at those steps [rad]: RK4 where cables stay taut, the quaternion's h² where
-# the handle turns, and a kink of order 1 where cables snap taut.
+# the platform turns, and a kink of order 1 where cables snap taut.
 ANGLE_LIMITS = {
     "prbs": (1e-5, 1e-6),
     "step": (1e-4, 2.5e-5),
@@ -134,14 +134,14 @@ class CrossCheck:
         if 0 < below < float("inf"):
             yield (
                 f"Below a step of {1e3 * below:.2g} ms the PRBS error falls with the square of the"
-                " step only: this MuJoCo's RK4 turns the handle by averaged angular velocities,"
+                " step only: this MuJoCo's RK4 turns the platform by averaged angular velocities,"
                 " which is exact to second order for rotations that do not commute."
             )
         why = {
             "step": "all steps together, RK4's order and the quaternion's",
             "prbs": "all steps together, RK4's order and the quaternion's",
             "drop": "cables turn taut within a step, a kink that costs RK4 its order",
-            "spin": "the handle turns, and the quaternion's second order leads",
+            "spin": "the platform turns, and the quaternion's second order leads",
         }
         for case in CASES:
             order = self.orders.get(case)

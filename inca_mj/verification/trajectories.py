@@ -2,8 +2,8 @@
 
     step    2 A in motor 1, none in the others                   (thesis Figure 2.16)
     prbs    the thesis' identification input                     (section 3.2.1)
-    drop    the handle is let go with slack cables, falls and is caught
-    spin    the handle turns at its start; the taut cables stop it within some milliseconds
+    drop    the platform is let go with slack cables, falls and is caught
+    spin    the platform turns at its start; the taut cables stop it within some milliseconds
 
 Steps of the twin divide the 10 ms between samples, on which currents change: what is left of
 the order of RK4 is the models' doing, and the integrator's.

@@ -1,12 +1,14 @@
-"""The twin at the end of a discovery: the values of the final fit, and only the named effects."""
+"""The twins of a discovery: the nominal one, fitted, and the one with the named effects."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Set
 from dataclasses import replace
 
 from identification.discovery.final_values import collect_final_values
 from identification.discovery.result import Discovery
 from identification.errors import InputError
+from identification.kalman.refit import Refit
 from identification.logs.joined import records_of
 from identification.logs.log import Log
 from identification.model.parameter import RECORD
@@ -21,20 +23,33 @@ def named_twin(found: Discovery) -> Twin:
     Raises:
         InputError: the discovery was not made with a twin of this robot.
     """
-    plant = found.final.point.predictor.plant
+    names = {named.candidate.effect.name for named in found.named}
+    return _twin(found.final, names, collect_final_values(found))
+
+
+def nominal_twin(found: Discovery) -> Twin:
+    """The robot at the values of the fit without effects.
+
+    Raises:
+        InputError: the discovery was not made with a twin of this robot.
+    """
+    return _twin(found.nominal, frozenset(), found.nominal.point.values)
+
+
+def _twin(fit: Refit, names: Set[str], values: Mapping[str, float]) -> Twin:
+    """The robot of a fit, with the effects of some names at some values."""
+    plant = fit.point.predictor.plant
     if not isinstance(plant, Twin):
         raise InputError(
             f"the discovery is of a {type(plant).__name__}, not of a twin;"
             " inca_mj.workflows.discovery makes one of a twin"
         )
-    names = {named.candidate.effect.name for named in found.named}
     effects = tuple(e for e in plant.effects if e.name in names)
     base = tuple(p for p in plant.parameters if p.where not in ("effect", RECORD))
     known = with_effects(replace(plant.parameters, records=base), effects)
-    values = collect_final_values(found).items()
     own = known.values()
-    at = {name: value for name, value in values if name in own}
-    free = {name: at[name] for name in found.final.point.space.names if name in at}
+    at = {name: value for name, value in values.items() if name in own}
+    free = {name: at[name] for name in fit.point.space.names if name in at}
     return build_twin(
         known.with_values(at).with_values(free, "fitted to the log"),
         plant.geometry,

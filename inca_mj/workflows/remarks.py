@@ -36,6 +36,6 @@ def _outside(run: Run) -> tuple[str, ...]:
         return ()
     when = float(run.time[int(np.argmax(beyond))])
     return (
-        f"The handle leaves the room between the exit points at {when:.2f} s: from there on this is"
-        " no run of the real robot.",
+        f"The platform leaves the room between the exit points at {when:.2f} s: from there on this"
+        " is no run of the real robot.",
     )

@@ -37,7 +37,7 @@ from inca_mj.twin.logs import pose_of
 
 @dataclass(frozen=True, kw_only=True)
 class Held:
-    """How the cables hold the handle at a pose.
+    """How the cables hold the platform at a pose.
 
     Attributes:
         low: smallest tensions that the drives can give, shape (8,) [N].
@@ -63,22 +63,22 @@ class StaticAnalysis:
     Attributes:
         robot: its numbers.
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,).
-        limits: what the drives may do, and what the handle shall bear.
-        load: wrench on the handle beside its weight, shape (6,) [N, N m].
+        limits: what the drives may do, and what the platform shall bear.
+        load: wrench on the platform beside its weight, shape (6,) [N, N m].
         closure: rank and closure of the wrench matrix.
         held: how the load is shared among the cables at the pose.
-        rest: where the handle rests with the power off under the load.
+        rest: where the platform rests with the power off under the load.
         locked: stiffness at the pose with drums that do not turn, shape (6, 6) [N/m, N, N m/rad].
         free: stiffness with drums that turn against their springs, shape (6, 6) [N/m, N, N m/rad].
         push: principal stiffness against forces, drums locked.
         twist: principal stiffness against torques, drums locked.
-        modes: of the handle, drums locked.
-        modes_free: slowest modes of handle and drums together.
-        nearness: of cables to each other and to the handle at the pose.
+        modes: of the platform, drums locked.
+        modes_free: slowest modes of platform and drums together.
+        nearness: of cables to each other and to the platform at the pose.
         nearness_along: the same over the workspace or the log; None without either.
         workspace: at the orientation of the pose; None where none was asked for.
         line_errors: what massless straight cables get wrong at the pose.
-        cable_modes: modes of handle and swinging cables, one for each mass in `rho`.
+        cable_modes: modes of platform and swinging cables, one for each mass in `rho`.
         rho: masses of the cables per length [kg/m].
     """
 
@@ -122,8 +122,8 @@ def analyse_statics(
         parameters: of the robot; the thesis' Table 3.2 when None.
         geometry: anchors of the cables.
         pose: x, y, z [m], roll, pitch, yaw [rad], shape (6,); the start when None.
-        load: wrench on the handle beside its weight, in O, shape (6,) [N, N m].
-        limits: what the drives may do, and what the handle shall bear; the usual ones when None.
+        load: wrench on the platform beside its weight, in O, shape (6,) [N, N m].
+        limits: what the drives may do, and what the platform shall bear; the usual ones when None.
         kind: workspace at the orientation of the pose: "closure", "feasible" or "static".
         cells: of the workspace along the longest edge of the frame.
         log: along which cables may come near to each other.
@@ -132,7 +132,7 @@ def analyse_statics(
 
     Raises:
         InputError: the pose is outside the frame, the cables have no closure there, the load needs
-            tensions outside the limits, the handle has no rest, a cable is slack, or an argument
+            tensions outside the limits, the platform has no rest, a cable is slack, or an argument
             makes no sense.
     """
     robot = static_robot(parameters or parameter_set("trial"), geometry)
@@ -184,6 +184,13 @@ def analyse_statics(
 
 def _held(robot: Robot, at: Lines, load: np.ndarray, limits: DriveLimits) -> Held:
     low, high = tension_limits(robot, at.d, limits)
+    weak = int(np.argmin(high))
+    if limits.taut > high[weak]:
+        raise InputError(
+            f"every cable shall keep {limits.taut:g} N, but with the largest current of"
+            f" {limits.current[1]:g} A cable {weak + 1} has only {high[weak]:.3g} N at this pose;"
+            " give a smaller tension (--taut) or a larger current (--current)"
+        )
     w = robot.weight - load
     T = distribute(at.W, w, low, high)
     springs = pull(robot, at.d).tension  # a current adds K_t i/R, and the drum does not turn

@@ -1,9 +1,9 @@
 """Let a robot follow a path under a controller, and say how well: `track`.
 
-e_k = p(t_k) - p_d(t_k)              of the true handle, counted from the path's full rate on
+e_k = p(t_k) - p_d(t_k)              of the true platform, counted from the path's full rate on
 c_k = e_k - (e_k · t_k) t_k          cross-track error: what is not along the path's tangent t_k
 
-The handle may follow the path well and late: e is then large and c is small.
+The platform may follow the path well and late: e is then large and c is small.
 """
 
 from __future__ import annotations
@@ -29,10 +29,9 @@ class Tracking:
     """A robot that followed a path.
 
     Attributes:
-        run: what the robot did, N samples; its `asked` is `wanted`.
+        run: what the robot did, N samples, and the positions that were asked of it.
         model: the twin that the controller believed.
-        path: where the handle should have been.
-        wanted: positions asked of the handle, shape (N, 3) [m].
+        path: where the platform should have been.
         seen: positions as the controller saw them, shape (N, 3) [m].
         counted: from when on errors count [s].
     """
@@ -40,14 +39,18 @@ class Tracking:
     run: Run
     model: Twin
     path: Path
-    wanted: np.ndarray
     seen: np.ndarray
     counted: float
 
     @property
+    def asked(self) -> np.ndarray:
+        """Positions asked of the platform, shape (N, 3) [m]."""
+        return np.asarray(self.run.asked)
+
+    @property
     def error(self) -> np.ndarray:
         """True position less that asked, shape (N, 3) [m]."""
-        return self.run.position - self.wanted
+        return self.run.position - self.asked
 
     @property
     def rms(self) -> float:
@@ -62,7 +65,7 @@ class Tracking:
     @property
     def cross_track_rms(self) -> float:
         """Root mean square of the cross-track error, of the samples that count [m]."""
-        along = np.gradient(self.wanted, self.run.time, axis=0)
+        along = np.gradient(self.asked, self.run.time, axis=0)
         length = np.linalg.norm(along, axis=1, keepdims=True)
         tangent = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
         lag = np.sum(self.error * tangent, axis=1, keepdims=True) * tangent
@@ -71,11 +74,11 @@ class Tracking:
     @property
     def seen_rms(self) -> float:
         """Root mean square of what the controller sees of the error [m]."""
-        return float(np.sqrt(np.mean(self._counted(self.seen - self.wanted) ** 2)))
+        return float(np.sqrt(np.mean(self._counted(self.seen - self.asked) ** 2)))
 
     @property
     def turned(self) -> float:
-        """Largest angle of the handle from upright, of the samples that count [rad]."""
+        """Largest angle of the platform from upright, of the samples that count [rad]."""
         w = np.abs(self.run.qpos[self.run.time >= self.counted, 3])
         return float(2 * np.arccos(np.clip(w, 0, 1)).max())
 
@@ -137,19 +140,18 @@ def track(
     controller = Controller(model, path, gains=gains, tensions=tensions)
     done = run_loop(robot, controller, duration, knows_pose=knows_pose, noise=noise, seed=seed)
     run = simulate(robot, done.currents, CONTROL_TIMESTEP)
-    wanted = np.array([path.at(float(t)).position for t in run.time])
+    asked = np.array([path.at(float(t)).position for t in run.time])
     return Tracking(
-        run=replace(run, asked=wanted),
+        run=replace(run, asked=asked),
         model=model,
         path=path,
-        wanted=wanted,
         seen=done.seen,
         counted=counted,
     )
 
 
 def _refuse_outside(path: Path, robot: Twin, duration: float) -> None:
-    """Refuse a path that no handle between the exit points can follow."""
+    """Refuse a path that no platform between the exit points can follow."""
     times = np.arange(0.0, duration + CONTROL_TIMESTEP, CONTROL_TIMESTEP)
     asked = np.array([path.at(float(t)).position for t in times])
     exits = robot.geometry.A

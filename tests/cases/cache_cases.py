@@ -32,14 +32,19 @@ def refuse(callback):
 if sys.argv[1:] == ["refuse"]:
     CFunc.compile = refuse
 
-from joint_cases import run, slider, slider_log, steps
+from identification.effects.joint_plant import joint_plant
+from joint_cases import DAMPING, MASS, SLIDER, run, slider_log, steps
 from inca_mj import build_twin, make_input, simulate
 from inca_mj.effects.catalogue import CATALOGUE
 
 sizes = {"stribeck_friction.f_s": 0.01, "cable_creep.c": 0.05, "air_drag.c": 0.1,
          "pulley_radius.r_p": 0.01, "current_saturation.c": 1.0}
 names = {name.partition(".")[0] for name in sizes}
-slid = run(slider(), slider_log(steps(100)), **{"stribeck_friction.f_s@slide": 0.3})
+log = slider_log(steps(100))
+every = joint_plant(SLIDER, (MASS, DAMPING), log).effects
+few = [e for e in every if e.name in ("stribeck_friction", "stiffness")]
+slider = joint_plant(SLIDER, (MASS, DAMPING), log, effects=few)
+slid = run(slider, log, **{"stribeck_friction.f_s@slide": 0.3, "stiffness.k@slide": 2.0})
 robot = build_twin(effects=[e for e in CATALOGUE if e.name in names]).with_values(sizes)
 ran = simulate(robot, make_input("prbs", duration=0.5))
 for states in (slid, ran.angles, ran.tension):

@@ -23,6 +23,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery
 from identification.discovery.scoring.scores import Score
 from identification.effects.effect import Candidate
+from identification.kalman.linear import linearise
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 from identification.kalman.point import Point
@@ -78,7 +79,8 @@ def fit(values: dict[str, float]) -> Refit:
     q = space.encode(np.array([values[n] for n in names]))
     shape, p = log().outputs.shape, len(q)
     e, J = np.zeros(shape), np.zeros((*shape, p))
-    point = Point(predictor=predictor, space=space, q=q, e=e, J=J, linear=None)
+    linear = linearise(predictor, space.decode(q))
+    point = Point(predictor=predictor, space=space, q=q, e=e, J=J, linear=linear)
     std, prior = np.full(p, 0.02), np.zeros(p)
     return Refit(point=point, level=_level(), std=std, mean=q, prior=prior, steps=3)
 

@@ -60,8 +60,8 @@ def record(seed=0, samples=500, values=None, noise=NOISE, plant=None, largest=0.
     )  # fmt: skip
 
 
-def records(count=4, values=None, noise=NOISE):
-    return [record(k + 1, values=values, noise=noise, plant=pendulum()) for k in range(count)]
+def records(count=4, values=None, noise=NOISE, samples=500):
+    return [record(k + 1, samples, values, noise, pendulum()) for k in range(count)]
 
 
 def nominal_model():

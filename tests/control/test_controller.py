@@ -31,7 +31,7 @@ def step_response(period, bandwidth=10.0, **values):
     """The error after a step of 2 mm, and what theory says of it.
 
     e'' + 2ω e' + (ω² + K/M) e = 0: the wrench matrix is that of the place asked, so that tensions
-    about 7 N pull a handle beside it back by K = Σ T (1 - s_x²)/d; M = m + Σ J s_x²/R².
+    about 7 N pull a platform beside it back by K = Σ T (1 - s_x²)/d; M = m + Σ J s_x²/R².
     """
     robot = build_twin(parameter_set(values=values), timestep=2.5e-4)
     path = Point((0.002, 0.0, 1.43))
@@ -51,7 +51,7 @@ def step_response(period, bandwidth=10.0, **values):
 def test_the_error_obeys_the_linear_equation_in_the_limit_of_fast_control():
     """Without friction, the sampled loop nears theory in proportion to its period.
 
-    What is left in the limit is the coupling of the step to the handle's turn, 2 % of the step.
+    What is left in the limit is the coupling of the step to the platform's turn, 2 % of the step.
     """
     off = [
         np.abs(np.subtract(*step_response(period, b_c=0.0, b_v=0.0))).max()
@@ -162,5 +162,5 @@ def test_refusals():
         track(path=Circle(centre=(0.2, 0.0, 1.43)))
     with pytest.raises(InputError, match="longer duration"):
         track(duration=3.0)
-    with pytest.raises(InputError, match=r"no pose of the handle.*positive winds in"):
+    with pytest.raises(InputError, match=r"no pose of the platform.*positive winds in"):
         Observer(build_twin()).seen(np.full(8, 200.0), np.zeros(6))

@@ -125,7 +125,7 @@ def test_a_random_error_goes_along_with_nothing(seed):
     error = wander(N, 0.05, 0.1, seed=seed)
     model = fit_model(task(record(slider(mass=2.2, damping=2.7), N, seed, error)), (), {})
     assert model.refit.level.input_std > 0
-    assert len(fit_families(model.validation, OPTIONS)) == 3
+    assert len(fit_families(model.validation, OPTIONS)) == 4
     assert find_input_error(model.validation, OPTIONS) == ()
     assert find_input_error(fit_model(carts_task(0.0, seed), (), {}).validation, OPTIONS) == ()
     assert not is_structured(model, OPTIONS)
@@ -157,15 +157,26 @@ def test_crosstalk_is_an_unknown_effect_and_no_noise():
     assert quiet.disturbance_rms > 0
 
 
-def test_an_error_along_the_rate_is_told_as_that():
-    n, robot = 2000, slider(mass=2.2, damping=2.7)
-    random = error = wander(n, 0.02, 0.1, seed=2)
+def moved_along(robot, samples, law, seed=2):
+    """A log of a slider whose input errs by a law of its position and rate, beside noise."""
+    random = error = wander(samples, 0.02, 0.1, seed=seed)
     for _ in range(30):  # the force follows from the motion that it makes
-        y = record(robot, n, 2, error, noise=0.0).outputs
-        error = (error + random + 0.15 * np.sin(5 * np.gradient(y, STEP, axis=0))) / 2
-    model = fit_model(task(record(robot, n, 2, error)), (), {})
+        y = record(robot, samples, seed, error, noise=0.0).outputs
+        error = (error + random + law(y, np.gradient(y, STEP, axis=0))) / 2
+    return record(robot, samples, seed, error)
+
+
+@pytest.mark.parametrize(
+    ("law", "regressor"),
+    [
+        (lambda y, v: 0.15 * np.sin(5 * v), "output rate"),
+        (lambda y, v: 0.1 * np.sin(1.5 * y) * np.tanh(20 * v), "output and direction"),
+    ],
+)
+def test_an_error_along_the_motion_is_told_as_that(law, regressor):
+    model = fit_model(task(moved_along(slider(mass=2.2, damping=2.7), 2000, law)), (), {})
     (finding,) = find_input_error(model.validation, OPTIONS)
-    assert finding.evidence.regressor == "output rate"
+    assert finding.evidence.regressor == regressor
     assert not innovation_tests(model.innovations, STEP).is_correlated(OPTIONS)
     assert is_structured(model, OPTIONS)
 

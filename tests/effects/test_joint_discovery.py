@@ -26,7 +26,7 @@ def plant(log):
     return joint_plant(SLIDER, (MASS, DAMPING, COULOMB), log, joints=(AXIS,))
 
 
-def hidden(samples=600, **values):
+def hidden(samples=400, **values):
     """A log of a slider that has some effects, and inputs with a small error of their own."""
     u = steps(samples, hold=15)
     rng, error = np.random.default_rng(8), np.zeros_like(u)

@@ -23,7 +23,7 @@ OFF = {"x": 0.002, "y": -0.002, "z": 1.433}  # where the platform begins, and no
 @pytest.fixture(scope="module")
 def measured():
     robot = build_twin(parameter_set("trial", OFF))
-    log = run_to_log(simulate(robot, make_input("prbs", 0.6, seed=0)), "a short log")
+    log = run_to_log(simulate(robot, make_input("prbs", 0.4, seed=0)), "a short log")
     noise = NOISE * np.random.default_rng(3).standard_normal(log.outputs.shape)
     return replace(log, outputs=log.outputs + noise, extras={}, units={})
 

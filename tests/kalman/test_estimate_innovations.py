@@ -21,8 +21,8 @@ def test_it_is_the_free_run_s_estimate_where_the_input_is_as_logged():
 
 def test_where_the_input_errs_it_is_nearer_to_the_truth_than_a_free_run():
     off = []
-    for seed in range(6):
-        log = record(slider(**TRUE), 600, seed=seed, error=wander(600, 0.15, 0.1, seed=50 + seed))
+    for seed in range(4):
+        log = record(slider(**TRUE), 400, seed=seed, error=wander(400, 0.15, 0.1, seed=50 + seed))
         found = estimate_innovations(slider(), log, FREE).fit.estimate.values
         free = estimate(slider(), log.part("estimation"), FREE).values
         off.append([np.log(v["damping"] / TRUE["damping"]) for v in (found, free)])

@@ -26,7 +26,7 @@ def settled():
 
 @pytest.fixture(scope="module")
 def moving():
-    return moving_run("prbs", 3.0)
+    return moving_run("prbs", 1.5)
 
 
 def robot_of(run):
@@ -91,7 +91,7 @@ def test_noise_of_encoders_and_friction_scatters_the_pose_as_its_std_says(settle
         pose_at_rest(
             φ + rng.normal(0, 6.7e-4, 8), i + rng.uniform(-1, 1, 8) * np.sqrt(3) * held
         ).pose
-        for _ in range(60)
+        for _ in range(40)
     ]
     np.testing.assert_allclose(np.std(noisy, axis=0), nominal.noise_std, rtol=0.35)
 
@@ -144,7 +144,7 @@ def test_the_pose_along_a_log_is_that_of_the_twin_within_its_std(kind):
 
 
 def test_a_robot_that_is_not_the_nominal_one_is_noticed_and_its_std_covers():
-    run = moving_run("prbs", 3.0, {"R": 0.0178, "x": 0.002})
+    run = moving_run("prbs", 1.5, {"R": 0.0178, "x": 0.002})
     log = noisy_log(run)
     nominal = parameter_set()
     bare, told = log_poses(log, nominal), log_poses(log, nominal, std={"R": 3e-4, "x": 2e-3})

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-LOCKS = ("requirements.lock", "requirements-mujoco4.lock")
+LOCKS = ("requirements.lock", "requirements-mujoco4.lock", "requirements-docs.lock")
 
 
 def pins(name):
@@ -22,10 +22,17 @@ def test_every_pin_has_hashes_and_no_address(name):
 
 
 def test_the_second_environment_differs_by_mujoco_alone():
-    ours, theirs = (pins(name) for name in LOCKS)
+    ours, theirs = (pins(name) for name in LOCKS[:2])
     assert ours["mujoco"] == "3.17.0"
     assert theirs["mujoco"] == "4.0.0"
     assert "dm-control" not in theirs
     shared = set(ours) & set(theirs) - {"mujoco"}
     assert len(shared) > 30
     assert {n: ours[n] for n in shared} == {n: theirs[n] for n in shared}
+
+
+def test_the_site_is_built_with_the_packages_that_are_tested():
+    ours, site = pins("requirements.lock"), pins("requirements-docs.lock")
+    shared = set(ours) & set(site)
+    assert {"mujoco", "numpy", "numba", "matplotlib"} <= shared
+    assert {n: ours[n] for n in shared} == {n: site[n] for n in shared}

@@ -55,11 +55,13 @@ def package_files():
     }
 
 
-def test_the_wheel_holds_the_packages_and_the_models_files_and_nothing_else(wheel):
+def test_the_wheel_holds_the_packages_the_models_and_an_example_and_nothing_else(wheel):
     assert names(wheel) == package_files() | {
         "inca_mj/models/inca6d.xml",
         "inca_mj/models/inca6d_plain.xml",
         "inca_mj/models/inca6d_spread.toml",
+        "inca_mj/examples/log.csv",
+        "inca_mj/examples/log.toml",
     }
     # type checkers read our annotations only where this file says that they may
     assert {f"{package}/py.typed" for package in PACKAGES} <= names(wheel)
@@ -95,10 +97,11 @@ def test_the_installed_wheel_works_away_from_its_source(wheel, tmp_path):
     pip = "-m", "pip", "install", "-q", "--disable-pip-version-check"
     run(*pip, "--no-deps", "--no-index", "--target", target, wheel, cwd=empty)
     code = (
-        "import inca_mj, mujoco; from inca_mj.files import model_path; "
+        "import inca_mj, mujoco; from inca_mj.files import example_path, model_path; "
         "model = mujoco.MjModel.from_xml_path(str(model_path())); "
-        "print(model_path(), model.nu, sep='\\n')"
+        "print(model_path(), model.nu, example_path(), sep='\\n')"
     )
-    path, drives = run("-c", code, cwd=empty, PYTHONPATH=str(target)).split()
+    path, drives, log = run("-c", code, cwd=empty, PYTHONPATH=str(target)).split()
     assert Path(path) == target / "inca_mj" / "models" / "inca6d.xml"
     assert drives == "8"
+    assert Path(log) == target / "inca_mj" / "examples" / "log.csv"

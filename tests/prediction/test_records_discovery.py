@@ -9,7 +9,7 @@ from pendulum_robot import TOML, make_folder, written
 from records_cases import nominal_model, pendulum, record, records
 
 from identification.__main__ import main
-from identification.discovery.findings.evidence import ShiftedRecord
+from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.effects.joint_plant import candidates
 from identification.errors import InputError
 from identification.prediction.discovery import discover_records
@@ -18,6 +18,7 @@ from identification.report.records_json import records_to_json
 from identification.report.records_report import write_records_report
 from identification.report.records_text import records_text
 
+SAMPLES = 300  # of each record
 MU = "transmitted_load_friction.mu@hinge"
 
 
@@ -32,7 +33,7 @@ FEW = ("transmitted_load_friction", "gravity_load_friction", "quadratic_friction
 
 @cache
 def found(mu=0.15, names=FEW):
-    logs = records(4, {MU: mu} if mu else None)
+    logs = records(4, {MU: mu} if mu else None, samples=SAMPLES)
     effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name in names]
     return discover_records(nominal_model(), logs[:2], logs[2:], effects)
 
@@ -62,7 +63,7 @@ def test_friction_under_the_transmitted_load_is_named_with_its_size():
 
 
 def test_a_record_that_repeats_another_is_no_further_witness():
-    first, second, third = records(3, {MU: 0.15})
+    first, second, third = records(3, {MU: 0.15}, samples=SAMPLES)
     again = replace(third, name="again", outputs=third.outputs + 1e-5)
     effects = [e for e in candidates(pendulum(), ("J", "d")) if e.name == FEW[0]]
     answer = discover_records(nominal_model(), [first, second], [third, again], effects)
@@ -75,7 +76,7 @@ def test_a_record_that_repeats_another_is_no_further_witness():
     assert "the highest that is ever said, because no rival was near enough" in said
     (other,) = (e for e in candidates(pendulum(), ("J", "d")) if e.name == "offset")
     twin = replace(answer, named=(replace(named, same_as=other),))
-    assert '(or "force: constant": below the Coulomb friction it is' in records_text(twin)
+    assert '(or "force – constant": below the Coulomb friction it is' in records_text(twin)
     assert records_to_json(twin)["effects"][0]["same_as"] == "offset"
     beside = replace(answer, named=(replace(named, compared=2),))
     assert "beside 2 rivals that were refitted in its place" in records_text(beside)

@@ -5,7 +5,8 @@ import pytest
 from PIL import Image
 
 from identification.report.compare_figure import compare_figure
-from identification.report.style import save_png, svg
+from identification.report.style import save_png
+from identification.report.vector import svg
 from inca_mj.report.figures import crosscheck_figure, simulation_figures
 
 

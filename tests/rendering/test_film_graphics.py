@@ -35,7 +35,7 @@ def headless(monkeypatch):
     for name in ("MUJOCO_GL", "DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(graphics, "_rebind", lambda backend: None)
-    monkeypatch.setattr(graphics, "_require", lambda library: None)
+    monkeypatch.setattr(graphics, "_require", lambda *names: None)
     return monkeypatch
 
 
@@ -78,6 +78,15 @@ def test_a_missing_library_is_named_with_the_fix(monkeypatch, backend, library):
     monkeypatch.setenv("MUJOCO_GL", backend)
     monkeypatch.setattr("ctypes.util.find_library", lambda name: None)
     with pytest.raises(GraphicsError, match=f"lib{library} is missing.*apt-get install libegl1"):
+        graphics.choose_backend()
+
+
+def test_egl_without_opengl_is_refused_before_mujoco_dies_of_it(monkeypatch):
+    monkeypatch.setenv("MUJOCO_GL", "egl")
+    monkeypatch.setattr(
+        "ctypes.util.find_library", lambda name: "libc.so.6" if name == "EGL" else None
+    )
+    with pytest.raises(GraphicsError, match=r"libOpenGL and libGL are missing.*libopengl0"):
         graphics.choose_backend()
 
 

@@ -208,6 +208,10 @@ def test_the_command_films_two_runs_under_the_names_of_their_folders(tmp_path, c
     made = [said["film"], *said["stills"]]
     assert made == [str(out / "film.mp4"), str(out / "handle_0.00s.png")]
     assert pixels(made[1]).shape == (720, 1280, 3)
+    kept = json.loads((out / "result.json").read_text())
+    assert (kept["film"], kept["stills"]) == ("film.mp4", ["handle_0.00s.png"])
+    assert (kept["seconds"], kept["titles"]) == (said["seconds"], said["titles"])
+    assert kept["configuration"]["camera"] == "handle"
     assert main(["film", *sources, "--still", "0.03"]) == 2
     assert "the film is of 0 to 0.02 s" in capsys.readouterr().err
 

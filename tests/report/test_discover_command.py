@@ -45,8 +45,8 @@ def run(*arguments: object) -> int:
 def test_the_verdict_comes_first(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("discover", path) == 0
     out = capsys.readouterr().out
-    assert out.startswith("Missing from the model: friction: Stribeck peak, all drives")
-    assert "+ friction: Stribeck peak, all drives: f_s = 4.12 ± 0.21 mN m" in out
+    assert out.startswith("Missing from the model: friction – Stribeck peak, all drives")
+    assert "+ friction – Stribeck peak, all drives: f_s = 4.12 ± 0.21 mN m" in out
 
 
 def test_json_is_the_contract(path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -19,7 +19,7 @@ from identification.report.finding_words import describe_finding, sentence
 def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
     said = discovery_verdict(found())
     assert said[0] == (
-        "Missing from the model: friction: Stribeck peak, all drives, f_s = 4.12 ± 0.21 mN m"
+        "Missing from the model: friction – Stribeck peak, all drives, f_s = 4.12 ± 0.21 mN m"
         " (height of the peak), v_s = 1.88 ± 0.10 rad/s (its half width);"
         " confidence 97 % among the known effects."
     )
@@ -29,7 +29,7 @@ def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
     assert said[1].count("mrad") == 3
     assert said[2] == (
         "Nothing else is missing that this log shows. The fitted noise may still hide effects up"
-        " to these sizes: friction: Coulomb part differs at one drive, drive 3, delta 0.600 % (it"
+        " to these sizes: friction – Coulomb part differs at one drive, drive 3, delta 0.600 % (it"
         " would be 30 % of what passes for errors of the inputs)."
     )
     assert len(said) == 3
@@ -89,7 +89,7 @@ def test_nothing_missing_says_what_would_have_been_seen() -> None:
     (said,) = discovery_verdict(found("nothing missing"))
     assert said.startswith("Nothing is missing: ")
     assert "Stribeck peak, all drives, f_s 200 µN m" in said
-    assert "No plausible size would show in it of these: motor: current comes late." in said
+    assert "No plausible size would show in it of these: motor – current comes late." in said
 
 
 def test_nothing_missing_says_which_unlogged_errors_it_rests_on() -> None:
@@ -119,7 +119,7 @@ def test_text_begins_with_the_verdict_and_holds_no_nan(verdict: str) -> None:
     assert "nan" not in text
     (b_v,) = [line for line in text.splitlines() if line.startswith("  b_v ")]
     assert "240 ± 5 µN m s/rad" in b_v
-    assert ("+ friction: Stribeck peak" in text) == (verdict == "named")
+    assert ("+ friction – Stribeck peak" in text) == (verdict == "named")
 
 
 def test_what_was_tried_and_not_believed_is_told_with_its_size_and_why() -> None:
@@ -137,10 +137,10 @@ def test_where_nothing_was_tried_beside_a_name_the_next_is_told_and_why_not() ->
     text = discovery_text(replace(found(), rejected=()))
     told = text[text.index("next beside what is named, and not refitted:") :]
     assert told.splitlines()[1].startswith(
-        "  friction: Coulomb part differs at one drive, drive 3: gain 70, beyond"
+        "  friction – Coulomb part differs at one drive, drive 3: gain 70, beyond"
     )
 
 
 def test_a_diff_line_reads_as_one() -> None:
     (named,) = found().named
-    assert diff_line(named).startswith("+ friction: Stribeck peak, all drives: f_s = 4.12 ± 0.21")
+    assert diff_line(named).startswith("+ friction – Stribeck peak, all drives: f_s = 4.12 ± 0.21")

@@ -15,5 +15,5 @@ def folder(tmp_path_factory):
     plain = {"damping": 3.6, "mass": 1.8}
     write_log(simulated(plain), path / "plain.csv")
     write_log(simulated(plain, seed=5, start=0.2), path / "other.csv")
-    write_log(simulated({**plain, **HIDDEN}), path / "hidden.csv")
+    write_log(simulated({**plain, **HIDDEN}, samples=700), path / "hidden.csv")
     return path

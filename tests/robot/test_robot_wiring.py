@@ -48,7 +48,7 @@ def cart(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def two_joints(tmp_path_factory):
-    u = steps(400, 2, hold=30)
+    u = steps(240, 2, hold=30)
     t = np.arange(len(u)) * 0.01
     log = Log(
         time=t,
@@ -86,7 +86,7 @@ def crane(z, feedback, samples=600):
 @pytest.fixture(scope="module")
 def hanging(tmp_path_factory):
     return robot(tmp_path_factory.mktemp("crane"), CRANE.format(z=-0.3),
-                 crane(-0.3, np.zeros(4), samples=400), "joint/x.damping")  # fmt: skip
+                 crane(-0.3, np.zeros(4), samples=240), "joint/x.damping")  # fmt: skip
 
 
 def refused(robot, log):

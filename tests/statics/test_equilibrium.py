@@ -114,7 +114,7 @@ def test_friction_holds_it_in_a_band():
         ({"load": np.zeros(3)}, "a load of shape"),
         ({"load": np.full(6, np.inf)}, "finite numbers"),
         ({"current": np.zeros(3)}, "one current or eight"),
-        ({"current": -5.0}, "is slack where the handle would rest|no rest near the start"),
+        ({"current": -5.0}, "is slack where the platform would rest|no rest near the start"),
         ({"load": np.array([0, 0, 400.0, 0, 0, 0])}, "outside the frame"),
     ],
 )

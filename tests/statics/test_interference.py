@@ -59,7 +59,7 @@ def test_cables_with_a_common_connector_are_told_by_their_angle():
 
 
 def test_a_grip_that_is_turned_into_a_cable_is_found():
-    """At some of many turns of the handle a cable runs inside its grip, and never upright."""
+    """At some of many turns of the platform a cable runs inside its grip, and never upright."""
     turns = np.array([(0, 0, 1.43, roll, pitch, 0) for roll in np.linspace(0, np.pi, 25)
                       for pitch in np.linspace(-1.4, 1.4, 25)])  # fmt: skip
     assert interference(turns, INCA).platform.min() < 0

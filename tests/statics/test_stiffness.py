@@ -107,7 +107,7 @@ def test_modes_solve_the_equation_and_drums_slow_them():
     whole = with_drums(ROBOT, at, ROBOT.tension, ROBOT.no_load)
     heavy = [block_diag(M, np.diag(scale * ROBOT.J)) for scale in (1.0, 1e9)]
     assert (modes(whole, heavy[0]).frequency < found.frequency).all()
-    # drums of endless inertia are locked: the handle's modes are the last six
+    # drums of endless inertia are locked: the platform's modes are the last six
     np.testing.assert_allclose(modes(whole, heavy[1], 14).frequency[8:], found.frequency, rtol=1e-6)
 
 

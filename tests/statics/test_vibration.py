@@ -1,4 +1,4 @@
-"""Cables that swing: strings, sag, and the handle on them, by the exact dynamic stiffness."""
+"""Cables that swing: strings, sag, and the platform on them, by the exact dynamic stiffness."""
 
 import numpy as np
 import pytest

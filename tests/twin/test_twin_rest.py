@@ -24,5 +24,5 @@ def test_at_rest_it_stays_for_ten_seconds(name, values):
 def test_the_pretension_is_near_four_newton_and_carries_the_weight():
     tension = build_twin().start.tension
     assert np.linalg.norm(tension - 4.0) < 1.0
-    # The upper cables carry the handle: they pull more than the lower ones.
+    # The upper cables carry the platform: they pull more than the lower ones.
     assert tension[4:].min() > tension[:4].max()

@@ -62,7 +62,7 @@ def test_encoders_that_are_late_show_earlier_positions():
 
 
 def test_a_world_is_read_as_a_robot_and_repeats_itself(tmp_path):
-    world, again = (make_world("cart", "offset", 4, duration=4.0) for _ in range(2))
+    world, again = (make_world("cart", "offset", 4, duration=2.0) for _ in range(2))
     np.testing.assert_array_equal(world.records[0].outputs, again.records[0].outputs)
     toml, a, b = write_world(world, tmp_path)
     robot = read_robot(toml, a, confirm=[b])
@@ -76,7 +76,7 @@ def test_a_world_is_read_as_a_robot_and_repeats_itself(tmp_path):
 def test_what_parameters_imitate_is_no_world():
     """A linear robot with a wrong scale is a linear robot with other parameters."""
     with pytest.raises(UnseenError, match="encoder_scale of cart shows"):
-        make_world("cart", "encoder_scale", 1, duration=4.0)
+        make_world("cart", "encoder_scale", 1, duration=2.0)
 
 
 @pytest.mark.parametrize("robot", ROBOTS.values(), ids=ROBOTS)

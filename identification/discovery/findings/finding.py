@@ -9,8 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from identification.discovery.findings import evidence as records
-from identification.discovery.findings.evidence import Evidence
+from identification.discovery.findings import evidence, records_evidence
 
 
 class FindingKind(StrEnum):
@@ -37,26 +36,47 @@ class FindingKind(StrEnum):
     WORSE_FIT = "worse fit"
 
 
+Evidence = (
+    evidence.WorstOutput
+    | evidence.WorstInterval
+    | evidence.MedianFrequency
+    | evidence.ForceEvidence
+    | evidence.InputHold
+    | evidence.SpectralLine
+    | evidence.NoisyOutput
+    | evidence.CorrelatedInnovations
+    | evidence.ParametersAtLimit
+    | evidence.LargeInputError
+    | evidence.RobotChange
+    | evidence.StructuredInputError
+    | evidence.DoubtfulEffect
+    | evidence.OversizedEffect
+    | records_evidence.RemainingError
+    | records_evidence.UnprovenEffect
+    | records_evidence.DifferentRecord
+    | records_evidence.ShiftedRecord
+    | records_evidence.WorseFit
+)
 EVIDENCE: dict[FindingKind, type[Evidence]] = {
-    FindingKind.WORST_OUTPUT: records.WorstOutput,
-    FindingKind.WORST_INTERVAL: records.WorstInterval,
-    FindingKind.MEDIAN_FREQUENCY: records.MedianFrequency,
-    FindingKind.MISSING_FORCE: records.ForceEvidence,
-    FindingKind.INPUT_HOLD: records.InputHold,
-    FindingKind.SPECTRAL_LINE: records.SpectralLine,
-    FindingKind.NOISY_OUTPUT: records.NoisyOutput,
-    FindingKind.CORRELATED_INNOVATIONS: records.CorrelatedInnovations,
-    FindingKind.PARAMETERS_AT_LIMIT: records.ParametersAtLimit,
-    FindingKind.LARGE_INPUT_ERROR: records.LargeInputError,
-    FindingKind.ROBOT_CHANGE: records.RobotChange,
-    FindingKind.STRUCTURED_INPUT_ERROR: records.StructuredInputError,
-    FindingKind.DOUBTFUL_EFFECT: records.DoubtfulEffect,
-    FindingKind.OVERSIZED_EFFECT: records.OversizedEffect,
-    FindingKind.REMAINING_ERROR: records.RemainingError,
-    FindingKind.UNPROVEN_EFFECT: records.UnprovenEffect,
-    FindingKind.DIFFERENT_RECORD: records.DifferentRecord,
-    FindingKind.SHIFTED_RECORD: records.ShiftedRecord,
-    FindingKind.WORSE_FIT: records.WorseFit,
+    FindingKind.WORST_OUTPUT: evidence.WorstOutput,
+    FindingKind.WORST_INTERVAL: evidence.WorstInterval,
+    FindingKind.MEDIAN_FREQUENCY: evidence.MedianFrequency,
+    FindingKind.MISSING_FORCE: evidence.ForceEvidence,
+    FindingKind.INPUT_HOLD: evidence.InputHold,
+    FindingKind.SPECTRAL_LINE: evidence.SpectralLine,
+    FindingKind.NOISY_OUTPUT: evidence.NoisyOutput,
+    FindingKind.CORRELATED_INNOVATIONS: evidence.CorrelatedInnovations,
+    FindingKind.PARAMETERS_AT_LIMIT: evidence.ParametersAtLimit,
+    FindingKind.LARGE_INPUT_ERROR: evidence.LargeInputError,
+    FindingKind.ROBOT_CHANGE: evidence.RobotChange,
+    FindingKind.STRUCTURED_INPUT_ERROR: evidence.StructuredInputError,
+    FindingKind.DOUBTFUL_EFFECT: evidence.DoubtfulEffect,
+    FindingKind.OVERSIZED_EFFECT: evidence.OversizedEffect,
+    FindingKind.REMAINING_ERROR: records_evidence.RemainingError,
+    FindingKind.UNPROVEN_EFFECT: records_evidence.UnprovenEffect,
+    FindingKind.DIFFERENT_RECORD: records_evidence.DifferentRecord,
+    FindingKind.SHIFTED_RECORD: records_evidence.ShiftedRecord,
+    FindingKind.WORSE_FIT: records_evidence.WorseFit,
 }
 
 

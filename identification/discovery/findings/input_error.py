@@ -6,7 +6,11 @@
 
 The noise model takes every error of the inputs for random. An error that follows inputs, outputs or
 rates predicts unseen samples; a random one does not. Each regressor r_i has the rms of the error
-that the noise model assumes, and the prior of g_i has the std 1.
+that the noise model assumes, and the prior of g_i has the std 1. Flips of the blocks' signs tell
+what is beyond chance, as in the proof of an effect.
+
+A friction that changes along the way follows neither the output nor its rate, but sgn(v) f(y):
+therefore curves of the output are tried for each direction too.
 """
 
 from __future__ import annotations
@@ -16,13 +20,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.stats import ttest_1samp
 from threadpoolctl import threadpool_limits
 
 from identification.discovery.findings.evidence import StructuredInputError
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.proof import Validation
+from identification.discovery.proof import Validation, flip_chance
 from identification.errors import DivergenceError
 from identification.kalman.noise_model import Whitener
 from identification.kalman.point import evaluate_sensitivities
@@ -126,9 +129,11 @@ def list_families(validation: Validation, knots: int) -> Iterator[ErrorFamily]:
         yield ErrorFamily("other inputs", separate_inputs(u[:, None] * (1 - np.eye(nu))))
     yield ErrorFamily("own input", separate_inputs(draw_curves(u, knots)))
     if y.shape[1] == nu:
-        yield ErrorFamily("output", separate_inputs(draw_curves(y, knots)))
-        rate = np.gradient(y, axis=0)
+        rate, curves = np.gradient(y, axis=0), draw_curves(y, knots)
+        yield ErrorFamily("output", separate_inputs(curves))
         yield ErrorFamily("output rate", separate_inputs(draw_curves(rate, knots)))
+        turned = curves * np.sign(rate)[..., None]
+        yield ErrorFamily("output and direction", separate_inputs(turned))
 
 
 def draw_curves(x: np.ndarray, knots: int) -> np.ndarray:
@@ -191,12 +196,12 @@ def _fit_family(
     δg = scale * np.linalg.lstsq(rows.T @ rows, rows.T @ target, rcond=1e-12)[0]
     before, after = E[~seen], E[~seen] - X[~seen] @ δg
     fewer = np.sum(before**2 - after**2, axis=1) / 2
-    means = [part.mean() for part in np.array_split(fewer, blocks)]
+    gains = np.array([part.mean() for part in np.array_split(fewer, blocks)])
     free = validation.e[~seen]
     remaining = free - np.concatenate([J, moved], axis=2)[~seen] @ δg
     return FamilyFit(
         name=family.name,
-        p_value=float(ttest_1samp(means, 0.0, alternative="greater").pvalue),
+        p_value=flip_chance(gains),
         share=1 - float(np.sum(after**2) / np.sum(before**2)),
         fall=1 - float(np.sum(remaining**2) / np.sum(free**2)),
         error=np.sqrt(np.mean((r @ δg[p:]) ** 2, axis=0)),

@@ -1,0 +1,80 @@
+"""The evidence of a finding about records that are predicted over a horizon."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class RemainingError:
+    """An error on unseen records that no named effect explains.
+
+    Attributes:
+        noise_ratio: its rms over that of the sensors' noise.
+    """
+
+    noise_ratio: float
+
+
+@dataclass(frozen=True)
+class DifferentRecord:
+    """A record that is predicted much worse than the others.
+
+    Attributes:
+        record: its name.
+        ratio: rms error of its windows over that of the others' windows (geometric means).
+        chance: of as large a difference by luck.
+    """
+
+    record: str
+    ratio: float
+    chance: float
+
+
+@dataclass(frozen=True)
+class UnprovenEffect:
+    """An effect that predicts unseen records better on average, and yet is not proven.
+
+    Attributes:
+        name: of the effect.
+        where: its place.
+        fall: relative fall of the unseen mean square, at the horizon.
+        t: of its gain over blocks.
+        doubt: what is against it, a word of `identification.prediction.proof.Doubt`.
+    """
+
+    name: str
+    where: str
+    fall: float
+    t: float
+    doubt: str
+
+
+@dataclass(frozen=True)
+class ShiftedRecord:
+    """A record whose inputs are shifted in time against its outputs.
+
+    Attributes:
+        record: its name.
+        shift: how much later the inputs act than their stamps say [s].
+        std: of the shift, by blocks of windows [s].
+        fall: of the record's mean square with the shift, relative.
+        chance: of as much by luck, in this record.
+    """
+
+    record: str
+    shift: float
+    std: float
+    fall: float
+    chance: float
+
+
+@dataclass(frozen=True)
+class WorseFit:
+    """A fit of the nominal model that made predictions of unseen records worse.
+
+    Attributes:
+        rise: of the mean square on unseen records, relative.
+    """
+
+    rise: float

@@ -1,0 +1,98 @@
+"""A curve of free nodes in the place of a law, and how outputs respond to it.
+
+    f_i = Σ_j c_j h_j(x_i)        h_j: hats about the nodes x_j, which add up to one
+
+A friction jumps where the motion turns, so that a curve of the rate has nodes of its own on each
+side of zero.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.discovery.force_along import ForceAlong
+from identification.discovery.law_regressors import Regressor
+
+NODES = 20
+APART = 2e-3  # of the range of x: nodes nearer than this are one
+LEAST = 10  # samples between two nodes
+MOST = 4000  # places at which a law is looked at for its bends
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """Nodes of a curve.
+
+    Attributes:
+        x: where they are, shape (m,).
+        side: 1 or -1 where a node acts on that side of zero only, else 0, shape (m,).
+    """
+
+    x: np.ndarray
+    side: np.ndarray
+
+    def hats(self, x: np.ndarray) -> np.ndarray:
+        """Hats about the nodes at some places, shape (*x.shape, m)."""
+        out = np.zeros((*x.shape, len(self.x)))
+        for side in np.unique(self.side):
+            mine = np.flatnonzero(self.side == side)
+            here = np.ones(x.shape, bool) if side == 0 else (x < 0 if side < 0 else x >= 0)
+            for k, row in zip(mine, np.eye(len(mine)), strict=True):
+                out[..., k] = np.where(here, np.interp(x, self.x[mine], row), 0.0)
+        return out
+
+
+def place_nodes(regressor: Regressor, force: np.ndarray) -> Nodes:
+    """Nodes where the samples are, and as many where a law bends, so that they show it.
+
+    Args:
+        regressor: what the force follows.
+        force: of the law, shape (M, n); it says where the nodes are, and not what is found there.
+    """
+    x, f = regressor.samples(force)
+    order = np.argsort(x, kind="stable")
+    x, f = x[order], f[order]
+    if regressor.along != "rate":
+        at = _between(x, f, NODES)
+        return Nodes(at, np.zeros(len(at), int))
+    parts = [(s, s * x > 0) for s in (-1, 1)]
+    each = [(s, _between(x[of], f[of], NODES // 2)) for s, of in parts if of.sum() >= LEAST]
+    return Nodes(
+        np.concatenate([at for _, at in each]),
+        np.concatenate([np.full(len(at), s) for s, at in each]),
+    )
+
+
+def _between(x: np.ndarray, force: np.ndarray, count: int) -> np.ndarray:
+    """Some nodes over the range of ascending x: half by the samples, half by the law's changes."""
+    share = np.linspace(0, 1, count // 2 + 1)
+    few = x[:: max(1, len(x) // MOST)]
+    law = np.interp(few, x, force)
+    changed = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(law)))])
+    bends = np.interp(share * changed[-1], changed, few)
+    kept = [x[0]]
+    for node in np.union1d(np.quantile(x, share), bends):
+        between = np.searchsorted(x, node) - np.searchsorted(x, kept[-1])
+        if node - kept[-1] > APART * (x[-1] - x[0]) and between >= LEAST:
+            kept.append(node)
+    return np.array(kept)
+
+
+def respond(along: ForceAlong, regressor: Regressor, nodes: Nodes) -> np.ndarray:
+    """Outputs for a unit force at each node, shape (N, ny, m)."""
+    hats = nodes.hats(regressor.values) * regressor.turn[..., None]
+    out, done = [], 0
+    for linear in along.records:
+        trajectory = linear.along
+        mine = trajectory.average(hats[done : done + len(trajectory.time)])
+        done += len(trajectory.time)
+        x, every = np.zeros((linear.A.shape[1], hats.shape[-1])), trajectory.intervals
+        y = np.zeros((len(mine) // every + 1, len(linear.C), hats.shape[-1]))
+        for k, (A, B, h) in enumerate(zip(linear.A, linear.B, mine, strict=True)):
+            x = A @ x + B @ h
+            if (k + 1) % every == 0:
+                y[(k + 1) // every] = linear.C @ x
+        out.append(y)
+    return np.concatenate(out)

@@ -1,0 +1,150 @@
+"""What a force follows: the quantity of which it is a function along a trajectory.
+
+    u(x) = Σ_i (f_(i+1) - f_(i))² / 2 Σ f²        f_(i): the forces in the order of x
+
+u is 0 where f is a smooth function of x, and 1 where it is none (von Neumann 1941). The first of
+these with u below `ENOUGH` is taken: the time, where the force knows it; the joint's rate; the
+angle within one period of a law that repeats; its position; the force of its own drives. A friction
+may also be a function of one of them when it is counted against the motion. Where none is enough,
+as where a law is a product of two of them, it is what the law multiplies by its size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from identification.discovery.force_along import ForceAlong
+from identification.effects.effect import Candidate
+from identification.logs.log import Log
+
+ENOUGH = 0.01
+MOST = 0.8  # of the points: where a joint is held, no law of friction shows
+HELD = 2e-3  # of the top speed: below it a friction may hold the joint
+SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Regressor:
+    """A quantity that a force follows.
+
+    Attributes:
+        along: "rate", "position", "phase", "time", "drive", "law" or "reading".
+        values: at the points of a trajectory, for each of n degrees of freedom, shape (M, n).
+        moving: where the force follows it: a joint that is held shows no law, shape (M, n).
+        turn: 1, or the sign against the motion where the force is a friction, shape (M, n).
+        unit: of the values.
+        force_unit: of the force.
+    """
+
+    along: str
+    values: np.ndarray
+    moving: np.ndarray
+    turn: np.ndarray
+    unit: str
+    force_unit: str
+
+    @property
+    def resists(self) -> bool:
+        """Whether the force is shown as a resistance, whatever the direction of the motion."""
+        return bool((self.turn < 0).any())
+
+    def samples(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What is followed, and a force (M, n) as it is shown, where the joints move."""
+        return self.values[self.moving], (self.turn * force)[self.moving]
+
+
+def find_regressor(
+    candidate: Candidate, values: Mapping[str, float], along: ForceAlong
+) -> Regressor:
+    """What the force of an effect follows.
+
+    Args:
+        candidate: the effect.
+        values: of the plant's parameters by name.
+        along: its force along a trajectory, the first of them.
+    """
+    q, v, force = along.position, along.rate, along.forces[0]
+    x, f = ("m", "N") if along.kind == SLIDE else ("rad", "N m")
+    plain, against = np.ones_like(v), -np.where(v < 0, -1.0, 1.0)
+    moving = np.abs(v) > HELD * np.abs(v).max()
+
+    def follows(what: str, of: np.ndarray, turn: np.ndarray, unit: str) -> Regressor:
+        return Regressor(
+            along=what, values=of, moving=moving, turn=turn, unit=unit, force_unit=f
+        )  # fmt: skip
+
+    options = [
+        follows("time", along.time, turn, "s")
+        for turn in (plain, against)
+        if along.is_timed and _is_of_time(along, turn)
+    ]
+    options.append(follows("rate", v, plain, f"{x}/s"))
+    if (n := _waves(candidate, values)) is not None:
+        options.append(follows("phase", np.mod(n * q, 2 * np.pi), plain, "rad"))
+    for turn in (plain, against):
+        options += [follows("position", q, turn, x), follows("drive", along.drives, turn, f)]
+    for option in options:
+        if unexplained(option, force) < ENOUGH:
+            return option
+    best = min(options, key=lambda option: unexplained(option, force))
+    size = _single(candidate, values)
+    if size:
+        return follows("law", force / size, plain, "")
+    return best
+
+
+def find_reading(log: Log, own: np.ndarray, error: np.ndarray, at: list[int]) -> Regressor:
+    """What the error of a sensor follows: its reading, the time or, else, the reading's rate.
+
+    Args:
+        log: with N samples.
+        own: readings without the error, shape (N, ny).
+        error: of the readings, shape (N, ny).
+        at: the outputs that have it.
+    """
+    unit = log.units.get(log.output_names[at[0]], "")
+    y, plain = own[:, at], np.ones((len(log), len(at)))
+    time = np.repeat(log.time[:, None], len(at), axis=1)
+    rate = np.gradient(y, log.sampling_time, axis=0)
+    options = [
+        Regressor(
+            along=along, values=values, moving=plain > 0, turn=plain, unit=x, force_unit=unit
+        )
+        for along, values, x in (
+            ("reading", y, unit), ("rate", rate, f"{unit}/s"), ("time", time, "s")
+        )
+    ]  # fmt: skip
+    return min(options, key=lambda option: unexplained(option, error[:, at]) > ENOUGH)
+
+
+def unexplained(regressor: Regressor, force: np.ndarray) -> float:
+    """u of a force, shape (M, n), and what it may follow."""
+    x, f = regressor.samples(force)
+    jumps = np.diff(f[np.argsort(x, kind="stable")])
+    return float(np.sum(jumps**2) / (2 * max(np.sum(f**2), 1e-300)))
+
+
+def _is_of_time(along: ForceAlong, turn: np.ndarray) -> bool:
+    """Whether a force, turned, is the same at all states that a joint has at one time."""
+    time, f = along.time.ravel(), (turn * along.forces[0]).ravel()
+    order = np.argsort(time, kind="stable")
+    expected = np.interp(along.late_time.ravel(), time[order], f[order])
+    off = (turn * along.late).ravel() - expected
+    return float(np.quantile(np.abs(off), MOST)) < ENOUGH * float(np.abs(f).max())
+
+
+def _waves(candidate: Candidate, values: Mapping[str, float]) -> float | None:
+    """Periods per radian or metre, times 2π, of a law a cos nq + b sin nq; None of another."""
+    effect = candidate.effect
+    if [s.name for s in effect.sizes] != ["a", "b"] or [s.name for s in effect.shapes] != ["n"]:
+        return None
+    return values[effect.parameter("n", candidate.where)]
+
+
+def _single(candidate: Candidate, values: Mapping[str, float]) -> float:
+    """The size of an effect that has but one; 0 of another."""
+    return values[candidate.sizes[0]] if len(candidate.sizes) == 1 else 0.0

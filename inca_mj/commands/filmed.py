@@ -1,0 +1,78 @@
+"""The film of a discovery: the nominal and the corrected robot, on seconds that no fit has seen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from identification.discovery.result import Discovery
+from identification.logs.joined import records_of
+from identification.logs.log import Log, halves
+from identification.report.page import Section
+from inca_mj.rendering.film import film
+from inca_mj.rendering.scene import Scene
+from inca_mj.twin.logs import pose_of
+from inca_mj.twin.twin import Twin
+from inca_mj.workflows.discovery_model import named_twin, nominal_twin, rerun
+
+FILMED = 6.0  # [s]; drawing costs several times as long
+FPS = 15
+TITLES = ("before: the model, fitted", "after: with what was missing")
+
+
+def film_discovery(found: Discovery, folder: Path) -> tuple[Path, Section]:
+    """Film a discovery, with the section of a report that shows the film.
+
+    Args:
+        found: the discovery, of twins.
+        folder: where film.mp4 and its picture film.jpg are written.
+
+    Raises:
+        InputError: the discovery is not of a twin, or the film cannot be written.
+        GraphicsError: no OpenGL context can be made here.
+        DivergenceError: a twin cannot be simulated.
+    """
+    log = records_of(found.log)[0][1]
+    seconds = filmed_seconds(log)
+    before = _scene(nominal_twin(found), log, seconds)
+    after = _scene(named_twin(found), log, seconds) if found.named else None
+    path, picture = folder / "film.mp4", folder / "film.jpg"
+    titles = TITLES if after is not None else TITLES[:1]
+    film(before, path, beside=after, titles=titles, fps=FPS, picture=picture)
+    return path, _section(path, picture, seconds, after is not None)
+
+
+def filmed_seconds(log: Log) -> tuple[float, float]:
+    """Begin and end of the first seconds that no fit has seen; of the log where it saw all [s].
+
+    Args:
+        log: one record; its part `estimation`, or its first half, was fitted.
+    """
+    first, last = (log.splits or halves(log)).get("estimation", (log.time[0], log.time[0]))
+    begin, end = float(log.time[0]), float(log.time[-1])
+    at = last if last < end - 1.0 else begin
+    until = first if at == begin and first > begin + 1.0 else end
+    return float(at), min(float(at) + FILMED, until)
+
+
+def _scene(robot: Twin, log: Log, seconds: tuple[float, float]) -> Scene:
+    run = rerun(robot, log)
+    late = float(run.time[0] - log.time[0])  # a run counts from its own begin
+    return Scene(run, log.outputs, pose_of(log)).between(seconds[0] + late, seconds[1] + late)
+
+
+def _section(path: Path, picture: Path, seconds: tuple[float, float], is_beside: bool) -> Section:
+    shown = (
+        "the model before (left) and with what was missing (right)" if is_beside else "the model"
+    )
+    begin, end = seconds
+    return Section(
+        f"The film: unseen seconds {begin:.4g} to {end:.4g}",
+        f"It shows {shown}, simulated from the currents alone, over seconds that no fit has seen."
+        " The handle is orange and the cables have the colour of their tension. The blue outline is"
+        " the measured robot: its pose is the one that the measured angles imply for cables that do"
+        " not stretch, where the log has no pose. The numbers say how far the handle and the motors"
+        " of the model are from it.",
+        video=path,
+        poster=picture,
+        first=True,
+    )

@@ -1,0 +1,167 @@
+"""A report is one file: figures that can be read, zoomed and printed, contents, a foot."""
+
+import json
+import re
+from html import unescape
+from xml.etree import ElementTree
+
+import fake_discovery
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from identification.report import page as page_module
+from identification.report.discovery_figures import gains_figure
+from identification.report.discovery_report import write_discovery_report
+from identification.report.origin import _command, origin
+from identification.report.page import Section, Table, write_report
+from identification.report.style import SERIES
+from identification.report.vector import DARK, svg
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    found = fake_discovery.found(several=True)
+    path = write_discovery_report(found, tmp_path_factory.mktemp("report"))
+    return path.read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def root(page):
+    return ElementTree.fromstring(page.replace("<!DOCTYPE html>", ""))
+
+
+def test_a_report_is_small_and_asks_nothing_of_the_network(page):
+    assert len(page) < 1_000_000
+    without_names = re.sub(r'xmlns(:\w+)?="[^"]*"', "", page)
+    assert "://" not in without_names
+    sources = re.findall(r'\b(?:src|href)="([^"]*)"', page)
+    assert all(s.startswith(("data:", "#")) for s in sources)
+
+
+def test_every_figure_has_a_role_and_a_title(root):
+    figures = [e for e in root.iter() if e.tag == f"{SVG}svg" or e.tag == "img"]
+    assert len(figures) >= 5
+    for figure in figures:
+        assert figure.get("role") == "img"
+        title = figure.find(f"{SVG}title")
+        assert title is not None
+        assert title.text
+        assert figure.get("aria-labelledby") == title.get("id")
+
+
+def test_text_of_figures_is_text(root):
+    said = [e.text for e in root.iter(f"{SVG}text")]
+    assert "time [s]" in said
+    assert "the law that is named" in said
+    assert not [e for e in root.iter(f"{SVG}use") if "DejaVu" in "".join(e.attrib.values())]
+
+
+def test_every_entry_of_the_contents_has_its_part(root):
+    nav = next(e for e in root.iter("nav"))
+    wanted = [a.get("href").removeprefix("#") for a in nav.iter("a")]
+    names = {e.get("id"): e for e in root.iter("section") if e.get("id")}
+    assert len(wanted) == len(names) > 5
+    for name, a in zip(wanted, nav.iter("a"), strict=True):
+        assert names[name].find("h2").text == a.text
+
+
+def test_the_gap_and_the_law_stand_before_the_contents(page):
+    contents = page.index("<nav")
+    assert page.index("Error on unseen data, before and after</title>") < contents
+    assert page.index("Missing force and its law") < contents
+
+
+def test_the_foot_says_what_made_it(root):
+    said = next(root.iter("footer")).text
+    assert re.search(r"inca-mj \S+ with MuJoCo \d", said)
+    assert "Data: second" in said
+    assert re.search(r"Date: \d{4}-\d\d-\d\d", said)
+    assert _command(["/usr/bin/inca", "discover", "my log.csv"]) == "inca discover 'my log.csv'"
+    assert _command(["x/identification/__main__.py", "fit"]) == "python -m identification fit"
+    assert _command(["/usr/bin/pytest", "tests"]) == ""
+    assert "Data" not in origin()
+
+
+def test_phrases_have_one_colon_at_most(page):
+    assert "Missing from the model: friction – Stribeck peak, all drives" in page
+    assert not re.search(r"(?:Missing|too): \w+: ", page)
+
+
+def test_a_value_is_never_coarser_than_its_std(page):
+    pairs = re.findall(r"(-?\d+(?:\.(\d+))?) ± (\d+(?:\.(\d+))?)", page)
+    assert len(pairs) > 8
+    for value, of_value, std, of_std in pairs:
+        assert len(of_value) == len(of_std), f"{value} ± {std}"
+
+
+def test_long_tables_are_folded_and_unfolded_on_paper(tmp_path):
+    rows = tuple((f"p{k}", k) for k in range(page_module.LONG + 1))
+    sections = [Section(t, table=Table(("name", "value"), r)) for t, r in (
+        ("long", rows), ("short", rows[:-1]))]  # fmt: skip
+    text = write_report(tmp_path / "r.html", "t", [], sections).read_text(encoding="utf-8")
+    assert text.count("<details>") == 1
+    assert text.index("<details>") < text.index('id="part-2"')
+    assert "beforeprint" in text
+    assert "details::details-content" in text
+
+
+def test_a_drawing_tells_where_its_axes_and_lines_are():
+    figure = Figure((4.0, 3.0), dpi=100)
+    upper, lower = figure.subplots(2, sharex=True)
+    upper.plot([0, 1, 2], [1, 10, 100], color=SERIES[0], label="grows")
+    upper.set_yscale("log")
+    lower.bar([0, 1, 2], [3, 2, 1])
+    lower.set_xlabel("time [s]")
+    lower.set_yticks([1, 2], ["one", "two"])
+    drawn = svg(figure, "a_", "Two <panels>")
+    root = ElementTree.fromstring(drawn)
+    axes = json.loads(root.get("data-axes"))
+    assert [a["y"][2] for a in axes] == ["log", "fixed"]
+    assert axes[0]["sx"] == axes[1]["sx"]
+    assert axes[0]["sy"] != axes[1]["sy"]
+    assert axes[0]["names"][0] == axes[1]["names"][0] == "time [s]"
+    assert root.find(f"{SVG}title").text == "Two <panels>"
+    # A corner of the line stands where box and range say that its values are.
+    of, (left, top, right, bottom) = axes[0], axes[0]["box"]
+    group = next(e for e in root.iter() if e.get("id") == of["series"][0]["id"])
+    corners = np.array(
+        re.findall(r"(-?[\d.]+) (-?[\d.]+)", group.find(f"{SVG}path").get("d")), float
+    )
+    x = of["x"][0] + (corners[:, 0] - left) / (right - left) * (of["x"][1] - of["x"][0])
+    decades = np.log10(of["y"][:2])
+    y = decades[0] + (bottom - corners[:, 1]) / (bottom - top) * np.diff(decades)
+    np.testing.assert_allclose(x, [0, 1, 2], atol=2e-3)
+    np.testing.assert_allclose(y, [0, 1, 2], atol=5e-3)
+    assert of["series"][0]["label"] == "grows"
+
+
+def test_figures_have_dark_colours_of_their_own(page):
+    for colour, other in DARK.items():
+        assert f"--c-{colour}: {other};" in page
+    drawn = "".join(re.findall(r"<svg.*?</svg>", page, re.DOTALL))
+    left = {c.lower() for c in re.findall(r"(?<!, )#([0-9a-fA-F]{6})\b", drawn)}
+    assert left <= {"b0b0b0", "000000", "cccccc"}
+
+
+def test_bars_that_would_vanish_have_a_logarithmic_axis():
+    many = gains_figure(["a", "b", "c"], np.array([5000.0, 3.0, 2.0]), [True, False, False])
+    few = gains_figure(["a", "b", "c"], np.array([50.0, 30.0, 20.0]), [True, False, False])
+    assert many.axes[0].get_xscale() == "log"
+    assert few.axes[0].get_xscale() == "linear"
+    width = [bar.get_width() for bar in many.axes[0].patches]
+    assert min(width) > many.axes[0].get_xlim()[0]
+
+
+def test_titles_are_escaped(tmp_path):
+    figure = Figure()
+    figure.subplots().plot([0, 1, 2], [0, 1, 0], label='a "b" & c')
+    text = write_report(
+        tmp_path / "r.html", "t", [], [Section("s", figures=(("<i> & 'k'", figure),))]
+    ).read_text(encoding="utf-8")
+    root = ElementTree.fromstring(text.replace("<!DOCTYPE html>", ""))
+    drawn = next(root.iter(f"{SVG}svg"))
+    assert drawn.find(f"{SVG}title").text == "<i> & 'k'"
+    assert 'a "b" & c' in unescape(drawn.get("data-axes")).replace('\\"', '"')
