@@ -4,7 +4,7 @@
 PYTHON_OF_VENV := .venv/bin/python
 INSTALL := -m pip install -qq --disable-pip-version-check --no-input --no-deps --no-build-isolation
 
-.PHONY: help setup demo test test-mujoco4 test-wheel lint docs bench fuzz lock clean system-packages
+.PHONY: help setup demo test test-long test-mujoco4 test-wheel lint docs bench fuzz lock clean system-packages
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z0-9-]*\):.*## \(.*\)/  make \1|\2/p' Makefile | awk -F'|' '{printf "%-20s %s\n", $$1, $$2}'
@@ -17,6 +17,9 @@ demo: system-packages .venv/.complete  ## the whole work on one example, with re
 
 test: system-packages .venv/.complete  ## run the tests, a process on each core
 	@$(PYTHON_OF_VENV) -m pytest -n auto --dist loadfile $(ARGS)
+
+test-long: system-packages .venv/.complete  ## run the whole searches that `make test` leaves out
+	@$(PYTHON_OF_VENV) -m pytest -n auto --dist load -m long $(ARGS)
 
 test-mujoco4: system-packages .venv-mujoco4/.complete  ## run the tests with MuJoCo 4
 	@.venv-mujoco4/bin/python -m pytest -n auto --dist loadfile $(ARGS)

@@ -20,6 +20,7 @@ ALIKE = spread_of("none")
 MIRRORED = np.array([2, 1, 4, 3, 6, 5, 8, 7]) - 1  # where each drive lands in the plane x = 0
 
 
+@pytest.mark.long
 def test_load_dependent_friction_is_named():
     log, truth = world(3, [effect("load_dependent_friction")], ratio=6.0, setting=SHORT)
     answer = discover(log, effects=FIVE, spread=ALIKE)
@@ -56,6 +57,7 @@ def test_a_jump_between_the_times_that_are_scored_is_named_with_its_time(answer_
     assert named.parameters["t_s"][0] == pytest.approx(1.3, abs=0.05)
 
 
+@pytest.mark.long
 def test_the_order_of_drives_changes_nothing(jumped, answer_to_jump):
     """In a mirror, drive 3 is drive 4: the robot is its own image, and so is the answer."""
     log, effects = jumped

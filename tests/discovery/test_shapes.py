@@ -77,6 +77,7 @@ def test_where_structure_is_left_the_next_kind_is_tried_and_the_likelier_kept(mo
     assert chosen is other
 
 
+@pytest.mark.long
 def test_a_limit_that_two_levels_of_current_reach_alike_is_a_hard_one():
     setting = HiddenSetting(duration=4.5)  # PRBS: 0.5 and 1 A
     log, truth = world(71, [replace(effect("current_saturation"), i_max=0.9)], setting=setting)

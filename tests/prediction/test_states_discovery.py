@@ -46,7 +46,14 @@ def found(name):
     return discover_records(model, logs[:2], logs[2:], effects, options=options)
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(ELASTIC, marks=pytest.mark.long),
+        pytest.param(BACKLASH, marks=pytest.mark.long),
+        PRESLIDING,
+    ],
+)
 def test_what_is_missing_is_named_first_with_its_size(name):
     answer = found(name)
     assert answer.verdict == "named"

@@ -36,6 +36,7 @@ def test_it_is_kept_and_asked_for_by_name(own: dict, tmp_path: Path) -> None:
     assert again.parameters["winding_friction.c"].value == 5e-4
 
 
+@pytest.mark.long
 def test_it_is_found(own: dict) -> None:
     found = own["find"](
         own["log_with_it"](4.0), effects=(STRIBECK_FRICTION, own["WINDING_FRICTION"])

@@ -43,6 +43,7 @@ def test_the_scatter_is_that_of_the_drawn_deviations(one):
         assert one.scatter[group] == pytest.approx(min(drawn, SPREAD.drives[group]), rel=0.25)
 
 
+@pytest.mark.long
 def test_records_share_drives_and_begin_at_poses_of_their_own(two):
     values, std = two.values, two.std
     assert abs(values["x [2]"] - 0.05) < 5 * std["x [2]"] + 1e-4

@@ -41,6 +41,7 @@ def off():
     return discover(logs, spread=SPREAD, effects=SOME)
 
 
+@pytest.mark.long
 def test_a_drive_that_is_off_by_more_is_named(off):
     (named,) = off.named
     assert named.candidate.key == ("torque_constant_mismatch", "drive 5")
@@ -54,6 +55,7 @@ def test_a_drive_that_is_off_by_more_is_named(off):
     assert named_twin(off).parameters.values()["torque_constant_mismatch.delta@5"] == value
 
 
+@pytest.mark.long
 def test_each_record_is_told_by_itself(off):
     records = discovery_to_json(off)["records"]
     assert [r["file"] for r in records] == ["record 3", "record 4"]
