@@ -1,4 +1,9 @@
-"""What the final model of a discovery leaves, as findings."""
+"""What the final model of a discovery leaves, as findings.
+
+Where the error at the horizon is that of the sensors, nothing is left that an effect or a shift of
+a record could explain. Among many that are tried one gains by luck, so that such a doubt counts
+only where more than `min_gap_share` is left above the sensors' noise.
+"""
 
 from __future__ import annotations
 
@@ -36,20 +41,25 @@ def find_remaining(
     if state.worse_fit is not None:
         worse = WorseFit(rise(state.begun, state.worse_fit))
         out.append(Finding(FindingKind.WORSE_FIT, worse))
-    for r in rejected:
+    ratio = noise_ratio(state)
+    is_left = ratio > 1 + state.task.options.min_gap_share
+    for r in rejected if is_left else ():
         seen = r.prediction
         if seen.is_everywhere and seen.fall > 0 and seen.t > state.task.options.min_proof_t:
             out.append(Finding(FindingKind.UNPROVEN_EFFECT, _unproven(r)))
-    square = float(np.mean(np.concatenate(state.model.unseen.at_horizon)))
-    ratio = (
-        float(np.sqrt(square / state.model.unseen.floor)) if state.model.unseen.floor else np.inf
-    )
-    if state.accepted and ratio > 1 + state.task.options.min_gap_share:
+    if state.accepted and is_left:
         out.append(Finding(FindingKind.REMAINING_ERROR, RemainingError(ratio)))
     out += [Finding(FindingKind.DIFFERENT_RECORD, e) for e in different_records(state)]
-    told = told_shifts(shifts, len(state.task.records), state.task.options)
+    told = told_shifts(shifts, len(state.task.records), state.task.options) if is_left else ()
     out += [Finding(FindingKind.SHIFTED_RECORD, e) for e in told]
     return tuple(out)
+
+
+def noise_ratio(state: RecordsState) -> float:
+    """Rms error of the final model on unseen records over that of the sensors' noise."""
+    unseen = state.model.unseen
+    square = float(np.mean(np.concatenate(unseen.at_horizon)))
+    return float(np.sqrt(square / unseen.floor)) if unseen.floor else np.inf
 
 
 def different_records(state: RecordsState) -> list[DifferentRecord]:
