@@ -7,7 +7,7 @@ from identification.discovery.final_values import collect_final_values, collect_
 from identification.discovery.result import Discovery
 from identification.quantities import quantity
 from identification.report.discovery_limits import split_detectable
-from identification.report.effect_words import describe_effect
+from identification.report.effect_words import describe_effect, describe_gains
 from identification.report.page import Section, Table
 
 
@@ -28,9 +28,11 @@ def diff_section(found: Discovery, files: str = "") -> Section:
                 (f"+ {describe_effect(c)}" if k == 0 else "", c.effect.law if k == 0 else "", name,
                  quantity(value, std, unit), f"{100 * named.confidence:.0f} %" if k == 0 else "")
             )  # fmt: skip
+    proofs = [f"{describe_effect(n.candidate)}: {describe_gains(n)}." for n in found.named]
+    said = " ".join(f"{proof[:1].upper()}{proof[1:]}" for proof in proofs)
     return Section(
         "What was added",
-        files,
+        f"{said} {files}".strip(),
         table=Table(("effect", "law", "parameter", "value", "confidence"), tuple(rows)),
     )
 

@@ -16,7 +16,7 @@ from identification.report.discovery_verdict import (
     discovery_verdict,
     floor_rms,
 )
-from identification.report.effect_words import describe_chance, describe_effect, describe_rejected
+from identification.report.effect_words import describe_effect, describe_gains, describe_rejected
 from identification.report.finding_words import describe_finding
 from identification.report.fitted_values import shown_values, unknown_shares
 from identification.report.record_gaps import record_lines
@@ -55,8 +55,7 @@ def _diff(found: Discovery) -> list[str]:
     lines = []
     for named in found.named:
         lines += [diff_line(named), f"    law: {named.candidate.effect.law}"]
-        gains = f"    gain {named.gain:.4g} on fitted samples, {named.proof.gain:.4g} on unseen"
-        lines.append(f"{gains} ({describe_chance(named.proof)})")
+        lines.append(f"    {describe_gains(named)}")
         for rival in named.rivals:
             said = f"{describe_effect(rival.candidate)}, confidence {100 * rival.confidence:.0f} %"
             lines.append(f"    rival: {said}")

@@ -69,6 +69,12 @@ def describe_chance(proof: Proof) -> str:
     return f"t = {proof.t:.1f}, chance {chance}"
 
 
+def describe_gains(named: NamedEffect) -> str:
+    """What a named effect gains on fitted and on unseen samples."""
+    gains = f"gain {named.gain:.4g} on fitted samples, {named.proof.gain:.4g} on unseen"
+    return f"{gains} ({describe_chance(named.proof)})"
+
+
 def _describe_proof(rejected: RejectedEffect) -> str:
     """What a rejected effect would do on fitted and on unseen samples."""
     proof, outside = rejected.proof, rejected.outside
