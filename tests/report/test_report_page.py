@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from identification.report import page as page_module
 from identification.report.discovery_figures import gains_figure
 from identification.report.discovery_report import write_discovery_report
+from identification.report.effect_words import describe_gains
 from identification.report.origin import _command, origin
 from identification.report.page import Section, Table, write_report
 from identification.report.style import SERIES
@@ -95,6 +96,11 @@ def test_a_value_is_never_coarser_than_its_std(page):
     assert len(pairs) > 8
     for value, of_value, std, of_std in pairs:
         assert len(of_value) == len(of_std), f"{value} ± {std}"
+
+
+def test_the_proof_of_a_name_stands_in_the_report_as_in_the_terminal(page):
+    for named in fake_discovery.found(several=True).named:
+        assert describe_gains(named) in unescape(page)
 
 
 def test_long_tables_are_folded_and_unfolded_on_paper(tmp_path):
