@@ -96,8 +96,8 @@ def _sentence(text: str, name: str, arguments: Sequence[str], commands: dict[str
             return f"{found[1]} is {given!r}; write a log behind --log, as --log {given}{see}"
         return f"{found[1]} is {given!r}; give {_wanted(text)}{see}"
     if found := re.search(r"invalid choice (.+) for argument '([^']+)'.*\((.+)\)", text):
-        words = ", ".join(w for w in re.findall(r"'([^']*)'", found[3]) if w != "None")
-        return f"{found[2]} is {found[1]}; give one of {words}"
+        words = sorted({*re.findall(r"'([^']*)'", found[3])} - {"None"})  # their order varies
+        return f"{found[2]} is {found[1]}; give one of {', '.join(words)}"
     if found := re.search(r"Missing value for argument '([^']+)'", text):
         return f"{found[1]} has no value; give one behind it{see}"
     if found := re.search(r"Missing from [^:]+: (\S+)", text):
