@@ -1,0 +1,50 @@
+"""Doubts count where something is left above the sensors' noise, and nowhere else."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from identification.discovery.findings.finding import FindingKind
+from identification.discovery.findings.records_evidence import ShiftedRecord
+from identification.discovery.options import DiscoveryOptions
+from identification.prediction import remaining
+
+OPTIONS = DiscoveryOptions()
+LEAST = 1 + OPTIONS.min_gap_share  # rms over the noise beyond which something is left
+DOUBTFUL = SimpleNamespace(
+    candidate=SimpleNamespace(effect=SimpleNamespace(name="spring"), where="joint"),
+    prediction=SimpleNamespace(is_everywhere=True, fall=0.07, t=OPTIONS.min_proof_t + 0.4),
+    doubt="chance",
+)
+SHIFT = ShiftedRecord(record="a", shift=7e-4, std=1e-4, fall=0.06, chance=1e-4)
+
+
+def kinds(monkeypatch, ratio, floor=4e-6, accepted=()):
+    """What is found where the rms on unseen windows is `ratio` times that of the noise."""
+    monkeypatch.setattr(remaining, "different_records", lambda state: [])
+    squares = ratio**2 * floor * np.array([0.5, 1.5])
+    unseen = SimpleNamespace(at_horizon=(squares[:1], squares[1:]), floor=floor)
+    state = SimpleNamespace(
+        worse_fit=None, accepted=accepted, model=SimpleNamespace(unseen=unseen),
+        task=SimpleNamespace(options=OPTIONS, records=("a", "b")),
+    )  # fmt: skip
+    return [f.kind for f in remaining.find_remaining(state, [DOUBTFUL], [SHIFT])]
+
+
+@pytest.mark.parametrize("ratio", [0.9, 1.0, LEAST - 0.01])
+def test_at_the_noise_nothing_is_left_to_explain(monkeypatch, ratio):
+    assert kinds(monkeypatch, ratio) == []
+    assert kinds(monkeypatch, ratio, accepted=("an effect",)) == []
+
+
+def test_above_the_noise_a_doubt_and_a_shift_are_told(monkeypatch):
+    doubts = [FindingKind.UNPROVEN_EFFECT, FindingKind.SHIFTED_RECORD]
+    assert kinds(monkeypatch, LEAST + 0.01) == doubts
+    left = kinds(monkeypatch, LEAST + 0.01, accepted=("an effect",))
+    assert left == [doubts[0], FindingKind.REMAINING_ERROR, doubts[1]]
+
+
+def test_sensors_without_noise_leave_all_to_be_explained():
+    unseen = SimpleNamespace(at_horizon=(np.array([1e-12]),), floor=0.0)
+    assert remaining.noise_ratio(SimpleNamespace(model=SimpleNamespace(unseen=unseen))) == np.inf
