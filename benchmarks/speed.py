@@ -169,8 +169,7 @@ def measure_starts() -> dict[str, dict]:
 
 
 def entry(value: float | None, goal: float | None = None, how: str = "") -> dict:
-    """One measurement beside its goal: at most it where the name says seconds or step, else at
-    least it."""
+    """One measurement beside its goal; times and steps are to be below it, the rest above."""
     return {"value": None if value is None else round(value, 4), "goal": goal} | (
         {"how": how} if how else {}
     )
@@ -198,7 +197,9 @@ def main() -> None:
         measure_starts,
     ]
     for part in () if options.quick else parts:
-        found |= part()
+        found |= (more := part())
+        for name, of in more.items():  # minutes pass between the parts
+            print(f"{name}: {of['value']}", file=sys.stderr, flush=True)
     print(json.dumps(found, indent=2, ensure_ascii=False))
     if options.out:
         commit = subprocess.run(
