@@ -2,7 +2,7 @@
 
     δẋ = F(t) δx + G(t) δu,    δx_{k+1} = A_k δx_k + B_k δu_k,    δy_k = C δx_k
 
-    A = exp(F Δt),  Γ = ∫ exp(F τ) E dτ over Δt:  exp([F E; 0 0] Δt) = [A Γ; 0 I]   (Van Loan 1978)
+    A = exp(F Δt),    Γ = ∫ exp(F τ) E dτ over Δt            (`identification.kalman.exponential`)
 
 E are the columns of the identity of velocities and activations: nothing else is forced. x is
 MuJoCo's state in tangent space: position (nv), velocity (nv), activation (na). F and G are means
@@ -16,10 +16,10 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from scipy.linalg import expm
 from threadpoolctl import threadpool_limits
 
 from identification.kalman.derivatives import force_derivatives, state_derivatives
+from identification.kalman.exponential import transitions
 from identification.kalman.trajectory import COARSE, Trajectory, follow
 from identification.model.predictor import Predictor, output_columns
 
@@ -124,14 +124,11 @@ def _of_record(predictor: Predictor, along: Trajectory, forces: Sequence[int]) -
         C[row, tangent_index(along.model, field, i)] = 1
     felt = _felt(F, C)
     F, G, C = F[:, felt][:, :, felt], G[:, felt], C[:, felt]
-    nx, positions = F.shape[1], int(felt[: along.model.nv].sum())
-    whole = 2 * nx - positions
-    block = np.zeros((len(F), whole, whole))
-    block[:, :nx, :nx], block[:, positions:nx, nx:] = F, np.eye(nx - positions)
+    positions = int(felt[: along.model.nv].sum())
     with threadpool_limits(1, "blas"):  # the matrices are small, so threads would only wait
-        block = expm(block * along.duration[:, None, None])
-    Γ = block[:, :nx, nx:]
-    return Linearisation(along, block[:, :nx, :nx], Γ, Γ @ G[:, positions:], C, felt)
+        A, Γ = transitions(F, along.duration)
+    Γ = Γ[:, :, positions:]
+    return Linearisation(along, A, Γ, Γ @ G[:, positions:], C, felt)
 
 
 def _felt(F: np.ndarray, C: np.ndarray) -> np.ndarray:

@@ -15,9 +15,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dpotrf, dtrtri
 
 from identification.kalman.linear import LinearPlant
+from identification.kalman.recursion import filter_gains, filter_innovations
 
 
 @dataclass(frozen=True)
@@ -63,14 +63,8 @@ class Whitener:
         """Innovations of e, shape (n, ny) or (n, ny, p) for n <= N samples, of std σ each."""
         if not self.A.size:
             return np.array(e)
-        columns = e.reshape(*e.shape[:2], -1)
-        z = np.zeros((self.A.shape[1], columns.shape[2]))
-        innovations = np.empty_like(columns)
-        for k, innovation in enumerate(innovations):
-            np.subtract(columns[k], self.C @ z, out=innovation)
-            if k + 1 < len(columns):
-                z = self.A[k] @ (z + self.K[k] @ innovation)
-        return np.asarray(self.L[: len(columns)] @ innovations).reshape(e.shape)
+        columns = filter_innovations(self.A, self.C, self.K, e.reshape(*e.shape[:2], -1))
+        return np.asarray(self.L[: len(columns)] @ columns).reshape(e.shape)
 
 
 def augment(
@@ -101,20 +95,7 @@ def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Wh
 
     The state of the plant at the first sample is taken as known, because its errors are parameters.
     """
-    n, ny = len(plant.B), len(plant.C)
     if noise.ratio == 0:
         return Whitener(np.empty((0, 0, 0)), plant.C, np.empty(0), np.empty(0), 0.0)
     A, C, P, Q = augment(plant, noise, sampling_time)
-    K, L = np.empty((n + 1, len(P), ny)), np.empty((n + 1, ny, ny))
-    one, diagonals = np.eye(ny), np.empty((n + 1, ny))
-    for k in range(n + 1):
-        PC = P @ C.T
-        factor = dpotrf(C @ PC + one, lower=1)[0]  # numpy's own takes ten times as long
-        L_k, K_k = L[k], K[k]
-        L_k[:] = dtrtri(factor, lower=1)[0]
-        K_k[:] = PC @ L_k.T @ L_k
-        diagonals[k] = factor.diagonal()
-        if k < n:
-            P = A[k] @ (P - K_k @ PC.T) @ A[k].T + Q[k]
-            P = (P + P.T) / 2
-    return Whitener(A, C, K, L, sum((2 * np.log(diagonals).sum(axis=1)).tolist()))
+    return Whitener(A, C, *filter_gains(A, C, P, Q))

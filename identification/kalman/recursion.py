@@ -1,0 +1,135 @@
+"""The recursions of the Kalman filter over the samples of a log, compiled.
+
+    S_k = C P_k Cᵀ + I = F Fᵀ,    L_k = F⁻¹,    W = P_k Cᵀ L_kᵀ,    K_k = W L_k
+    P_{k+1} = A_k (P_k - W Wᵀ) A_kᵀ + Q_k
+
+    ε_k = e_k - C z_k,    z_{k+1} = A_k (z_k + K_k ε_k),    z_0 = 0
+
+K: gains, L: inverted Cholesky factors of the covariances S of the innovations ε over σ². A sample
+of a plant with few states costs less than a call of numpy, of which the loop would need a dozen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from ctypes import POINTER, c_double
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numba import carray, types
+
+from identification.native.cache import compile_once
+from identification.native.decorators import internal
+
+_DOUBLES: Any = types.CPointer(types.float64)
+_SIZE: Any = types.int64
+
+
+def filter_gains(
+    A: np.ndarray, C: np.ndarray, P: np.ndarray, Q: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Gains of the Kalman filter at each sample.
+
+    Args:
+        A: transitions of the state, shape (N-1, nz, nz).
+        C: outputs from the state, shape (ny, nz).
+        P: covariance over σ² of the first state, shape (nz, nz).
+        Q: covariance over σ² of the process noise, shape (N-1, nz, nz).
+
+    Returns:
+        K, shape (N, nz, ny), L, shape (N, ny, ny), and Σ log det S.
+    """
+    n, nz, ny = len(A), len(P), len(C)
+    K, L = np.empty((n + 1, nz, ny)), np.empty((n + 1, ny, ny))
+    given = (np.ascontiguousarray(a, float) for a in (A, C, P, Q))
+    _call(_compiled(_gains, 6), (n, nz, ny), (*given, K, L))
+    return K, L, -2 * float(np.log(np.diagonal(L, axis1=1, axis2=2)).sum())
+
+
+def filter_innovations(A: np.ndarray, C: np.ndarray, K: np.ndarray, e: np.ndarray) -> np.ndarray:
+    """Innovations of residuals, not yet scaled by L.
+
+    Args:
+        A: transitions of the state, shape (N-1, nz, nz).
+        C: outputs from the state, shape (ny, nz).
+        K: gains, shape (N, nz, ny).
+        e: residuals, shape (n, ny, p) for n <= N samples.
+
+    Returns:
+        ε, shape (n, ny, p).
+    """
+    n, ny, p = e.shape
+    out = np.empty((n, ny, p))
+    given = (np.ascontiguousarray(a, float) for a in (A, C, K, e))
+    _call(_compiled(_innovations, 5), (n, A.shape[1], ny, p), (*given, out))
+    return out
+
+
+def _gains(n, nz, ny, A_, C_, P_, Q_, K_, L_):  # type: ignore[no-untyped-def]
+    A, Q = carray(A_, (n, nz, nz)), carray(Q_, (n, nz, nz))
+    C, P = carray(C_, (ny, nz)), carray(P_, (nz, nz)).copy()
+    K, L = carray(K_, (n + 1, nz, ny)), carray(L_, (n + 1, ny, ny))
+    PC, W, M, AM = np.empty((nz, ny)), np.empty((nz, ny)), np.empty((nz, nz)), np.empty((nz, nz))
+    S, F = np.empty((ny, ny)), np.empty((ny, ny))
+    for k in range(n + 1):
+        np.dot(P, C.T, PC)
+        np.dot(C, PC, S)
+        for j in range(ny):
+            S[j, j] += 1.0
+        _inverted_factor(S, F, L[k])
+        np.dot(PC, L[k].T, W)
+        np.dot(W, L[k], K[k])
+        if k < n:
+            np.dot(W, W.T, M)
+            np.dot(A[k], P - M, AM)
+            np.dot(AM, A[k].T, M)
+            for i in range(nz):
+                for j in range(nz):
+                    P[i, j] = (M[i, j] + M[j, i]) / 2 + Q[k, i, j]
+
+
+@internal
+def _inverted_factor(S, F, L):  # type: ignore[no-untyped-def]
+    """The Cholesky factor F of S, and its inverse L; both lower triangles."""
+    for j in range(len(S)):
+        for i in range(j, len(S)):
+            s = S[i, j]
+            for k in range(j):
+                s -= F[i, k] * F[j, k]
+            F[i, j] = np.sqrt(s) if i == j else s / F[j, j]
+    L[:] = 0.0
+    for j in range(len(S)):
+        for i in range(j, len(S)):
+            s = 1.0 if i == j else 0.0
+            for k in range(j, i):
+                s -= F[i, k] * L[k, j]
+            L[i, j] = s / F[i, i]
+
+
+def _innovations(n, nz, ny, p, A_, C_, K_, e_, out_):  # type: ignore[no-untyped-def]
+    A, C = carray(A_, (max(n - 1, 0), nz, nz)), carray(C_, (ny, nz))
+    K, e, out = carray(K_, (n, nz, ny)), carray(e_, (n, ny, p)), carray(out_, (n, ny, p))
+    z, seen, predicted = np.zeros((nz, p)), np.empty((nz, p)), np.empty((ny, p))
+    for k in range(n):
+        np.dot(C, z, predicted)
+        for i in range(ny):
+            for j in range(p):
+                out[k, i, j] = e[k, i, j] - predicted[i, j]
+        if k + 1 < n:
+            np.dot(K[k], out[k], seen)
+            for i in range(nz):
+                for j in range(p):
+                    seen[i, j] += z[i, j]
+            np.dot(A[k], seen, z)
+
+
+@cache
+def _compiled(function: Callable[..., Any], arrays: int) -> Any:
+    """A recursion as a ctypes function of sizes and of the addresses of arrays."""
+    sizes = function.__code__.co_argcount - arrays
+    return compile_once(function, types.void(*[_SIZE] * sizes, *[_DOUBLES] * arrays))
+
+
+def _call(function: Any, sizes: tuple[int, ...], arrays: tuple[np.ndarray, ...]) -> None:
+    function(*sizes, *(a.ctypes.data_as(POINTER(c_double)) for a in arrays))

@@ -1,0 +1,50 @@
+"""Transitions from the series are those of the matrix exponential."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.linalg import expm
+
+from identification.kalman.exponential import transitions
+
+SIZES = st.integers(1, 6)
+SCALES = st.sampled_from([1e-9, 1e-3, 1.0, 30.0, 1e3])
+
+
+def drawn(seed, size, scale):
+    """Stable matrices, shape (5, size, size) [1/s], and durations, shape (5,) [s]."""
+    rng = np.random.default_rng(seed)
+    F = scale * (rng.normal(size=(5, size, size)) - 2 * size * np.eye(size))
+    return F, rng.uniform(1e-4, 1e-2, 5)
+
+
+@given(st.integers(0, 2**32 - 1), SIZES, SCALES)
+def test_they_are_the_blocks_of_van_loan(seed, size, scale):
+    F, duration = drawn(seed, size, scale)
+    A, Γ = transitions(F, duration)
+    block = np.zeros((5, 2 * size, 2 * size))
+    block[:, :size, :size], block[:, :size, size:] = F, np.eye(size)
+    exact = expm(block * duration[:, None, None])
+    np.testing.assert_allclose(A, exact[:, :size, :size], atol=1e-13)
+    np.testing.assert_allclose(Γ, exact[:, :size, size:], atol=1e-13 * duration.max())
+
+
+@given(st.integers(0, 2**32 - 1), SIZES, SCALES)
+def test_two_halves_are_the_whole(seed, size, scale):
+    F, duration = drawn(seed, size, scale)
+    (A, Γ), (half, forced) = transitions(F, duration), transitions(F, duration / 2)
+    np.testing.assert_allclose(A, half @ half, atol=1e-13)
+    np.testing.assert_allclose(Γ, half @ forced + forced, atol=1e-13 * duration.max())
+
+
+def test_an_integrator_counts_the_time():
+    A, Γ = transitions(np.zeros((1, 2, 2)), np.array([0.3]))
+    np.testing.assert_array_equal(A[0], np.eye(2))
+    np.testing.assert_array_equal(Γ[0], 0.3 * np.eye(2))
+
+
+@pytest.mark.filterwarnings("ignore:invalid value")
+def test_what_is_not_finite_gives_nan():
+    A, _ = transitions(np.full((1, 2, 2), np.inf), np.ones(1))
+    assert np.isnan(A).all()
