@@ -53,6 +53,22 @@ def refuse_negative(name: str, value: int) -> None:
         raise InputError(f"{name} {value} is negative; give 0 or more")
 
 
+def refuse_number(name: str, value: float, is_good: bool, good: str) -> None:
+    """Refuse a number outside its range.
+
+    Args:
+        name: of the number.
+        value: of it.
+        is_good: whether it lies in its range.
+        good: what is allowed, in words.
+
+    Raises:
+        InputError: it lies outside.
+    """
+    if not is_good:
+        raise InputError(f"{name} = {value:g} is not allowed; give {good}")
+
+
 def refuse_kind(value: object, kinds: type | tuple[type, ...], what: str) -> None:
     """Refuse an argument of another type than a function takes.
 

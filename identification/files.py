@@ -26,8 +26,17 @@ def is_file(path: Path) -> bool:
         return False
 
 
-def read_bytes(path: Path, largest: int = MAX_BYTES) -> bytes:
+LOG = "log file (.csv or .mat)"  # what a path should have been, in messages
+MODEL = "model file (MJCF or URDF)"
+
+
+def read_bytes(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> bytes:
     """The bytes of a regular file of a sane size.
+
+    Args:
+        path: of the file.
+        largest: sane size [bytes].
+        what: kind of file that is wanted, for messages.
 
     Raises:
         InputError: there is no such file, it is something else, too large, or cannot be read.
@@ -36,14 +45,15 @@ def read_bytes(path: Path, largest: int = MAX_BYTES) -> bytes:
         if not path.exists():
             raise InputError(_missing(path))
         if path.is_dir():
-            raise InputError(f"{path} is a folder; name a log file in it, such as log.csv")
+            raise InputError(f"{path} is a folder; give the path of a {what}")
         if not path.is_file():
-            raise InputError(f"{path} is not a regular file; give a .csv or .mat file")
+            raise InputError(f"{path} is not a regular file; give the path of a {what}")
         size = path.stat().st_size
         if size > largest:
+            cure = "cut it into shorter logs" if what == LOG else f"give the path of a {what}"
             raise InputError(
                 f"{path} has {size / 2**20:.0f} MB, more than the {largest / 2**20:.0f} MB that "
-                "are read at once; cut it into shorter logs"
+                f"are read at once; {cure}"
             )
         return path.read_bytes()
     except OSError as error:
@@ -60,15 +70,19 @@ def _refuse_long(value: Any) -> None:
         raise ValueError("a whole number has more than 64 bits")
 
 
-def read_toml(path: Path) -> dict[str, Any]:
+def read_toml(path: Path, what: str = "TOML file") -> dict[str, Any]:
     """The content of a TOML file that was written by hand.
+
+    Args:
+        path: of the file.
+        what: kind of file that is wanted, for messages.
 
     Raises:
         InputError: there is no such file, it is too large for one that was written by hand, or it
             is not TOML.
     """
     try:
-        content = tomllib.loads(read_bytes(path, _BY_HAND).decode("utf-8-sig"))
+        content = tomllib.loads(read_bytes(path, _BY_HAND, what).decode("utf-8-sig"))
         _refuse_long(content)
         return content
     except (ValueError, RecursionError) as error:  # digits without end are a ValueError too

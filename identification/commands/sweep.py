@@ -55,7 +55,7 @@ class SweepCommand:
 
         if self.again and not self.resume:
             raise InputError("--again runs tasks of an earlier start once more; write --resume too")
-        sweep = read_sweep(self.config, self.methods())
+        sweep = read_sweep(self.config, self.methods(), files=not self.summary)
         folder = self.output.out or Path("out") / self.config.stem
         kept = replace(self, output=replace(self.output, out=folder))
         refuse_place(kept)

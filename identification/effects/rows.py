@@ -20,7 +20,7 @@ from identification.effects.joint_layout import JointLayout
 from identification.effects.moving_bodies import movable
 from identification.effects.values import Values, changed_columns
 from identification.errors import InputError, unknown_name
-from identification.files import read_bytes
+from identification.files import MODEL, read_bytes
 from identification.logs.names import quoted
 from identification.model.hostile import refuse_hostile, refuse_numbers
 from identification.model.paths import Slot
@@ -45,7 +45,7 @@ def read_model(source: str | Path | mujoco.MjSpec) -> mujoco.MjSpec:
     text = str(source)
     given = text.lstrip().startswith("<")
     where = "the model" if given else f"the model {text}"
-    refuse_hostile(text if given else read_bytes(Path(text)), where)
+    refuse_hostile(text if given else read_bytes(Path(text), what=MODEL), where)
     try:
         spec = mujoco.MjSpec.from_string(text) if given else mujoco.MjSpec.from_file(text)
         with catch_warnings():

@@ -145,7 +145,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
         InputError: it cannot be read, is not TOML, or has an unknown key or a wrong value.
     """
     path = Path(path)
-    content = read_toml(path)
+    content = read_toml(path, "robot file, such as robot.toml")
     check_table(content, _KINDS, str(path))
     for key in ("model", "free"):
         if not content.get(key):

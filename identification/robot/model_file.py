@@ -16,7 +16,7 @@ import mujoco
 
 from identification.effects.rows import read_model
 from identification.errors import InputError
-from identification.files import read_bytes
+from identification.files import MODEL, read_bytes
 from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.model.rollout import substeps
@@ -37,7 +37,7 @@ def robot_spec(file: RobotFile) -> tuple[mujoco.MjSpec, tuple[str, ...]]:
     Raises:
         InputError: it cannot be read or compiled, or a link that moves has no inertial.
     """
-    raw = read_bytes(file.model, _LARGEST)
+    raw = read_bytes(file.model, _LARGEST, MODEL)
     if file.model.suffix.lower() != ".urdf" and b"<robot" not in raw[:HEAD]:
         return read_model(file.model), ()
     try:

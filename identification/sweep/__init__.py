@@ -21,6 +21,8 @@ _PUBLIC = {
     "run_sweep": "run",
     "Backend": "backends.backend",
     "backend_of": "backends.choice",
+    "setting": "words",
+    "file_setting": "words",
 }
 __all__ = list(_PUBLIC)
 
@@ -35,5 +37,7 @@ if TYPE_CHECKING:  # the same list, for type checkers and editors
     from identification.sweep.run import run_sweep as run_sweep
     from identification.sweep.store import Store as Store
     from identification.sweep.task import Sweep as Sweep
+    from identification.sweep.words import file_setting as file_setting
+    from identification.sweep.words import setting as setting
 else:
     __getattr__, __dir__ = lazy(__name__, _PUBLIC)

@@ -40,7 +40,7 @@ def axis(value: Any, folder: Path, where: str) -> tuple[Plain, ...]:
         values: tuple[Plain, ...] = tuple(value)
     elif isinstance(value, dict) and "files" in value:
         check_table(value, _FILES, where)
-        values = _files(value["files"], value.get("label", {}), folder)
+        values = _files(value["files"], value.get("label", {}), folder, where)
     elif isinstance(value, dict):
         check_table(value, _ROW, where)
         if not {"first", "count"} <= set(value):
@@ -53,20 +53,31 @@ def axis(value: Any, folder: Path, where: str) -> tuple[Plain, ...]:
             f"{where} must be a list of values, {{ first, count }} or {{ files }}, not {value!r}"
         )
     if not values:
-        raise InputError(f"{where} has no values; give one or more, or correct the pattern")
+        raise InputError(f"{where} has no values; give one or more")
     if len(set(values)) < len(values):
         raise InputError(f"{where} has a value twice; raise count to repeat a task")
     return values
 
 
-def _files(pattern: str, label: Mapping[str, Any], folder: Path) -> tuple[str, ...]:
-    """The files of a pattern, written as the pattern is, in the order of their names."""
+def _files(pattern: str, label: Mapping[str, Any], folder: Path, where: str) -> tuple[str, ...]:
+    """The files of a pattern, written as the pattern is, in the order of their names.
+
+    Raises:
+        InputError: no file has such a name, or labels.json describes none so.
+    """
     above, slash, name = pattern.rpartition("/")
     base = place(above, folder) if slash else folder
     found = sorted(Path(path).name for path in glob(str(base / name)))
+    if not found:
+        raise InputError(f"{where}: no file matches {base / name}; correct the pattern")
     if label:
         labels = _labels(base)
         found = [f for f in found if _described(labels.get(Path(f).stem, {}), label)]
+        if not found:
+            raise InputError(
+                f"{where}: {base / 'labels.json'} describes no file of {name} by {dict(label)};"
+                " correct label, or leave it out"
+            )
     return tuple(f"{above}{slash}{file}" for file in found)
 
 

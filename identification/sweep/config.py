@@ -17,6 +17,7 @@ Seeds depend on nothing but this file (`identification.sweep.task`).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import prod
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,7 @@ from identification.files import read_toml
 from identification.robot.file_checks import Kinds, check_table
 from identification.sweep.axis import axis
 from identification.sweep.method import Registry, load_method, reference_of
-from identification.sweep.settings import build
+from identification.sweep.settings import Plain, build, refuse_missing_files
 from identification.sweep.task import Study, Sweep
 
 POINTS = 100_000  # of a grid; each is checked before anything runs
@@ -46,18 +47,20 @@ _STUDY: Kinds = {
 }
 
 
-def read_sweep(path: str | Path, known: Registry) -> Sweep:
+def read_sweep(path: str | Path, known: Registry, *, files: bool = True) -> Sweep:
     """Read the TOML of a sweep; every point of every grid is checked before anything runs.
 
     Args:
         path: of the TOML.
         known: reference of each registered method, by name.
+        files: whether the files that tasks read must be there; a summary of records needs none.
 
     Raises:
-        InputError: it cannot be read, has an unknown key, method or setting, or a wrong value.
+        InputError: it cannot be read, has an unknown key, method or setting, or a wrong value, or
+            names a file that is not there.
     """
     path = Path(path).absolute()
-    content = read_toml(path)
+    content = read_toml(path, "config file of a sweep, such as sweep.toml")
     check_table(content, _SWEEP, str(path))
     tables = content.get("study", [])
     if not tables or not all(isinstance(table, dict) for table in tables):
@@ -72,9 +75,20 @@ def read_sweep(path: str | Path, known: Registry) -> Sweep:
     first = 0
     for study in studies:
         for point in range(study.points):
-            build(study.method.settings, sweep.task(first + point * study.count).settings)
+            _check(study, sweep.task(first + point * study.count).settings, files)
         first += study.points * study.count
     return sweep
+
+
+def _check(study: Study, settings: Mapping[str, Plain], files: bool) -> None:
+    """Refuse what the settings of a point would be refused for in each of its tasks."""
+    where = f"study {study.name!r}"
+    try:
+        build(study.method.settings, settings)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
+    if files:
+        refuse_missing_files(study.method.settings, settings, where)
 
 
 def _study(table: dict[str, Any], known: Registry, path: Path) -> Study:

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from identification.report.style import GREY, INK, MEASURED, SERIES, STYLE, literal
 from identification.sweep.power import IN_WORDS, LEVEL, Curve, Threshold
 from identification.sweep.statistics import wilson
+from identification.sweep.words import LOGARITHMIC
 
 EDGES = (0.0, 0.3, 0.5, 0.7, 0.9, 1.0)  # of confidence
 WIDE_RANGE = 8.0  # ratio of the largest to the smallest value above which an axis is logarithmic
@@ -26,8 +27,8 @@ def power_figure(curves: Sequence[Curve], axis: str, success: str) -> Figure:
 
     Args:
         curves: each with its label.
-        axis: name of the setting.
-        success: what is counted.
+        axis: the setting in words, with its unit.
+        success: what is counted, in words.
     """
     panels = [[*curves]] if len(curves) <= TOGETHER else [[curve] for curve in curves]
     across = min(4, len(panels))
@@ -42,7 +43,7 @@ def power_figure(curves: Sequence[Curve], axis: str, success: str) -> Figure:
             for k, curve in enumerate(mine):
                 _draw(ax, curve, SERIES[k % len(SERIES)])
             ax.axhline(LEVEL, color=GREY, lw=0.8, ls="--")
-            _scale(ax, [x for curve in curves for x in curve.x])
+            far_apart = _scale(ax, [x for curve in curves for x in curve.x])
             ax.set(ylim=(-0.03, 1.03))
             if len(panels) > 1:
                 ax.set_title(literal(mine[0].label))
@@ -50,7 +51,7 @@ def power_figure(curves: Sequence[Curve], axis: str, success: str) -> Figure:
                 ax.legend(fontsize=8)
         for ax in [*every][len(panels) :]:
             ax.set_visible(False)
-        figure.supxlabel(literal(axis), fontsize=9)
+        figure.supxlabel(literal(axis + LOGARITHMIC * far_apart), fontsize=9)
         figure.supylabel(f"share: {literal(success)}", fontsize=9)
     return figure
 
@@ -71,8 +72,8 @@ def threshold_figure(lines: Mapping[str, Sequence[Threshold]], axis: str, agains
 
     Args:
         lines: by label.
-        axis: name of the other setting.
-        against: name of the setting whose smallest value is shown.
+        axis: the other setting in words, with its unit.
+        against: the setting whose smallest value is shown, in words, with its unit.
     """
     with matplotlib.rc_context(STYLE):
         figure = Figure((5.2, 3.6), layout="constrained")
@@ -91,11 +92,13 @@ def threshold_figure(lines: Mapping[str, Sequence[Threshold]], axis: str, agains
             never = [(t.at + apart, t.largest) for t in line if t.value is None]
             ax.plot(*_points(never), "^", ms=6, mfc="none", color=colour)
         every = [t for line in lines.values() for t in line]
-        _scale(ax, [t.at for t in every])
-        sizes = [t.largest for t in every]
-        if min(sizes) > 0:
+        far_apart = _scale(ax, [t.at for t in every])
+        positive = min(t.largest for t in every) > 0
+        if positive:
             ax.set_yscale("log")
-        ax.set(xlabel=literal(axis), ylabel=f"smallest {literal(against)} found in {IN_WORDS}")
+        found_in = f"smallest {against} found in {IN_WORDS}"
+        ax.set(xlabel=literal(axis + LOGARITHMIC * far_apart),
+               ylabel=literal(found_in + LOGARITHMIC * positive))  # fmt: skip
         if len(lines) > 1:
             ax.legend(fontsize=8)
     return figure
@@ -158,11 +161,17 @@ def reliability_figure(pairs: Sequence[tuple[float, bool]]) -> Figure:
     return figure
 
 
-def _scale(ax: Any, values: Sequence[float]) -> None:
-    """A logarithmic axis where values are positive and far apart; a tick at each of a few."""
+def _scale(ax: Any, values: Sequence[float]) -> bool:
+    """A logarithmic axis where values are positive and far apart; a tick at each of a few.
+
+    Returns:
+        Whether it is logarithmic, which its label must say.
+    """
     different = sorted(set(values))
-    if different[0] > 0 and different[-1] > WIDE_RANGE * different[0]:
+    far_apart = different[0] > 0 and different[-1] > WIDE_RANGE * different[0]
+    if far_apart:
         ax.set_xscale("log")
     if len(different) <= 12:
         ax.set_xticks(different, [f"{x:g}" for x in different])
         ax.set_xticks([], minor=True)
+    return far_apart

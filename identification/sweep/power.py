@@ -15,6 +15,7 @@ from identification.sweep.method import Record
 from identification.sweep.rows import SET
 from identification.sweep.settings import Plain
 from identification.sweep.statistics import crossing, wilson
+from identification.sweep.words import NAMES, Heads, in_words
 
 LEVEL = 0.8
 IN_WORDS = f"{100 * LEVEL:g} %"
@@ -29,16 +30,21 @@ class Curve:
         others: values of the other settings of the grid.
         x: values of the setting, ascending.
         rates: at each, as `statistics.wilson` has it.
+        heads: the settings in words.
     """
 
     others: Mapping[str, Plain]
     x: tuple[float, ...]
     rates: tuple[Mapping[str, Any], ...]
+    heads: Heads = NAMES
 
     @property
     def label(self) -> str:
         """The other settings in words."""
-        return ", ".join(f"{name} {word(value)}" for name, value in self.others.items())
+        return ", ".join(
+            f"{in_words(name)} {word(value)} {self.heads.unit(name)}".rstrip()
+            for name, value in self.others.items()
+        )
 
     def threshold(self, at: float) -> Threshold:
         """The smallest value found in 80 %, at a value of another setting."""
@@ -96,7 +102,13 @@ def grouped(rows: Sequence[Record], names: Sequence[str]) -> dict[tuple[Plain, .
     return groups
 
 
-def curves(rows: Sequence[Record], success: str, axis: str, others: Sequence[str]) -> list[Curve]:
+def curves(
+    rows: Sequence[Record],
+    success: str,
+    axis: str,
+    others: Sequence[str],
+    heads: Heads = NAMES,
+) -> list[Curve]:
     """A curve for each combination of the other settings.
 
     Args:
@@ -104,6 +116,7 @@ def curves(rows: Sequence[Record], success: str, axis: str, others: Sequence[str
         success: a column of bool; where it is null, a row does not count.
         axis: the setting over which the share is shown.
         others: the settings that are fixed along a curve.
+        heads: the settings in words.
     """
     counted = [row for row in rows if row[success] is not None]
     out = []
@@ -113,7 +126,7 @@ def curves(rows: Sequence[Record], success: str, axis: str, others: Sequence[str
             by_x.setdefault(row[SET + axis], []).append(row[success])
         x = tuple(sorted(by_x))
         rates = tuple(wilson(sum(by_x[v]), len(by_x[v])) for v in x)
-        out.append(Curve(dict(zip(others, values, strict=True)), x, rates))
+        out.append(Curve(dict(zip(others, values, strict=True)), x, rates, heads))
     return out
 
 
@@ -121,7 +134,7 @@ def thresholds(found: Sequence[Curve], axis: str) -> dict[str, list[Threshold]]:
     """Thresholds over one of the other settings; by the rest of the settings, in words."""
     lines: dict[str, list[Threshold]] = {}
     for curve in found:
-        rest = Curve({k: v for k, v in curve.others.items() if k != axis}, (), ())
+        rest = Curve({k: v for k, v in curve.others.items() if k != axis}, (), (), curve.heads)
         at = curve.others[axis]
         if isinstance(at, int | float):
             lines.setdefault(rest.label, []).append(curve.threshold(float(at)))

@@ -19,6 +19,7 @@ from identification.sweep.power import (
     word,
 )
 from identification.sweep.task import Study
+from identification.sweep.words import Heads, about_of, in_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,19 +34,20 @@ def power_section(
         return [], []
     axis = method.against if method.against in numbers else numbers[0]
     others = [name for name in axes(study.grid) if name != axis]
-    found = [c for c in curves(done, method.success, axis, others) if len(c.x) > 1]
+    of, out = Heads(about_of(method.settings)), in_words(method.success)
+    found = [c for c in curves(done, method.success, axis, others, of) if len(c.x) > 1]
     if not found:
         return [], []
     from identification.sweep.figures import power_figure, threshold_figure
 
     figures: list[tuple[str, Figure]] = [
-        (f"{study.name}, {method.success} over {axis}", power_figure(found, axis, method.success))
+        (f"{study.name}, {out} over {in_words(axis)}", power_figure(found, of.head(axis), out))
     ]
     for other in numeric(study.grid):
         if other != axis:
             lines = thresholds(found, other)
-            figures.append((f"{study.name}, smallest {axis} over {other}",
-                            threshold_figure(lines, other, axis)))  # fmt: skip
+            figures.append((f"{study.name}, smallest {in_words(axis)} over {in_words(other)}",
+                            threshold_figure(lines, of.head(other), of.head(axis))))  # fmt: skip
     at = [curve.threshold(0.0) for curve in found]
     rows = tuple(
         (*map(word, curve.others.values()), sum(r["of"] for r in curve.rates),
@@ -54,12 +56,14 @@ def power_section(
          f"above {t.largest:g}" if t.high is None else f"{t.high:.3g}")
         for curve, t in zip(found, at, strict=True)
     )  # fmt: skip
-    head = (*others, "tasks", f"{axis} found in {IN_WORDS}", "from", "to")
+    head = (*map(of.head, others), "tasks", f"{of.head(axis)} found in {IN_WORDS}", "from", "to")
     text = (
-        f"The share of tasks with {method.success} ({method.columns[method.success].about}) over"
-        f" {axis}, with Wilson's 95 % intervals. The table has the smallest {axis} at which it"
-        f" reaches {IN_WORDS}, made to rise and interpolated; its interval is from the ends of"
-        " Wilson's intervals. A triangle stands where the largest value is not found so often."
+        f"The share of tasks with {out} ({method.columns[method.success].about}) over"
+        f" {of.meaning(axis)}; with Wilson's 95 % intervals. The table has the smallest"
+        f" {in_words(axis)} at which it reaches {IN_WORDS}, made to rise and interpolated; its"
+        " interval is from the ends of Wilson's intervals. A triangle stands where the largest"
+        " value is not found so often. An axis on which the values are far apart is logarithmic,"
+        " and says so."
     )
     section = Section(f"{study.name}: power", text, tuple(figures), Table(head, rows))
     return [_power_json(axis, c, t) for c, t in zip(found, at, strict=True)], [section]

@@ -20,6 +20,7 @@ from identification.sweep.extras import needed
 from identification.sweep.method import Record
 from identification.sweep.settings import kinds_of
 from identification.sweep.task import Sweep
+from identification.sweep.words import about_of
 from identification.sweep.work import Outcome
 
 RUN = "run."
@@ -58,8 +59,9 @@ def columns(sweep: Sweep) -> dict[str, tuple[Any, str]]:
         out.setdefault(name, (kind, about))
 
     for study in sweep.studies:
+        about = about_of(study.method.settings)
         for name, kind in kinds_of(study.method.settings).items():
-            add(SET + name, str if kind is Path else kind, "a setting")
+            add(SET + name, str if kind is Path else kind, about[name] or "a setting")
     for study in sweep.studies:
         for name, column in study.method.columns.items():
             if name in (*_FIRST, "error") or name.startswith((RUN, SET)):

@@ -11,6 +11,8 @@ from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from identification.errors import InputError, unknown_name
+from identification.files import is_file
+from identification.sweep.words import file_words
 
 Plain = bool | int | float | str | None
 _WORDS = {bool: "true or false", int: "a whole number", float: "a number", str: "text in quotes",
@@ -82,11 +84,39 @@ def resolve(settings: type, values: Mapping[str, Plain], folder: Path) -> dict[s
     Raises:
         InputError: a path names a variable of the environment that is not set.
     """
-    kinds = kinds_of(settings)
+    kinds, words = kinds_of(settings), file_words(settings)
     return {
-        name: str(place(value, folder)) if kinds[name] is Path and isinstance(value, str) else value
+        name: str(place(value, folder))
+        if isinstance(value, str)
+        and (kinds[name] is Path or (name in words and value not in words[name]))
+        else value
         for name, value in values.items()
     }
+
+
+def refuse_missing_files(settings: type, values: Mapping[str, Plain], where: str) -> None:
+    """Refuse files that tasks would read and that are not there.
+
+    Args:
+        settings: the dataclass.
+        values: of all its fields, paths whole.
+        where: they stand, for messages.
+
+    Raises:
+        InputError: there is no such file.
+    """
+    for name, words in file_words(settings).items():
+        value = values[name]
+        if not isinstance(value, str) or value in words or is_file(Path(value)):
+            continue
+        path = Path(value)
+        wrong = "is a folder" if path.is_dir() else "does not exist"
+        cure = "correct the path"
+        if "*" in path.name:
+            cure = f'a pattern stands in [study.grid], as {name} = {{ files = "{path.name}" }}'
+        elif words:
+            cure += f", or give {' or '.join(words)}"
+        raise InputError(f"{name} in {where} names the file {path}, which {wrong}; {cure}")
 
 
 def place(text: str, folder: Path) -> Path:

@@ -14,6 +14,7 @@ from identification.sweep.power import axes, grouped, word
 from identification.sweep.power_section import power_section
 from identification.sweep.statistics import said, wilson
 from identification.sweep.task import Study
+from identification.sweep.words import Heads, about_of
 
 
 def summarise_study(study: Study, rows: Sequence[Record]) -> Findings:
@@ -73,7 +74,7 @@ def _rates(study: Study, names: Sequence[str], groups: Sequence[Record]) -> Sect
         for group in groups
     )
     text = "Counts with Wilson's 95 % intervals. " + _meaning(study, flags)
-    return Section(f"{study.name}: rates", text, table=Table((*names, "tasks", *flags), rows))
+    return Section(f"{study.name}: rates", text, table=Table(_heads(study, names, flags), rows))
 
 
 def _medians(study: Study, names: Sequence[str], groups: Sequence[Record]) -> Section | None:
@@ -85,11 +86,21 @@ def _medians(study: Study, names: Sequence[str], groups: Sequence[Record]) -> Se
         for group in groups
     )
     text = "Medians, and in brackets the 5 % and 95 % quantiles. " + _meaning(study, numbers)
-    return Section(f"{study.name}: values", text, table=Table((*names, "tasks", *numbers), rows))
+    return Section(f"{study.name}: values", text, table=Table(_heads(study, names, numbers), rows))
 
 
 def _meaning(study: Study, names: Sequence[str]) -> str:
-    return "; ".join(f"{n}: {study.method.columns[n].about}" for n in names) + "."
+    return "; ".join(_columns(study).meaning(n) for n in names) + "."
+
+
+def _heads(study: Study, names: Sequence[str], columns: Sequence[str]) -> tuple[str, ...]:
+    """Heads of a table: settings, the count of tasks, and columns, in words with their units."""
+    settings = Heads(about_of(study.method.settings))
+    return (*map(settings.head, names), "tasks", *map(_columns(study).head, columns))
+
+
+def _columns(study: Study) -> Heads:
+    return Heads({name: column.about for name, column in study.method.columns.items()})
 
 
 def _cells(group: Record) -> list[str]:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
 import numpy as np
 
-from identification.errors import InputError, unknown_name
+from identification.errors import refuse_number, unknown_name
 from identification.report.page import Section, Table
 from identification.sweep.method import Column, Findings, Method, Record, Seed
 from identification.sweep.statistics import said, wilson
+from identification.sweep.words import LOGARITHMIC, setting
 
 DESIGNED = "designed"
 VARIED = ("lambda", "b", "J", "b_v", "b_c", "K_t")
@@ -19,24 +21,19 @@ VARIED = ("lambda", "b", "J", "b_v", "b_c", "K_t")
 
 @dataclass(frozen=True, kw_only=True)
 class ExcitationSettings:
-    """An input, and the robots that it meets.
-
-    Attributes:
-        input: "designed" by a search, or one of the standard inputs of `inca excite`.
-        duration: of the experiment [s].
-        noise: std of the noise on each angle [rad].
-        spread: parameters differ from the nominal ones by up to so much, relative.
-        budget: evaluations of the search for a designed input, about a second each.
+    """An input, and the robots that it meets; every field says what it is in its metadata.
 
     Raises:
         InputError: there is no such input, or a number is out of its range.
     """
 
-    input: str
-    duration: float = 5.0
-    noise: float = 6.7e-4
-    spread: float = 0.1
-    budget: int = 20
+    input: str = setting('"designed" by a search, or a standard input of `inca excite`')
+    duration: float = setting("length of the experiment, 0.2 s or more [s]", 5.0)
+    noise: float = setting("std of the noise on each angle, above 0 [rad]", 6.7e-4)
+    spread: float = setting(
+        "parameters differ from the nominal ones by up to this share, 0 or more and below 1", 0.1
+    )
+    budget: int = setting("evaluations of the search for a designed input, 1 or more", 20)
 
     def __post_init__(self) -> None:
         from inca_mj.workflows.bench import standard_inputs
@@ -44,8 +41,10 @@ class ExcitationSettings:
         known = [DESIGNED, *(name for name, _ in standard_inputs(2))]
         if self.input not in known:
             raise unknown_name("input", self.input, known)
-        if not (self.duration >= 0.2 and self.noise > 0 and 0 <= self.spread < 1):
-            raise InputError("give a duration of 0.2 s or more, noise above 0, spread below 1")
+        refuse_number("duration", self.duration, 0.2 <= self.duration < inf, "0.2 s or more")
+        refuse_number("noise", self.noise, 0 < self.noise < inf, "a number above 0 [rad]")
+        refuse_number("spread", self.spread, 0 <= self.spread < 1, "0 or more and below 1")
+        refuse_number("budget", self.budget, self.budget >= 1, "1 or more")
 
 
 def excitation(settings: ExcitationSettings, seed: Seed) -> dict[str, Any]:
@@ -125,7 +124,7 @@ def _figures(found: dict[str, Any]) -> tuple[tuple[str, Any], ...]:
                     color=SERIES[k % len(SERIES)])  # fmt: skip
         ax.set_yscale("log")
         ax.set_xticks(range(len(names)), names)
-        ax.set(ylabel="relative std")
+        ax.set(ylabel="relative std" + LOGARITHMIC)
         figure.legend(loc="outside right upper", fontsize=7)
     return (("Relative std of each parameter by input", figure),)
 

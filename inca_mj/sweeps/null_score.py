@@ -17,11 +17,13 @@ from typing import Any
 
 import numpy as np
 
-from identification.errors import InputError
+from identification.errors import refuse_negative
 from identification.report.page import Section, Table
 from identification.sweep.method import Column, Findings, Method, Record, Seed
 from identification.sweep.statistics import said, wilson
-from inca_mj.sweeps.worlds import ERROR
+from identification.sweep.words import file_setting, setting
+from inca_mj.sweeps.worlds import ERROR, SPREAD
+from inca_mj.workflows.spread import WORDS
 from inca_mj.worlds import AS_BUILT, EXACT, HiddenSetting, world
 from inca_mj.worlds.measure import coloured as wander
 from inca_mj.worlds.measure import encode
@@ -32,28 +34,20 @@ TIME = 0.05  # time constant of the error of the currents [s]
 
 @dataclass(frozen=True, kw_only=True)
 class NullSettings:
-    """A robot in which nothing is missing, and how it is measured.
-
-    Attributes:
-        robot: its number.
-        coloured: whether the currents err, unlogged.
-        duration: of the log, of which the first half is fitted [s].
-        as_built: whether drives and points differ as those of real robots do.
-        spread: what is believed of them: none, usual, or a TOML.
+    """A robot in which nothing is missing, and how it is measured; its fields say what they are.
 
     Raises:
         InputError: a number is out of its range.
     """
 
-    robot: int
-    coloured: bool = False
-    duration: float = 20.0
-    as_built: bool = False
-    spread: str = "none"
+    robot: int = setting("number of the robot, 0 or more")
+    coloured: bool = setting("whether the currents err, unlogged", False)
+    duration: float = setting("length of the log, of which the first half is fitted [s]", 20.0)
+    as_built: bool = setting("whether drives and points differ as those of real robots do", False)
+    spread: str = file_setting(SPREAD, "none", words=WORDS)
 
     def __post_init__(self) -> None:
-        if self.robot < 0:
-            raise InputError(f"robot {self.robot} is negative; give 0 or more")
+        refuse_negative("robot", self.robot)
         HiddenSetting(duration=self.duration)
 
 

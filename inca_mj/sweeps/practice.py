@@ -20,6 +20,9 @@ from identification.sweep.answers import (
 )
 from identification.sweep.discovery_findings import discovery_findings
 from identification.sweep.method import Method, Seed
+from identification.sweep.words import file_setting
+from inca_mj.sweeps.worlds import SPREAD
+from inca_mj.workflows.spread import WORDS
 
 # Names of sizes in labels, by effect and size here, as far as they mean the same.
 LABELS = {
@@ -42,15 +45,10 @@ LABELS = {
 
 @dataclass(frozen=True, kw_only=True)
 class PracticeSettings:
-    """A labelled log.
+    """A labelled log; every field says what it is in its metadata."""
 
-    Attributes:
-        log: CSV, beside labels.json.
-        spread: what a search believes of drives and points: usual, none, or a TOML.
-    """
-
-    log: Path
-    spread: str = "usual"
+    log: Path = file_setting("log (CSV) beside labels.json, which tells its truth")
+    spread: str = file_setting(SPREAD, "usual", words=WORDS)
 
 
 def practice_discovery(settings: PracticeSettings, seed: Seed) -> dict[str, Any]:

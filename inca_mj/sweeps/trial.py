@@ -5,31 +5,33 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from identification.errors import unknown_name
+from identification.errors import refuse_negative, unknown_name
 from identification.sweep.estimates import ESTIMATES, estimate_findings
 from identification.sweep.method import Column, Method, Seed
+from identification.sweep.words import setting
 
 
 @dataclass(frozen=True, kw_only=True)
 class TrialSettings:
-    """Which trial.
-
-    Attributes:
-        trial: its number; 4 is the one with noise.
-        noise_seed: of the noise; from the task's seed where None.
-        single: one fit of the whole free run, as the thesis did, in place of a growing horizon.
+    """Which trial; every field says what it is in its metadata.
 
     Raises:
-        InputError: there is no such trial.
+        InputError: there is no such trial, or the seed is negative.
     """
 
-    trial: int = 4
-    noise_seed: int | None = None
-    single: bool = False
+    trial: int = setting("number of the trial, 1 to 4; 4 is the one with noise", 4)
+    noise_seed: int | None = setting(
+        "seed of the noise; from the seed of the task if not given", None
+    )
+    single: bool = setting(
+        "one fit of the whole free run, as the thesis did, in place of a growing horizon", False
+    )
 
     def __post_init__(self) -> None:
         if self.trial not in (1, 2, 3, 4):
             raise unknown_name("trial", str(self.trial), "1234")
+        if self.noise_seed is not None:
+            refuse_negative("noise_seed", self.noise_seed)
 
 
 def run_once(settings: TrialSettings, seed: Seed) -> dict[str, Any]:

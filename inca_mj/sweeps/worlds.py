@@ -7,14 +7,17 @@ robot, its input and noise, and which effects are hidden.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 import numpy as np
 
 from identification import Log
-from identification.errors import InputError, unknown_name
+from identification.errors import InputError, refuse_negative, refuse_number, unknown_name
 from identification.sweep.answers import size_name
 from identification.sweep.method import Column, Seed
+from identification.sweep.words import file_setting, setting
+from inca_mj.workflows.spread import WORDS
 from inca_mj.worlds import (
     AS_BUILT,
     EXACT,
@@ -33,50 +36,39 @@ RATIOS = (1.0, 3.0, 10.0)  # of what cannot be absorbed to the noise, drawn by c
 KINDS = ("mixed", "null", "listed", "unknown")
 SIZES = {"delay": "tau", "fraction": "c"}  # sizes of the worlds by the catalogue's names
 ERROR = 5e-4  # of the currents, unlogged and coloured [A]
+SPREAD = "what a search believes of drives and points: none, usual, or a TOML file"
 WORLD = {"world": Column(int, "number of the world, from which all else is drawn")}
 
 
 @dataclass(frozen=True, kw_only=True)
 class WorldSettings:
-    """A world, and how it is measured.
-
-    Attributes:
-        world: its number; from the task's seed where None.
-        kind: null, listed, unknown, or mixed: one in six has nothing hidden, one in six an effect
-            that no catalogue lists.
-        first: of the worlds; mixed counts from it.
-        effect: the one that is hidden; by chance where "".
-        effects: how many are hidden, 1 to 3.
-        ratio: what an effect leaves over the noise; 1, 3 or 10 by chance where None.
-        duration: of a log [s].
-        rate: samples a second [Hz].
-        noise: of the sensors, before the encoders round [rad].
-        input: prbs or multisine; by the world's number where "".
-        coloured: whether the currents err, unlogged.
-        wrong_shapes: whether laws have another shape where they can.
-        as_built: whether drives and points differ as those of real robots do.
-        records: logs of the world, each with its own input and start.
-        spread: what a search believes of drives and points: usual, none, or a TOML.
+    """A world, and how it is measured; every field says what it is in its metadata.
 
     Raises:
         InputError: a word is unknown, or a number is out of its range.
     """
 
-    world: int | None = None
-    kind: str = "mixed"
-    first: int = 0
-    effect: str = ""
-    effects: int = 1
-    ratio: float | None = None
-    duration: float = 20.0
-    rate: float = 100.0
-    noise: float = 5e-4
-    input: str = ""
-    coloured: bool = False
-    wrong_shapes: bool = False
-    as_built: bool = False
-    records: int = 1
-    spread: str = "usual"
+    world: int | None = setting("number of the world; from the seed of the task if not given", None)
+    kind: str = setting(
+        "null, listed, unknown, or mixed: one world in six hides nothing, and one in six an effect"
+        " that no catalogue lists",
+        "mixed",
+    )
+    first: int = setting("number of the first world; mixed counts from it", 0)
+    effect: str = setting('effect that is hidden; by chance if ""', "")
+    effects: int = setting("how many effects are hidden, 1 to 3", 1)
+    ratio: float | None = setting(
+        "what an effect leaves over the noise, above 0; 1, 3 or 10 by chance if not given", None
+    )
+    duration: float = setting("length of a log, two samples or more [s]", 20.0)
+    rate: float = setting("samples a second, above 0 [Hz]", 100.0)
+    noise: float = setting("noise of the sensors, before the encoders round [rad]", 5e-4)
+    input: str = setting('prbs or multisine; by the number of the world if ""', "")
+    coloured: bool = setting("whether the currents err, unlogged", False)
+    wrong_shapes: bool = setting("whether laws have another shape where they can", False)
+    as_built: bool = setting("whether drives and points differ as those of real robots do", False)
+    records: int = setting("logs of the world, each with its own input and start", 1)
+    spread: str = file_setting(SPREAD, "usual", words=WORDS)
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -85,12 +77,12 @@ class WorldSettings:
             raise unknown_name("effect", self.effect, known)
         if self.effects not in COUNTS:
             raise InputError(f"effects = {self.effects}: a world hides 1, 2 or 3")
-        if not self.rate > 0:
-            raise InputError(f"rate = {self.rate:g}: give samples a second above zero")
-        if self.ratio is not None and not self.ratio > 0:
-            raise InputError(f"ratio = {self.ratio:g}: give a number above zero")
-        if self.records < 1:
-            raise InputError(f"records = {self.records}: give 1 or more")
+        for name in ("world", "first"):
+            refuse_negative(name, getattr(self, name) or 0)
+        refuse_number("rate", self.rate, 0 < self.rate < inf, "samples a second above zero")
+        if self.ratio is not None:
+            refuse_number("ratio", self.ratio, 0 < self.ratio < inf, "a number above zero")
+        refuse_number("records", self.records, self.records >= 1, "1 or more")
         self.setting(0)
 
     def setting(self, number: int) -> HiddenSetting:

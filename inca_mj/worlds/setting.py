@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
-from identification.errors import InputError, unknown_name
+from identification.errors import refuse_number, unknown_name
 from inca_mj.robot.inputs import multisine, prbs
 from inca_mj.worlds.tolerances import EXACT, Tolerances
 
@@ -60,10 +61,13 @@ class HiddenSetting:
         if self.input not in _INPUTS:
             raise unknown_name("input", self.input, _INPUTS)
         for name in ("spread", "offset", "tilt", "counts", "noise", "error_rms", "error_time"):
-            if not getattr(self, name) >= 0:
-                raise InputError(f"setting: {name} must not be negative")
-        if not (0 < 2 * self.sampling_time <= self.duration and self.low <= self.high):
-            raise InputError("setting: give two samples or more, and low no more than high")
+            value = getattr(self, name)
+            refuse_number(name, value, 0 <= value < inf, "0 or more")
+        T_s, least = self.sampling_time, 2 * self.sampling_time
+        refuse_number("sampling_time", T_s, 0 < T_s < inf, "a time above 0 [s]")
+        is_long = least <= self.duration < inf
+        refuse_number("duration", self.duration, is_long, f"two samples, {least:g} s, or more")
+        refuse_number("low", self.low, self.low <= self.high < inf, f"up to high = {self.high:g} A")
 
     @property
     def samples(self) -> int:

@@ -91,8 +91,8 @@ def test_a_unit_of_what_has_no_known_one_is_of_si(folder, capsys):
 def test_a_folder_is_no_log(folder, capsys, log):
     path = folder / "robot.toml"
     path.write_text(TOML)
-    assert "is a folder; name a log file in it" in refused(capsys, "fit", path, log)
-    assert "is a folder; name a log file in it" in refused(
+    assert "is a folder; give the path of a log file" in refused(capsys, "fit", path, log)
+    assert "is a folder; give the path of a log file" in refused(
         capsys, "discover", path, folder / "plain.csv", "--confirm", log
     )
 

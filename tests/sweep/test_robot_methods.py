@@ -63,6 +63,42 @@ def test_the_same_folder_elsewhere_gives_the_same_records(folder, tmp_path_facto
     assert here[:2] == there[:2]
 
 
+@pytest.mark.parametrize("method", ["fit-log", "discover-log"])
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('{ files = "logs/*.csv" }', '["logs/1.csv", "logs/4.csv"]', "logs/4.csv, which does not"),
+        ("logs/*.csv", "logs/*.mat", "no file matches"),
+        ("slider.toml", "cart.toml", "robot in study"),
+        ("slider.toml", ".", "is a folder"),
+    ],
+)
+def test_a_file_that_is_not_there_is_refused_before_anything_runs(
+    folder, capsys, method, old, new, words
+):
+    text = SWEEP.replace("fit-log", method).replace(old, new)
+    (folder / "fits.toml").write_text(text)
+    line = ["sweep", str(folder / "fits.toml"), "--out", str(folder / "out")]
+    assert main(line) == 2
+    said = capsys.readouterr().err
+    assert words in said
+    assert len(said.splitlines()) == 1
+    assert not (folder / "out").exists()
+
+
+def test_a_summary_needs_the_records_alone(folder, capsys):
+    for file in (folder / "logs").iterdir():
+        file.write_text("no log\n")
+    text = SWEEP.replace('{ files = "logs/*.csv" }', '["logs/1.csv", "logs/2.csv"]')
+    (folder / "fits.toml").write_text(text)
+    line = ["sweep", str(folder / "fits.toml"), "--backend", "serial", "--out", str(folder / "out")]
+    assert main(line) == 1  # every task met an error, which is a record too
+    (folder / "logs" / "2.csv").unlink()
+    assert main([*line, "--resume"]) == 2
+    assert main([*line, "--summary"]) == 1
+    assert "2 of 2 tasks have a record" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("one_of", [False, True])
 def test_a_discovery_is_told_as_its_json_tells_it(one_of):
     discovery = found(one_of=one_of, several=True)

@@ -118,7 +118,7 @@ def test_a_ratio_is_reached(effect):
 def test_bad_worlds_are_refused():
     with pytest.raises(InputError, match="unknown input"):
         HiddenSetting(input="steps")
-    with pytest.raises(InputError, match="must not be negative"):
+    with pytest.raises(InputError, match="noise = -1 is not allowed; give 0 or more"):
         HiddenSetting(noise=-1.0)
     with pytest.raises(InputError, match="named twice"):
         world(0, [HiddenBacklash(), HiddenBacklash(h=0.1)], setting=SHORT)

@@ -8,23 +8,22 @@ from typing import Any
 
 from identification.sweep.estimates import ESTIMATES, estimate_findings
 from identification.sweep.method import Column, Method, Seed
+from identification.sweep.words import file_setting
+
+SPREAD_WORDS = ("none", "usual")
+SPREAD = "how much the parts of one robot may differ: none, usual, or a TOML file"
 
 
 @dataclass(frozen=True, kw_only=True)
 class OnLog:
-    """What is needed to work on a log.
+    """What is needed to work on a log; every field says what it is in its metadata."""
 
-    Attributes:
-        robot: TOML of the robot.
-        log: the log.
-        confirm: a record that confirms; the log's own rest where None.
-        spread: usual, none, or a TOML.
-    """
-
-    robot: Path
-    log: Path
-    confirm: Path | None = None
-    spread: str = "usual"
+    robot: Path = file_setting("robot file (TOML)")
+    log: Path = file_setting("log that is fitted")
+    confirm: Path | None = file_setting(
+        "record that confirms; without it, the rest of the log", None
+    )
+    spread: str = file_setting(SPREAD, "usual", words=SPREAD_WORDS)
 
     def read(self) -> Any:
         """The robot with its log.
@@ -64,9 +63,11 @@ FIT_LOG = Method(
         **ESTIMATES,
         "converged": Column(bool, "whether the search ended by itself"),
         "worse": Column(bool, "whether unseen data are predicted worse than by the robot's file"),
-        "before": Column(float, "rms on unseen data with the values of the file [unit]"),
-        "after": Column(float, "rms on unseen data with the fitted values [unit]"),
-        "unit": Column(str, "of these"),
+        "before": Column(
+            float, "rms on unseen data with the values of the file [unit of the outputs]"
+        ),
+        "after": Column(float, "rms on unseen data with the fitted values [unit of the outputs]"),
+        "unit": Column(str, "unit of the outputs"),
     },
     run=fit_log,
     summary=estimate_findings,
