@@ -90,6 +90,6 @@ def different_records(state: RecordsState) -> list[DifferentRecord]:
 
 def _unproven(r: RefittedEffect) -> UnprovenEffect:
     c = r.candidate
-    return UnprovenEffect(
-        c.effect.name, c.where, r.prediction.fall, r.prediction.t, r.doubt or "chance"
-    )
+    said = c.effect.phrase or c.effect.name.replace("_", " ")
+    doubt = r.doubt or "chance"
+    return UnprovenEffect(c.effect.name, said, c.where, r.prediction.fall, r.prediction.t, doubt)

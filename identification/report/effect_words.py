@@ -22,7 +22,11 @@ def describe_effect(candidate: Candidate) -> str:
 
 def phrase(effect: Effect) -> str:
     """An effect in words without a colon, because sentences have their own before it."""
-    said = effect.phrase or effect.name.replace("_", " ")
+    return without_colon(effect.phrase or effect.name.replace("_", " "))
+
+
+def without_colon(said: str) -> str:
+    """Words of a catalogue for a sentence that has a colon of its own."""
     return said.replace(": ", " – ", 1)
 
 

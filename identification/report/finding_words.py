@@ -8,7 +8,12 @@ from typing import Any
 from identification.discovery.findings import evidence, records_evidence
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.quantities import alike, probability, quantity
-from identification.report.effect_words import describe_chance, describe_effect, describe_sizes
+from identification.report.effect_words import (
+    describe_chance,
+    describe_effect,
+    describe_sizes,
+    without_colon,
+)
 
 HOLDS = {"foh": "ran in straight lines between their samples", "zoh": "kept each sample's value"}
 FOLLOWED = {  # by an error of the inputs: keys of `input_error.list_families`
@@ -155,12 +160,16 @@ def _different_record(e: records_evidence.DifferentRecord) -> str:
 
 
 def _shifted_record(e: records_evidence.ShiftedRecord) -> str:
-    which, shift = "later" if e.shift > 0 else "earlier", quantity(abs(e.shift), e.std, "s")
     return (
-        f"record {e.record} looks as if its inputs acted {shift} {which} than their time stamps"
+        f"record {e.record} looks as if its inputs acted {describe_shift(e)} than their time stamps"
         f" say, which takes {100 * e.fall:.0f} % off its mean square; check how it was logged, and"
         " shift its inputs if that is so"
     )
+
+
+def describe_shift(e: records_evidence.ShiftedRecord) -> str:
+    """How much later or earlier the inputs of a record seem to act, as a positive number."""
+    return f"{quantity(abs(e.shift), e.std, 's')} {'later' if e.shift > 0 else 'earlier'}"
 
 
 def _worse_fit(e: records_evidence.WorseFit) -> str:
@@ -193,7 +202,7 @@ DOUBTS = {
 
 def _unproven_effect(e: records_evidence.UnprovenEffect) -> str:
     return (
-        f"{e.name.replace('_', ' ')}, {e.where}, predicts unseen data better on average (mean"
+        f"{without_colon(e.phrase)}, {e.where}, predicts unseen data better on average (mean"
         f" square {-100 * e.fall:+.0f} %, t = {e.t:.1f}), but is not proven: {DOUBTS[e.doubt]}"
     )
 

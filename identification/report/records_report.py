@@ -7,13 +7,17 @@ from pathlib import Path
 import numpy as np
 
 from identification.prediction.result import RecordsDiscovery
-from identification.prediction.scores import WindowScore
-from identification.quantities import quantity
 from identification.report.discovery_figures import gains_figure
 from identification.report.effect_words import describe_effect
+from identification.report.finding_words import describe_shift
 from identification.report.law_section import LAWS
 from identification.report.page import Section, Table, save_figures, write_report
-from identification.report.records_text import describe_refitted, records_verdict, steps_taken
+from identification.report.records_text import (
+    best_scores,
+    records_verdict,
+    rejected_lines,
+    steps_taken,
+)
 from identification.report.records_values import value_table
 
 BEST = 10  # candidates shown
@@ -59,14 +63,11 @@ def _records(found: RecordsDiscovery) -> Section:
 
 
 def _candidates(found: RecordsDiscovery) -> Section:
-    each: dict[str, WindowScore] = {}
-    for score in found.scores:
-        each.setdefault(score.candidate.effect.name, score)
-    best = [*each.values()][:BEST]
+    best = best_scores(found)[:BEST]
     named = {n.effect.candidate.effect.name for n in found.named}
     text = "Share of the fitted error that each effect would explain at its best place and shape."
     if found.rejected:
-        tried = "\n\n".join(describe_refitted(r) for r in found.rejected)
+        tried = "\n\n".join(rejected_lines(found))
         text += f"\n\nTried, and not proven on unseen data:\n\n{tried}"
     if not best:
         return Section("Who could explain it", text)
@@ -89,11 +90,11 @@ def _values(found: RecordsDiscovery) -> Section:
 
 
 def _shifts(found: RecordsDiscovery) -> Section:
-    rows = tuple((s.record, quantity(s.shift, s.std, "s"), 100 * s.fall) for s in found.shifts)
+    rows = tuple((s.record, describe_shift(s), 100 * s.fall) for s in found.shifts)
     return Section(
         "Shifts in time",
-        "As if the inputs of a record acted later than their time stamps say, each record by"
-        " itself, where both halves of it tell the same. A shift below zero may also be the answer"
-        " of a controller to what the robot did.",
-        table=Table(("record", "shift of its inputs", "of its mean square [%]"), rows),
+        "By how much the inputs of a record seem to act later or earlier than their time stamps"
+        " say, each record by itself, where both halves of it tell the same. Inputs that seem to"
+        " act earlier may also be the answer of a controller to what the robot did.",
+        table=Table(("record", "its inputs act", "of its mean square [%]"), rows),
     )

@@ -5,9 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
+from identification.prediction.scores import WindowScore
 from identification.quantities import alike, quantity
 from identification.report.effect_words import describe_effect, phrase
-from identification.report.finding_words import DOUBTS, describe_finding, sentence
+from identification.report.finding_words import (
+    DOUBTS,
+    describe_finding,
+    describe_shift,
+    sentence,
+)
 from identification.report.records_values import text_table, value_table, value_with_std
 from identification.windows.coarse import OUTPUT_ERROR
 
@@ -40,19 +46,37 @@ def records_text(found: RecordsDiscovery) -> str:
     if found.shifts:
         parts.append("\n".join(_shifts(found)))
     if found.rejected:
-        lines = [f"  {describe_refitted(r)}" for r in found.rejected]
+        lines = [f"  {said}" for said in rejected_lines(found)]
         parts.append("\n".join(["tried, and not proven on unseen data:", *lines]))
     scores = [
         f"  {describe_effect(s.candidate)}: {100 * s.fall:.0f} % of the fitted error, chance"
         f" {s.p_value:.2g}"
-        for s in found.scores[:SHOWN]
+        for s in best_scores(found)[:SHOWN]
     ]
     if scores:
         parts.append(
-            "\n".join(["what each candidate would explain, before it is fitted:", *scores])
+            "\n".join(
+                ["what each effect would explain at its best place, before it is fitted:", *scores]
+            )
         )
     parts += [*steps_taken(found), f"{sum(found.seconds.values()):.1f} s"]
     return "\n\n".join(parts)
+
+
+def best_scores(found: RecordsDiscovery) -> list[WindowScore]:
+    """The best score of each effect: its best place and shape."""
+    each: dict[str, WindowScore] = {}
+    for score in found.scores:
+        each.setdefault(score.candidate.effect.name, score)
+    return [*each.values()]
+
+
+def rejected_lines(found: RecordsDiscovery) -> list[str]:
+    """What was tried and not proven: each effect at each place once, as it did best."""
+    each: dict[tuple[str, str], RefittedEffect] = {}
+    for effect in found.rejected:
+        each.setdefault(effect.candidate.key, effect)
+    return [describe_refitted(effect) for effect in each.values()]
 
 
 def describe_refitted(effect: RefittedEffect) -> str:
@@ -136,12 +160,11 @@ def _agreement(found: RecordsDiscovery, named: NamedByPrediction) -> str:
 
 def _shifts(found: RecordsDiscovery) -> list[str]:
     lines = [
-        "as if the inputs of a record acted later than their time stamps say, where both halves of"
-        " it tell the same:"
+        "by how much the inputs of a record seem to act later or earlier than their time stamps"
+        " say, where both halves of it tell the same:"
     ]
     for s in found.shifts:
-        shift = quantity(s.shift, s.std, "s")
-        lines.append(f"  {s.record}: {shift}, {100 * s.fall:.0f} % of its mean square")
+        lines.append(f"  {s.record}: {describe_shift(s)}, {100 * s.fall:.0f} % of its mean square")
     return lines
 
 

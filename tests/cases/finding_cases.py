@@ -32,7 +32,7 @@ EVIDENCE_OF = {
     FindingKind.SHIFTED_RECORD: records_evidence.ShiftedRecord("c.csv", -0.014, 0.003, 0.3, 1e-5),
     FindingKind.WORSE_FIT: records_evidence.WorseFit(7.96),
     FindingKind.UNPROVEN_EFFECT: records_evidence.UnprovenEffect(
-        "stiffness", "joint a", 0.2, 1.9, "chance"
+        "com_offset", "body: centre of mass displaced", "body arm", 0.2, 1.9, "chance"
     ),
 }  # fmt: skip
 FINDINGS = tuple(Finding(kind, EVIDENCE_OF[kind]) for kind in FindingKind)

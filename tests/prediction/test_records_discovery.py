@@ -97,7 +97,32 @@ def test_shifts_of_records_stand_in_the_report(tmp_path):
     late = ShiftedRecord(record="record 3", shift=0.02, std=0.002, fall=0.3, chance=1e-5)
     page = write_records_report(replace(answer, shifts=(late,)), tmp_path).read_text()
     assert "Shifts in time" in page
-    assert "20.0 ± 2.0 ms" in page
+    assert "20.0 ± 2.0 ms later" in page
+    early = replace(late, record="record 4", shift=-315e-6, std=20e-6)
+    both = replace(answer, shifts=(late, early))
+    page = write_records_report(both, tmp_path).read_text()
+    for told in (page, records_text(both)):
+        assert "20.0 ± 2.0 ms later" in told
+        assert "315 ± 20 µs earlier" in told
+        assert "-315" not in told
+
+
+def test_each_candidate_is_listed_once_and_in_words(tmp_path):
+    answer = found()
+    again = replace(
+        answer,
+        scores=tuple(s for s in answer.scores for _ in range(3)),
+        rejected=tuple(e for n in answer.named for e in (n.effect, n.effect)),
+    )
+    said = records_text(again)
+    listed = said[said.index("what each effect would explain") :].split("\n\n")[0].splitlines()[1:]
+    assert len(listed) == len({s.candidate.effect.name for s in answer.scores})
+    assert all(" – " in line for line in listed)
+    assert not any(name in line for name in FEW for line in listed if name != "offset")
+    tried = said[said.index("not proven on unseen data:") :].split("\n\n")[0].splitlines()[1:]
+    assert len(tried) == len({n.effect.candidate.key for n in answer.named})
+    page = write_records_report(again, tmp_path).read_text()
+    assert page.count("unseen mean square") == len(tried)
 
 
 def test_steps_that_are_longer_than_the_models_are_told(tmp_path):

@@ -36,7 +36,8 @@ SAYS = {
     FindingKind.DIFFERENT_RECORD: "c.csv is predicted 4.2 times worse",
     FindingKind.SHIFTED_RECORD: "c.csv looks as if its inputs acted 14.0 ± 3.0 ms earlier than",
     FindingKind.WORSE_FIT: "worse than those of the model (mean square +796 %)",
-    FindingKind.UNPROVEN_EFFECT: "mean square -20 %, t = 1.9), but is not proven: with",
+    FindingKind.UNPROVEN_EFFECT: "body – centre of mass displaced, body arm, predicts unseen data "
+    "better on average (mean square -20 %, t = 1.9), but is not proven: with",
 }
 
 

@@ -37,6 +37,7 @@ class UnprovenEffect:
 
     Attributes:
         name: of the effect.
+        phrase: the effect in words, as its catalogue has them.
         where: its place.
         fall: relative fall of the unseen mean square, at the horizon.
         t: of its gain over blocks.
@@ -44,6 +45,7 @@ class UnprovenEffect:
     """
 
     name: str
+    phrase: str
     where: str
     fall: float
     t: float
