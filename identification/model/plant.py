@@ -22,6 +22,7 @@ import mujoco
 import numpy as np
 
 from identification.errors import InputError
+from identification.model.dcmotor import refuse_unread
 from identification.model.parameter import DEVIATION, ParameterSet
 from identification.model.paths import Slot, resolve, write
 from identification.model.predictor import Numbers
@@ -43,7 +44,8 @@ class ModelPlant:
         start: the initial state; the model's own (qpos0, at rest) when None.
 
     Raises:
-        InputError: a path names nothing in the model, or two parameters name the same path.
+        InputError: a path names nothing in the model, or what the model does not read, or two
+            parameters name the same path.
     """
 
     model: mujoco.MjModel
@@ -69,7 +71,9 @@ class ModelPlant:
                 if of_body is not None:
                     spread[of_body] = np.array([value])
                 elif place is None:
-                    write(model, resolve(model, path), value)
+                    slot = resolve(model, path)
+                    refuse_unread(self.model, parameter.name, slot, path)
+                    write(model, slot, value)
                 else:
                     start[place[0]][place[1]] = value
         for slot, inertia in with_spreads(model, spread, 1):

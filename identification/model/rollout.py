@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from mujoco.batch import Batch
+from mujoco.batch import Batch, SimulationError
 
 from identification.errors import DivergenceError, InputError
 from identification.model.paths import Slot
@@ -137,7 +137,7 @@ def rollout(
         For each recorded field an array (n, N, size); sample 0 is the start.
 
     Raises:
-        InputError: shapes or hold do not fit.
+        InputError: shapes or hold do not fit, or MuJoCo refuses the model's numbers.
         DivergenceError: a simulation left the finite numbers.
     """
     inputs = np.asarray(inputs, float)
@@ -168,7 +168,14 @@ def rollout(
     if nu < model.nu:
         shared = np.concatenate([shared, np.zeros((*shared.shape[:2], model.nu - nu))], axis=2)
     with _quiet():
-        steps = batch.rollout(shared.shape[1], shared, record=tuple(record))
+        try:
+            steps = batch.rollout(shared.shape[1], shared, record=tuple(record))
+        except SimulationError as error:  # of the engine, which no other value may meet
+            said = " ".join(str(error).rpartition("simulation ")[2].split())
+            raise InputError(
+                f"MuJoCo refuses to simulate the model with these values ({said}); correct the"
+                " model or the values"
+            ) from error
     late = _unfinished(batch, begun, shared.shape[1], model.opt.timestep)
     if late.any() and not keeps_diverged:
         raise _diverged(batch, late)

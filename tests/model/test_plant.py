@@ -75,3 +75,52 @@ def positive_armature(value):
     return Parameter(
         name="armature", value=value, unit="kg", where="joint/slide.armature", lower=0.0
     )
+
+
+MOTOR = """<mujoco><option timestep="0.001" gravity="0 0 0" integrator="RK4"/>
+  <worldbody><body><joint name="shaft" type="hinge" axis="0 0 1"/>
+    <inertial pos="0 0 0" mass="0.5" diaginertia="6e-4 6e-4 6e-4"/></body></worldbody>
+  <actuator><dcmotor name="motor" joint="shaft" motorconst="0.05" resistance="1" {more}/></actuator>
+  <sensor><jointpos name="angle" joint="shaft"/></sensor></mujoco>"""
+LUGRE, INDUCTANCE = 'lugre="3 0.01 0.02 0.03 0.5"', 'inductance="0.01"'
+
+
+def motor(path, more=""):
+    model = mujoco.MjModel.from_xml_string(MOTOR.format(more=more))
+    given = Parameter(name="p", value=0.02, unit="", where=f"actuator/motor.{path}", lower=0.0)
+    return ModelPlant(model, ParameterSet("motor", (given,)))
+
+
+@pytest.mark.parametrize(
+    ("path", "term"),
+    [
+        ("biasprm[3]", LUGRE), ("biasprm[4]", LUGRE), ("biasprm[5]", LUGRE),
+        ("dynprm[5]", LUGRE), ("dynprm[6]", LUGRE), ("dynprm[0]", INDUCTANCE),
+    ],
+)  # fmt: skip
+def test_a_number_of_a_dcmotor_that_nothing_reads_is_refused(refusal, path, term):
+    said = refusal(motor, path)
+    word = "LuGre friction" if term is LUGRE else "inductance"
+    assert said.startswith(f"p (actuator/motor.{path}) is ")
+    assert f"of the {word} of the dcmotor motor, which this model does not have" in said
+    assert "actuator/motor.gainprm[0] (resistance R)" in said
+    assert motor(path, term).parameters["p"].value == 0.02
+    other = INDUCTANCE if term is LUGRE else LUGRE  # what can be freed is what the file gives
+    listed = "dynprm[0] (time constant" if term is LUGRE else "biasprm[3] (τ_c)"
+    assert listed in refusal(motor, path, other).rpartition("free another")[2]
+    assert listed not in said.rpartition("free another")[2]
+
+
+def test_the_numbers_of_the_motor_itself_are_never_refused():
+    for path in ("gainprm[0]", "gainprm[1]", "biasprm[0]"):
+        assert motor(path).parameters["p"].value == 0.02
+
+
+def test_what_the_engine_refuses_is_a_sentence(refusal):
+    from identification.model.paths import Slot
+    from identification.model.rollout import rollout
+
+    plant = motor("gainprm[0]")
+    numbers = ((Slot("actuator_dynprm", (0,), 5), np.array([3.0])),)
+    said = refusal(rollout, plant.model, plant.start, np.zeros((3, 1)), 0.01, numbers=numbers)
+    assert "MuJoCo refuses to simulate" in said
