@@ -42,6 +42,24 @@ def read_bytes(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> bytes:
         InputError: there is no such file, it is something else, too large, or cannot be read.
     """
     try:
+        check_file(path, largest, what)
+        return path.read_bytes()
+    except OSError as error:
+        raise _unreadable(path, error) from error
+
+
+def check_file(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> None:
+    """Refuse what is no regular file of a sane size, without reading it.
+
+    Args:
+        path: of the file.
+        largest: sane size [bytes].
+        what: kind of file that is wanted, for messages.
+
+    Raises:
+        InputError: there is no such file, it is something else, or too large.
+    """
+    try:
         if not path.exists():
             raise InputError(_missing(path))
         if path.is_dir():
@@ -55,10 +73,13 @@ def read_bytes(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> bytes:
                 f"{path} has {size / 2**20:.0f} MB, more than the {largest / 2**20:.0f} MB that "
                 f"are read at once; {cure}"
             )
-        return path.read_bytes()
     except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise InputError(f"cannot read {path}: {reason}; check its name and permissions") from error
+        raise _unreadable(path, error) from error
+
+
+def _unreadable(path: Path, error: OSError) -> InputError:
+    reason = error.strerror or type(error).__name__
+    return InputError(f"cannot read {path}: {reason}; check its name and permissions")
 
 
 def _refuse_long(value: Any) -> None:

@@ -62,3 +62,12 @@ def counted(items: Iterable[Item], what: str, steps: int = USUAL) -> Iterator[It
         for item in items:
             yield item
             advance()
+
+
+def duration(seconds: float) -> str:
+    """A time as a person says it: 40 s, 12 min, 3 h 5 min."""
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes < 2:
+        return f"{60 * minutes + rest} s"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min" if hours else f"{minutes} min"

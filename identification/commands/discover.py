@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -78,8 +79,7 @@ class Discover(OnRobot):
                 write_robot(robot, values, out / "robot.toml", self.output.out)
                 write_result(out / "result.json", self, record)
                 told = [*map(str, (*pairs, *repeated))]
-                write = partial(write_discovery_report, found, out, sentences=told)
-                keep_if_possible("figures and report", write)
+                self._draw(partial(write_discovery_report, found, out, sentences=told))
         return 0
 
     def _keep_records(self, robot: Robot, found: RecordsDiscovery) -> int:
@@ -103,9 +103,18 @@ class Discover(OnRobot):
                 values, own = found.final.values, found.final.own_values
                 write_robot(robot, values, out / "robot.toml", self.output.out, own_values=own)
                 write_result(out / "result.json", self, record)
-                write = partial(write_records_report, found, out)
-                keep_if_possible("figures and report", write)
+                self._draw(partial(write_records_report, found, out))
         return 0
+
+    def _draw(self, write: Callable[[], object]) -> None:
+        """Draw figures and report, and say how long it took."""
+        from identification.progress import duration
+
+        self.output.tell("drawing the report")
+        begun = time.monotonic()
+        keep_if_possible("figures and report", write)
+        drawn = duration(time.monotonic() - begun)
+        self.output.tell(f"report and figures took {drawn}, beside the search")
 
 
 def _with_repetitions(record: dict[str, Any], repeated: Sequence[Repetition]) -> dict[str, Any]:

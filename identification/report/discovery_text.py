@@ -20,7 +20,7 @@ from identification.report.effect_words import describe_effect, describe_gains, 
 from identification.report.finding_words import describe_finding
 from identification.report.fitted_values import shown_values, unknown_shares
 from identification.report.record_gaps import record_lines
-from identification.report.records_text import records_text
+from identification.report.records_text import records_text, search_time
 from identification.report.records_values import text_table
 
 SHOWN = 0.005  # an explanation with a smaller confidence gets no line
@@ -41,7 +41,7 @@ def discovery_text(found: Discovery | RecordsDiscovery) -> str:
         _list("where the final model still fails", found.findings),
         "\n".join([f"{title}:", *(f"  {line}" for line in lines)]) if lines else "",
         "\n".join(_detectable(found)),
-        f"{sum(found.seconds.values()):.1f} s",
+        search_time(found.seconds),
     ]
     return "\n\n".join(part for part in parts if part)
 

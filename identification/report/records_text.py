@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
@@ -59,7 +61,7 @@ def records_text(found: RecordsDiscovery) -> str:
                 ["what each effect would explain at its best place, before it is fitted:", *scores]
             )
         )
-    parts += [*steps_taken(found), f"{sum(found.seconds.values()):.1f} s"]
+    parts += [*steps_taken(found), search_time(found.seconds)]
     return "\n\n".join(parts)
 
 
@@ -77,6 +79,11 @@ def rejected_lines(found: RecordsDiscovery) -> list[str]:
     for effect in found.rejected:
         each.setdefault(effect.candidate.key, effect)
     return [describe_refitted(effect) for effect in each.values()]
+
+
+def search_time(seconds: Mapping[str, float]) -> str:
+    """How long the search took, without what is drawn after it."""
+    return f"The search took {sum(seconds.values()):.1f} s."
 
 
 def describe_refitted(effect: RefittedEffect) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from identification.errors import InputError
-from identification.progress import stage
+from identification.progress import duration, stage
 from identification.sweep.backends.backend import Backend
 from identification.sweep.rows import row
 from identification.sweep.store import Store
@@ -78,12 +78,3 @@ class _Clock:
         left = (now - self.begun) / self.ended * (self.total - self.ended)
         errors = f", {self.failed} with an error" if self.failed else ""
         return f"{self.ended} of {self.total} tasks{errors}, {duration(left)} left"
-
-
-def duration(seconds: float) -> str:
-    """A time as a person says it: 40 s, 12 min, 3 h 5 min."""
-    minutes, rest = divmod(round(seconds), 60)
-    if minutes < 2:
-        return f"{60 * minutes + rest} s"
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours} h {minutes} min" if hours else f"{minutes} min"

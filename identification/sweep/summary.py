@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from identification.progress import duration
 from identification.report.page import Section, Table
 from identification.sweep.method import Record
 from identification.sweep.rows import RUN, digest
-from identification.sweep.run import duration
 from identification.sweep.study_summary import summarise_study
 from identification.sweep.task import Sweep
 

@@ -56,6 +56,18 @@ class Robot(Values):
     step: float = 1e-3
     """Largest step of the integrator [s]; stiff cables and light motors need a smaller one."""
 
+    def check(self) -> None:
+        """Refuse what describes no robot, before anything heavy is imported.
+
+        Raises:
+            InputError: a value or the step is malformed or out of bounds, or a file is no geometry.
+        """
+        from inca_mj.robot.step import refuse_step
+
+        self.parameters()
+        self.place()
+        refuse_step(self.step)
+
 
 @dataclass(frozen=True)
 class SavedRobot(Robot):
@@ -63,6 +75,27 @@ class SavedRobot(Robot):
 
     model: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     """Folder of a twin that inca discover or inca calibrate saved; it has values of its own."""
+
+    def check(self) -> None:
+        """As of `Robot`; a saved robot has its file, and no other is given beside it.
+
+        Raises:
+            InputError: it is not so.
+        """
+        from identification.errors import InputError
+        from inca_mj.robot.step import refuse_step
+
+        if self.model is None:
+            return super().check()
+        if self.param or self.geometry is not None or self.set != "trial":
+            raise InputError(
+                "--model is a whole robot; leave out --set, --param and --geometry, or change"
+                " values in Python: load_twin(path).with_values({...})"
+            )
+        own = self.model if self.model.suffix in (".xml", ".json") else self.model / "effects.json"
+        if not own.exists():
+            raise InputError(f"no {own}; inca discover --out DIR writes one")
+        return refuse_step(self.step)
 
     def twin(self, sampling_time: float) -> Twin:
         """The robot, with a step that divides the sampling time [s].
@@ -86,16 +119,11 @@ class SavedRobot(Robot):
         Raises:
             InputError: there is no such twin, or another robot is given beside it.
         """
-        from identification.errors import InputError
         from inca_mj.twin.saved import load_twin
 
         if self.model is None:
             return None
-        if self.param or self.geometry is not None or self.set != "trial":
-            raise InputError(
-                "--model is a whole robot; leave out --set, --param and --geometry, or change"
-                " values in Python: load_twin(path).with_values({...})"
-            )
+        self.check()
         return load_twin(self.model)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -63,6 +65,7 @@ class Discover:
         from identification.discovery.options import read_options
         from identification.errors import InputError
         from identification.folders import whole_folder
+        from identification.progress import duration
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.discovery import discover
         from inca_mj.workflows.spread import spread_of
@@ -70,6 +73,8 @@ class Discover:
         if not self.log:
             raise InputError("no log is given; write inca discover LOG")
         logs = [read_inca_log(path) for path in self.log]
+        for path, log in zip(self.log, logs, strict=True):
+            self.output.tell(f"log {path}: {log.duration:.4g} s, {len(log)} samples")
         confirm = [read_inca_log(path) for paths in self.confirm for path in paths]
         parameters, place = self.robot.parameters(), self.robot.place()
         spread = spread_of(self.spread)
@@ -90,12 +95,15 @@ class Discover:
         if not self.output.json:
             say(discovery_text(found))
         files: dict[str, Path] = {}
+        begun = time.monotonic()
         if out is not None:
             if blind:
                 note(f"no film: {blind}")
             with whole_folder(out) as draft:
                 files = keep(found, draft, self, film=self.film and not blind)
             files = {what: out / path.name for what, path in files.items()}
+            drawn = duration(time.monotonic() - begun)
+            self.output.tell(f"report, figures and film took {drawn}, beside the search")
         if self.output.json:
             say_json(as_json(found, files.get("model")))
         elif files:
@@ -123,7 +131,8 @@ def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, 
     files = {"model": model, "effects": effects}
 
     def draw() -> None:
-        drawn = _film(found, out) if film else None
+        command.output.tell("drawing the report")
+        drawn = _film(found, out, command.output.tell) if film else None
         more = [*([drawn[1]] if drawn else []), model_section(_without_zeros(robot))]
         files.update({"film": drawn[0]} if drawn else {})
         files["report"] = write_discovery_report(found, out, sections=more, files=FILES)
@@ -141,13 +150,14 @@ def _without_zeros(robot: Twin) -> Twin:
     return replace(robot, parameters=replace(robot.parameters, records=shown))
 
 
-def _film(found: Discovery, out: Path) -> tuple[Path, Section] | None:
+def _film(found: Discovery, out: Path, tell: Callable[[str], None]) -> tuple[Path, Section] | None:
     """The film and its section; None, and a sentence, where it cannot be drawn."""
     from identification.errors import DivergenceError, GraphicsError, InputError
-    from inca_mj.commands.filmed import film_discovery
+    from inca_mj.commands.film_progress import FilmProgress
+    from inca_mj.commands.filmed import FPS, film_discovery
 
     try:
-        return film_discovery(found, out)
+        return film_discovery(found, out, FilmProgress(tell, FPS))
     except (DivergenceError, GraphicsError, InputError) as error:
         note(f"no film: {error}")
         return None

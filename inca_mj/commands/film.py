@@ -11,6 +11,8 @@ import tyro
 from identification.commands.common import Output, say, say_json, write_result
 from inca_mj.commands.common import SavedRobot, cannot_draw, saved_robot_field
 
+FPS = 30.0  # frames per second of the film
+
 if TYPE_CHECKING:
     from inca_mj.rendering.scene import Scene
 
@@ -47,6 +49,7 @@ class Film:
 
     def run(self) -> int:
         """Draw film.mp4 and stills."""
+        self._refuse_unclear()
         blind = cannot_draw()  # before MuJoCo is imported
         if blind:
             from identification.errors import GraphicsError
@@ -54,8 +57,10 @@ class Film:
             raise GraphicsError(blind)
         from identification.errors import InputError
         from identification.folders import whole_folder
+        from inca_mj.commands.film_progress import FilmProgress
         from inca_mj.rendering.film import common_time, film, stills
 
+        self.output.tell("simulating what the film shows")
         scenes = [self._scene(source) for source in self._sources()]
         begin, end = common_time(scenes)
         off = [t for t in self.still if not begin <= t <= end]
@@ -73,8 +78,10 @@ class Film:
                 titles=titles,
                 camera=self.camera,
                 plots=plots,
+                fps=FPS,
                 speed=self.speed,
                 magnify=self.magnify,
+                progress=FilmProgress(self.output.tell, FPS),
             )
             pictures = stills(
                 scene,
@@ -95,6 +102,30 @@ class Film:
         else:
             say("\n".join(files))
         return 0
+
+    def _refuse_unclear(self) -> None:
+        """Refuse options and files that make no sense, before anything heavy is imported."""
+        from identification.errors import InputError
+        from identification.files import check_file
+        from inca_mj.rendering.checks import (
+            refuse_magnify,
+            refuse_seconds,
+            refuse_speed,
+            refuse_titles,
+        )
+
+        for source in self._sources():
+            if source.suffix not in (".npz", ".csv", ".mat") and not source.is_dir():
+                raise InputError(
+                    f"{source} is neither a log nor a run; give a log (.csv, .mat), or the run.npz"
+                    " that inca simulate and inca track keep in their folder --out"
+                )
+            check_file(source, what="log (.csv, .mat) or run (.npz)")
+        refuse_titles(self.title, len(self.source))
+        refuse_seconds(self.seconds)
+        refuse_speed(FPS, self.speed)
+        refuse_magnify(self.magnify)
+        self.robot.check()
 
     def _sources(self) -> tuple[Path, ...]:
         """One source or two.
@@ -120,18 +151,12 @@ class Film:
 
     def _scene(self, source: Path) -> Scene:
         """What to film: a saved run, or a log beside the twin with the values that were asked."""
-        from identification.errors import InputError
         from inca_mj.commands.compare import compare_with
         from inca_mj.rendering.scene import make_scene
         from inca_mj.twin.logs import read_inca_log
 
         if source.suffix == ".npz":
             return make_scene(source, self.seconds)
-        if source.suffix not in (".csv", ".mat"):
-            raise InputError(
-                f"{source} is neither a log nor a run; give a log (.csv, .mat), or the run.npz"
-                " that inca simulate and inca track keep in their folder --out"
-            )
         log = read_inca_log(source)
         if self.seconds is not None and 0 < self.seconds < log.duration:
             log = log.between(float("-inf"), float(log.time[0]) + self.seconds)

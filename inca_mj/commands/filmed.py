@@ -8,7 +8,7 @@ from identification.discovery.result import Discovery
 from identification.logs.joined import records_of
 from identification.logs.log import Log, halves
 from identification.report.page import Section
-from inca_mj.rendering.film import film
+from inca_mj.rendering.film import Progress, film
 from inca_mj.rendering.scene import Scene
 from inca_mj.twin.logs import pose_of
 from inca_mj.twin.twin import Twin
@@ -19,12 +19,15 @@ FPS = 15
 TITLES = ("before: the model, fitted", "after: with what was missing")
 
 
-def film_discovery(found: Discovery, folder: Path) -> tuple[Path, Section]:
+def film_discovery(
+    found: Discovery, folder: Path, progress: Progress | None = None
+) -> tuple[Path, Section]:
     """Film a discovery, with the section of a report that shows the film.
 
     Args:
         found: the discovery, of twins.
         folder: where film.mp4 and its picture film.jpg are written.
+        progress: told the frames done and the frames in all.
 
     Raises:
         InputError: the discovery is not of a twin, or the film cannot be written.
@@ -37,7 +40,7 @@ def film_discovery(found: Discovery, folder: Path) -> tuple[Path, Section]:
     after = _scene(named_twin(found), log, seconds) if found.named else None
     path, picture = folder / "film.mp4", folder / "film.jpg"
     titles = TITLES if after is not None else TITLES[:1]
-    film(before, path, beside=after, titles=titles, fps=FPS, picture=picture)
+    film(before, path, beside=after, titles=titles, fps=FPS, picture=picture, progress=progress)
     return path, _section(path, picture, seconds, after is not None)
 
 

@@ -45,8 +45,8 @@ class Linearize:
 
     def run(self) -> int:
         """Linearise, say, keep."""
+        self._refuse_unclear()
         do_not_draw()
-        from identification.linear.system import sampling_time_of
         from inca_mj.report.linear_sections import (
             HANDLE_HEAD,
             grid_sentences,
@@ -56,9 +56,6 @@ class Linearize:
             model_to_json,
         )
 
-        self._refuse_unclear()
-        if self.rate is not None:
-            sampling_time_of(self.rate)
         models, labels, rate = self._models()
         record: dict[str, Any] = {"models": [model_to_json(m, rate) for m in models]}
         said = []
@@ -73,7 +70,12 @@ class Linearize:
         return 0
 
     def _refuse_unclear(self) -> None:
+        """Refuse options that make no sense, before anything heavy is imported."""
         from identification.errors import InputError
+        from identification.files import check_file
+        from identification.linear.system import sampling_time_of
+        from inca_mj.commands.grid import grid_axes
+        from inca_mj.robot.pose import pose_values
 
         if self.grid == ():
             raise InputError(
@@ -85,6 +87,14 @@ class Linearize:
             raise InputError(f"--log and {other} are two ways to an operating point; give one")
         if (self.log is None) != (not self.time):
             raise InputError("--log and --time belong together; give both, or a --pose")
+        if self.rate is not None:
+            sampling_time_of(self.rate)
+        self.robot.check()
+        if self.pose:
+            self.robot.parameters().with_values(pose_values(self.pose))
+        grid_axes(self.grid or ())
+        if self.log is not None:
+            check_file(self.log)
 
     def _models(self) -> tuple[tuple[LinearModel, ...], list[str], float]:
         """The models, what their operating points are called, and the rate [Hz]."""
@@ -105,10 +115,10 @@ class Linearize:
 
     def _grid(self, model: LinearModel, rate: float) -> tuple[GriddedSystem, Any, Any]:
         """The gridded model, its errors off the grid, and a run beside the twin."""
+        from inca_mj.commands.grid import grid_axes
         from inca_mj.linear.accuracy import interpolation_errors, random_points, run_error
         from inca_mj.linear.linearization import linearize_grid
         from inca_mj.twin.logs import POSE
-        from inca_mj.workflows.linearization import grid_axes
 
         axes = grid_axes(self.grid or ())
         grid = linearize_grid(model.robot, axes, self.interpolation)

@@ -13,7 +13,7 @@ errs by less than 1e-4 of φ.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,8 +22,8 @@ from identification.errors import InputError
 from identification.linear.derivatives import Points
 from identification.linear.operating_points import OperatingPoints
 from inca_mj.robot.geometry import DRIVES
+from inca_mj.robot.pose import pose_values
 from inca_mj.robot.spread import at_drives
-from inca_mj.twin.logs import POSE
 from inca_mj.twin.statics import start_from
 from inca_mj.twin.twin import Twin, start_state
 
@@ -65,26 +65,6 @@ def held_at(robot: Twin, poses: Sequence[Sequence[float]]) -> OperatingPoints:
     i = -without[:, MOTORS] / (ones - without)[:, MOTORS]
     _refuse_moving(at.rates(ctrl=i), poses)
     return replace(point, inputs=i)
-
-
-def pose_values(pose: Sequence[float]) -> Mapping[str, float]:
-    """A pose by the names of the robot's parameters.
-
-    Args:
-        pose: x, y, z [m], roll, pitch, yaw [rad].
-
-    Raises:
-        InputError: it is not six finite numbers.
-    """
-    try:
-        numbers = np.asarray(pose, float)
-    except (TypeError, ValueError):
-        numbers = np.empty(0)
-    if numbers.shape != (len(POSE),) or not np.isfinite(numbers).all():
-        raise InputError(
-            f"a pose is six finite numbers, x y z [m] roll pitch yaw [rad]; got {pose!r}"
-        )
-    return dict(zip(POSE, numbers.tolist(), strict=True))
 
 
 def _start(robot: Twin, pose: Sequence[float]):  # type: ignore[no-untyped-def]

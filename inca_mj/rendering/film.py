@@ -13,6 +13,7 @@ import numpy as np
 from identification.errors import InputError
 from identification.files import whole_file
 from identification.progress import counted
+from inca_mj.rendering.checks import refuse_speed
 from inca_mj.rendering.encoder import encoder
 from inca_mj.rendering.scene import Scene, Source, make_scene
 from inca_mj.rendering.stage import Look, stage
@@ -72,8 +73,7 @@ def film(
     path = Path(path)
     if path.suffix.lower() != ".mp4":
         raise InputError(f"a film is written as .mp4, not {path.name!r}; change its ending")
-    if not (np.isfinite([fps, speed]).all() and fps > 0 and speed > 0):
-        raise InputError(f"fps {fps:g} and speed {speed:g} must be positive")
+    refuse_speed(fps, speed)
     look = Look(camera=camera, size=size, plots=plots, titles=titles, magnify=magnify)
     scenes = _scenes(source, beside, seconds)
     begin, end = common_time(scenes)

@@ -9,6 +9,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.logs.log import Log
+from inca_mj.rendering.checks import refuse_seconds
 from inca_mj.twin.logs import pose_of, read_inca_log
 from inca_mj.twin.run import Run, load_run, rows_of
 from inca_mj.workflows.comparison import Comparison, compare
@@ -78,8 +79,7 @@ def make_scene(source: Source, seconds: float | None = None) -> Scene:
         InputError: the file is neither a log nor a run, or `seconds` leaves less than two samples.
         DivergenceError: the twin cannot be simulated under the log's currents.
     """
-    if seconds is not None and not seconds > 0:
-        raise InputError(f"cannot film {seconds:g} s; give a positive number of seconds")
+    refuse_seconds(seconds)
     if isinstance(source, str | Path):
         path = Path(source)
         source = load_run(path) if path.suffix == ".npz" else read_inca_log(path)

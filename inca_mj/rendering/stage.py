@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError
+from inca_mj.rendering.checks import refuse_magnify, refuse_titles
 from inca_mj.rendering.colours import TensionScale, tension_scale
 from inca_mj.rendering.ghost import ghost_errors, ghost_positions
 from inca_mj.rendering.panel import Panel
@@ -50,8 +51,7 @@ class Look:
             raise InputError(
                 f"a film of {width} x {height} pixels: give even numbers from 160 x 120"
             )
-        if not (np.isfinite(self.magnify) and self.magnify > 0):
-            raise InputError(f"a deviation drawn {self.magnify:g} times: give a positive number")
+        refuse_magnify(self.magnify)
 
 
 @contextmanager
@@ -65,10 +65,7 @@ def stage(scenes: Sequence[Scene], look: Look) -> Iterator[Callable[[float], np.
             or the camera is unknown.
         GraphicsError: no OpenGL context can be made here.
     """
-    if look.titles and len(look.titles) != len(scenes):
-        raise InputError(
-            f"{len(look.titles)} titles for {len(scenes)} pictures; give one for each, or none"
-        )
+    refuse_titles(look.titles, len(scenes))
     width, height = look.size
     size = width // len(scenes), height
     if size[0] < 160:

@@ -8,6 +8,7 @@ import numpy as np
 
 from identification import InputError, Log, read_log
 from inca_mj.robot.geometry import DRIVES
+from inca_mj.robot.pose import POSE as POSE
 from inca_mj.twin.run import Run
 
 
@@ -16,7 +17,6 @@ def _each(name: str) -> tuple[str, ...]:
 
 
 CURRENTS, ANGLES = _each("current"), _each("angle")
-POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 VELOCITY = ("vx", "vy", "vz", "wx", "wy", "wz")  # v in O, body rates
 OPTIONAL = (*POSE, *_each("tension"), *VELOCITY, *_each("rate"), *_each("no_load_length"))
 

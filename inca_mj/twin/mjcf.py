@@ -25,11 +25,11 @@ from inca_mj.robot import law
 from inca_mj.robot.geometry import DRIVES, Geometry
 from inca_mj.robot.parameters import GRAVITY
 from inca_mj.robot.spread import EACH_DRIVE, at_drives, displaced
+from inca_mj.robot.step import TIMESTEP
 from inca_mj.twin.appearance import dress_drum, dress_platform, dress_world
 from inca_mj.twin.file_notes import NEEDS_LAW, law_notes, short_law_note
 from inca_mj.twin.statics import activations, start
 
-TIMESTEP = 1e-3  # [s]; RK4 at 1 ms follows the reference to a few microradians
 ROTOR = 2e-15  # inertia MuJoCo demands of the drum's body beside the armature [kg m^2]
 
 

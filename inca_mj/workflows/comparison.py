@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from identification import InputError, Log, fit_percent, rms
+from identification import Log, fit_percent, rms
 from identification.model.parameter import ParameterSet
 from identification.quantities import finite_or_none
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.parameters import parameter_set
+from inca_mj.robot.step import TIMESTEP, refuse_step
 from inca_mj.twin.logs import POSE, pose_of
-from inca_mj.twin.mjcf import TIMESTEP
 from inca_mj.twin.run import Run, simulate
 from inca_mj.twin.twin import Twin, build_twin, rebuild
 
@@ -106,6 +106,5 @@ def timestep_for(sampling_time: float, largest: float = TIMESTEP) -> float:
     Raises:
         InputError: `largest` is not between 1e-6 and 0.1 s.
     """
-    if not 1e-6 <= largest <= 0.1:
-        raise InputError(f"a step of {largest:g} s is not between 1e-6 and 0.1 s; try {TIMESTEP:g}")
+    refuse_step(largest)
     return sampling_time / ceil(sampling_time / largest - 1e-9)

@@ -22,8 +22,8 @@ from identification.kalman.estimate import InnovationsFit
 from identification.model.parameter import ParameterSet
 from identification.windows.window_estimate import WindowEstimate
 from inca_mj.robot.geometry import INCA, Geometry
+from inca_mj.robot.step import TIMESTEP
 from inca_mj.twin.logs import POSE
-from inca_mj.twin.mjcf import TIMESTEP
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import timestep_for

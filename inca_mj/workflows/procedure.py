@@ -19,7 +19,7 @@ from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import Fit, assess
 from identification.model.parameter import ParameterSet
 from inca_mj.robot.geometry import INCA, Geometry
-from inca_mj.twin.mjcf import TIMESTEP
+from inca_mj.robot.step import TIMESTEP
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import timestep_for
