@@ -125,7 +125,7 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
     return Fit(
         estimate=estimate,
         std=std_q * space.slope(q),
-        correlation=covariance / np.outer(scale, scale),
+        correlation=_bounded(covariance / np.outer(scale, scale)),
         at_bound=space.on_bound(q),
         found=found,
         combinations=combinations_of(found, estimate, covariance),
@@ -138,6 +138,17 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
         tests=residual_tests(residual, log.inputs),
         information=information_of(resolved, space),
     )
+
+
+def _bounded(correlation: np.ndarray) -> np.ndarray:
+    """A correlation without its rounding: within ±1, and 1 of a parameter with itself.
+
+    What no record determines has no variance and keeps its zero.
+    """
+    bounded = np.clip(correlation, -1.0, 1.0)
+    own = np.diag(bounded)
+    np.fill_diagonal(bounded, np.where(np.isclose(own, 1.0), 1.0, own))
+    return bounded
 
 
 def _sandwich(

@@ -116,7 +116,9 @@ def rivals_section(found: Discovery) -> Section:
     )
     text = (
         "What each effect, at its best place and shape, would explain of the fitted nominal model's"
-        " residual, the model's parameters tuned again."
+        " residual, the model's parameters tuned again. The bars are the gains that the nominal fit"
+        " promises before an effect is fitted; a gain that is said in words is that of the refitted"
+        " model, so that the two differ."
     )
     if not rows and found.named:
         text += "\n\nNo other explanation comes near those that are named."

@@ -69,7 +69,7 @@ def parameters_section(found: Discovery) -> Section:
 def unseen_section(found: Discovery) -> Section:
     """What this log would have shown, and what not."""
     seen, blind = split_detectable(found.detectable)
-    rows = [(describe_effect(d.candidate), d.size, quantity(d.smallest, unit=d.unit), _plausible(d))
+    rows = [(describe_effect(d.candidate), d.size, _sized(d.smallest, d.unit), _plausible(d))
             for d in seen]  # fmt: skip
     rows += [
         (describe_effect(d.candidate), d.size, "not by this log", _plausible(d)) for d in blind
@@ -90,6 +90,11 @@ def _value(value: float | None, std: float | None, unit: str) -> str:
     return "–" if value is None or std is None else quantity(value, std, unit)
 
 
+def _sized(value: float, unit: str) -> str:
+    """A size; one without a unit is a share, in percent also where it is 1 or more."""
+    return quantity(value, unit=unit) if unit else f"{100 * value:.3g} %"
+
+
 def _plausible(d: Detectable) -> str:
     size = next((s for s in d.candidate.effect.sizes if s.name == d.size), None)
-    return "–" if size is None else quantity(size.largest, unit=size.unit)
+    return "–" if size is None else _sized(size.largest, size.unit)

@@ -14,11 +14,16 @@ from identification.files import write_text
 from identification.report.origin import origin
 
 if TYPE_CHECKING:
+    from markupsafe import Markup
     from matplotlib.figure import Figure
 
 _LARGEST_SVG = 600_000  # characters; a figure of more points is shown as pixels
 _LARGEST_VIDEO = 64 * 2**20  # bytes
 _NUMBER = re.compile(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?")
+_UNIT = r"[nµmkM]?(?:kg|rad|Hz|min|[gNmsAVWJh])(?:\^?-?[\d²³]+)?(?:/(?:\([^)]*\)|[\w²³^]+))?"
+_QUANTITY = re.compile(  # a number, its std, and a unit such as N m s/rad
+    rf"[-+]?\d[\d.]*(?:e[-+]?\d+)?(?: ± [\d.]+(?:e[-+]?\d+)?)?(?: %|(?: {_UNIT}(?![\w/]))+)"
+)
 _NONE = ("–", "unknown", None)  # in the place of a number
 LONG = 12  # rows: a table of more is folded
 WIDE = 9.0  # a figure of so many inches has a row of its own
@@ -105,6 +110,7 @@ def write_report(
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["whole"] = whole_quantities
     page = environment.get_template("report.html").render(
         title=title,
         verdict=list(verdict),
@@ -115,6 +121,17 @@ def write_report(
         script=Markup((files("identification.report") / "templates" / "figures.js").read_text()),
     )
     return write_text(path, page)
+
+
+def whole_quantities(text: str) -> Markup:
+    """Text for a page in which no line ends between a number and its unit.
+
+    Args:
+        text: as it is read; it is escaped.
+    """
+    from markupsafe import Markup, escape
+
+    return Markup(_QUANTITY.sub(r'<span class="whole">\g<0></span>', str(escape(text))))
 
 
 def save_figures(sections: Iterable[Section], folder: Path) -> list[Path]:

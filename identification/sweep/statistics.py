@@ -29,7 +29,8 @@ def wilson(hits: int, of: int, z: float = 1.96) -> dict[str, Any]:
     p, w = hits / of, z * z / of
     half = z * math.sqrt(p * (1 - p) / of + w / (4 * of))
     low, high = ((p + w / 2 + sign * half) / (1 + w) for sign in (-1, 1))
-    return {"value": p, "low": max(0.0, low), "high": min(1.0, high), "hits": hits, "of": of}
+    ends = {"low": low if hits else 0.0, "high": high if hits < of else 1.0}  # without rounding
+    return {"value": p, **ends, "hits": hits, "of": of}
 
 
 def rate(rows: Iterable[Row], test: Callable[[Row], bool]) -> dict[str, Any]:

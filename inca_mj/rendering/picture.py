@@ -14,6 +14,7 @@ from inca_mj.rendering.colours import ASKED, DRUMS, HANDLE, TRACE, TensionScale,
 
 Box = tuple[int, int, int, int]  # left, top, width, height [px]
 BACKGROUND = (255, 255, 255)
+READOUT = 1.1  # size of the numbers that change [em]: 21 pixels in a film of 720
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ def layout(size: tuple[int, int], camera: str, plots: bool, titled: bool = False
 
 def em_of(height: int) -> int:
     """The size of letters in a frame of a height [px]."""
-    return max(8, round(height / 42))
+    return max(8, round(height / 38))
 
 
 def paste(frame: np.ndarray, box: Box, picture: np.ndarray) -> None:
@@ -89,12 +90,15 @@ class Lettering:
         em, below = self._em, top + height
         robots = [("platform, simulated", HANDLE, 0.33), ("frame and drums", DRUMS, 0.33)]
         robots += [("measured robot", "", 0.33)] if ghost else []
-        high = int((3.0 + 1.4 * len(robots) + (2.9 if ghost else 0.0)) * em)
+        high = int((3.0 + 1.4 * len(robots) + (4.6 if ghost else 0.0)) * em)
         self._card(pen, left, top, int(12.5 * em), high)
         self._clock = (left + em, top + em)
         self._legend(pen, robots, left + em, top + int(3.5 * em))
         self._readout = self._clock
-        self._off = (left + em, top + int((3.1 + 1.4 * len(robots)) * em))
+        row = top + int((3.1 + 1.4 * len(robots)) * em)
+        self._off = (left + em, row + int(1.3 * em))
+        if ghost:
+            pen.text((left + em, row), "off the measured robot", INK, self._font(0.8))
         if magnify is not None:  # beside the clock's card where there is room, else under it
             beside = width >= 26 * em
             at = (left + int(12.5 * em), top) if beside else (left, top + high)
@@ -131,15 +135,15 @@ class Lettering:
         self._say(frame, self._clock, f"t = {time:.2f} s", 1.15)
         if off is not None:
             left, top = self._off
-            self._say(frame, (left, top), f"platform off {1e3 * off[0]:.2f} mm", 0.85)
-            row = top + int(1.35 * self._em)
-            self._say(frame, (left, row), f"motors off {1e3 * off[1]:.1f} mrad", 0.85)
+            self._say(frame, (left, top), f"platform {1e3 * off[0]:.2f} mm", READOUT)
+            row = top + int(1.55 * self._em)
+            self._say(frame, (left, row), f"motors {1e3 * off[1]:.1f} mrad", READOUT)
         if distance is not None:
-            self._say(frame, self._readout, f"error {1e3 * distance:.3f} mm", 0.85)
+            self._say(frame, self._readout, f"error {1e3 * distance:.3f} mm", READOUT)
 
     def _say(self, frame: np.ndarray, at: tuple[int, int], text: str, ems: float) -> None:
         left, top = at
-        corner = frame[top : top + 2 * self._em, left : left + 11 * self._em]
+        corner = frame[top : top + 2 * self._em, left : left + int(11.5 * self._em)]
         image = Image.fromarray(corner)
         ImageDraw.Draw(image).text((0, 0), text, INK, self._font(ems))
         corner[:] = np.asarray(image)

@@ -138,7 +138,7 @@ def coupled_modes(
     whole[:6, 6:] = np.hstack(between)
     whole[6:, :6] = whole[:6, 6:].T
     ω2, x = eigh(stiff, whole)
-    share = np.einsum("ai,ab,bi->i", x[:6], M, x[:6])
+    share = np.clip(np.einsum("ai,ab,bi->i", x[:6], M, x[:6]), 0.0, 1.0)
     most = np.sort(np.argsort(-share)[:6])
     rows = list(zip(at.d, tension, strict=True))
     span = np.hypot(at.s[:, 0], at.s[:, 1]) * at.d

@@ -171,3 +171,39 @@ def test_titles_are_escaped(tmp_path):
     drawn = next(root.iter(f"{SVG}svg"))
     assert drawn.find(f"{SVG}title").text == "<i> & 'k'"
     assert 'a "b" & c' in unescape(drawn.get("data-axes")).replace('\\"', '"')
+
+
+@pytest.mark.parametrize(
+    ("text", "kept"),
+    [
+        ("off by 4.12 ± 0.21 mN m rms", ["4.12 ± 0.21 mN m"]),
+        ("7 of 9 records, 20 % of them", ["20 %"]),
+        ("2e-3 N m s/rad, and 315 µs earlier", ["2e-3 N m s/rad", "315 µs"]),
+        ("5 kg m^2) or 1.5 rad/s", ["5 kg m^2", "1.5 rad/s"]),
+        ("8 samples and 3 records", []),
+    ],
+)
+def test_no_line_ends_between_a_number_and_its_unit(text, kept):
+    said = str(page_module.whole_quantities(text))
+    assert re.findall(r'<span class="whole">(.*?)</span>', said) == kept
+    assert re.sub(r"<[^>]*>", "", said) == text
+    assert "<b>" not in page_module.whole_quantities("<b> 3 m & more")
+
+
+def test_a_section_whose_figures_stand_above_says_so(page):
+    for title in ("The gap on unseen data",):
+        section = page[page.index(f"<h2>{title}</h2>") :].split("</section>")[0]
+        assert 'href="#first"' in section
+        assert "stand above" in section
+    assert page.count('id="first"') == 1
+
+
+def test_sizes_without_a_unit_are_all_in_percent():
+    from identification.report.discovery_tables import _sized
+
+    assert [_sized(value, "") for value in (0.3, 1.0, 2.5)] == ["30 %", "100 %", "250 %"]
+    assert _sized(0.02, "m") == "20 mm"
+
+
+def test_the_two_gains_are_told_apart(page):
+    assert "promises before an effect is fitted" in page

@@ -25,6 +25,14 @@ def test_wilson_is_that_of_scipy(hits, of):
     assert said(wilson(0, 0)) == "-"
 
 
+def test_a_rate_of_none_or_of_all_ends_exactly_there():
+    for of in range(1, 400):
+        assert wilson(0, of)["low"] == 0.0
+        assert wilson(of, of)["high"] == 1.0
+        for hits in (1, of // 2, of - 1):
+            assert 0.0 <= wilson(hits, of)["low"] <= wilson(hits, of)["high"] <= 1.0
+
+
 def test_a_rate_that_rises_crosses_between_two_points():
     assert crossing([1, 10, 100], [0.0, 0.4, 1.2], 0.8) == pytest.approx(10**1.5)
     assert crossing([-1, 0, 1], [0.0, 0.5, 1.0], 0.75) == pytest.approx(0.5)
