@@ -73,12 +73,12 @@ class Discover:
         if not self.log:
             raise InputError("no log is given; write inca discover LOG")
         logs = [read_inca_log(path) for path in self.log]
-        for path, log in zip(self.log, logs, strict=True):
-            self.output.tell(f"log {path}: {log.duration:.4g} s, {len(log)} samples")
         confirm = [read_inca_log(path) for paths in self.confirm for path in paths]
         parameters, place = self.robot.parameters(), self.robot.place()
         spread = spread_of(self.spread)
         options = None if self.options is None else read_options(self.options)
+        for path, log in zip(self.log, logs, strict=True):
+            self.output.tell(f"log {path}: {log.duration:.4g} s, {len(log)} samples")
         out = self.output.out
         found = discover(
             logs,
