@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, dataclass, field
+from functools import cached_property
 from inspect import signature
 from typing import Any, Literal
 
@@ -155,21 +156,30 @@ class Effect:
             return f"{self.name}.{name}"
         return f"{self.name}.{name}{self.places[where]}"
 
-    def parameters_at(self, thing: str) -> list[list[str]]:
+    def parameters_at(self, thing: str) -> tuple[tuple[str, ...], ...]:
         """Names of the plant's parameters that add up to each of its numbers at one thing.
 
         Args:
             thing: name of a joint, drive or input, as it stands behind the @ of a place.
 
         Returns:
-            A list for each of `names`; empty where the effect cannot act on the thing.
+            A tuple for each of `names`; none where the effect cannot act on the thing.
         """
+        if thing not in self._parameters:  # a search asks a million times
+            self._parameters[thing] = self._parameters_at(thing)
+        return self._parameters[thing]
+
+    @cached_property
+    def _parameters(self) -> dict[str, tuple[tuple[str, ...], ...]]:
+        return {}
+
+    def _parameters_at(self, thing: str) -> tuple[tuple[str, ...], ...]:
         single = [suffix for suffix in self.places.values() if suffix]
         if single and f"@{thing}" not in single:
-            return []
+            return ()
         suffixes = [s for s in self.places.values() if s in ("", f"@{thing}")]
-        sizes = [[f"{self.name}.{size.name}{at}" for at in suffixes] for size in self.sizes]
-        return sizes + [[f"{self.name}.{shape.name}"] for shape in self.shapes]
+        sizes = (tuple(f"{self.name}.{size.name}{at}" for at in suffixes) for size in self.sizes)
+        return (*sizes, *((f"{self.name}.{shape.name}",) for shape in self.shapes))
 
 
 def _refuse_unfit(effect: str, hook: str, function: Any) -> None:

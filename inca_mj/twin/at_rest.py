@@ -135,8 +135,10 @@ def own_states(values: Mapping[str, float], strain: np.ndarray, layout: Layout) 
     for term in layout.on_drives:
         effect = by_name[term.effect]
         start: Any = effect.hooks.get("start")
+        if start is None:
+            continue
         p = drive_values(effect, values)
-        for k in range(DRIVES if start is not None else 0):
+        for k in range(DRIVES):
             out[k, term.state - 1] = start.py_func(_drive(strain=strain[k], x=0.0), tuple(p[:, k]))
     return out
 
