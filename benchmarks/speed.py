@@ -26,13 +26,15 @@ from pathlib import Path
 from typing import Any
 from unittest import mock
 
-import estimation
+import fit_ratios
 import mujoco
-import twin
+import step_ratios
 from mujoco.batch import Batch
 
+from identification.estimation.estimation import estimate
 from identification.linear import derivatives
 from identification.model import rollout
+from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import Twin, build_twin
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -89,11 +91,11 @@ def bare_times(robot: Twin) -> tuple[float, float]:
     data.qpos[:], data.act[:] = at.qpos, at.act
 
     def evaluations() -> None:
-        for _ in range(twin.BURST):
+        for _ in range(step_ratios.BURST):
             mujoco.mj_forward(model, data)
 
-    step, evaluation = twin.least([twin.stepper(robot), evaluations], 200)
-    return step / twin.BURST, evaluation / twin.BURST
+    step, evaluation = step_ratios.least([step_ratios.stepper(robot), evaluations], 200)
+    return step / step_ratios.BURST, evaluation / step_ratios.BURST
 
 
 def share_of_limit(asked: Asked, step: float, evaluation: float) -> float:
@@ -103,11 +105,11 @@ def share_of_limit(asked: Asked, step: float, evaluation: float) -> float:
 
 def measure_fit(step: float, evaluation: float) -> dict[str, dict]:
     """A fit of seventeen parameters, beside `mujoco.sysid` and what an engineer writes first."""
-    robot, log = build_twin(estimation.parameter_set("trial")), estimation.practice()
-    with counted() as asked, estimation.watched() as work:
-        found = estimation.estimate(robot, log, estimation.FREE)
-    other, why = estimation.sysid_seconds(robot, log)
-    naive = estimation.naive_seconds(robot, log, work.simulated)
+    robot, log = build_twin(parameter_set("trial")), fit_ratios.practice()
+    with counted() as asked, fit_ratios.watched() as work:
+        found = estimate(robot, log, fit_ratios.FREE)
+    other, why = fit_ratios.sysid_seconds(robot, log)
+    naive = fit_ratios.naive_seconds(robot, log, work.simulated)
     return {
         "fit_share_of_bare_steps": entry(share_of_limit(asked, step, evaluation), 0.93),
         "sysid_over_fit": entry(other and other / found.seconds, 15.0, why),
@@ -184,10 +186,10 @@ def main() -> None:
     robot = build_twin()
     step, evaluation = bare_times(robot)
     found: dict[str, dict] = {
-        "step_with_law_over_without": entry(twin.law_ratio(robot), 1.03),
-        "python_callback_over_native": entry(twin.python_ratio(robot), 4.0),
-        "batch_on_2_threads_over_loop_on_1": entry(twin.batch_ratio(robot)),
-        "reference_adaptive_over_twin": entry(twin.reference_ratio(robot, "adaptive")),
+        "step_with_law_over_without": entry(step_ratios.law_ratio(robot), 1.03),
+        "python_callback_over_native": entry(step_ratios.python_ratio(robot), 4.0),
+        "batch_on_2_threads_over_loop_on_1": entry(step_ratios.batch_ratio(robot)),
+        "reference_adaptive_over_twin": entry(step_ratios.reference_ratio(robot, "adaptive")),
         "step_microseconds": entry(1e6 * step),
         "evaluation_microseconds": entry(1e6 * evaluation),
     }

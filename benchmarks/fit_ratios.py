@@ -1,15 +1,12 @@
-"""How fast a fit is, alone and beside other ways to do it; prints one JSON object.
+"""How fast other ways to do a fit are; `benchmarks/speed.py` prints the ratios.
 
-    python benchmarks/estimation.py
-
-Every entry is {"value", "goal", "met", "how"}. The fit frees all eleven parameters of the mechanics
+The fit frees all eleven parameters of the mechanics
 and the start pose, from nominal values, on 10 s of PRBS with noise of 0.67 mrad (an encoder's),
 simulated with parameters up to 10 % and a pose up to 1 cm and 1 degree away.
 """
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from collections.abc import Iterator
@@ -19,21 +16,18 @@ from unittest import mock
 
 import naive_fit
 import numpy as np
-from twin import BURST, least, stepper
+from step_ratios import least
 
 from identification import InputError, Log
 from identification.bridge_sysid import from_sysid, sysid_residual, to_sysid_parameters
-from identification.estimation.estimation import Estimate, estimate
 from identification.model import predictor
-from identification.model.rollout import rollout, threads
+from identification.model.rollout import rollout
 from inca_mj.robot.inputs import make_input
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.logs import POSE, run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import Twin, build_twin
 from inca_mj.workflows.identification import MECHANICS
-from inca_mj.workflows.thesis import TRIALS
-from inca_mj.workflows.trials import run_trial
 
 FREE = (*MECHANICS, *POSE)
 DURATION, NOISE = 10.0, 6.7e-4  # [s], [rad]
@@ -135,67 +129,3 @@ def naive_error(robot: Twin, log: Log) -> float:
     part, values = log.inputs[:51], robot.parameters.values()
     ours = simulate(robot, part, log.sampling_time).motor_angle
     return float(np.abs(naive_fit.predict(values, part, log.sampling_time) - ours).max())
-
-
-def entry(value: float | None, goal: float | None, how: str, *, most: bool = True) -> dict:
-    """One measurement beside its goal: at most it, or at least it."""
-    met = None
-    if goal is not None:
-        met = value is not None and (value <= goal if most else value >= goal)
-    return {"value": None if value is None else round(value, 4), "goal": goal, "met": met,
-            "how": how}  # fmt: skip
-
-
-def profile(found: Estimate, work: Work, step: float) -> dict[str, dict]:
-    """Where the time of a fit went."""
-    steps = work.simulated / found.predictor.plant.model.opt.timestep
-    return {
-        "bare_fraction": entry(
-            steps * step / work.processor,
-            None,
-            f"columns × steps × bare step over processor time of the fit ({work.processor:.1f} s);"
-            f" the bare step takes {1e6 * step:.1f} us in a loop that does nothing else",
-        ),
-        "processors_used": entry(
-            work.processor / found.seconds,
-            None,
-            f"processor time over wall time, of {threads()}; other programs take the rest",
-        ),
-        "inside_simulator": entry(
-            work.inside / found.seconds, None, "share of wall time in batches of simulations"),
-        "simulated_seconds": entry(
-            work.simulated, None, f"of the robot, all columns; {found.evaluations} evaluations"
-            f" and {found.jacobians} Jacobians over growing horizons"),
-    }  # fmt: skip
-
-
-def main() -> None:
-    """Measure everything and print it."""
-    trial = run_trial(TRIALS[1])
-    robot, log = build_twin(parameter_set("trial")), practice()
-    (burst,) = least([stepper(robot)], 200)
-    with watched() as work:
-        found = estimate(robot, log, FREE)
-    error = 1e3 * rms(robot, log, found.values)
-    other, why = sysid_seconds(robot, log)
-    naive = naive_seconds(robot, log, work.simulated)
-    result = {
-        "trial_2_seconds": entry(trial.fit.estimate.seconds, 8.0, "six parameters, 5 s, no noise"),
-        "fit_seconds": entry(
-            found.seconds, 30.0,
-            f"{len(FREE)} parameters, {DURATION:g} s; it ended at {error:.4g} mrad"),
-        "sysid_over_fit": entry(
-            None if other is None else other / found.seconds, 3.0,
-            f"mujoco.sysid on the same data, start and native law, whole log: {why}", most=False),
-        "scipy_over_fit": entry(
-            naive / found.seconds, 50.0,
-            "least_squares with a 2-point Jacobian over solve_ivp and numpy; extrapolated: time of"
-            " 0.5 s simulated, times the seconds that our fit simulated, as if it needed no more;"
-            f" it agrees with ours to {naive_error(robot, log):.1e} rad", most=False),
-        **profile(found, work, burst / BURST),
-    }  # fmt: skip
-    print(json.dumps(result, indent=2, ensure_ascii=False))
-
-
-if __name__ == "__main__":
-    main()

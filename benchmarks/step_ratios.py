@@ -1,20 +1,13 @@
-"""How fast the twin is, as ratios measured in one run; prints one JSON object.
+"""How fast a step of the twin is, beside others; `benchmarks/speed.py` prints the ratios.
 
-    python benchmarks/twin.py
-
-Every entry is {"value", "goal", "met"}; a goal of null is information. Two things are compared
-by turns, many times, and the least time of each counts: other programs only ever add to it.
+Two things are compared by turns, many times, and the least time of each counts: other programs
+only ever add to it.
 """
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -25,9 +18,8 @@ from inca_mj.reference import simulate_reference
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.inputs import prbs
 from inca_mj.twin import native
-from inca_mj.twin.twin import Twin, build_twin
+from inca_mj.twin.twin import Twin
 
-ROOT = Path(__file__).resolve().parents[1]
 BURST = 50  # steps from the same moving state, so that both sides turn the same quaternions
 
 
@@ -117,53 +109,3 @@ def reference_ratio(robot: Twin, method: str, seconds: float = 2.0) -> float:
     theirs()  # compiles
     mine, other = least([ours, theirs], 3)
     return other / mine
-
-
-def cold_start(*arguments: str) -> tuple[float | None, str]:
-    """Least seconds of five runs of the program, or None and why there is none."""
-    command = [sys.executable, "-m", "inca_mj.cli", *arguments]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    best = float("inf")
-    for _ in range(5):
-        begin = time.perf_counter()
-        done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
-        if done.returncode:
-            last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-            return None, f"exit code {done.returncode}: {last}"
-        best = min(best, time.perf_counter() - begin)
-    return best, ""
-
-
-def entry(value: float | None, goal: float | None = None, *, most: bool = True, why: str = ""):
-    """One measurement beside its goal: at most it, or at least it."""
-    met = None
-    if goal is not None:
-        met = value is not None and (value <= goal if most else value >= goal)
-    shown = None if value is None else round(value, 4)
-    return {"value": shown, "goal": goal, "met": met} | ({"why": why} if why else {})
-
-
-def main() -> None:
-    """Measure everything and print it."""
-    begin = time.perf_counter()
-    robot = build_twin()
-    compiled = time.perf_counter() - begin
-    (burst,) = least([stepper(robot)], 200)
-    help_time, help_why = cold_start("--help")
-    compare_time, compare_why = cold_start("compare", "examples/log.csv", "--json")
-    result = {
-        "step_with_law_over_without": entry(law_ratio(robot), 1.05),
-        "python_callback_over_native": entry(python_ratio(robot), 4.0, most=False),
-        "batch_on_2_threads_over_loop_on_1": entry(batch_ratio(robot)),
-        "reference_rk4_over_twin": entry(reference_ratio(robot, "rk4")),
-        "reference_adaptive_over_twin": entry(reference_ratio(robot, "adaptive")),
-        "step_microseconds": entry(1e6 * burst / BURST),
-        "first_twin_seconds": entry(compiled),
-        "inca_help_seconds": entry(help_time, 0.4, why=help_why),
-        "inca_compare_seconds": entry(compare_time, why=compare_why),
-    }
-    print(json.dumps(result, indent=2))
-
-
-if __name__ == "__main__":
-    main()
