@@ -60,7 +60,6 @@ class Film:
         from inca_mj.commands.film_progress import FilmProgress
         from inca_mj.rendering.film import common_time, film, stills
 
-        self.output.tell("simulating what the film shows")
         scenes = [self._scene(source) for source in self._sources()]
         begin, end = common_time(scenes)
         off = [t for t in self.still if not begin <= t <= end]
@@ -160,4 +159,5 @@ class Film:
         log = read_inca_log(source)
         if self.seconds is not None and 0 < self.seconds < log.duration:
             log = log.between(float("-inf"), float(log.time[0]) + self.seconds)
+        self.output.tell(f"simulating {log.duration:g} s of {source}")
         return make_scene(compare_with(self.robot, log), self.seconds)

@@ -13,7 +13,9 @@ from identification.prediction import remaining
 OPTIONS = DiscoveryOptions()
 LEAST = 1 + OPTIONS.min_gap_share  # rms over the noise beyond which something is left
 DOUBTFUL = SimpleNamespace(
-    candidate=SimpleNamespace(effect=SimpleNamespace(name="spring"), where="joint"),
+    candidate=SimpleNamespace(
+        effect=SimpleNamespace(name="spring", phrase="spring"), where="joint"
+    ),
     prediction=SimpleNamespace(is_everywhere=True, fall=0.07, t=OPTIONS.min_proof_t + 0.4),
     doubt="chance",
 )

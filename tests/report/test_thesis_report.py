@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from page_text import text_of
 
 from identification.estimation.estimation import Options
 from identification.report.page import write_report
@@ -38,7 +39,7 @@ def found():
 def page(found, tmp_path_factory):
     path = tmp_path_factory.mktemp("thesis") / "report.html"
     write_report(path, "The thesis", thesis_verdict(found), thesis_sections(found))
-    return path.read_text(encoding="utf-8")
+    return text_of(path.read_text(encoding="utf-8"))
 
 
 def test_each_table_and_figure_has_one_heading(found, page):
