@@ -13,7 +13,6 @@ order of columns does. Accelerations come from the weak form, as in Brunot, Jano
 
 from __future__ import annotations
 
-import copy
 from dataclasses import dataclass
 
 import mujoco
@@ -23,6 +22,7 @@ from scipy.optimize import lsq_linear
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.predictor import output_columns
+from identification.robot.moving import follow_bodies, inertial_force, point_force, weights
 
 FACTOR = 4.0  # that a mass, an inertia or a stiffness may be off; more is a matter of units
 PAYLOAD = 1.0  # largest, of the mass of all that moves
@@ -147,16 +147,18 @@ def _columns(
     outer = [b for b in moving if not any(model.body_parentid[c] == b for c in moving)]
     reach = _size(model, moving)
     nv, n, least = model.nv, len(motion.v), np.finfo(float).tiny
-    own = [_inertial(model, motion, b, None) for b in moving]
+    bodies = follow_bodies(model, motion.q, motion.v, motion.a, moving)
+    own = [inertial_force(body, float(model.body_mass[b]), model.body_inertia[b])
+           for b, body in bodies.items()]  # fmt: skip
     rotors = [motion.a * (model.dof_armature * (np.arange(nv) == j))
               for j in range(nv) if model.dof_armature[j]]  # fmt: skip
     stiff = [(motion.q - model.qpos_spring) * (model.jnt_stiffness * (np.arange(nv) == j))
              for j in range(nv) if model.jnt_stiffness[j]]  # fmt: skip
     points = [np.zeros(3)]
     points += [s * far * reach * e for far in FAR for s in (-1, 1) for e in np.eye(3)]
-    payload = [_inertial(model, motion, b, model.body_ipos[b] + p) for b in outer for p in points]
+    payload = [point_force(bodies[b], p) for b in outer for p in points]
     near = [np.zeros(3), *(reach * np.eye(3))]
-    weight = [w for b in moving for p in near for w in _weights(model, motion, b, p)]
+    weight = [w for body in bodies.values() for p in near for w in weights(body, p)]
     each = [np.where(np.arange(nv) == j, x, 0.0)
             for j in range(nv) for x in (motion.v, np.sign(motion.v),
                                          *([motion.q] if freedom.has_springs else []))]  # fmt: skip
@@ -180,40 +182,3 @@ def _size(model: mujoco.MjModel, moving: list[int]) -> float:
     centres = data.xipos[moving]
     from_axes = np.linalg.norm(centres - data.xpos[moving], axis=1).max(initial=0.0)
     return float(max(np.ptp(centres, axis=0).max(initial=0.0), from_axes)) or 0.1
-
-
-def _inertial(
-    model: mujoco.MjModel, motion: Smooth, body: int, point: np.ndarray | None
-) -> np.ndarray:
-    """Inertial forces of one body alone, or of 1 kg at a point of it, shape (n, nv)."""
-    alone = copy.copy(model)
-    mass, inertia = model.body_mass[body], model.body_inertia[body].copy()
-    alone.body_mass[:], alone.body_inertia[:], alone.opt.gravity[:] = 0.0, 0.0, 0.0
-    if point is None:
-        alone.body_mass[body], alone.body_inertia[body] = mass, inertia
-    else:
-        alone.body_mass[body], alone.body_ipos[body] = 1.0, point
-    data, force = mujoco.MjData(alone), np.empty(motion.v.shape)
-    for k in range(len(force)):
-        data.qpos, data.qvel, data.qacc = motion.q[k], motion.v[k], motion.a[k]
-        mujoco.mj_kinematics(alone, data)
-        mujoco.mj_comPos(alone, data)
-        mujoco.mj_comVel(alone, data)
-        mujoco.mj_rne(alone, data, 1, force[k])
-    return force
-
-
-def _weights(
-    model: mujoco.MjModel, motion: Smooth, body: int, point: np.ndarray
-) -> list[np.ndarray]:
-    """Forces of 1 N along each axis of the world at a point of a body, three of shape (n, nv)."""
-    data, J = mujoco.MjData(model), np.zeros((3, model.nv))
-    force = np.empty((3, *motion.v.shape))
-    for k in range(len(motion.q)):
-        data.qpos = motion.q[k]
-        mujoco.mj_kinematics(model, data)
-        mujoco.mj_comPos(model, data)
-        at = data.xipos[body] + data.ximat[body].reshape(3, 3) @ point
-        mujoco.mj_jac(model, data, J, None, at, body)
-        force[:, k] = J
-    return [*force]
