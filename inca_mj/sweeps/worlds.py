@@ -107,17 +107,13 @@ def make_world(settings: WorldSettings, seed: Seed) -> tuple[list[Log], dict[str
         DivergenceError: the effects are so large that the robot breaks.
     """
     number = seed.number() if settings.world is None else settings.world
-    kind, names, ratio = _drawn(settings, number)
-    others = [settings.wrong_shapes and name in SHAPES for name in names]
-    effects = [
-        _balanced(draw_effect(name, number, other_shape=other))
-        for name, other in zip(names, others, strict=True)
-    ]
+    kind, names, others, ratio = _drawn(settings, number)
     setting = settings.setting(number)
     turn = INPUTS.index(setting.input)
     made = records(
-        number, effects, n=settings.records, inputs=(*INPUTS[turn:], *INPUTS[:turn]),
-        ratio=ratio if effects else None, setting=setting,
+        number, _effects(settings, number, names), n=settings.records,
+        inputs=(*INPUTS[turn:], *INPUTS[:turn]), ratio=ratio if names else None, setting=setting,
+        others=_effects(settings, number, others),
     )  # fmt: skip
     hidden = made[0].truth.effects
     sizes = {
@@ -125,16 +121,20 @@ def make_world(settings: WorldSettings, seed: Seed) -> tuple[list[Log], dict[str
         for e in hidden for size in e.sizes
     }  # fmt: skip
     truth = {
-        "world": number, "kind": kind, "ratio": ratio if effects else 0.0,
+        "world": number, "kind": kind, "ratio": ratio if names else 0.0,
         "hidden": [e.name for e in hidden], "hidden_where": [e.where for e in hidden],
         "hidden_size_of": [*sizes], "hidden_sizes": [*sizes.values()],
-        "other_shape": any(others),
+        "other_shape": settings.wrong_shapes and any(e.name in SHAPES for e in hidden),
     }  # fmt: skip
     return [each.log for each in made], truth
 
 
-def _drawn(settings: WorldSettings, number: int) -> tuple[str, list[str], float]:
-    """The kind of a world, the names of its effects, and their ratio."""
+def _drawn(settings: WorldSettings, number: int) -> tuple[str, list[str], list[str], float]:
+    """The kind of a world, the names of its effects, those in reserve, and their ratio.
+
+    One in reserve takes the place of one that leaves too little with every size of a robot; an
+    effect that is asked for has none.
+    """
     rng = np.random.default_rng([number, 5])
     kind = settings.kind
     if kind == "mixed":
@@ -143,11 +143,17 @@ def _drawn(settings: WorldSettings, number: int) -> tuple[str, list[str], float]
     known = [*(UNLISTED if kind == "unknown" else HIDDEN_EFFECTS)]
     names = [str(name) for name in rng.choice(known, count, replace=False)]
     ratio = float(settings.ratio or rng.choice(RATIOS))
+    others = [str(name) for name in rng.permutation(known) if name not in names]
     if settings.effect in known:
         names = [settings.effect, *(n for n in names if n != settings.effect)][:count]
-    return COUNTS[count] if kind == "listed" else kind, names, ratio
+        others = []
+    return COUNTS[count] if kind == "listed" else kind, names, others if count else [], ratio
 
 
-def _balanced(effect: Any) -> HiddenEffect:
-    """Of a robot that stands with it, as all effects on its geometry do."""
-    return replace(effect, balanced=True) if hasattr(effect, "balanced") else effect
+def _effects(settings: WorldSettings, number: int, names: list[str]) -> list[HiddenEffect]:
+    """The effects of a world by name; the robot stands with all of them."""
+    drawn: list[Any] = [
+        draw_effect(name, number, other_shape=settings.wrong_shapes and name in SHAPES)
+        for name in names
+    ]
+    return [replace(e, balanced=True) if hasattr(e, "balanced") else e for e in drawn]

@@ -24,6 +24,8 @@ class HiddenCableHardening(HiddenDriveEffect):
     name: ClassVar[str] = "cable_hardening"
     acts_on: ClassVar[str] = "all cables"
     sizes: ClassVar[tuple[str, ...]] = ("kappa",)
+    largest: ClassVar[float] = 2.0  # at a strain of 0.1 %: three times as stiff
+    reach: ClassVar[float] = 1e-3
     positive: ClassVar[tuple[str, ...]] = ("exponent",)
     kappa: float = 200.0
     exponent: float = 1.0
@@ -41,6 +43,7 @@ class HiddenCableCreep(HiddenDriveEffect):
     name: ClassVar[str] = "cable_creep"
     acts_on: ClassVar[str] = "all cables"
     sizes: ClassVar[tuple[str, ...]] = ("fraction",)
+    largest: ClassVar[float] = 0.5  # a new braid that gives half as much again
     positive: ClassVar[tuple[str, ...]] = ("tau",)
     fraction: float = 0.1
     tau: float = 1.0
@@ -62,6 +65,7 @@ class HiddenCableWeight(HiddenDriveEffect):
     name: ClassVar[str] = "cable_weight"
     acts_on: ClassVar[str] = "all cables"
     sizes: ClassVar[tuple[str, ...]] = ("rho",)
+    largest: ClassVar[float] = 5e-3  # steel of 1 mm weighs 4 g/m [kg/m]
     rho: float = 6e-4
     sag: bool = False
     balanced: bool = False

@@ -24,6 +24,7 @@ class HiddenDrumEccentricity(HiddenDriveEffect):
 
     name: ClassVar[str] = "drum_eccentricity"
     sizes: ClassVar[tuple[str, ...]] = ("a", "b")
+    largest: ClassVar[float] = 0.03  # half a millimetre of a drum of 17.5 mm
     a: float = 8e-4
     b: float = 8e-4
 
@@ -39,6 +40,7 @@ class HiddenDrumLayering(HiddenDriveEffect):
 
     name: ClassVar[str] = "drum_layering"
     sizes: ClassVar[tuple[str, ...]] = ("h",)
+    largest: ClassVar[float] = 1e-4  # a cable of 0.6 mm, one turn on the other [m/rad]
     h: float = 1e-5
 
     def put(self, numbers: HiddenNumbers) -> None:
@@ -52,6 +54,7 @@ class HiddenDrumRadiusMismatch(HiddenOneDriveEffect):
 
     name: ClassVar[str] = "drum_radius_mismatch"
     sizes: ClassVar[tuple[str, ...]] = ("delta",)
+    largest: ClassVar[float] = 0.05  # a millimetre of a drum of 17.5 mm
     delta: float = 6e-3
 
     def put(self, numbers: HiddenNumbers) -> None:
@@ -68,6 +71,7 @@ class HiddenBacklash(HiddenDriveEffect):
 
     name: ClassVar[str] = "backlash"
     sizes: ClassVar[tuple[str, ...]] = ("h",)
+    largest: ClassVar[float] = 0.02  # a gap of two degrees [rad]
     h: float = 0.01
 
     def put(self, numbers: HiddenNumbers) -> None:
@@ -81,6 +85,8 @@ class HiddenSpringHardening(HiddenDriveEffect):
 
     name: ClassVar[str] = "spring_hardening"
     sizes: ClassVar[tuple[str, ...]] = ("k_3",)
+    largest: ClassVar[float] = 2.0  # at 0.2 m: three times as stiff
+    reach: ClassVar[float] = 0.2
     positive: ClassVar[tuple[str, ...]] = ("exponent",)
     k_3: float = 8.0
     exponent: float = 2.0
@@ -97,6 +103,7 @@ class HiddenSpringHysteresis(HiddenDriveEffect):
 
     name: ClassVar[str] = "spring_hysteresis"
     sizes: ClassVar[tuple[str, ...]] = ("eta",)
+    largest: ClassVar[float] = 0.1  # 10 % between loading and unloading
     eta: float = -0.02
 
     def put(self, numbers: HiddenNumbers) -> None:

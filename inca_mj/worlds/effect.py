@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from math import isfinite
+from math import hypot, inf, isfinite
 from typing import ClassVar, Self
 
 import numpy as np
@@ -40,6 +40,8 @@ class HiddenNumbers:
 class HiddenEffect:
     """A physical effect that the reference lacks.
 
+    A robot may have it with sizes z of |z| xⁿ ≤ `largest`, at x = `reach` and the law's exponent n.
+
     Raises:
         InputError: a number is not finite, or a positive one is not positive.
     """
@@ -47,6 +49,8 @@ class HiddenEffect:
     name: ClassVar[str]
     acts_on: ClassVar[str]
     sizes: ClassVar[tuple[str, ...]]  # the fields that are zero where the effect is off
+    largest: ClassVar[float] = inf
+    reach: ClassVar[float] = 1.0
     positive: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
@@ -66,6 +70,12 @@ class HiddenEffect:
     def values(self) -> dict[str, float]:
         """All numbers of the law by name, without the place."""
         return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "drive"}
+
+    @property
+    def most(self) -> float:
+        """By what its sizes can be multiplied so that a robot may still have it."""
+        size = hypot(*(getattr(self, name) for name in self.sizes))
+        return self.largest / (size * self.reach ** getattr(self, "exponent", 0.0))
 
     def scaled(self, factor: float) -> Self:
         """The same effect with its sizes times `factor`; its shape stays."""

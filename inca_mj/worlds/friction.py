@@ -23,6 +23,7 @@ class HiddenStribeckFriction(HiddenDriveEffect):
 
     name: ClassVar[str] = "stribeck_friction"
     sizes: ClassVar[tuple[str, ...]] = ("f_s",)
+    largest: ClassVar[float] = 0.04  # a winch at rest may hold twice its friction in motion [N m]
     positive: ClassVar[tuple[str, ...]] = ("v_s", "exponent")
     f_s: float = 0.01
     v_s: float = 1.2
@@ -41,6 +42,7 @@ class HiddenAsymmetricFriction(HiddenDriveEffect):
 
     name: ClassVar[str] = "asymmetric_friction"
     sizes: ClassVar[tuple[str, ...]] = ("f_a",)
+    largest: ClassVar[float] = 0.012  # 30 % of the friction of a winch, 0.04 [N m]
     f_a: float = 0.002
 
     def put(self, numbers: HiddenNumbers) -> None:
@@ -54,6 +56,7 @@ class HiddenLoadDependentFriction(HiddenDriveEffect):
 
     name: ClassVar[str] = "load_dependent_friction"
     sizes: ClassVar[tuple[str, ...]] = ("mu",)
+    largest: ClassVar[float] = 0.2  # small pulleys take up to 20 % of the load
     mu: float = 0.004
 
     def put(self, numbers: HiddenNumbers) -> None:
@@ -67,6 +70,8 @@ class HiddenQuadraticFriction(HiddenDriveEffect):
 
     name: ClassVar[str] = "quadratic_friction"
     sizes: ClassVar[tuple[str, ...]] = ("c",)
+    largest: ClassVar[float] = 0.05  # at 50 rad/s [N m]
+    reach: ClassVar[float] = 50.0
     positive: ClassVar[tuple[str, ...]] = ("exponent",)
     c: float = 2e-6
     exponent: float = 2.0
@@ -83,6 +88,7 @@ class HiddenFrictionMismatch(HiddenOneDriveEffect):
 
     name: ClassVar[str] = "friction_mismatch"
     sizes: ClassVar[tuple[str, ...]] = ("delta",)
+    largest: ClassVar[float] = 1.0  # a drive with twice the friction of the others
     delta: float = 0.1
 
     def put(self, numbers: HiddenNumbers) -> None:
@@ -96,6 +102,7 @@ class HiddenPositionDependentFriction(HiddenDriveEffect):
 
     name: ClassVar[str] = "position_dependent_friction"
     sizes: ClassVar[tuple[str, ...]] = ("a", "b")
+    largest: ClassVar[float] = 0.3  # 30 % of the friction
     a: float = 0.2
     b: float = 0.1
 

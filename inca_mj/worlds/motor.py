@@ -28,6 +28,7 @@ class HiddenCogging(HiddenDriveEffect):
 
     name: ClassVar[str] = "cogging"
     sizes: ClassVar[tuple[str, ...]] = ("a", "b")
+    largest: ClassVar[float] = 0.05  # torque of motors without a compensation of it [N m]
     positive: ClassVar[tuple[str, ...]] = ("n",)
     a: float = 2e-4
     b: float = 4e-4
@@ -46,6 +47,7 @@ class HiddenCurrentLag(HiddenDriveEffect):
 
     name: ClassVar[str] = "current_lag"
     sizes: ClassVar[tuple[str, ...]] = ("tau",)
+    largest: ClassVar[float] = 0.01  # a slow current loop [s]
     tau: float = 1.5e-3
 
     def put(self, numbers: HiddenNumbers) -> None:
@@ -60,6 +62,7 @@ class HiddenDelay(HiddenEffect):
     name: ClassVar[str] = "delay"
     acts_on: ClassVar[str] = "all drives"
     sizes: ClassVar[tuple[str, ...]] = ("delay",)
+    largest: ClassVar[float] = 0.01  # ten cycles of 1 kHz [s]
     delay: float = 1.5e-3
 
     def put(self, numbers: HiddenNumbers) -> None:
@@ -104,6 +107,7 @@ class HiddenTorqueConstantDrift(HiddenDriveEffect):
 
     name: ClassVar[str] = "torque_constant_drift"
     sizes: ClassVar[tuple[str, ...]] = ("alpha",)
+    largest: ClassVar[float] = 5e-3  # 12 % in 24 s: magnets of a motor that heats up fast [1/s]
     alpha: float = 5e-4
     settle: float = 0.0
     heat: bool = False
@@ -120,6 +124,7 @@ class HiddenTorqueConstantMismatch(HiddenOneDriveEffect):
 
     name: ClassVar[str] = "torque_constant_mismatch"
     sizes: ClassVar[tuple[str, ...]] = ("delta",)
+    largest: ClassVar[float] = 0.25  # a motor of the next winding
     delta: float = 0.01
 
     def put(self, numbers: HiddenNumbers) -> None:
@@ -133,6 +138,7 @@ class HiddenTorqueRippleTime(HiddenDriveEffect):
 
     name: ClassVar[str] = "torque_ripple_time"
     sizes: ClassVar[tuple[str, ...]] = ("a",)
+    largest: ClassVar[float] = 0.05  # as cogging [N m]
     positive: ClassVar[tuple[str, ...]] = ("frequency",)
     a: float = 1e-3
     frequency: float = 3.7

@@ -30,6 +30,7 @@ class HiddenPulleyRadius(HiddenDriveEffect):
     name: ClassVar[str] = "pulley_radius"
     acts_on: ClassVar[str] = "all cables"
     sizes: ClassVar[tuple[str, ...]] = ("r_p",)
+    largest: ClassVar[float] = 0.03  # the largest pulley that fits [m]
     r_p: float = 0.01
 
     def put(self, numbers: HiddenNumbers) -> None:
@@ -43,6 +44,7 @@ class HiddenAnchorOffset(HiddenOneDriveEffect):
 
     name: ClassVar[str] = "anchor_offset"
     sizes: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    largest: ClassVar[float] = 0.03  # an exit point in the next hole [m]
     x: float = 0.01
     y: float = -0.01
     z: float = 0.0
@@ -59,6 +61,7 @@ class HiddenFrameVibration(HiddenOneDriveEffect):
 
     name: ClassVar[str] = "frame_vibration"
     sizes: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    largest: ClassVar[float] = 2e-3  # a soft frame [m]
     positive: ClassVar[tuple[str, ...]] = ("frequency",)
     x: float = 3e-4
     y: float = 3e-4
@@ -83,6 +86,7 @@ class HiddenComOffset(HiddenEffect):
     name: ClassVar[str] = "com_offset"
     acts_on: ClassVar[str] = "platform"
     sizes: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    largest: ClassVar[float] = 0.02  # a payload on one side of the handle [m]
     x: float = 2e-3
     y: float = 0.0
     z: float = -3e-3
@@ -100,6 +104,7 @@ class HiddenExternalForce(HiddenEffect):
     name: ClassVar[str] = "external_force"
     acts_on: ClassVar[str] = "platform"
     sizes: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+    largest: ClassVar[float] = 1.0  # two thirds of the weight of the platform [N]
     x: float = 0.06
     y: float = -0.03
     z: float = 0.0
@@ -119,6 +124,7 @@ class HiddenAirDrag(HiddenEffect):
     name: ClassVar[str] = "air_drag"
     acts_on: ClassVar[str] = "platform"
     sizes: ClassVar[tuple[str, ...]] = ("c",)
+    largest: ClassVar[float] = 0.5  # a sheet on the handle [N s²/m²]
     positive: ClassVar[tuple[str, ...]] = ("exponent",)
     c: float = 0.15
     exponent: float = 2.0

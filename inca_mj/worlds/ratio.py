@@ -9,7 +9,8 @@ Base parameters may be anything. A part that deviates costs what it is beyond th
 units of std. Where all drives are alike and the geometry is exact there is no D, and r is the rms
 of (I − S S⁺) e(s) in units of σ.
 
-`sized` solves r(s) = ratio by secants; r(0) = 0, and r is nearly proportional to s mostly.
+`sized` solves r(s) = ratio by secants; r(0) = 0, and r is nearly proportional to s mostly. A size
+that no robot has is not looked for: what cannot be absorbed may be little of any effect.
 """
 
 from __future__ import annotations
@@ -93,15 +94,19 @@ class HiddenAbsorbed:
         return simulate_world(plant, currents, sampling_time, step)[:, base.ANGLES].ravel()
 
 
+class UnreachedError(InputError):
+    """No size that a robot may have of an effect leaves what is asked for."""
+
+
 def sized(effect: HiddenEffect, absorbed: HiddenAbsorbed, goal: float) -> HiddenEffect:
     """The effect with a size whose unabsorbed rms is `goal` [rad], to 2 %.
 
     Raises:
-        InputError: no size gives it; the effect as given must show in the angles.
+        UnreachedError: no size that a robot may have gives it.
     """
     # Sizes and rms of two trials; the first stands for no effect at all.
     below, above = (0.0, 0.0), (np.inf, np.inf)
-    s, r = 1.0, 0.0
+    s, r, most = min(1.0, effect.most), 0.0, effect.most
     for _ in range(ATTEMPTS):
         try:
             r = absorbed.rms([effect.scaled(s)])
@@ -110,13 +115,24 @@ def sized(effect: HiddenEffect, absorbed: HiddenAbsorbed, goal: float) -> Hidden
         if abs(r / goal - 1) < NEAR:
             return effect.scaled(s)
         if r < goal:
+            if s == most:
+                raise UnreachedError(_too_small(effect.scaled(s), r, goal))
             below = (s, r)
         else:
             above = (s, r)
-        s = _next(s, r, goal, below, above)
-    raise InputError(
+        s = min(_next(s, r, goal, below, above), most)
+    raise UnreachedError(
         f"{effect.name}: no size was found that the base parameters leave {goal:.3g} rad of (the"
         f" last left {r:.3g} rad); start from another size, or ask for another ratio"
+    )
+
+
+def _too_small(effect: HiddenEffect, r: float, goal: float) -> str:
+    """Why an effect of the largest size is not enough."""
+    sizes = ", ".join(f"{name} = {getattr(effect, name):.3g}" for name in effect.sizes)
+    return (
+        f"{effect.name}: of the largest size that a robot may have ({sizes}) {r:.3g} rad cannot be"
+        f" absorbed, and {goal:.3g} rad are asked for; ask for another ratio, or another effect"
     )
 
 

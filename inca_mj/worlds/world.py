@@ -15,7 +15,7 @@ from inca_mj.robot.geometry import DRIVES, INCA, Geometry
 from inca_mj.worlds.effect import HiddenEffect
 from inca_mj.worlds.measure import coloured, encode, noise_rms
 from inca_mj.worlds.plant import make_plant, simulate_world
-from inca_mj.worlds.ratio import HiddenAbsorbed, sized
+from inca_mj.worlds.ratio import HiddenAbsorbed, UnreachedError, sized
 from inca_mj.worlds.robot import elsewhere, true_robot
 from inca_mj.worlds.setting import HiddenSetting, make_currents
 from inca_mj.worlds.truth import HiddenTruth, HiddenWorld
@@ -68,6 +68,7 @@ def records(
     inputs: Sequence[str] = INPUTS,
     further: float = FURTHER,
     geometry: Geometry = INCA,
+    others: Sequence[HiddenEffect] = (),
 ) -> tuple[HiddenWorld, ...]:
     """Logs of one robot with these effects, each with an input, a start and noise of its own.
 
@@ -82,6 +83,8 @@ def records(
         inputs: "prbs" or "multisine" of each log, taken in turn where there are fewer.
         further: a later start position may be off by this much more than the first, by axis [m].
         geometry: nominal exit points and connectors.
+        others: effects that take, in this order, the place of those whose ratio no size that a
+            robot may have reaches.
 
     Raises:
         InputError: a number is bad, an effect is there twice in one place, or a ratio cannot be
@@ -89,7 +92,7 @@ def records(
         DivergenceError: the effects are so large that the robot breaks.
     """
     setting = setting or HiddenSetting()
-    places = [(e.name, e.where) for e in effects]
+    places = [(e.name, e.where) for e in (*effects, *others)]
     if len(set(places)) < len(places):
         raise InputError("an effect is named twice in one place; give it once, with its size")
     if seed < 0:
@@ -106,7 +109,7 @@ def records(
             robot, geometry, u, setting.sampling_time, setting.varied, setting.tolerances, noise
         )
         goals = [r * noise for r in ratios]
-        chosen = tuple(sized(e, absorbed, goal) for e, goal in zip(chosen, goals, strict=True))
+        chosen = _sized(effects, others, absorbed, goals)
     made = [_record(seed, (), robot, geometry, chosen, ratios, settings[0], u)]
     for j in range(1, n):
         rng = np.random.default_rng([seed, 5, j])
@@ -114,6 +117,27 @@ def records(
         u = make_currents(int(rng.integers(2**31)), settings[j])
         made.append(_record(seed, (j,), moved, geometry, chosen, ratios, settings[j], u))
     return tuple(made)
+
+
+def _sized(
+    effects: Sequence[HiddenEffect],
+    others: Sequence[HiddenEffect],
+    absorbed: HiddenAbsorbed,
+    goals: Sequence[float],
+) -> tuple[HiddenEffect, ...]:
+    """As many effects as there are goals, with the sizes that leave these [rad]."""
+    chosen: list[HiddenEffect] = []
+    refused: UnreachedError | None = None
+    for e in (*effects, *others):
+        if len(chosen) == len(goals):
+            break
+        try:
+            chosen.append(sized(e, absorbed, goals[len(chosen)]))
+        except UnreachedError as error:
+            refused = refused or error
+    if refused is not None and len(chosen) < len(goals):
+        raise refused
+    return tuple(chosen)
 
 
 def _record(

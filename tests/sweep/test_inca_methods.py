@@ -59,12 +59,15 @@ def test_of_six_mixed_worlds_one_hides_nothing_and_one_an_unlisted_effect(monkey
     settings = WorldSettings(kind="mixed", first=100, effects=2)
     drawn = [_drawn(settings, 100 + k) for k in range(60)]
     assert [kind for kind, *_ in drawn[:6]] == ["null", "pair", "pair", "unknown", "pair", "pair"]
-    assert all(not names for kind, names, _ in drawn if kind == "null")
-    assert {n for kind, names, _ in drawn if kind == "unknown" for n in names} <= {*UNLISTED}
-    pairs = [names for kind, names, _ in drawn if kind == "pair"]
+    assert all(not names for kind, names, *_ in drawn if kind == "null")
+    assert {n for kind, names, *_ in drawn if kind == "unknown" for n in names} <= {*UNLISTED}
+    pairs = [names for kind, names, *_ in drawn if kind == "pair"]
     assert all(len({*names}) == 2 and {*names} <= {*HIDDEN_EFFECTS} for names in pairs)
     assert len({tuple(names) for names in pairs}) > 20
     assert {ratio for *_, ratio in drawn} == {1.0, 3.0, 10.0}
+    for kind, names, others, _ in drawn:
+        if kind == "pair":
+            assert sorted([*names, *others]) == sorted(HIDDEN_EFFECTS)
 
 
 @pytest.mark.parametrize(

@@ -11,13 +11,22 @@ from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.worlds import (
     EVERY,
+    HIDDEN_EFFECTS,
+    SHAPES,
+    UNLISTED,
     VARIED,
     HiddenAnchorOffset,
     HiddenBacklash,
+    HiddenCableHardening,
+    HiddenCableWeight,
+    HiddenCogging,
+    HiddenCurrentSaturation,
     HiddenSetting,
     HiddenStribeckFriction,
     HiddenTorqueConstantMismatch,
+    draw_effect,
     make_currents,
+    records,
     world,
 )
 from inca_mj.worlds.measure import coloured, encode, noise_rms
@@ -113,6 +122,35 @@ def test_a_ratio_is_reached(effect):
     left = HiddenAbsorbed(robot, INCA, log.inputs, 0.01, VARIED).rms(truth.effects)
     assert left / truth.noise_rms == pytest.approx(6.0, rel=0.02)
     assert truth.ratios == (6.0,)
+
+
+def test_an_effect_is_not_larger_than_a_robot_may_have_it():
+    line = HiddenCableWeight(balanced=True)
+    assert line.scaled(line.most).rho == pytest.approx(line.largest)
+    offset = HiddenAnchorOffset()
+    largest = offset.scaled(offset.most)
+    assert np.linalg.norm([largest.x, largest.y, largest.z]) == pytest.approx(offset.largest)
+    cubic, square = HiddenCableHardening(exponent=2.0), HiddenCableHardening(exponent=1.0)
+    κ_2, κ_1 = cubic.scaled(cubic.most).kappa, square.scaled(square.most).kappa
+    assert κ_2 * 1e-3**2 == pytest.approx(κ_1 * 1e-3)
+    assert np.isinf(HiddenCurrentSaturation().most)
+    with pytest.raises(InputError, match=r"rho = 0\.005\).* cannot be absorbed"):
+        world(6, [line], ratio=1e4, setting=SHORT)
+
+
+def test_an_effect_in_reserve_takes_the_place_of_one_that_cannot_show_so_much():
+    line, cogging, backlash = HiddenCableWeight(), HiddenCogging(), HiddenBacklash()
+    (made,) = records(6, [line], n=1, ratio=200.0, setting=SHORT, others=[cogging, backlash])
+    (alone,) = records(6, [cogging], n=1, ratio=200.0, setting=SHORT, others=[backlash])
+    assert made.truth.effects == alone.truth.effects
+    assert [e.name for e in made.truth.effects] == ["cogging"]
+
+
+@pytest.mark.parametrize("name", [*HIDDEN_EFFECTS, *UNLISTED])
+def test_every_effect_begins_at_a_size_that_a_robot_may_have(name):
+    assert draw_effect(name, 3).most >= 1.0
+    if name in SHAPES:
+        assert draw_effect(name, 3, other_shape=True).most >= 1.0
 
 
 def test_bad_worlds_are_refused():
