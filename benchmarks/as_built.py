@@ -16,7 +16,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -24,6 +23,8 @@ from typing import Any
 
 import numpy as np
 from as_built_statistics import page
+
+from identification.sweep.code import commit
 
 HERE = Path(__file__).parent
 RESULTS = HERE / "results" / "as_built"
@@ -134,13 +135,6 @@ def key_of(robot: str, given: argparse.Namespace) -> str:
     return f"{robot}/{given.records}/{given.confirm}/{given.spread}"
 
 
-def commit() -> str:
-    """The commit of the code that runs."""
-    out = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=HERE, text=True,
-                         capture_output=True, check=False)  # fmt: skip
-    return out.stdout.strip()
-
-
 def rows_of(path: Path) -> list[dict[str, Any]]:
     """Rows of earlier runs, the last of each key."""
     if not path.exists():
@@ -161,7 +155,7 @@ def worlds_of(folder: Path) -> list[dict[str, Any]]:
             key = f"world/{record['world']}/{record['kind']}/{record['ratio']:g}"
             key += "/beside the spread" * record["set.as_built"]
             key += f"/{record['set.duration']:g} s/{record['set.records']} records"
-            rows.append({"key": key, **nested(record)})
+            rows.append({"key": key, **nested(record), "code": record["run.code"]})
     return rows
 
 

@@ -20,6 +20,8 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+from identification.sweep.code import commit
+
 RECORD = Path(__file__).parent / "results" / "forecast.jsonl"
 RATE = 100.0  # [Hz]
 NOISE = 5e-4  # [rad]
@@ -88,13 +90,6 @@ def measured(samples: int, spread: str) -> dict[str, object]:
 def peak() -> float:
     """The most memory that this process has held [bytes]."""
     return float(UNIT * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
-
-
-def commit() -> str:
-    """The commit of the code that runs."""
-    done = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=Path(__file__).parent,
-                          text=True, capture_output=True, check=False)  # fmt: skip
-    return done.stdout.strip()
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from forecast import commit
+from identification.sweep.code import commit
 
 LATEST = 6.0  # [s] after the start, when most commands are within their search
 WITHIN = 2.0  # [s]

@@ -97,13 +97,13 @@ def take(given: argparse.Namespace) -> None:
     from datetime import UTC, datetime
 
     from pyarrow.dataset import dataset
-    from robots.measurement import when
 
     for row in dataset(given.take / "records").to_table().to_pylist():
         if row["error"] is None:
             ending = "" if row["set.split"] == 1 else f"_split_{row['set.split']}"
             day = datetime.fromtimestamp(row["run.ended"], UTC).date().isoformat()
-            own = {**when(), "date": day, "seconds": row["run.seconds"]}
+            version, _, commit = row["run.code"].partition(", ")
+            own = {"date": day, "version": version, "commit": commit, "seconds": row["run.seconds"]}
             keep(given, row["set.robot"] + ending, {**json.loads(row["record"]), **own})
 
 

@@ -34,6 +34,7 @@ from mujoco.batch import Batch
 from identification.estimation.estimation import estimate
 from identification.linear import derivatives
 from identification.model import rollout
+from identification.sweep.code import commit
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import Twin, build_twin
 
@@ -204,11 +205,8 @@ def main() -> None:
             print(f"{name}: {of['value']}", file=sys.stderr, flush=True)
     print(json.dumps(found, indent=2, ensure_ascii=False))
     if options.out:
-        commit = subprocess.run(
-            ["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True
-        ).stdout.strip()
         row = {
-            "commit": commit, "machine": platform.machine(), "processors": os.cpu_count(),
+            "commit": commit(), "machine": platform.machine(), "processors": os.cpu_count(),
             "load": os.getloadavg()[0],
             "peak_megabytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
             **found,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 import time
 from collections.abc import Callable
 from datetime import UTC, datetime
@@ -18,6 +17,7 @@ from identification.prediction.result import RecordsDiscovery
 from identification.report.records_json import records_to_json
 from identification.report.records_text import records_text
 from identification.robot.robot import Robot
+from identification.sweep.code import commit
 from robots.changed import on_changed
 from robots.measured_robot import MeasuredRobot, Outcome
 from robots.unseen import compare, errors_of
@@ -134,17 +134,8 @@ def _sizes(compiled: Robot, found: RecordsDiscovery, published: dict[str, float]
 
 def when() -> dict[str, str]:
     """Date and version of what was run."""
-    here = Path(__file__).parent
-    try:
-        said = subprocess.run(
-            ["git", "describe", "--always", "--dirty"], cwd=here, capture_output=True, text=True,
-            check=True,
-        ).stdout.strip()  # fmt: skip
-    except (OSError, subprocess.CalledProcessError):
-        said = ""
-    return {
-        "date": datetime.now(UTC).date().isoformat(), "version": version("inca-mj"), "commit": said
-    }  # fmt: skip
+    today = datetime.now(UTC).date().isoformat()
+    return {"date": today, "version": version("inca-mj"), "commit": commit()}
 
 
 def plain(record: Any) -> Any:

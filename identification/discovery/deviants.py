@@ -9,13 +9,15 @@ part, and from here on every part is kept within three std of the others.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
+from identification.discovery.effect_results import Proof
 from identification.discovery.fitted_model import (
     AcceptedEffect,
     FittedModel,
-    fit_model,
     is_confirmed,
     try_fit,
 )
@@ -28,6 +30,7 @@ from identification.estimation.options import Progress
 # Steps of the fit without a part that is off. It is a robot that cannot be, and its fit
 # wanders; a few steps say how far it is from the data.
 FEW = 5
+FAR = 10.0  # times what BIC asks for the sizes of an effect, beyond which more steps change nothing
 
 
 def find_deviants(task: DiscoveryTask, model: FittedModel) -> tuple[Candidate, ...]:
@@ -56,6 +59,9 @@ def accept_deviants(
 ) -> tuple[FittedModel, tuple[AcceptedEffect, ...]]:
     """The model with all parts within bounds, and the effects of those that deviate farther.
 
+    All of them become effects at once, where the fit with free parts has ended; then one after the
+    other is taken out again, the nearest first, and stays out where it is not needed.
+
     Args:
         task: what is asked.
         model: a fit in which parts are free.
@@ -65,29 +71,62 @@ def accept_deviants(
     Returns:
         The model without these effects, its parts within bounds, and the effects that unseen
         samples confirm against it; without any, the model as it was.
-
-    Raises:
-        DivergenceError: the robot with bounded parts cannot be simulated.
     """
     candidates = find_deviants(task, model)[:most]
     if not candidates:
         return model, ()
     task = within_bounds(task)
     start = _as_effects(task.nominal_model, candidates, model.refit.point.values)
-    had = model.candidates
-    parent = best = fit_model(task, had, _without(candidates, start), model, FEW)
-    accepted: list[AcceptedEffect] = []
-    for candidate in candidates:
-        new = try_fit(task, (*best.candidates, candidate), start, model)
-        if new is None:
-            continue
-        proof = prove(best.validation, new.validation, task.options)
-        gain = new.negative_bic - best.negative_bic
+    best = try_fit(task, (*model.candidates, *candidates), start, model)
+    kept: list[tuple[Candidate, Proof, float]] = []
+    parent = best
+    for candidate in reversed(candidates):
+        parent = None if best is None else _take_out(task, (candidate,), best)
+        if best is None or parent is None:
+            return model, ()
+        proof = prove(parent.validation, best.validation, task.options)
+        gain = best.negative_bic - parent.negative_bic
         progress(f"{candidate.effect.name}, {candidate.where}: deviates, gain {gain:.0f}")
         if gain > 0 and is_confirmed(proof, task.options):
-            accepted.append(AcceptedEffect(new, proof, gain, ()))
-            best = new
+            kept.insert(0, (candidate, proof, gain))
+        else:
+            best = parent
+    if len(kept) > 1:
+        parent = _take_out(task, [candidate for candidate, *_ in kept], best)
+    if best is None or parent is None or not kept:
+        return model, ()
+    accepted = []
+    for candidate, proof, gain in kept:
+        others = tuple(c for c in best.candidates if c is not candidate)
+        mine = replace(best, candidates=(*others, candidate))
+        accepted.append(AcceptedEffect(mine, proof, gain, ()))
     return parent, tuple(accepted)
+
+
+def _take_out(
+    task: DiscoveryTask, candidates: Sequence[Candidate], model: FittedModel | None
+) -> FittedModel | None:
+    """The model without some effects, begun where their parts deviate as far as parts do.
+
+    Where few steps leave it far behind, it has no more. None where it cannot be simulated.
+    """
+    if model is None:
+        return None
+    nominal, values = task.nominal_model, dict(model.refit.point.values)
+    std = dict(zip(nominal.names, nominal.std, strict=True))
+    for candidate in candidates:
+        own = [n for n, at in nominal.deviants.items() if at == candidate.key]
+        for size, name in zip(candidate.sizes, own, strict=True):
+            far = task.options.max_scatter * std[name]
+            values[name] = float(np.clip(values[name] + values.pop(size), -far, far))
+    out = {candidate.key for candidate in candidates}
+    rest = tuple(c for c in model.candidates if c.key not in out)
+    few = try_fit(task, rest, values, model, FEW)
+    count = sum(len(candidate.sizes) for candidate in candidates)
+    far = FAR * count * float(np.log(len(model.refit.point.log)))
+    if few is None or few.negative_bic < model.negative_bic - far:
+        return few
+    return try_fit(task, rest, few.refit.point.values, few)
 
 
 def _as_effects(
@@ -100,12 +139,6 @@ def _as_effects(
         for size, name in zip(candidate.sizes, own, strict=True):
             out[size], out[name] = values[name], 0.0
     return out
-
-
-def _without(candidates: tuple[Candidate, ...], values: Mapping[str, float]) -> dict[str, float]:
-    """The values without the sizes of some effects."""
-    sizes = {size for candidate in candidates for size in candidate.sizes}
-    return {name: value for name, value in values.items() if name not in sizes}
 
 
 def within_bounds(task: DiscoveryTask) -> DiscoveryTask:

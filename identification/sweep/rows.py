@@ -39,6 +39,7 @@ _LAST = {
     "run.host": (str, "machine"),
     "run.process": (int, "number of the worker's process"),
     "run.memory": (int, "the most memory that the worker had held by then [bytes]"),
+    "run.code": (str, "version of the package and commit of its checkout"),
     "run.trace": (str, "where in the code the error was, or null"),
 }
 

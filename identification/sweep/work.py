@@ -17,6 +17,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+from identification.sweep.code import code
 from identification.sweep.method import Column, load_method
 from identification.sweep.settings import build
 from identification.sweep.task import Task
@@ -70,7 +71,7 @@ def work(task: Task) -> Outcome:
             "seconds": time.perf_counter() - begin,
             "processor_seconds": time.process_time() - processor,
             "ended": time.time(), "host": socket.gethostname(), "process": os.getpid(),
-            "memory": peak_memory(), "trace": trace,
+            "memory": peak_memory(), "code": code(), "trace": trace,
         }  # fmt: skip
         return Outcome(task.number, record, error, run)
 

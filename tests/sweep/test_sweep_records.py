@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from importlib.metadata import version
 
 import pyarrow.parquet as parquet
 import pytest
@@ -9,6 +10,7 @@ from sweep_cases import GRID, read, run, write
 
 from identification.sweep import store as module
 from identification.sweep.backends.choice import Serial
+from identification.sweep.code import code
 from identification.sweep.config import read_sweep
 from identification.sweep.run import run_sweep
 from identification.sweep.store import Store
@@ -51,6 +53,8 @@ def test_one_file_at_the_end_in_the_order_of_tasks(tmp_path):
     assert len(first["values"]) == 3
     assert not any(name.startswith("run.") for name in first)
     assert {"run.seconds", "run.host", "run.memory"} <= set(table.column_names)
+    assert {*table["run.code"].to_pylist()} == {code()}
+    assert code().startswith(version("inca-mj"))
 
 
 def test_resumed_records_are_those_of_one_run(tmp_path, monkeypatch):
