@@ -16,6 +16,8 @@ import numpy as np
 
 from identification.discovery.effect_results import Proof
 from identification.discovery.fitted_model import (
+    FAR,
+    FEW,
     AcceptedEffect,
     FittedModel,
     is_confirmed,
@@ -26,11 +28,6 @@ from identification.discovery.proof import prove
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
 from identification.estimation.options import Progress
-
-# Steps of the fit without a part that is off. It is a robot that cannot be, and its fit
-# wanders; a few steps say how far it is from the data.
-FEW = 5
-FAR = 10.0  # times what BIC asks for the sizes of an effect, beyond which more steps change nothing
 
 
 def find_deviants(task: DiscoveryTask, model: FittedModel) -> tuple[Candidate, ...]:
@@ -108,7 +105,8 @@ def _take_out(
 ) -> FittedModel | None:
     """The model without some effects, begun where their parts deviate as far as parts do.
 
-    Where few steps leave it far behind, it has no more. None where it cannot be simulated.
+    A robot without a part that is off cannot be, and its fit wanders: where few steps leave it far
+    behind, it has no more. None where it cannot be simulated.
     """
     if model is None:
         return None

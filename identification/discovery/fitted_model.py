@@ -18,6 +18,9 @@ from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
 from identification.kalman.refit import Refit
 
+FEW = 5  # steps of a fit that only says how far a model is from the data
+FAR = 10.0  # times what BIC asks for the sizes of an effect, beyond which it is needed
+
 
 @dataclass(frozen=True)
 class FittedModel:

@@ -143,7 +143,7 @@ def _select(state: SearchState, progress: Progress) -> SearchState:
         return replace(state, stage="deviants", rejected=rejected, seconds=watch.seconds)
     accepted, model = (*state.accepted, *new), new[-1].model
     if len(accepted) > 1:
-        accepted, model = improve_kinds(task, accepted, model)
+        accepted, model = improve_kinds(task, accepted, model, state.sensitivities)
         watch.stop("refits")
     scores = score_candidates(model, state.sensitivities, task.options)
     watch.stop("scores")

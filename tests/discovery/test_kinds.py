@@ -65,7 +65,7 @@ def test_a_kind_that_explains_more_is_refitted_from_its_own_size_and_kept(asked,
         return replace(near, candidates=candidates, refit=replace(near.refit, level=level))
 
     monkeypatch.setattr(kinds, "try_fit", fit)
-    (kept,), better = improve_kinds(asked, [accepted], model)
+    (kept,), better = improve_kinds(asked, [accepted], model, ())
     (((candidate,), start),) = tried
     assert candidate.shape == {"kind": 1.0}
     (other,) = seen
@@ -77,14 +77,14 @@ def test_a_kind_that_explains_more_is_refitted_from_its_own_size_and_kept(asked,
     assert kept.gain == accepted.gain
 
     monkeypatch.setattr(kinds, "try_fit", lambda *_, **__: None)  # it cannot be fitted
-    assert improve_kinds(asked, [accepted], model) == ((accepted,), model)
+    assert improve_kinds(asked, [accepted], model, ()) == ((accepted,), model)
 
 
 def test_a_kind_that_explains_less_is_not_refitted(asked, monkeypatch):
     model, accepted = fitted(asked, "spring", {"spring.k": 4.0})
     seen, level = sense_as(monkeypatch, "offset"), model.refit.level
     monkeypatch.setattr(kinds, "try_fit", None)
-    assert improve_kinds(asked, [accepted], model) == ((accepted,), model)
+    assert improve_kinds(asked, [accepted], model, ()) == ((accepted,), model)
     (other,) = seen
     assert replace_effect(model.refit, accepted.candidate, other.S, level).loss > 100
     # The size that replaces an effect by itself is its own.
@@ -93,3 +93,27 @@ def test_a_kind_that_explains_less_is_not_refitted(asked, monkeypatch):
     found = replace_effect(model.refit, accepted.candidate, same.S, level)
     assert found.size[0] == pytest.approx(model.refit.point.values["spring.k"], rel=0.02)
     assert abs(found.loss) < 0.5
+
+
+def test_the_best_limit_of_another_kind_is_refitted(asked, monkeypatch):
+    # The size of a limit is no parameter: it is there or it is not.
+    offset, model = of_kinds("offset"), fit_model(asked, (), {})
+    limit = replace(offset, sizes=tuple(replace(s, present=1.0) for s in offset.sizes))
+    hard, soft = (Candidate(limit, "joint", {"kind": kind}) for kind in (0.0, 1.0))
+    clipped = replace(model, candidates=(hard,))
+    accepted = AcceptedEffect(clipped, PROOF, 10.0, ())
+    S = compute_sensitivities(model.refit.point, (Candidate(offset, "joint", {}),))[0].S
+    known = [Sensitivity(hard, S), Sensitivity(soft, S)]
+    asked_for = []
+
+    def fit(task, candidates, start, near, steps=0, least=0.0):
+        asked_for.append(candidates)
+        level = replace(near.refit.level, log_likelihood=near.refit.level.log_likelihood + 50)
+        better = replace(near.refit, level=level)
+        return replace(near, candidates=candidates, refit=better if candidates else near.refit)
+
+    monkeypatch.setattr(kinds, "try_fit", fit)
+    (kept,), better = improve_kinds(asked, [accepted], clipped, known)
+    assert asked_for == [(), (soft,)]
+    assert better.candidates == (soft,) == (kept.candidate,)
+    assert improve_kinds(asked, [accepted], clipped, known[:1]) == ((accepted,), clipped)

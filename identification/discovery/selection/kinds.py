@@ -3,18 +3,25 @@
 A torque constant that falls with time looks like one that falls with heat as long as something else
 is missing. So every accepted effect is compared, to first order, with its other kinds and powers,
 which are no free shapes; where one of them explains more it is refitted, and the likelier model is
-kept.
+kept. A limit (a current that is clipped, or that bends) is far from linear in its shape: its other
+kinds are scored on the model without it, and the best of each is refitted.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 
-from identification.discovery.fitted_model import AcceptedEffect, FittedModel, try_fit
+from identification.discovery.fitted_model import (
+    FEW,
+    AcceptedEffect,
+    FittedModel,
+    score_candidates,
+    try_fit,
+)
 from identification.discovery.replacement import replace_effect
-from identification.discovery.scoring.sensitivities import compute_beside
+from identification.discovery.scoring.sensitivities import Sensitivity, compute_beside
 from identification.discovery.scoring.significance import is_plausible
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
@@ -24,6 +31,7 @@ def improve_kinds(
     task: DiscoveryTask,
     accepted: Sequence[AcceptedEffect],
     model: FittedModel,
+    sensitivities: Sequence[Sensitivity],
 ) -> tuple[tuple[AcceptedEffect, ...], FittedModel]:
     """The accepted effects, each of the kind that is the likeliest beside the others.
 
@@ -31,15 +39,22 @@ def improve_kinds(
         task: the nominal model, the log and the options.
         accepted: the effects in the order in which they were added.
         model: the model with all of them.
+        sensitivities: of all candidates.
 
     Returns:
         The effects, and the model with them.
     """
     kept = list(accepted)
     for i, old in enumerate(kept):
-        for other, sizes in _list_kinds(task, old.candidate, model):
+        mine = next(c for c in model.candidates if c.key == old.candidate.key)
+        kinds = (
+            _list_kinds(task, mine, model)
+            if mine.free
+            else _list_limits(task, mine, model, sensitivities)
+        )
+        for other, start in kinds:
             candidates = tuple(other if c.key == other.key else c for c in model.candidates)
-            begin, least = {**model.refit.point.values, **sizes}, model.refit.log_posterior
+            begin, least = {**model.refit.point.values, **start}, model.refit.log_posterior
             new = try_fit(task, candidates, begin, model, least=least)
             if new is not None and new.negative_bic > model.negative_bic:
                 # Gain and rivals stay those of the round in which it was accepted.
@@ -58,6 +73,23 @@ def _list_kinds(
         if other.loss < 0 and is_plausible(s.candidate, other.size, task.options):
             out.append((s.candidate, dict(zip(old.sizes, other.size.tolist(), strict=True))))
     return out
+
+
+def _list_limits(
+    task: DiscoveryTask, old: Candidate, model: FittedModel, sensitivities: Sequence[Sensitivity]
+) -> list[tuple[Candidate, Mapping[str, float]]]:
+    """The best limit of each other kind, with the values at which its fit begins."""
+    kinds = [shape.name for shape in old.effect.shapes if not shape.free]
+    same = [s for s in sensitivities if s.candidate.key == old.key]
+    others = [s for s in same if any(s.candidate.shape[k] != old.shape[k] for k in kinds)]
+    if not others:
+        return []
+    rest = tuple(c for c in model.candidates if c.key != old.key)
+    without = try_fit(task, rest, model.refit.point.values, model, FEW)
+    best: dict[tuple[float, ...], Candidate] = {}
+    for s in score_candidates(without, others, task.options) if without else ():
+        best.setdefault(tuple(s.candidate.shape[k] for k in kinds), s.candidate)
+    return [(c, c.fixed) for c in best.values()]
 
 
 def _other_kinds(old: Candidate, model: FittedModel) -> list[Candidate]:

@@ -13,6 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from identification.discovery.fitted_model import (
+    FAR,
+    FEW,
     AcceptedEffect,
     FittedModel,
     is_confirmed,
@@ -25,9 +27,6 @@ from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.discovery.scoring.significance import select_plausible
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
-
-FAR = 10.0  # times what BIC asks for the sizes of an effect, beyond which it is needed
-FEW = 5  # steps of a fit that only says what else could explain the log, or whether a rival may
 
 
 def prune(
