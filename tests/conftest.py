@@ -11,8 +11,8 @@ from hypothesis import settings
 
 from identification import InputError
 
-# A busy machine is not a failure.
-settings.register_profile("patient", deadline=None)
+# A busy machine is not a failure. `make fuzz` tries more than the examples of a test.
+settings.register_profile("patient", deadline=None, max_examples=50)
 settings.load_profile("patient")
 
 

@@ -121,14 +121,17 @@ def try_fit(
 def score_candidates(model: FittedModel, sensitivities: Sequence[Sensitivity],
                      options: DiscoveryOptions) -> tuple[Score, ...]:  # fmt: skip
     """Scores of all candidates that a model does not have yet, the best first."""
-    has = {(c.effect.name, c.where) for c in model.candidates}
-    everywhere = {c.effect.name for c in model.candidates if not c.effect.places[c.where]}
-    others = [
-        s for s in sensitivities
-        if (s.candidate.effect.name, s.candidate.where) not in has
-        and s.candidate.effect.name not in everywhere
-    ]  # fmt: skip
+    others = [s for s in sensitivities if not has_candidate(model, s.candidate)]
     return score(model.refit, others, options)
+
+
+def has_candidate(model: FittedModel, candidate: Candidate) -> bool:
+    """Whether a model has an effect at the place of a candidate, or at all places."""
+    return any(
+        c.effect.name == candidate.effect.name
+        and (c.where == candidate.where or not c.effect.places[c.where])
+        for c in model.candidates
+    )
 
 
 def collect_parameters(

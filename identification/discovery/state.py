@@ -18,6 +18,7 @@ from identification.discovery.fitted_model import (
     AcceptedEffect,
     FittedModel,
     fit_model,
+    has_candidate,
     score_candidates,
 )
 from identification.discovery.scoring.scores import Score
@@ -48,7 +49,7 @@ class SearchState:
         task: what is asked.
         stage: what the next step does.
         nominal: the fitted model without effects.
-        sensitivities: of all candidates, at the nominal fit.
+        sensitivities: of all candidates, at the model; of those that it has, at the fit before.
         nominal_scores: of all candidates on the nominal fit, the best first.
         model: the fitted model with the accepted effects.
         accepted: the effects that were accepted, in that order.
@@ -92,7 +93,7 @@ def first_state(task: DiscoveryTask, progress: Progress) -> SearchState:
         task, nominal = _with_scatter(task, nominal)
     watch.stop("nominal fit")
     progress(f"nominal fit: {held(1e3 * nominal.validation.rms)}e-3 on unseen data")
-    sensitivities = _compute_all_sensitivities(task, nominal)
+    sensitivities = _compute_all_sensitivities(task, nominal, ())
     watch.stop("sensitivities")
     scores = score_candidates(nominal, sensitivities, task.options)
     watch.stop("scores")
@@ -145,12 +146,8 @@ def _select(state: SearchState, progress: Progress) -> SearchState:
     if len(accepted) > 1:
         accepted, model = improve_kinds(task, accepted, model, state.sensitivities)
         watch.stop("refits")
-    scores = score_candidates(model, state.sensitivities, task.options)
-    watch.stop("scores")
-    return replace(
-        state, stage="selection" if most > len(new) else "pruning", model=model,
-        accepted=accepted, scores=scores, rejected=(), seconds=watch.seconds,
-    )  # fmt: skip
+    state = replace(state, accepted=accepted, rejected=())
+    return _scored(state, model, "selection" if most > len(new) else "pruning", watch)
 
 
 def _deviate(state: SearchState, progress: Progress) -> SearchState:
@@ -166,11 +163,23 @@ def _deviate(state: SearchState, progress: Progress) -> SearchState:
         return replace(state, stage="pruning", seconds=watch.seconds)
     task, model = within_bounds(task), new[-1].model
     nominal = state.nominal if state.accepted else parent
-    scores = score_candidates(model, state.sensitivities, task.options)
+    accepted = (*state.accepted, *new)
+    state = replace(state, task=task, nominal=nominal, accepted=accepted, rejected=())
+    return _scored(state, model, "selection" if room > len(new) else "pruning", watch)
+
+
+def _scored(state: SearchState, model: FittedModel, stage: Stage, watch: _Watch) -> SearchState:
+    """The state with a model that has more effects, and the scores of all others on it.
+
+    What was missing has moved the trajectory: a friction's sensitivity along the wrong one, where
+    the rollers turn back at other times, says little of the right one.
+    """
+    sensitivities = _compute_all_sensitivities(state.task, model, state.sensitivities)
+    watch.stop("sensitivities")
+    scores = score_candidates(model, sensitivities, state.task.options)
     watch.stop("scores")
     return replace(
-        state, task=task, stage="selection" if room > len(new) else "pruning", nominal=nominal,
-        model=model, accepted=(*state.accepted, *new), scores=scores, rejected=(),
+        state, stage=stage, model=model, sensitivities=sensitivities, scores=scores,
         seconds=watch.seconds,
     )  # fmt: skip
 
@@ -189,15 +198,23 @@ def _prune(state: SearchState) -> SearchState:
     )
 
 
-def _compute_all_sensitivities(task: DiscoveryTask, model: FittedModel) -> tuple[Sensitivity, ...]:
-    """Of every effect on all its places, then of its best shape at each single place."""
+def _compute_all_sensitivities(
+    task: DiscoveryTask, model: FittedModel, before: tuple[Sensitivity, ...]
+) -> tuple[Sensitivity, ...]:
+    """Of every effect on all its places, then of its best shape at each single place.
+
+    Of the effects that the model has they stay what they were before.
+    """
     point = model.refit.point
-    common = compute_sensitivities(point, list_common(task.effects))
+    kept = tuple(s for s in before if has_candidate(model, s.candidate))
+    left = [c for c in list_common(task.effects) if not has_candidate(model, c)]
+    common = compute_sensitivities(point, left)
     best: dict[str, Score] = {}
     for s in score_candidates(model, common, task.options):
         best.setdefault(s.candidate.effect.name, s)
     single = list_single([s.candidate for s in best.values()])
-    return common + compute_sensitivities(point, single)
+    left = [c for c in single if not has_candidate(model, c)]
+    return kept + common + compute_sensitivities(point, left)
 
 
 class _Watch:

@@ -65,6 +65,7 @@ def test_the_twin_has_the_values_that_are_told(one):
     assert told["records"][0]["after"] == one.unseen[0].after
 
 
+@pytest.mark.long
 def test_drives_that_are_alike_have_no_scatter():
     found = calibrate([log_as_built(3.0, alike=True)], spread=SPREAD)
     assert found.scatter["K_t"] < 0.3 * SPREAD.drives["K_t"]

@@ -4,8 +4,8 @@ The refitted models are ordered by BIC. The first one is accepted that unseen sa
 chance and by enough to matter; a second name is often only the wrong shape of the first. A first
 effect need not matter where the nominal model leaves no structure unexplained: such an effect is
 small, but it is all that is missing. Where no score is beyond chance but the noise model has an
-error of the inputs, the best candidates are refitted all the same, and their gain must then be
-beyond chance.
+error of the inputs, in which an effect may hide, the best candidates are refitted all the same, and
+their gain must then be beyond chance.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def _refit_candidates(
     """The model with each of the best candidates in turn, the most likely one first."""
     chosen = _select_contenders(select_significant(scores, task.options), task.options)
     chosen = _try_between(model, chosen, task.options)
-    is_hidden = not chosen and not model.candidates and bool(model.refit.level.noise.ratio)
+    is_hidden = not chosen and bool(model.refit.level.noise.ratio)
     if is_hidden:
         chosen = _select_likeliest(scores, task.options)
     refitted = []

@@ -21,6 +21,7 @@ from identification.discovery.fitted_model import (
     try_fit,
 )
 from identification.discovery.replacement import replace_effect
+from identification.discovery.scoring.scores import Score
 from identification.discovery.scoring.sensitivities import Sensitivity, compute_beside
 from identification.discovery.scoring.significance import is_plausible
 from identification.discovery.task import DiscoveryTask
@@ -50,7 +51,7 @@ def improve_kinds(
         kinds = (
             _list_kinds(task, mine, model)
             if mine.free
-            else _list_limits(task, mine, model, sensitivities)
+            else list_kinds(task, mine, model, sensitivities)
         )
         for other, start in kinds:
             candidates = tuple(other if c.key == other.key else c for c in model.candidates)
@@ -75,10 +76,20 @@ def _list_kinds(
     return out
 
 
-def _list_limits(
+def list_kinds(
     task: DiscoveryTask, old: Candidate, model: FittedModel, sensitivities: Sequence[Sensitivity]
 ) -> list[tuple[Candidate, Mapping[str, float]]]:
-    """The best limit of each other kind, with the values at which its fit begins."""
+    """The best of each other kind of an effect, by its score on the model without the effect.
+
+    Args:
+        task: the nominal model, the log and the options.
+        old: the effect, one of the model's.
+        model: the model with it.
+        sensitivities: of all candidates.
+
+    Returns:
+        The effect of another kind, and the values of its sizes and shapes to begin at.
+    """
     kinds = [shape.name for shape in old.effect.shapes if not shape.free]
     same = [s for s in sensitivities if s.candidate.key == old.key]
     others = [s for s in same if any(s.candidate.shape[k] != old.shape[k] for k in kinds)]
@@ -86,10 +97,13 @@ def _list_limits(
         return []
     rest = tuple(c for c in model.candidates if c.key != old.key)
     without = try_fit(task, rest, model.refit.point.values, model, FEW)
-    best: dict[tuple[float, ...], Candidate] = {}
+    best: dict[tuple[float, ...], Score] = {}
     for s in score_candidates(without, others, task.options) if without else ():
-        best.setdefault(tuple(s.candidate.shape[k] for k in kinds), s.candidate)
-    return [(c, c.fixed) for c in best.values()]
+        best.setdefault(tuple(s.candidate.shape[k] for k in kinds), s)
+    return [
+        (s.candidate, {**s.candidate.fixed, **dict(zip(s.candidate.sizes, s.size, strict=True))})
+        for s in best.values()
+    ]
 
 
 def _other_kinds(old: Candidate, model: FittedModel) -> list[Candidate]:
