@@ -21,7 +21,7 @@ from identification.discovery.task import DiscoveryTask
 from identification.errors import InputError
 from identification.model.predictor import Predictor
 
-COPIES = 4.75  # of the sensitivities to all candidates, that a search holds at once
+COPIES = 5.75  # of the sensitivities to all candidates, that a search holds at once
 BASE = 12.0  # [s] that a search takes, however short the log
 FITS = 1.6  # simulations that a parameter costs
 SCORES = 0.25  # simulations that a size of a candidate costs; many are simulated at once

@@ -24,13 +24,13 @@ def select_significant(scores: Sequence[Score], options: DiscoveryOptions) -> li
 def select_plausible(scores: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
     """Scores with plausible sizes: the best shape of each effect at each place."""
     each: dict[tuple[str, str], Score] = {}
-    for s in sorted(scores, key=_gain_of_whole, reverse=True):
+    for s in sorted(scores, key=gain_of_whole, reverse=True):
         if is_plausible(s.candidate, s.size, options) and s.gain > 0:
             each.setdefault((s.candidate.effect.name, s.candidate.where), s)
     return sorted(each.values(), key=lambda s: -s.gain)
 
 
-def _gain_of_whole(s: Score) -> float:
+def gain_of_whole(s: Score) -> float:
     """The gain of a score; less where an effect that can have but one size has another one.
 
     The score of such an effect (a limit) estimates its size; the farther the estimate is from the

@@ -23,7 +23,7 @@ from identification.discovery.fitted_model import (
 from identification.discovery.replacement import replace_effect
 from identification.discovery.scoring.scores import Score
 from identification.discovery.scoring.sensitivities import Sensitivity, compute_beside
-from identification.discovery.scoring.significance import is_plausible
+from identification.discovery.scoring.significance import gain_of_whole, is_plausible
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
 
@@ -98,7 +98,8 @@ def list_kinds(
     rest = tuple(c for c in model.candidates if c.key != old.key)
     without = try_fit(task, rest, model.refit.point.values, model, FEW)
     best: dict[tuple[float, ...], Score] = {}
-    for s in score_candidates(without, others, task.options) if without else ():
+    scores = score_candidates(without, others, task.options) if without else ()
+    for s in sorted(scores, key=gain_of_whole, reverse=True):
         best.setdefault(tuple(s.candidate.shape[k] for k in kinds), s)
     return [
         (s.candidate, {**s.candidate.fixed, **dict(zip(s.candidate.sizes, s.size, strict=True))})
