@@ -69,8 +69,9 @@ class Change:
         for effect in self.stiffening:
             p = drive_values(effect, self.values)
             for k in range(DRIVES):
-                s = _drive(time=0.0, strain=strain[k], strain_rate=0.0, x=strain[k], d=self.d[k],
-                           d_0=self.d[k] / (1 + strain[k]),
+                x = _started(effect, strain[k], tuple(p[:, k]))
+                s = _drive(time=0.0, strain=strain[k], strain_rate=0.0, omega=0.0, x=x,
+                           d=self.d[k], d_0=self.d[k] / (1 + strain[k]),
                            R=R[k], lambda_=lambda_[k], b=b[k])  # fmt: skip
                 out[k] += effect.hooks["tension"](s, tuple(p[:, k]))
         return out
@@ -134,13 +135,18 @@ def own_states(values: Mapping[str, float], strain: np.ndarray, layout: Layout) 
     out = np.zeros((DRIVES, layout.states - 1))
     for term in layout.on_drives:
         effect = by_name[term.effect]
-        start: Any = effect.hooks.get("start")
-        if start is None:
+        if "start" not in effect.hooks:
             continue
         p = drive_values(effect, values)
         for k in range(DRIVES):
-            out[k, term.state - 1] = start.py_func(_drive(strain=strain[k], x=0.0), tuple(p[:, k]))
+            out[k, term.state - 1] = _started(effect, strain[k], tuple(p[:, k]))
     return out
+
+
+def _started(effect: Effect, strain: float, p: tuple[float, ...]) -> float:
+    """An effect's own state at the start of one drive; zero where it says nothing."""
+    start: Any = effect.hooks.get("start")
+    return 0.0 if start is None else float(start.py_func(_drive(strain=strain, x=0.0), p))
 
 
 def _drive(**known: float) -> Any:

@@ -50,7 +50,8 @@ def choose(monkeypatch, best, other, white=True):
 
     monkeypatch.setattr(shapes, "is_structured", lambda model, options: not white)
     monkeypatch.setattr(shapes, "_fit_shape", fit_shape)
-    ranked = [SimpleNamespace(candidate=candidate(soft)) for soft in (1.0, 0.0)]
+    gains = {1.0: 20.0, 0.0: 10.0}
+    ranked = [SimpleNamespace(candidate=candidate(s), gain=g, size=[1.0]) for s, g in gains.items()]
     more = SimpleNamespace(candidates=(None,))
     return improve_shape(SimpleNamespace(options=OPTIONS), more, best, ranked), asked
 

@@ -20,12 +20,9 @@ CHOSEN = {  # what the worlds do where the twin has a choice
     "current_saturation": {"c": 1.0},
 }
 UNIT = {"cable_hardening": ("kappa", 1e-3), "spring_hardening": ("k_3", 20.0)}  # of other powers
-# Another law: the drum is dragged along; a settling drift; a cable that sags. The pose of a
-# platform whose centre of mass is elsewhere is of another point.
-OTHER = {
-    ("backlash", False), ("com_offset", False), ("torque_constant_drift", True),
-    ("cable_weight", True),
-}  # fmt: skip
+# Another law: a settling drift; a cable that sags. The pose of a platform whose centre of mass is
+# elsewhere is of another point.
+OTHER = {("com_offset", False), ("torque_constant_drift", True), ("cable_weight", True)}
 CASES = [
     (e.name, other)
     for e in CATALOGUE

@@ -13,6 +13,7 @@ from identification.discovery.findings.input_error import find_input_error
 from identification.discovery.fitted_model import FittedModel, try_fit
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import Score
+from identification.discovery.scoring.significance import gain_of_whole
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
 from identification.kalman.innovations import innovation_tests
@@ -86,8 +87,8 @@ def _prefer_usual(
 
 
 def _select_same(mine: Candidate, scores: Sequence[Score]) -> Iterator[Score]:
-    """Scores of the same effect at the same place, with any shape."""
-    for s in scores:
+    """Scores of the same effect at the same place, with any shape, the best first."""
+    for s in sorted(scores, key=gain_of_whole, reverse=True):
         if s.candidate.effect.name == mine.effect.name and s.candidate.where == mine.where:
             yield s
 
