@@ -1,12 +1,15 @@
 """A search is a state that is stepped until it is finished; here it is one for two effects."""
 
 from dataclasses import replace
+from itertools import pairwise
 
+import numpy as np
 import pytest
 from discovery_cases import EFFECTS, OPTIONS, searched, stepped
 
 from identification.discovery.confidence import name_effects
 from identification.discovery.fitted_model import fit_model
+from identification.discovery.scoring.sensitivities import compute_sensitivities
 from identification.discovery.selection.forward_selection import select_effect
 from identification.discovery.selection.pruning import exchange
 from identification.discovery.state import next_state
@@ -30,6 +33,19 @@ def test_each_step_accepts_an_effect_or_ends_the_selection(states):
         assert {c.effect.name for c in state.model.candidates} == set(names(state))
         left = {s.candidate.effect.name for s in state.scores}
         assert left == {e.name for e in EFFECTS} - set(names(state))
+
+
+def test_candidates_are_scored_along_the_trajectory_of_the_model(states):
+    for before, state in pairwise(states[:3]):
+        has = {c.key for c in state.model.candidates}
+        old = {s.candidate.key: s.S for s in before.sensitivities}
+        for s in state.sensitivities:
+            if s.candidate.key in has:
+                assert s.S is old[s.candidate.key]
+                continue
+            (fresh,) = compute_sensitivities(state.model.refit.point, [s.candidate])
+            np.testing.assert_allclose(s.S, fresh.S, rtol=1e-9, atol=1e-12)
+            assert not np.allclose(s.S, old[s.candidate.key], rtol=1e-3)
 
 
 def test_a_step_changes_no_state_that_it_begins_with(states):
