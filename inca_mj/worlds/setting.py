@@ -70,6 +70,16 @@ class HiddenSetting:
         refuse_number("low", self.low, self.low <= self.high < inf, f"up to high = {self.high:g} A")
 
     @property
+    def absorbed(self) -> tuple[str, ...]:
+        """Parameters whose common value a model may tune as it likes, when sizes are chosen.
+
+        Of a robot whose drives differ nobody knows the common radius, spring or slope at rest
+        either: a hysteresis of the drum springs is mostly a friction and a stiffness.
+        """
+        own = () if self.tolerances == EXACT else ("R", "k_s", "beta")
+        return (*self.varied, *(name for name in own if name not in self.varied))
+
+    @property
     def samples(self) -> int:
         """Number of samples."""
         return round(self.duration / self.sampling_time)

@@ -106,7 +106,7 @@ def records(
     if ratios:
         noise = noise_rms(setting.counts, setting.noise)
         absorbed = HiddenAbsorbed(
-            robot, geometry, u, setting.sampling_time, setting.varied, setting.tolerances, noise
+            robot, geometry, u, setting.sampling_time, setting.absorbed, setting.tolerances, noise
         )
         goals = [r * noise for r in ratios]
         chosen = _sized(effects, others, absorbed, goals)

@@ -138,7 +138,8 @@ def test_records_of_a_ratio_have_one_size():
 def test_a_ratio_is_that_of_the_robot_as_built():
     log, truth = world(6, [HiddenStribeckFriction()], ratio=6.0, setting=BUILT)
     robot = with_spread(parameter_set("trial")).with_values(truth.parameters)
-    absorbed = HiddenAbsorbed(robot, INCA, log.inputs, 0.01, VARIED, AS_BUILT, truth.noise_rms)
+    names = (*VARIED, "R", "k_s", "beta")
+    absorbed = HiddenAbsorbed(robot, INCA, log.inputs, 0.01, names, AS_BUILT, truth.noise_rms)
     assert absorbed.rms(truth.effects) / truth.noise_rms == pytest.approx(6.0, rel=0.02)
 
 
