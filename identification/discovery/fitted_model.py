@@ -165,9 +165,9 @@ def list_parameters_at_limit(model: FittedModel, options: DiscoveryOptions) -> t
     )
 
 
-def is_proven(proof: Proof, options: DiscoveryOptions) -> bool:
-    """Whether unseen samples confirm an effect beyond chance."""
-    return proof.chance < allowed_chance(proof.blocks, options)
+def is_proven(proof: Proof, options: DiscoveryOptions, tried: int = 1) -> bool:
+    """Whether unseen samples confirm an effect beyond chance; it is one of so many tried."""
+    return tried * proof.chance < allowed_chance(proof.blocks, options)
 
 
 def is_relevant(proof: Proof, options: DiscoveryOptions) -> bool:
@@ -175,6 +175,6 @@ def is_relevant(proof: Proof, options: DiscoveryOptions) -> bool:
     return proof.fall > options.min_fall and proof.above > options.min_gap_share
 
 
-def is_confirmed(proof: Proof, options: DiscoveryOptions) -> bool:
+def is_confirmed(proof: Proof, options: DiscoveryOptions, tried: int = 1) -> bool:
     """Whether unseen samples confirm an effect: beyond chance, and by enough to matter."""
-    return is_proven(proof, options) and is_relevant(proof, options)
+    return is_proven(proof, options, tried) and is_relevant(proof, options)

@@ -16,10 +16,10 @@ from identification.discovery.findings.input_hold import find_input_hold
 from identification.discovery.findings.location import locate_error
 from identification.discovery.findings.robot_change import find_robot_change
 from identification.discovery.findings.structure import find_structure
-from identification.discovery.fitted_model import FittedModel
+from identification.discovery.fitted_model import FittedModel, is_proven
 from identification.discovery.missing_forces import estimate_missing_forces
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.proof import allowed_chance, prove
+from identification.discovery.proof import prove
 from identification.discovery.result import Discovery, Verdict
 from identification.discovery.scoring.detectability import list_detectable
 from identification.discovery.scoring.hidden import list_hidden
@@ -110,7 +110,10 @@ def conclude(state: SearchState) -> Discovery:
     if verdict == "unknown effect":
         named, model, scores = (), nominal, state.nominal_scores
     unnamed = [n for n in every if n not in named]
-    beside = [r for r in state.rejected if named and r.gain > 0 and _is_left(r, state)]
+    tried = len(state.rejected)
+    beside = [
+        r for r in state.rejected if named and r.gain > 0 and is_proven(r.proof, options, tried)
+    ]
     refused = (
         RejectedEffect(n.candidate, n.parameters, n.gain, n.proof, n.outside) for n in unnamed
     )
@@ -143,12 +146,6 @@ def conclude(state: SearchState) -> Discovery:
         missing_forces=forces,
         seconds=state.seconds,
     )
-
-
-def _is_left(rejected: RejectedEffect, state: SearchState) -> bool:
-    """Whether unseen samples confirm an effect by more than the best of so many does by luck."""
-    proof, options = rejected.proof, state.task.options
-    return proof.chance * len(state.rejected) < allowed_chance(proof.blocks, options)
 
 
 def _has(findings: Sequence[Finding], *kinds: FindingKind) -> bool:

@@ -78,21 +78,22 @@ def select_effect(
         refitted[0] = improve_shape(task, model, refitted[0], scores)
     rejected: list[RejectedEffect] = []
     unproven: FittedModel | None = None
+    tried = len(refitted)
     is_clean = not model.candidates and not find_structure(model, options)
     for k, new in enumerate(refitted):
         proof = prove(model.validation, new.validation, options)
         gain = new.negative_bic - model.negative_bic
         if gain > 0 and (
-            is_confirmed(proof, options)
+            is_confirmed(proof, options, tried)
             or (
                 is_clean
-                and is_proven(proof, options)
+                and is_proven(proof, options, tried)
                 and not find_input_error(new.validation, options)
             )
         ):
             others = tuple(refitted[:k] + refitted[k + 1 :])
             return Selection(accepted=(AcceptedEffect(new, proof, gain, others),))
-        if gain > 0 and is_proven(proof, options) and unproven is None:
+        if gain > 0 and is_proven(proof, options, tried) and unproven is None:
             unproven = new
         mine = new.candidates[-1]
         parameters = collect_parameters(task, new, mine)
