@@ -88,7 +88,7 @@ def accept_deviants(
             kept.insert(0, (candidate, proof, gain))
         else:
             best = parent
-    if len(kept) > 1:
+    if len(kept) > 1 or (kept and parent is best):  # the last one tried is not the only one kept
         parent = _take_out(task, [candidate for candidate, *_ in kept], best)
     if best is None or parent is None or not kept:
         return model, ()

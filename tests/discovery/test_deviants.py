@@ -121,6 +121,16 @@ def test_a_part_that_is_not_needed_beyond_its_bound_is_taken_out(monkeypatch):
     assert all(len(each) < 2 for each in tried[1:])
 
 
+def test_the_parent_has_none_of_the_effects_whichever_is_kept(monkeypatch):
+    task, model = asked(**{"part.k": 6.0, "part.f": 0.4})
+    answers = iter([True, False])  # the nearest is kept, the farthest is not
+    monkeypatch.setattr(deviants, "is_confirmed", lambda *_: next(answers))
+    parent, accepted = accept_deviants(task, model, 8, print)
+    (only,) = accepted
+    assert parent.candidates == ()
+    assert only.model.candidates == (only.candidate,)
+
+
 def test_where_the_robot_cannot_be_simulated_all_stays_as_it_was(monkeypatch):
     task, model = asked(**{"part.k": 6.0})
     monkeypatch.setattr(deviants, "try_fit", lambda *_, **__: None)

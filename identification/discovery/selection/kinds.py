@@ -51,7 +51,7 @@ def improve_kinds(
         kinds = (
             _list_kinds(task, mine, model)
             if mine.free
-            else list_kinds(task, mine, model, sensitivities)
+            else _list_limits(task, mine, model, sensitivities)
         )
         for other, start in kinds:
             candidates = tuple(other if c.key == other.key else c for c in model.candidates)
@@ -76,7 +76,7 @@ def _list_kinds(
     return out
 
 
-def list_kinds(
+def _list_limits(
     task: DiscoveryTask, old: Candidate, model: FittedModel, sensitivities: Sequence[Sensitivity]
 ) -> list[tuple[Candidate, Mapping[str, float]]]:
     """The best of each other kind of an effect, by its score on the model without the effect.
