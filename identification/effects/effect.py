@@ -84,9 +84,10 @@ class Shape:
     step: float = 0.0
 
 
-# of an input that comes late: none of it, or its first value, before the log
-BEFORE = Shape("before", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
-               about="1: it was there before the log")  # fmt: skip
+# Of an input that comes late: its first value times this had been there before the log. It was
+# mostly nothing or that value; whatever else it was costs one more number and no second search.
+BEFORE = Shape("before", "", (0.0, 1.0), -2.0, 2.0, usual=0.0,
+               about="share of the first value that had been there before the log")  # fmt: skip
 
 
 @dataclass(frozen=True)

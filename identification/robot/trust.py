@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from identification.errors import unknown_name
@@ -17,17 +17,18 @@ TRUST = {  # what a user may know better than a check
 }
 
 
-def trusted(words: Sequence[Any], where: str) -> tuple[str, ...]:
+def trusted(words: Sequence[Any], where: str, judged: Mapping[str, str] = TRUST) -> tuple[str, ...]:
     """The judgements that a user overrules.
 
     Args:
-        words: of `TRUST`.
+        words: of those that are judged.
         where: who gave them, for messages.
+        judged: what is judged, by word.
 
     Raises:
         InputError: a word is unknown.
     """
     for word in words:
-        if str(word) not in TRUST:
-            raise unknown_name(f"word under trust in {where}:", str(word), TRUST)
+        if str(word) not in judged:
+            raise unknown_name(f"word under trust in {where}:", str(word), judged)
     return tuple(words)

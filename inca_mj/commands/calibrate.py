@@ -14,7 +14,7 @@ from identification.commands.common import (
     output_field,
     table,
 )
-from inca_mj.commands.common import Values, do_not_draw, values_field
+from inca_mj.commands.common import Trust, Values, do_not_draw, values_field
 
 if TYPE_CHECKING:
     from inca_mj.workflows.calibration import Calibration
@@ -44,6 +44,8 @@ class Calibrate:
     spread: str = "usual"
     """How much drives and points usually differ: usual, or a TOML file (models/inca6d_spread.toml
     shows one)."""
+    trust: Trust = ()
+    """Checks of the log that you overrule: sensors, units, wiring."""
     robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
@@ -64,8 +66,14 @@ class Calibrate:
             spread_of(self.spread), self.robot.parameters(), self.robot.place()
         )  # fmt: skip
         found = calibrate(
-            logs, parameters, place, confirm=confirm, spread=spread, progress=self.output.tell
-        )  # fmt: skip
+            logs,
+            parameters,
+            place,
+            confirm=confirm,
+            spread=spread,
+            progress=self.output.tell,
+            trust=[word for words in self.trust for word in words],
+        )
         conclude(self, calibration_json(found), text(found), lambda out: keep(found, out))
         return 0
 

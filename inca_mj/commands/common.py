@@ -49,6 +49,13 @@ class Values:
         return INCA if self.geometry is None else read_geometry(self.geometry)
 
 
+Trust = Annotated[
+    tuple[tuple[Literal["sensors", "units", "wiring"], ...], ...],
+    tyro.conf.UseAppendAction,
+    tyro.conf.arg(metavar="WORD"),
+]  # checks of a log that the user overrules, words of `inca_mj.twin.wiring.JUDGED`
+
+
 @dataclass(frozen=True)
 class Robot(Values):
     """A robot to be simulated."""

@@ -19,7 +19,7 @@ from identification.commands.common import (
     say_json,
     write_result,
 )
-from inca_mj.commands.common import Values, cannot_draw, do_not_draw, values_field
+from inca_mj.commands.common import Trust, Values, cannot_draw, do_not_draw, values_field
 
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery
@@ -52,6 +52,8 @@ class Discover:
     """The robot stood at rest by itself, with what the twin lacks, when the log began."""
     options: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None
     """TOML file with judgement constants, such as min_proof_t = 3.0 (docs/discovery.md)."""
+    trust: Trust = ()
+    """Checks of the log that you overrule: sensors, units, wiring."""
     robot: Annotated[Values, tyro.conf.OmitArgPrefixes] = values_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
@@ -89,6 +91,7 @@ class Discover:
             progress=self.output.tell,
             settled=self.settled,
             options=options,
+            trust=[word for words in self.trust for word in words],
         )
         from identification.report.discovery_text import discovery_text  # slow to import
 

@@ -20,7 +20,7 @@ from identification.commands.common import (
     write_result,
 )
 from identification.commands.stopping import STOPPED
-from inca_mj.commands.common import Robot, do_not_draw, robot_field
+from inca_mj.commands.common import Robot, Trust, do_not_draw, robot_field
 
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
@@ -61,6 +61,8 @@ class Identify:
     """Also estimate an unlogged error of the currents, by a Kalman predictor."""
     profile: Annotated[tuple[str, ...], tyro.conf.arg(metavar="NAME")] = ()
     """Estimated parameters to profile: refit the others at 9 values of each."""
+    trust: Trust = ()
+    """Checks of the log that you overrule: sensors, units, wiring."""
     robot: Annotated[Robot, tyro.conf.OmitArgPrefixes] = robot_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
@@ -140,7 +142,10 @@ class Identify:
         log, parameters, place = (
             read_inca_log(self.log), self.robot.parameters(), self.robot.place()
         )  # fmt: skip
-        common: Any = {"free": free, "progress": self.output.tell, "timestep": self.robot.step}
+        common: Any = {
+            "free": free, "progress": self.output.tell, "timestep": self.robot.step,
+            "trust": [word for words in self.trust for word in words],
+        }  # fmt: skip
         if self.windows is not None:
             return identify_windows(log, self.windows, parameters, place, **common)
         if self.innovations:

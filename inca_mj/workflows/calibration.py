@@ -105,6 +105,7 @@ def calibrate(
     spread: Spread | None = None,
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
+    trust: Sequence[str] = (),
 ) -> Calibration:
     """Calibrate drives, geometry and platform from logs.
 
@@ -117,6 +118,7 @@ def calibrate(
         spread: how much drives and points usually differ; `models/inca6d_spread.toml` when None.
         progress: is told one line per step.
         timestep: largest step of the integrator [s].
+        trust: checks of the log that you overrule, words of `inca_mj.twin.wiring.JUDGED`.
 
     Raises:
         InputError: there is no log, two logs are no records of one robot, or share samples, a log
@@ -135,7 +137,7 @@ def calibrate(
     own = with_own(with_spread(parameters or parameter_set()), POSE, len(logs))
     plant = build_twin(own, geometry, timestep=step, visual=False)
     for log in (*logs, *confirm):
-        refuse_miswired(log, plant)
+        refuse_miswired(log, plant, trust)
 
     from identification.discovery.nominal_model import fit_with_effects  # slow to import
     from identification.discovery.options import DiscoveryOptions

@@ -42,6 +42,7 @@ def discover(
     timestep: float = TIMESTEP,
     settled: bool = False,
     options: DiscoveryOptions | None = None,
+    trust: Sequence[str] = (),
 ) -> Discovery:
     """Name the physical effect that the twin lacks to explain logs, and prove it.
 
@@ -62,6 +63,7 @@ def discover(
             starts at rest with the effects that the twin lacks; False if it was held where the
             nominal model rests.
         options: the judgement constants; the defaults of `DiscoveryOptions` when None.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.wiring.JUDGED`.
 
     Raises:
         InputError: a log is too short, is not wired as the robot is, two logs are no records of
@@ -73,7 +75,7 @@ def discover(
     step = timestep_for(every.sampling_time, timestep)
     plain = build_twin(parameters, geometry, timestep=step, visual=False)
     for one in (*logs, *confirm):
-        refuse_miswired(one, plain)
+        refuse_miswired(one, plain, trust)
 
     # These imports are slow, so they come after the checks that may refuse the log.
     from identification.discovery.search import discover as search

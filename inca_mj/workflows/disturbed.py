@@ -31,6 +31,7 @@ def identify_windows(
     free: Sequence[str] = (),
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
+    trust: Sequence[str] = (),
 ) -> Identification:
     """Identify the robot over windows of the estimation part, then confirm it in a free run.
 
@@ -50,6 +51,7 @@ def identify_windows(
             mass.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
+        trust: checks of the log that you overrule, words of `inca_mj.twin.wiring.JUDGED`.
 
     Raises:
         InputError: the windows do not fit the log, or for the reasons of `identify`.
@@ -64,7 +66,7 @@ def identify_windows(
         )
     timestep = timestep_for(log.sampling_time, timestep)
     plant = build_twin(parameters, geometry, timestep=timestep, visual=False)
-    refuse_miswired(log, plant)
+    refuse_miswired(log, plant, trust)
     fitted = log.part("estimation")
     names = tuple(dict.fromkeys((*(free or MECHANICS), *POSE)))
     time, end = fitted.time, float(fitted.time[0]) + FIRST * length
@@ -85,6 +87,7 @@ def identify_innovations(
     free: Sequence[str] = (),
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
+    trust: Sequence[str] = (),
 ) -> Identification:
     """Identify the robot by its innovations, where the true currents differ from the logged ones.
 
@@ -95,6 +98,7 @@ def identify_innovations(
         free: parameters to estimate; all of them and the pose when empty.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
+        trust: checks of the log that you overrule, words of `inca_mj.twin.wiring.JUDGED`.
 
     Raises:
         InputError: for the reasons of `identify`.
@@ -102,7 +106,7 @@ def identify_innovations(
     """
     timestep = timestep_for(log.sampling_time, timestep)
     plant = build_twin(parameters, geometry, timestep=timestep, visual=False)
-    refuse_miswired(log, plant)
+    refuse_miswired(log, plant, trust)
     names = tuple(free) or (*MECHANICS, *POSE)
     found = estimate_innovations(plant, log, names, progress=progress)
     return Identification(log=log, fits=(found.fit,), best=0, innovations=found)

@@ -89,6 +89,7 @@ def identify(
     options: Options | None = None,
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
+    trust: Sequence[str] = (),
     starts: int = 1,
     seed: int = 0,
 ) -> Identification:
@@ -102,6 +103,7 @@ def identify(
         options: how to search.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
+        trust: checks of the log that you overrule, words of `inca_mj.twin.wiring.JUDGED`.
         starts: how many starts each search may try, until one ends near the noise floor.
         seed: of the starts after the first.
 
@@ -113,7 +115,7 @@ def identify(
     refuse_negative("seed", seed)
     timestep = timestep_for(log.sampling_time, timestep)
     plant = build_twin(parameters, geometry, timestep=timestep, visual=False)
-    refuse_miswired(log, plant)
+    refuse_miswired(log, plant, trust)
     fitted = log.part("estimation")
 
     tried: list[np.ndarray] = []

@@ -12,7 +12,7 @@ of the log is fitted (5 of 10 s), and the whole log is predicted.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from identification import Log
 from identification.estimation.estimation import Options, estimate
@@ -42,6 +42,7 @@ def identify_as_thesis(
     options: Options | None = None,
     progress: Callable[[str], None] | None = None,
     timestep: float = TIMESTEP,
+    trust: Sequence[str] = (),
 ) -> Identification:
     """Identify the robot from a log by the two steps of the thesis' section 3.3.
 
@@ -53,6 +54,7 @@ def identify_as_thesis(
         options: how to search; `Options(horizons=(1.0,))` is the thesis' single free-run fit.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
+        trust: checks of the log that you overrule, words of `inca_mj.twin.wiring.JUDGED`.
 
     Raises:
         InputError: the log is not wired as the robot is, or a start has no pretension.
@@ -60,7 +62,7 @@ def identify_as_thesis(
     """
     step = timestep_for(log.sampling_time, timestep)
     plant = build_twin(parameters, geometry, timestep=step, visual=False)
-    refuse_miswired(log, plant)
+    refuse_miswired(log, plant, trust)
     fitted = log.part("estimation")
 
     first = assess(estimate(plant, fitted, tuple(STEP_1), STEP_1, options, progress), log)

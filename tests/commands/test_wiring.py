@@ -12,7 +12,7 @@ from inca_mj.robot.inputs import make_input
 from inca_mj.twin.logs import read_inca_log, run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
-from inca_mj.twin.wiring import refuse_miswired
+from inca_mj.twin.wiring import JUDGED, refuse_miswired
 
 LOG = Path(__file__).parents[2] / "examples" / "log.csv"  # an effect is missing from its model
 
@@ -122,3 +122,47 @@ def test_currents_of_the_wrong_sign(plant):
 
     with pytest.raises(InputError, match=r"turn the sign of angle_1, .* or of current_1"):
         refuse_miswired(changed(reverse), plant)
+
+
+def beside(plant, change) -> Log:
+    """The twin's own log of 3 s, changed, with the noise of its encoders."""
+    log = run_to_log(simulate(plant, make_input("prbs", 3.0)))
+    y = log.outputs + 5e-4 * np.random.default_rng(2).standard_normal(log.outputs.shape)
+    change(y)
+    return replace(log, outputs=y)
+
+
+def test_an_exchange_that_leaves_other_angles_astray_is_no_wiring(plant):
+    """A load friction and a clipped current once looked like an exchange of two of four angles that
+    were off: after it, the others were as far from the twin as before."""
+
+    def exchange(y):
+        y[:, [3, 5]] = y[:, [5, 3]]
+
+    def astray(y):
+        exchange(y)
+        y[:, 4] = y[0, 4] + np.linalg.norm(y[:, 4]) * np.sin(np.arange(len(y)) / 30)
+
+    with pytest.raises(InputError, match="exchange angle_4 and angle_6"):
+        refuse_miswired(beside(plant, exchange), plant)
+    refuse_miswired(beside(plant, astray), plant)
+
+
+@pytest.mark.parametrize(
+    ("word", "change"),
+    [
+        ("wiring", lambda y: np.negative(y, out=y)),
+        ("units", lambda y: np.multiply(y, 57.3, out=y)),
+        ("sensors", lambda y: y[:, 4].fill(0.0)),
+    ],
+)
+def test_who_knows_better_overrules_a_check_and_only_this_check(plant, word, change):
+    log = beside(plant, change)
+    with pytest.raises(InputError, match=f"write --trust {word}"):
+        refuse_miswired(log, plant, [other for other in JUDGED if other != word])
+    refuse_miswired(log, plant, [word])
+
+
+def test_an_unknown_word_lists_the_good_ones(plant):
+    with pytest.raises(InputError, match=r"'wires'.*sensors, units, wiring"):
+        refuse_miswired(read_inca_log(LOG), plant, ["wires"])

@@ -52,7 +52,7 @@ def test_impulse_and_moment_of_the_whole_are_kept():
     assert steps @ out == pytest.approx(steps @ u[:, 0] + u.sum() * tau / STEP)
 
 
-@pytest.mark.parametrize("before", [0.0, 1.0])
+@pytest.mark.parametrize("before", [0.0, 1.0, 0.3, -2.0])
 def test_lag(before):
     u = currents()
     out = at_taus(BY_NAME["current_lag"], u, before)
@@ -71,7 +71,7 @@ def test_lag(before):
     assert np.array_equal(out[:, 0], u[:, 0])
 
 
-@pytest.mark.parametrize("before", [0.0, 1.0])
+@pytest.mark.parametrize("before", [0.0, 1.0, 0.3, -2.0])
 def test_delay(before):
     u = currents()
     out = at_taus(BY_NAME["delay"], u, before)
