@@ -31,7 +31,7 @@ from inca_mj.workflows.identification import MECHANICS
 
 FREE = (*MECHANICS, *POSE)
 DURATION, NOISE = 10.0, 6.7e-4  # [s], [rad]
-PATIENCE = 90.0  # longest wait for another program [s]
+PATIENCE = 18.0  # longest wait for another program, in times of our fit
 
 
 @dataclass
@@ -84,8 +84,8 @@ class _OutOfPatienceError(Exception):
     """The other program has had its time."""
 
 
-def sysid_seconds(robot: Twin, log: Log) -> tuple[float | None, str]:
-    """Wall time of `mujoco.sysid.optimize` [s] and how it went."""
+def sysid_seconds(robot: Twin, log: Log, ours: float) -> tuple[float | None, str]:
+    """Wall time of `mujoco.sysid.optimize` [s] and how it went, beside the time of our fit [s]."""
     try:
         parameters = to_sysid_parameters(robot, FREE)
         residual = sysid_residual(robot, log, FREE)
@@ -97,7 +97,7 @@ def sysid_seconds(robot: Twin, log: Log) -> tuple[float | None, str]:
     seen: list[tuple[float, dict[str, float]]] = []
 
     def watchful(x, values):
-        if time.perf_counter() - begin > PATIENCE:
+        if time.perf_counter() - begin > PATIENCE * ours:
             raise _OutOfPatienceError
         found = residual(x, values)
         if np.ndim(x) == 1 or x.shape[1] == 1:

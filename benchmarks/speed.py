@@ -109,7 +109,7 @@ def measure_fit(step: float, evaluation: float) -> dict[str, dict]:
     robot, log = build_twin(parameter_set("trial")), fit_ratios.practice()
     with counted() as asked, fit_ratios.watched() as work:
         found = estimate(robot, log, fit_ratios.FREE)
-    other, why = fit_ratios.sysid_seconds(robot, log)
+    other, why = fit_ratios.sysid_seconds(robot, log, found.seconds)
     naive = fit_ratios.naive_seconds(robot, log, work.simulated)
     return {
         "fit_share_of_bare_steps": entry(share_of_limit(asked, step, evaluation), 0.93),
