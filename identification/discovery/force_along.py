@@ -9,17 +9,15 @@ like that of θ, whatever the effect is: a friction, a weaker motor, another mas
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
 
-from identification.kalman.linear import Linearisation, linearise_records
-from identification.kalman.trajectory import Trajectory, average_inputs
-from identification.model.numbers import with_numbers
+from identification.kalman.linear import Linearisation, linearise_along
+from identification.kalman.trajectory import Trajectory
 from identification.model.predictor import Predictor
-from identification.model.rollout import hold, substeps, without_sensors
 
 ACTS = 0.01  # of the largest rms: a degree of freedom with less force is not acted on
 LEAST = 1e-12  # [N or N m] a smaller force is rounding
@@ -32,13 +30,15 @@ class ForceAlong:
 
     Attributes:
         dofs: n of them, each of a hinge or a slide.
-        records: the linearisation of each record, whose inputs are forces on these.
+        stretches: the linearisation along each, whose inputs are forces on these.
         predicted: outputs of the first set of values, shape (N, ny).
         forces: of each set of values beyond the base, shape (M, n) each [N or N m].
         drives: forces of the base's actuators, shape (M, n) [N or N m].
         position: shape (M, n) [rad or m].
         rate: shape (M, n) [rad/s or m/s].
-        time: of each record, shape (M, n) [s].
+        turning: where the rate changes by more than itself to the point before or behind: in a step
+            of the simulation in which a joint turns, friction has both signs, shape (M, n).
+        time: in its record, shape (M, n) [s].
         kind: of the joints, `mujoco.mjtJoint`.
         late: the first force at the same states and inputs, had the clock run backwards,
             shape (M, n).
@@ -46,12 +46,13 @@ class ForceAlong:
     """
 
     dofs: tuple[int, ...]
-    records: tuple[Linearisation, ...]
+    stretches: tuple[Linearisation, ...]
     predicted: np.ndarray
     forces: tuple[np.ndarray, ...]
     drives: np.ndarray
     position: np.ndarray
     rate: np.ndarray
+    turning: np.ndarray
     time: np.ndarray
     kind: int
     late: np.ndarray
@@ -64,68 +65,63 @@ class ForceAlong:
         return bool(np.abs(self.late - force).max() > ACTS * np.abs(force).max())
 
 
-def force_along(
-    predictor: Predictor, values: Mapping[str, float], base: Mapping[str, float],
-    sets: Sequence[Mapping[str, float]],
-) -> ForceAlong | None:  # fmt: skip
-    """The forces of some sets of values beyond those of a base, along a predicted trajectory.
+@dataclass(frozen=True)
+class Stretch:
+    """What was simulated from one state: a record, or a window of one.
+
+    Attributes:
+        predictor: of its outputs.
+        along: its trajectory, of M points.
+        reached: of θ₀ and of each θ, the model and the inputs that reach it, shape (M, nu).
+    """
+
+    predictor: Predictor
+    along: Trajectory
+    reached: Sequence[tuple[mujoco.MjModel, np.ndarray]]
+
+
+def forces_along(stretches: Sequence[Stretch], predicted: np.ndarray) -> ForceAlong | None:
+    """The forces of some sets of values beyond those of a base, along stretches.
 
     Args:
-        predictor: plant and log.
-        values: whose trajectory it is, by name, in their units.
-        base: θ₀, likewise.
-        sets: each a θ; the first says on which degrees of freedom they act.
+        stretches: with the models of base and sets.
+        predicted: outputs of the first set along all of them, shape (N, ny).
 
     Returns:
         None where the first set has no force, or one on what is no hinge and no slide, or on joints
         of both kinds.
-
-    Raises:
-        DivergenceError: the model cannot be simulated.
     """
-    whole = _with(predictor, values)
-    records = linearise_records(whole, _row(values)[0])
-    each = [_with(predictor, chosen).records() for chosen in (base, *sets)]
     rates, drives, later = [], [], []
-    for k, linear in enumerate(records):
-        of = [_rates(*own[k], _row(chosen)[0], linear.along)
-              for own, chosen in zip(each, (base, *sets), strict=True)]  # fmt: skip
-        rates.append(_times_mass(of[0][2], linear.along, [a - of[0][0] for a, _, _ in of[1:]]))
+    for stretch in stretches:
+        along, (bare, first, *_) = stretch.along, stretch.reached
+        of = [_rates(*each, along) for each in stretch.reached]
+        rates.append(_times_mass(bare[0], along, [a - of[0][0] for a, _ in of[1:]]))
         drives.append(of[0][1])
-        turned = replace(linear.along, time=linear.along.time[::-1])
-        off = [_rates(*own[k], _row(chosen)[0], turned)[0]
-               for own, chosen in zip(each, (base, sets[0]), strict=False)]  # fmt: skip
-        later += _times_mass(of[0][2], turned, [off[1] - off[0]])
+        turned = replace(along, time=along.time[::-1])
+        off = [_rates(*each, turned)[0] for each in (bare, first)]
+        later += _times_mass(bare[0], turned, [off[1] - off[0]])
     forces = [np.vstack(f) for f in zip(*rates, strict=True)]
-    model = records[0].along.model
+    each = [stretch.along for stretch in stretches]
+    model = each[0].model
     dofs, kind = _dofs(model, forces[0])
     if not dofs:
         return None
     joints = [int(model.dof_jntid[d]) for d in dofs]
     at = [int(model.jnt_qposadr[j]) for j in joints]
-    along = [linear.along for linear in records]
-    pushed = linearise_records(whole, _row(values)[0], forces=dofs)
     return ForceAlong(
         dofs=tuple(dofs),
-        records=pushed,
-        predicted=whole.predict(_row(values))[0],
+        stretches=tuple(linearise_along(s.predictor, s.along, dofs) for s in stretches),
+        predicted=predicted,
         forces=tuple(f[:, dofs] for f in forces),
         drives=np.vstack(drives)[:, dofs],
-        position=np.vstack([a.qpos[:, at] for a in along]),
-        rate=np.vstack([a.qvel[:, dofs] for a in along]),
-        time=np.concatenate([a.time for a in along])[:, None] * np.ones(len(dofs)),
+        position=np.vstack([a.qpos[:, at] for a in each]),
+        rate=np.vstack([a.qvel[:, dofs] for a in each]),
+        turning=np.vstack([_turning(a.qvel[:, dofs]) for a in each]),
+        time=np.concatenate([a.time for a in each])[:, None] * np.ones(len(dofs)),
         kind=kind,
         late=np.vstack(later)[:, dofs],
-        late_time=np.concatenate([a.time[::-1] for a in along])[:, None] * np.ones(len(dofs)),
+        late_time=np.concatenate([a.time[::-1] for a in each])[:, None] * np.ones(len(dofs)),
     )
-
-
-def _with(predictor: Predictor, values: Mapping[str, float]) -> Predictor:
-    return replace(predictor, names=tuple(values), fixed={})
-
-
-def _row(values: Mapping[str, float]) -> np.ndarray:
-    return np.array([[*values.values()]])
 
 
 def _dofs(model: mujoco.MjModel, force: np.ndarray) -> tuple[list[int], int]:
@@ -139,15 +135,18 @@ def _dofs(model: mujoco.MjModel, force: np.ndarray) -> tuple[list[int], int]:
     return (dofs, kind) if len(kinds) == 1 and kind in JOINTS else ([], 0)
 
 
+def _turning(rate: np.ndarray) -> np.ndarray:
+    """Where rates change by more than themselves to a neighbour, along one trajectory (M, n)."""
+    change = np.abs(np.diff(rate, axis=0))
+    none = np.zeros_like(rate[:1])
+    most = np.maximum(np.concatenate([none, change]), np.concatenate([change, none]))
+    return np.asarray(np.abs(rate) < most)
+
+
 def _rates(
-    predictor: Predictor, columns: list[int], values: np.ndarray, along: Trajectory
-) -> tuple[np.ndarray, np.ndarray, mujoco.MjModel]:
-    """Accelerations and forces of the actuators along a trajectory (M, nv), and the model."""
-    row, log = values[None, columns], predictor.log
-    plant = predictor.plant.model
-    model = with_numbers(without_sensors(plant), predictor.settings(row)[1], 0)
-    held = hold(log.inputs, substeps(log.sampling_time, along.timestep), log.hold)
-    inputs = average_inputs(predictor.inputs(row)(held), along.steps, model.nu)[0]
+    model: mujoco.MjModel, inputs: np.ndarray, along: Trajectory
+) -> tuple[np.ndarray, np.ndarray]:
+    """Accelerations and forces of the actuators along a trajectory, shape (M, nv) each."""
     data = mujoco.MjData(model)
     rates, drives = np.empty_like(along.qvel), np.empty_like(along.qvel)
     for k in range(len(along.time)):
@@ -155,7 +154,7 @@ def _rates(
         data.ctrl[:] = inputs[k]
         mujoco.mj_forward(model, data)
         rates[k], drives[k] = data.qacc, data.qfrc_actuator
-    return rates, drives, model
+    return rates, drives
 
 
 def _times_mass(

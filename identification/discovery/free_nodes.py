@@ -84,7 +84,7 @@ def respond(along: ForceAlong, regressor: Regressor, nodes: Nodes) -> np.ndarray
     """Outputs for a unit force at each node, shape (N, ny, m)."""
     hats = nodes.hats(regressor.values) * regressor.turn[..., None]
     out, done = [], 0
-    for linear in along.records:
+    for linear in along.stretches:
         trajectory = linear.along
         mine = trajectory.average(hats[done : done + len(trajectory.time)])
         done += len(trajectory.time)

@@ -6,7 +6,9 @@ u is 0 where f is a smooth function of x, and 1 where it is none (von Neumann 19
 these with u below `ENOUGH` is taken: the time, where the force knows it; the joint's rate; the
 angle within one period of a law that repeats; its position; the force of its own drives. A friction
 may also be a function of one of them when it is counted against the motion. Where none is enough,
-as where a law is a product of two of them, it is what the law multiplies by its size.
+it is the one with the least u, if this is below `FAIR`: where a joint turns, a friction is any
+force below its level. Else, as where a law is a product of two of them, it is what the law
+multiplies by its size.
 """
 
 from __future__ import annotations
@@ -19,9 +21,9 @@ import numpy as np
 
 from identification.discovery.force_along import ForceAlong
 from identification.effects.effect import Candidate
-from identification.logs.log import Log
 
 ENOUGH = 0.01
+FAIR = 0.1
 MOST = 0.8  # of the points: where a joint is held, no law of friction shows
 HELD = 2e-3  # of the top speed: below it a friction may hold the joint
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
@@ -34,7 +36,8 @@ class Regressor:
     Attributes:
         along: "rate", "position", "phase", "time", "drive", "law" or "reading".
         values: at the points of a trajectory, for each of n degrees of freedom, shape (M, n).
-        moving: where the force follows it: a joint that is held shows no law, shape (M, n).
+        moving: where the force follows it: a joint that is held, or turns, shows no law; shape
+            (M, n).
         turn: 1, or the sign against the motion where the force is a friction, shape (M, n).
         unit: of the values.
         force_unit: of the force.
@@ -70,7 +73,7 @@ def find_regressor(
     q, v, force = along.position, along.rate, along.forces[0]
     x, f = ("m", "N") if along.kind == SLIDE else ("rad", "N m")
     plain, against = np.ones_like(v), -np.where(v < 0, -1.0, 1.0)
-    moving = np.abs(v) > HELD * np.abs(v).max()
+    moving = (np.abs(v) > HELD * np.abs(v).max()) & ~along.turning
 
     def follows(what: str, of: np.ndarray, turn: np.ndarray, unit: str) -> Regressor:
         return Regressor(
@@ -92,33 +95,34 @@ def find_regressor(
             return option
     best = min(options, key=lambda option: unexplained(option, force))
     size = _single(candidate, values)
-    if size:
+    if size and unexplained(best, force) > FAIR:
         return follows("law", force / size, plain, "")
     return best
 
 
-def find_reading(log: Log, own: np.ndarray, error: np.ndarray, at: list[int]) -> Regressor:
+def find_reading(
+    own: np.ndarray, rate: np.ndarray, time: np.ndarray, error: np.ndarray, unit: str
+) -> Regressor:
     """What the error of a sensor follows: its reading, the time or, else, the reading's rate.
 
     Args:
-        log: with N samples.
-        own: readings without the error, shape (N, ny).
-        error: of the readings, shape (N, ny).
-        at: the outputs that have it.
+        own: readings of n outputs without the error, shape (N, n) [unit].
+        rate: of these, shape (N, n) [unit/s].
+        time: of the samples, shape (N,) [s].
+        error: of the readings, shape (N, n) [unit].
+        unit: of the readings.
     """
-    unit = log.units.get(log.output_names[at[0]], "")
-    y, plain = own[:, at], np.ones((len(log), len(at)))
-    time = np.repeat(log.time[:, None], len(at), axis=1)
-    rate = np.gradient(y, log.sampling_time, axis=0)
+    plain = np.ones_like(own)
+    times = time[:, None] * plain
     options = [
         Regressor(
             along=along, values=values, moving=plain > 0, turn=plain, unit=x, force_unit=unit
         )
         for along, values, x in (
-            ("reading", y, unit), ("rate", rate, f"{unit}/s"), ("time", time, "s")
+            ("reading", own, unit), ("rate", rate, f"{unit}/s"), ("time", times, "s")
         )
     ]  # fmt: skip
-    return min(options, key=lambda option: unexplained(option, error[:, at]) > ENOUGH)
+    return min(options, key=lambda option: unexplained(option, error) > ENOUGH)
 
 
 def unexplained(regressor: Regressor, force: np.ndarray) -> float:

@@ -2,26 +2,26 @@
 
     e = y - ŷ(θ̂),   f̂_j = f(x_j; θ̂) + ĉ_j,   ĉ = argmin ‖W (e - Σ_j c_j s_j)‖²
 
-s_j is the response of the outputs to a unit force that follows a hat about the node x_j, W the
-whitening filter of the noise. This is one step of Gauss and Newton of another model, which has in
-the place of the law a curve of free nodes. It begins where the law is, but nothing holds the nodes
-there: had the data another curve than the law's, the points f̂_j would leave the law for it.
+s_j is the response of the outputs to a unit force that follows a hat about the node x_j, W what
+whitens the noise. This is one step of Gauss and Newton of another model, which has in the place of
+the law a curve of free nodes. It begins where the law is, but nothing holds the nodes there: had
+the data another curve than the law's, the points f̂_j would leave the law for it.
 
 The other parameters stay as the final fit has them: a curve of the rate could take over what
 viscous and Coulomb friction do, and nothing would tell how much of it. The band about the law holds
 what is not known of the law's own parameters, and the bars of the points the noise alone.
+`identification.discovery.recovery` recovers the forces of a free run, and
+`identification.prediction.recovery` those of windows.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
-from identification.discovery.effect_results import Rival
-from identification.discovery.force_along import ACTS, force_along
+from identification.discovery.force_along import ACTS, ForceAlong
 from identification.discovery.free_nodes import MOST, Nodes, place_nodes, respond
 from identification.discovery.law_regressors import (
     Regressor,
@@ -30,12 +30,9 @@ from identification.discovery.law_regressors import (
     unexplained,
 )
 from identification.effects.effect import Candidate
-from identification.kalman.noise_model import build_whitener
-from identification.kalman.problem import linearise_criterion
-from identification.kalman.refit import Refit
+from identification.logs.log import Log
 
 LINE = 60  # bins of a law's line
-STEP = 0.1  # of a std: for the derivatives of a law by its parameters
 MIXED = 0.2  # u of a force that is shown as a function of one quantity, at most
 NEAR = 200  # one of so many samples is near to a node
 WEAK = 1.0  # of the law's largest force: a point with a larger std tells nothing
@@ -83,57 +80,17 @@ class RecoveredForce:
     places: int
 
 
-def recover_force(
-    fit: Refit,
-    candidate: Candidate,
-    rivals: Sequence[Rival] = (),
-) -> RecoveredForce | None:
-    """The force of an effect, recovered from the fitted samples.
-
-    Args:
-        fit: with the effect.
-        candidate: the effect.
-        rivals: what else was fitted in its place.
-
-    Returns:
-        None where the effect makes no force, or forces that are no function of one quantity of
-        each joint, as that of a cable on a platform.
-
-    Raises:
-        DivergenceError: the model cannot be simulated.
-    """
-    values = fit.point.values
-    base = {**values, **dict.fromkeys(candidate.sizes, 0.0)}
-    rivals = [r for r in rivals if r.values]
-    steps = _law_steps(fit, candidate)
-    moved = [{**values, name: values[name] + step} for name, step in steps.items()]
-    sets = [values, *moved, *({**r.values, **_absent(base, r.values)} for r in rivals)]
-    with threadpool_limits(1, "blas"):
-        find = _of_readings if "reading" in candidate.effect.hooks else _of_forces
-        shown = find(fit, candidate, values, base, sets)
-        if shown is None or unexplained(shown.follows, shown.forces[0]) > MIXED:
-            return None
-        c, std = _solve(fit, fit.point.log.outputs - shown.predicted, shown.response)
-    x, nodes = shown.follows, shown.nodes
-    edges = _edges(x, shown.forces[0])
-    lines = [_line(x, force, edges) for force in shown.forces]
-    return RecoveredForce(
-        candidate=candidate,
-        along=x.along,
-        resists=x.resists,
-        units=(x.unit, x.force_unit),
-        points=_points(nodes, x.samples(shown.forces[0]), c, std),
-        law=_with_band(fit, lines[0], lines[1 : 1 + len(steps)], steps),
-        rivals=tuple(
-            (r.candidate, line) for r, line in zip(rivals, lines[1 + len(steps) :], strict=True)
-        ),
-        places=x.values.shape[1],
-    )
-
-
 @dataclass(frozen=True)
-class _Shown:
-    """What is drawn of some sets of values, the first of them the law's, and what it rests on."""
+class Shown:
+    """Forces of some sets of values, the first of them the law's, and what they rest on.
+
+    Attributes:
+        follows: what the law's force follows, M points of n degrees of freedom.
+        nodes: m of them, of the free curve.
+        forces: of each set, shape (M, n) each.
+        predicted: outputs with the law, shape (N, ny).
+        response: of the outputs to a unit force at each node, shape (N, ny, m).
+    """
 
     follows: Regressor
     nodes: Nodes
@@ -141,63 +98,102 @@ class _Shown:
     predicted: np.ndarray
     response: np.ndarray
 
+    @property
+    def is_mixed(self) -> bool:
+        """Whether the law's force is no function of one quantity."""
+        return unexplained(self.follows, self.forces[0]) > MIXED
 
-def _of_forces(
-    fit: Refit, candidate: Candidate, values: Mapping[str, float], base: Mapping[str, float],
-    sets: Sequence[Mapping[str, float]],
-) -> _Shown | None:  # fmt: skip
-    """Forces on joints; None where the law has none, or not on joints of one kind alone."""
-    along = force_along(fit.point.predictor, values, base, sets)
-    if along is None:
-        return None
+
+def show_forces(candidate: Candidate, values: Mapping[str, float], along: ForceAlong) -> Shown:
+    """Forces on joints, over what the first of them follows.
+
+    Args:
+        candidate: the effect.
+        values: of the plant's parameters by name.
+        along: the forces along trajectories.
+    """
     x = find_regressor(candidate, values, along)
     nodes = place_nodes(x, along.forces[0])
-    return _Shown(x, nodes, along.forces, along.predicted, respond(along, x, nodes))
+    return Shown(x, nodes, along.forces, along.predicted, respond(along, x, nodes))
 
 
-def _of_readings(
-    fit: Refit, candidate: Candidate, values: Mapping[str, float], base: Mapping[str, float],
-    sets: Sequence[Mapping[str, float]],
-) -> _Shown | None:  # fmt: skip
-    """Errors of sensors: what they say beyond what a perfect one would."""
-    predictor = fit.point.predictor
-    own, *others = (
-        replace(predictor, names=tuple(v), fixed={}).predict(np.array([[*v.values()]]))[0]
-        for v in (base, *sets)
-    )
-    errors = [other - own for other in others]
+def show_readings(
+    log: Log, own: np.ndarray, rate: np.ndarray, time: np.ndarray, readings: Sequence[np.ndarray]
+) -> Shown | None:
+    """Errors of sensors: what they say beyond what perfect ones would.
+
+    Args:
+        log: that has the outputs.
+        own: what perfect sensors would say, shape (N, ny).
+        rate: of these, shape (N, ny).
+        time: of the samples in their record, shape (N,) [s].
+        readings: with the named effect, and with others, shape (N, ny) each.
+
+    Returns:
+        None where the sensors have no error.
+    """
+    errors = [said - own for said in readings]
     rms = np.sqrt(np.mean(errors[0] ** 2, axis=0))
     at = np.flatnonzero(rms > ACTS * rms.max())
     if not rms.max() > 0:
         return None
-    x = find_reading(predictor.log, own, errors[0], at.tolist())
+    unit = log.units.get(log.output_names[int(at[0])], "")
+    x = find_reading(own[:, at], rate[:, at], time, errors[0][:, at], unit)
     nodes = place_nodes(x, errors[0][:, at])
     S = np.zeros((*own.shape, len(nodes.x)))
     S[:, at] = nodes.hats(x.values)
-    return _Shown(x, nodes, tuple(e[:, at] for e in errors), others[0], S)
+    return Shown(x, nodes, tuple(e[:, at] for e in errors), readings[0], S)
 
 
-def _law_steps(fit: Refit, candidate: Candidate) -> dict[str, float]:
-    """Steps for derivatives of a law by its free parameters, by name, in their units."""
-    space = fit.point.space
-    std = dict(zip(space.names, fit.std * space.slope(fit.point.q), strict=True))
-    return {name: STEP * float(std[name]) for name in candidate.estimated if std.get(name)}
+@dataclass(frozen=True)
+class Moved:
+    """By how much the parameters of a law were moved, to see what is not known of it.
+
+    Attributes:
+        steps: in their units, shape (k,).
+        covariance: of the parameters, shape (k, k).
+    """
+
+    steps: np.ndarray
+    covariance: np.ndarray
 
 
-def _absent(values: Mapping[str, float], others: Mapping[str, float]) -> dict[str, float]:
-    """Parameters that other values do not name, as a base has them."""
-    return {name: value for name, value in values.items() if name not in others}
+def compare_force(
+    candidate: Candidate, shown: Shown, c: np.ndarray, std: np.ndarray, moved: Moved,
+    rivals: Sequence[Candidate],
+) -> RecoveredForce:  # fmt: skip
+    """The points of the free curve beside the law with its band and the laws of rivals.
+
+    Args:
+        candidate: the named effect.
+        shown: forces of its law, of the law with each parameter moved, and of the rivals.
+        c: what the free curve adds to the law at the nodes, shape (m,).
+        std: of it, shape (m,).
+        moved: the parameters that were moved.
+        rivals: effects in the law's place.
+    """
+    x, k = shown.follows, len(moved.steps)
+    edges = _edges(x, shown.forces[0])
+    law, *lines = (_line(x, force, edges) for force in shown.forces)
+    return RecoveredForce(
+        candidate=candidate,
+        along=x.along,
+        resists=x.resists,
+        units=(x.unit, x.force_unit),
+        points=_points(shown.nodes, x.samples(shown.forces[0]), c, std),
+        law=_with_band(law, lines[:k], moved),
+        rivals=tuple(zip(rivals, lines[k:], strict=True)),
+        places=x.values.shape[1],
+    )
 
 
-def _solve(fit: Refit, e: np.ndarray, S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The forces at the nodes that are likeliest, and their std, each of shape (m,)."""
-    point, level = fit.point, fit.level
-    filter_ = build_whitener(point.linear, level.noise, point.log.sampling_time)
-    E, F = filter_(e).ravel(), filter_(S).reshape(e.size, -1)
-    covariance = np.linalg.pinv(F.T @ F, rcond=1e-12, hermitian=True)
-    felt = np.diag(F.T @ F) > 0
-    std = np.where(felt, level.sigma * np.sqrt(np.diag(covariance)), np.inf)
-    return covariance @ (F.T @ E), std
+def _with_band(law: LawLine, moved: Sequence[LawLine], by: Moved) -> LawLine:
+    """A law with the std that the covariance of its parameters gives it."""
+    if not len(by.steps):
+        return law
+    slopes = [(m.force - law.force) / h for m, h in zip(moved, by.steps, strict=True)]
+    G = np.stack(slopes, axis=1)
+    return LawLine(law.x, law.force, np.sqrt(np.einsum("ni,ij,nj->n", G, by.covariance, G)))
 
 
 def _edges(x: Regressor, law: np.ndarray) -> np.ndarray:
@@ -222,23 +218,6 @@ def _line(x: Regressor, force: np.ndarray, edges: np.ndarray) -> LawLine:
     seen = count > 0
     mean = [np.bincount(which, of, len(edges) - 1)[seen] / count[seen] for of in (at, f)]
     return LawLine(mean[0], mean[1], np.zeros(int(seen.sum())))
-
-
-def _with_band(
-    fit: Refit, law: LawLine, moved: list[LawLine], steps: Mapping[str, float]
-) -> LawLine:
-    """A law with the std that the covariance of its parameters gives it."""
-    if not steps:
-        return law
-    point = fit.point
-    at = [point.space.names.index(name) for name in steps]
-    covariance = linearise_criterion(point, fit.level, fit.mean, fit.prior).covariance
-    slope = point.space.slope(point.q)[at]
-    P = covariance[np.ix_(at, at)] * np.outer(slope, slope)
-    G = np.stack(
-        [(m.force - law.force) / step for m, step in zip(moved, steps.values(), strict=True)], 1
-    )
-    return LawLine(law.x, law.force, np.sqrt(np.einsum("ni,ij,nj->n", G, P, G)))
 
 
 def _points(

@@ -96,7 +96,7 @@ def linearise_records(
         points: of the trajectory, for each sample.
     """
     return tuple(
-        _of_record(record, follow(record, values[..., columns], points), forces)
+        linearise_along(record, follow(record, values[..., columns], points), forces)
         for record, columns in predictor.records()
     )
 
@@ -113,8 +113,16 @@ def join(records: Sequence[Linearisation]) -> LinearPlant:
     )
 
 
-def _of_record(predictor: Predictor, along: Trajectory, forces: Sequence[int]) -> Linearisation:
-    """The linearisation along one record."""
+def linearise_along(
+    predictor: Predictor, along: Trajectory, forces: Sequence[int] = ()
+) -> Linearisation:
+    """The linearisation along one trajectory.
+
+    Args:
+        predictor: whose outputs are asked for.
+        along: the trajectory.
+        forces: degrees of freedom, as above.
+    """
     F, G = state_derivatives(along)
     if forces:
         G = along.average(force_derivatives(along, list(forces)))

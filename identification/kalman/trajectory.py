@@ -97,20 +97,41 @@ def follow(predictor: Predictor, values: np.ndarray, points: int) -> Trajectory:
         record=("qpos", "qvel", "act") if model.na else ("qpos", "qvel"),
         before=predictor.inputs(values), time=log.begun,
     )  # fmt: skip
-    states = {field: each[0] for field, each in run.items()}
-    steps = _divide(every, points, len(log))
+    return divided(
+        with_numbers(without_sensors(model), numbers, 0),
+        {field: each[0] for field, each in run.items()},
+        predictor.inputs(values)(held), every, points, log.begun,
+    )  # fmt: skip
+
+
+def divided(
+    model: mujoco.MjModel, states: dict[str, np.ndarray], held: np.ndarray, every: int,
+    points: int, begun: float,
+) -> Trajectory:  # fmt: skip
+    """The trajectory of what was simulated step by step.
+
+    Args:
+        model: with the numbers of the value set, without its sensors.
+        states: fields of the state before each step and after the last, each (steps + 1, size).
+        held: inputs that reach the model, shape (steps, inputs).
+        every: steps of a sample.
+        points: P, if there are as many steps in a sample.
+        begun: time in the record at which it begins [s].
+    """
+    step, samples = model.opt.timestep, (len(states["qpos"]) - 1) // every + 1
+    steps = _divide(every, points, samples)
     middle = (steps[1:] + steps[:-1]) / 2
     at = {field: _between(x, middle) for field, x in states.items()}
     return Trajectory(
-        model=with_numbers(without_sensors(model), numbers, 0),
+        model=model,
         qpos=at["qpos"],
         qvel=at["qvel"],
         act=at.get("act", np.empty((len(middle), 0))),
-        inputs=average_inputs(predictor.inputs(values)(held), steps, model.nu)[0],
-        time=log.begun + middle * step,
+        inputs=average_inputs(held, steps, model.nu)[0],
+        time=begun + middle * step,
         steps=steps,
         timestep=step,
-        begins=np.searchsorted(steps, _divide(every, INTERVALS, len(log))[:-1]),
+        begins=np.searchsorted(steps, _divide(every, INTERVALS, samples)[:-1]),
         states={field: x[::every] for field, x in states.items()},
     )
 

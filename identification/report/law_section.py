@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
-from identification.discovery.effect_results import NamedEffect
-from identification.discovery.recovered_force import RecoveredForce, recover_force
+from identification.discovery.recovered_force import RecoveredForce
+from identification.discovery.recovery import recover_force
 from identification.discovery.result import Discovery
+from identification.effects.effect import Candidate
 from identification.errors import DivergenceError
+from identification.prediction.recovery import recover_over_horizon
+from identification.prediction.result import RecordsDiscovery
 from identification.report.effect_words import describe_effect
 from identification.report.law_figure import law_figure
 from identification.report.page import Section
@@ -15,6 +20,7 @@ from identification.report.page import Section
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+Recovered = tuple[Candidate, RecoveredForce | None]
 LAWS = "The physics that was found"
 HOW = (
     "The points are the force that the data ask for: in the place of the law the fit got a curve"
@@ -23,36 +29,60 @@ HOW = (
     " what is not known of the law's own parameters. Where the law is right, the points lie on it;"
     " where they leave it, another law is at work there."
 )
+OVER_HORIZON = (
+    " They are recovered over windows, each of which begins in the state that explains it best, so"
+    " that what a state can explain is not counted; a rival's law has the sizes of its own fit."
+)
 NONE = (
     "{effect}: not drawn. It acts at several places at once, or by more than one quantity together,"
     " so that there is nothing to draw it against. The figures of the gap show what it does."
 )
 
 
-def law_sections(found: Discovery) -> list[Section]:
+def law_sections(found: Discovery | RecordsDiscovery) -> list[Section]:
     """The section on the recovered forces; none where nothing is named.
 
     Args:
         found: the discovery.
     """
-    if not found.named:
+    each = _of_records(found) if isinstance(found, RecordsDiscovery) else _of_free_run(found)
+    if not each:
         return []
-    each = [(named, _recovered(found, named)) for named in found.named]
     figures: list[tuple[str, Figure]] = []
-    said = [HOW] if any(of is not None for _, of in each) else []
-    for named, of in each:
-        effect = describe_effect(named.candidate)
+    drawn = any(of is not None for _, of in each)
+    said = [HOW + OVER_HORIZON * isinstance(found, RecordsDiscovery)] if drawn else []
+    for candidate, of in each:
+        effect = describe_effect(candidate)
         if of is None:
             said.append(NONE.format(effect=effect[0].upper() + effect[1:]))
             continue
-        what = "error" if "reading" in named.candidate.effect.hooks else "force"
+        what = "error" if "reading" in candidate.effect.hooks else "force"
         figures.append((f"Missing {what} and its law: {effect}", law_figure(of)))
-        said.append(f"{effect[0].upper()}{effect[1:]}: {named.candidate.effect.law}.")
+        said.append(f"{effect[0].upper()}{effect[1:]}: {candidate.effect.law}.")
     return [Section(LAWS, "\n\n".join(said), figures=tuple(figures))]
 
 
-def _recovered(found: Discovery, named: NamedEffect) -> RecoveredForce | None:
+def _of_free_run(found: Discovery) -> list[Recovered]:
+    """Of the last fit of a free run, with the models of rivals."""
+    return [
+        (n.candidate, _if_simulated(partial(recover_force, found.final, n.candidate, n.rivals)))
+        for n in found.named
+    ]
+
+
+def _of_records(found: RecordsDiscovery) -> list[Recovered]:
+    """Of the windows of the fitted records."""
+    out = []
+    for named in found.named:
+        candidate = named.effect.candidate
+        recover = partial(recover_over_horizon, found.final, candidate, named.rivals)
+        out.append((candidate, _if_simulated(recover)))
+    return out
+
+
+def _if_simulated(recover: Callable[[], RecoveredForce | None]) -> RecoveredForce | None:
+    """A recovered force; None where the law with a changed parameter, or a rival's, diverges."""
     try:
-        return recover_force(found.final, named.candidate, named.rivals)
-    except DivergenceError:  # of the law with a changed parameter, or of a rival's
+        return recover()
+    except DivergenceError:
         return None

@@ -10,7 +10,7 @@ from identification.prediction.result import RecordsDiscovery
 from identification.report.discovery_figures import gains_figure
 from identification.report.effect_words import describe_effect
 from identification.report.finding_words import describe_shift
-from identification.report.law_section import LAWS
+from identification.report.law_section import law_sections
 from identification.report.page import Section, Table, save_figures, write_report
 from identification.report.records_text import (
     best_scores,
@@ -21,11 +21,6 @@ from identification.report.records_text import (
 from identification.report.records_values import value_table
 
 BEST = 10  # candidates shown
-NOT_DRAWN = (
-    "The missing force is drawn for a free run of one log only. Over a horizon each window begins"
-    " in a state of its own, which is fitted together with the force. How much the named effects"
-    " explain stands in the table above."
-)
 
 
 def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
@@ -38,8 +33,7 @@ def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
     Raises:
         InputError: a file cannot be written.
     """
-    law = [Section(LAWS, NOT_DRAWN)] if found.named else []
-    shown = [_records(found), *law, _candidates(found), _values(found)]
+    shown = [_records(found), *law_sections(found), _candidates(found), _values(found)]
     if found.shifts:
         shown.append(_shifts(found))
     save_figures(shown, folder)

@@ -10,7 +10,7 @@ from joint_cases import slider as every_slider
 
 from identification.discovery.effect_results import Rival
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.recovered_force import recover_force
+from identification.discovery.recovery import recover_force
 from identification.effects.effect import Candidate
 from identification.effects.joint_plant import joint_plant
 from identification.kalman.point import evaluate_point

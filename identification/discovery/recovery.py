@@ -1,0 +1,120 @@
+"""The recovered force of an effect that was named for a free run: see `recovered_force`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from identification.discovery.effect_results import Rival
+from identification.discovery.record_forces import force_of_records
+from identification.discovery.recovered_force import (
+    Moved,
+    RecoveredForce,
+    Shown,
+    compare_force,
+    show_forces,
+    show_readings,
+)
+from identification.effects.effect import Candidate
+from identification.kalman.noise_model import build_whitener
+from identification.kalman.problem import linearise_criterion
+from identification.kalman.refit import Refit
+
+STEP = 0.1  # of a std: for the derivatives of a law by its parameters
+
+
+def recover_force(
+    fit: Refit,
+    candidate: Candidate,
+    rivals: Sequence[Rival] = (),
+) -> RecoveredForce | None:
+    """The force of an effect, recovered from the fitted samples.
+
+    Args:
+        fit: with the effect.
+        candidate: the effect.
+        rivals: what else was fitted in its place.
+
+    Returns:
+        None where the effect makes no force, or forces that are no function of one quantity of
+        each joint, as that of a cable on a platform.
+
+    Raises:
+        DivergenceError: the model cannot be simulated.
+    """
+    values = fit.point.values
+    base = {**values, **dict.fromkeys(candidate.sizes, 0.0)}
+    rivals = [r for r in rivals if r.values]
+    steps = _law_steps(fit, candidate)
+    moved = [{**values, name: values[name] + step} for name, step in steps.items()]
+    sets = [values, *moved, *({**r.values, **_absent(base, r.values)} for r in rivals)]
+    with threadpool_limits(1, "blas"):
+        find = _of_readings if "reading" in candidate.effect.hooks else _of_forces
+        shown = find(fit, candidate, values, base, sets)
+        if shown is None or shown.is_mixed:
+            return None
+        c, std = _solve(fit, fit.point.log.outputs - shown.predicted, shown.response)
+    return compare_force(
+        candidate, shown, c, std, _moved(fit, steps), [r.candidate for r in rivals]
+    )  # fmt: skip
+
+
+def _of_forces(
+    fit: Refit, candidate: Candidate, values: Mapping[str, float], base: Mapping[str, float],
+    sets: Sequence[Mapping[str, float]],
+) -> Shown | None:  # fmt: skip
+    """Forces on joints; None where the law has none, or not on joints of one kind alone."""
+    along = force_of_records(fit.point.predictor, values, base, sets)
+    if along is None:
+        return None
+    return show_forces(candidate, values, along)
+
+
+def _of_readings(
+    fit: Refit, candidate: Candidate, values: Mapping[str, float], base: Mapping[str, float],
+    sets: Sequence[Mapping[str, float]],
+) -> Shown | None:  # fmt: skip
+    """Errors of sensors: what they say beyond what a perfect one would."""
+    predictor = fit.point.predictor
+    own, *others = (
+        replace(predictor, names=tuple(v), fixed={}).predict(np.array([[*v.values()]]))[0]
+        for v in (base, *sets)
+    )
+    log = predictor.log
+    rate = np.gradient(own, log.sampling_time, axis=0)
+    return show_readings(log, own, rate, log.time, others)
+
+
+def _law_steps(fit: Refit, candidate: Candidate) -> dict[str, float]:
+    """Steps for derivatives of a law by its free parameters, by name, in their units."""
+    space = fit.point.space
+    std = dict(zip(space.names, fit.std * space.slope(fit.point.q), strict=True))
+    return {name: STEP * float(std[name]) for name in candidate.estimated if std.get(name)}
+
+
+def _moved(fit: Refit, steps: Mapping[str, float]) -> Moved:
+    """Steps of a law's parameters, with what the fit knows of these."""
+    point = fit.point
+    at = [point.space.names.index(name) for name in steps]
+    covariance = linearise_criterion(point, fit.level, fit.mean, fit.prior).covariance
+    slope = point.space.slope(point.q)[at]
+    return Moved(np.array([*steps.values()]), covariance[np.ix_(at, at)] * np.outer(slope, slope))
+
+
+def _absent(values: Mapping[str, float], others: Mapping[str, float]) -> dict[str, float]:
+    """Parameters that other values do not name, as a base has them."""
+    return {name: value for name, value in values.items() if name not in others}
+
+
+def _solve(fit: Refit, e: np.ndarray, S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The forces at the nodes that are likeliest, and their std, each of shape (m,)."""
+    point, level = fit.point, fit.level
+    filter_ = build_whitener(point.linear, level.noise, point.log.sampling_time)
+    E, F = filter_(e).ravel(), filter_(S).reshape(e.size, -1)
+    covariance = np.linalg.pinv(F.T @ F, rcond=1e-12, hermitian=True)
+    felt = np.diag(F.T @ F) > 0
+    std = np.where(felt, level.sigma * np.sqrt(np.diag(covariance)), np.inf)
+    return covariance @ (F.T @ E), std

@@ -1,0 +1,198 @@
+"""The recovered force of an effect that was named over a horizon: see `recovered_force`.
+
+    ĉ = argmin Σ_w ‖(I - P_w) (r_w - S_w c)‖²,   cov(ĉ) = H⁻¹ (Σ_b g_b g_bᵀ B/(B - 1)) H⁻¹
+
+r_w is the residual of window w with the law, S_w the response of its outputs to a unit force at
+each node, P_w projects on what the state at its start makes up for, g_b = Σ_{w in b} S_wᵀ(I - P_w)
+(r_w - S_w ĉ): a window may begin elsewhere where another force acts in it. Blocks of windows are
+the sample of the noise, which need not be white (White 1980); where white noise of the same size
+would give a node a larger std, it has that one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from identification.discovery.force_along import forces_along
+from identification.discovery.recovered_force import (
+    Moved,
+    RecoveredForce,
+    Shown,
+    compare_force,
+    show_forces,
+    show_readings,
+)
+from identification.effects.effect import Candidate
+from identification.prediction.fit import BLOCKS
+from identification.prediction.model import WindowModel
+from identification.prediction.result import RefittedEffect
+from identification.prediction.window_forces import HeldWindows, stretches_of, with_values
+from identification.windows.shooting import Shooting
+from identification.windows.tangents import Tangent
+
+STEP = 0.1  # of a std: for the derivatives of a law by its parameters
+MOST = 4000  # samples, over all records, along which forces are computed
+FEWEST = 10  # windows of a record
+
+
+def recover_over_horizon(
+    model: WindowModel, candidate: Candidate, rivals: Sequence[RefittedEffect] = ()
+) -> RecoveredForce | None:
+    """The force of an effect, recovered from the fitted windows.
+
+    Args:
+        model: with the effect.
+        candidate: the effect.
+        rivals: what else was refitted in its place; their laws are drawn with their own sizes.
+
+    Returns:
+        None where the effect makes no force, forces that are no function of one quantity of each
+        joint, forces inside a joint (a compliance), or is each record's own.
+
+    Raises:
+        DivergenceError: the model cannot be simulated.
+    """
+    if candidate.effect.state or candidate.effect.own:
+        return None
+    is_reading = "reading" in candidate.effect.hooks
+    rivals = [r for r in rivals if _is_alike(r.candidate, is_reading)]
+    steps = _law_steps(model, candidate)
+    with threadpool_limits(1, "blas"):
+        each = [_windows(model, k, candidate, steps, rivals) for k in range(len(model.fit.moves))]
+        shown = (_of_readings if is_reading else _of_forces)(candidate, each)
+        if shown is None or shown.is_mixed:
+            return None
+        c, std = _solve(each, shown.response)
+    return compare_force(
+        candidate, shown, c, std, _moved(model, steps), [r.candidate for r in rivals]
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Windows:
+    """Some windows of a record: values without the effect, with it, and with other values."""
+
+    tangent: Tangent
+    values: dict[str, float]
+    base: HeldWindows
+    sets: tuple[HeldWindows, ...]
+
+    @property
+    def part(self) -> Shooting:
+        return self.base.part
+
+
+def _windows(
+    model: WindowModel, record: int, candidate: Candidate, steps: dict[str, float],
+    rivals: Sequence[RefittedEffect],
+) -> _Windows:  # fmt: skip
+    fit = model.fit
+    part, d, t = fit.problem.parts[record], fit.moves[record], fit.tangents[record]
+    most = max(FEWEST, MOST // (len(fit.moves) * part.cut.inputs.shape[1]))
+    at = np.unique(np.linspace(0, len(d) - 1, min(most, len(d))).astype(int))
+    part, d, t = part.rows(at), d[at], t.rows(at)
+    values = {**part.predictor.fixed, **fit.of_record(record)}
+    base = {**values, **dict.fromkeys(candidate.sizes, 0.0)}
+    moved = [{**values, name: values[name] + step} for name, step in steps.items()]
+    sets = [values, *moved, *({**base, **_values_of(r)} for r in rivals)]
+    return _Windows(
+        t, values, with_values(part, d, base), tuple(with_values(part, d, s) for s in sets)
+    )
+
+
+def _of_forces(candidate: Candidate, each: Sequence[_Windows]) -> Shown | None:
+    """Forces on joints; None where the law has none, or not on joints of one kind alone."""
+    stretches = [s for windows in each for s in stretches_of(windows.base, windows.sets)]
+    along = forces_along(stretches, np.concatenate([_flat(w.sets[0].outputs) for w in each]))
+    return None if along is None else show_forces(candidate, each[0].values, along)
+
+
+def _of_readings(candidate: Candidate, each: Sequence[_Windows]) -> Shown | None:
+    """Errors of sensors."""
+    log = each[0].part.predictor.log
+    own = [w.base.outputs for w in each]
+    rate = [np.gradient(y, log.sampling_time, axis=1) for y in own]
+    readings = [
+        np.concatenate([_flat(of.outputs) for of in same])
+        for same in zip(*(w.sets for w in each), strict=True)
+    ]
+    length = own[0].shape[1]
+    time = [
+        (w.part.times[:, None] + log.sampling_time * np.arange(length)).ravel() for w in each
+    ]  # fmt: skip
+    y, ydot = (np.concatenate([*map(_flat, parts)]) for parts in (own, rate))
+    return show_readings(log, y, ydot, np.concatenate(time), readings)
+
+
+def _solve(each: Sequence[_Windows], S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The forces at the nodes that are likeliest, and their std, each of shape (m,)."""
+    out, left, done = [], [], 0
+    for windows in each:
+        t, part = windows.tangent, windows.part
+        W, L, ny = part.cut.outputs.shape
+        own = S[done : done + W * L].reshape(W, L, ny, -1)
+        done += W * L
+        whitened = np.einsum("ij,wljm->wlim", part.whitener, own).reshape(W, L * ny, -1)
+        rows = np.zeros((W, t.r.shape[1], S.shape[-1]))  # moves of the states stay as they are
+        rows[:, : L * ny] = whitened
+        U = t.U * (t.s > 0)[:, None]
+        out.append(rows - U @ (np.swapaxes(U, 1, 2) @ rows))
+        left.append(t.r - np.einsum("wmk,wk->wm", U, np.einsum("wmk,wm->wk", U, t.r)))
+    H = np.sum([np.einsum("wmi,wmj->ij", s, s) for s in out], axis=0)
+    g = np.sum([np.einsum("wmi,wm->i", *pair) for pair in zip(out, left, strict=True)], axis=0)
+    inverse = np.linalg.pinv(H, rcond=1e-12, hermitian=True)
+    c = inverse @ g
+    scores = np.concatenate(
+        [np.einsum("wmi,wm->wi", s, r - s @ c) for s, r in zip(out, left, strict=True)]
+    )
+    blocks = min(BLOCKS, max(2, len(scores)))
+    b = np.array([part.sum(axis=0) for part in np.array_split(scores, blocks)])
+    by_blocks = np.diag(inverse @ (b.T @ b * blocks / (blocks - 1)) @ inverse)
+    rest = np.concatenate([(r - s @ c).ravel() for s, r in zip(out, left, strict=True)])
+    white = np.mean(rest**2) * np.diag(inverse)
+    # A node in a few windows only has luck in its blocks, so that its variance is the larger one.
+    return c, np.where(np.diag(H) > 0, np.sqrt(np.maximum(by_blocks, white)), np.inf)
+
+
+def _law_steps(model: WindowModel, candidate: Candidate) -> dict[str, float]:
+    """Steps for derivatives of a law by its free parameters, by name, in their units."""
+    std = model.std
+    return {
+        name: STEP * std[name]
+        for name in candidate.estimated
+        if 0 < std.get(name, 0.0) < np.inf
+    }  # fmt: skip
+
+
+def _moved(model: WindowModel, steps: dict[str, float]) -> Moved:
+    """Steps of a law's parameters, with what the fit knows of these."""
+    fit = model.fit
+    at = [fit.problem.names.index(name) for name in steps]
+    slope = fit.problem.prior.space.slope(fit.q)[at]
+    covariance = fit.covariance[np.ix_(at, at)] * np.outer(slope, slope)
+    return Moved(np.array([*steps.values()]), covariance)
+
+
+def _values_of(rival: RefittedEffect) -> dict[str, float]:
+    """What a rival's law has, by the plant's names."""
+    candidate = rival.candidate
+    own = {
+        candidate.effect.parameter(name, candidate.where): value
+        for name, (value, _, _) in rival.parameters.items()
+    }
+    return {**candidate.fixed, **candidate.whole, **own}
+
+
+def _is_alike(rival: Candidate, is_reading: bool) -> bool:
+    """Whether a rival's law can be drawn beside the named one."""
+    effect = rival.effect
+    return not (effect.state or effect.own) and ("reading" in effect.hooks) == is_reading
+
+
+def _flat(outputs: np.ndarray) -> np.ndarray:
+    """Outputs of windows (W, L, ny) one after the other, shape (W L, ny)."""
+    return outputs.reshape(-1, outputs.shape[-1])

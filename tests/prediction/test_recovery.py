@@ -1,0 +1,90 @@
+"""The force recovered from windows follows the true law, whichever law was fitted."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from records_cases import FREE, HORIZON, nominal_model, pendulum, records
+
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.scoring.sensitivities import list_common
+from identification.effects.joint_plant import candidates
+from identification.prediction.extension import with_effect
+from identification.prediction.first_fit import begin
+from identification.prediction.nominal_fit import fit_nominal
+from identification.prediction.records import as_records
+from identification.prediction.recovery import recover_over_horizon
+from identification.prediction.result import RefittedEffect
+from identification.prediction.scores import window_scores
+
+TRUE = {
+    "quadratic_friction": ({"quadratic_friction.c@hinge": 0.02}, "rate",
+                           lambda v: -0.02 * v * np.abs(v)),
+    "hardening": ({"hardening.k_3@hinge": 0.3}, "position", lambda q: -0.3 * q**3),
+    "hardening.k_3": ({"hardening.k_3@hinge": 0.03}, "position", lambda q: -0.03 * q**3),
+    "encoder_scale": ({"encoder_scale.s@angle": 0.05, "stiffness.k@hinge": 0.5}, "reading",
+                      lambda y: 0.05 * y),
+}  # fmt: skip
+
+
+@cache
+def fitted(true, name):
+    """A model with an effect, fitted to records of a pendulum that has perhaps another."""
+    values = TRUE[true][0]
+    logs = as_records(*_split(records(4, values)))
+    base = nominal_model()
+    known = {n: v for n, v in values.items() if not n.startswith(true)}
+    parent = fit_nominal(replace(base, plant=base.plant.with_values(known)), logs)
+    effect = next(e for e in candidates(pendulum(), FREE) if e.name == name)
+    (score, *_) = window_scores(parent.fit, list_common([effect]))
+    start = begin(parent, [score], DiscoveryOptions())
+    return with_effect(parent, start, HORIZON, logs[2:]), score.candidate
+
+
+def _split(logs):
+    return logs[:2], logs[2:]
+
+
+@pytest.mark.parametrize("name", ["quadratic_friction", "hardening", "encoder_scale"])
+def test_recovered_points_and_the_band_hold_the_true_law(name):
+    model, candidate = fitted(name, name)
+    of = recover_over_horizon(model, candidate)
+    _, along, law = TRUE[name]
+    assert (of.along, of.places) == (along, 1)
+    assert len(of.points.x) >= 5
+    # Base parameters are those of the fit, and a force takes over by how much these are wrong.
+    close = 0.08 * np.abs(of.law.force).max()
+    assert np.abs(of.points.force - law(of.points.x)).max() < close
+    assert np.abs(of.law.force - law(of.law.x)).max() < close
+    off = of.points.force - np.interp(of.points.x, of.law.x, of.law.force)
+    inner = slice(1, -1)  # the ends of a line are means over bins
+    assert np.median(np.abs(off / of.points.std)[inner]) < 3
+
+
+def test_points_leave_a_wrong_law_for_the_true_one():
+    model, candidate = fitted("hardening.k_3", "stiffness")
+    of = recover_over_horizon(model, candidate)
+    truth = TRUE["hardening.k_3"][2](of.points.x)
+    wrong = np.interp(of.points.x, of.law.x, of.law.force) - truth
+    assert np.linalg.norm(of.points.force - truth) < 0.5 * np.linalg.norm(wrong)
+
+
+def test_a_rival_is_drawn_with_the_sizes_of_its_own_fit():
+    model, candidate = fitted("hardening", "hardening")
+    of = RefittedEffect(
+        candidate=candidate, parameters={"k_3": (0.6, 0.01, "N m/rad^3")}, prediction=None,
+        criterion=0.0, confidence=0.0, doubt=None,
+    )  # fmt: skip
+    found = recover_over_horizon(model, candidate, [of])
+    ((rival, line),) = found.rivals
+    assert rival is candidate
+    size = model.values["hardening.k_3@hinge"]
+    np.testing.assert_allclose(line.force, found.law.force * 0.6 / size, rtol=1e-6, atol=1e-9)
+
+
+def test_a_compliance_is_not_drawn():
+    model, _ = fitted("hardening", "hardening")
+    effect = next(e for e in candidates(pendulum(), FREE) if e.name == "joint_elasticity")
+    (candidate, *_) = list_common([effect])
+    assert recover_over_horizon(model, candidate) is None
