@@ -51,7 +51,9 @@ def drives(log: Log) -> tuple[Drive, ...]:
 
 
 def input_effects(drives: Sequence[Drive]) -> tuple[Effect, ...]:
-    """All candidates of some inputs, of one unit.
+    """All candidates of some inputs, of one unit, in the order in which an input passes them.
+
+    What an amplifier limits is what its loop is asked for, so that a limit comes before a lag.
 
     Args:
         drives: the inputs.
@@ -74,10 +76,10 @@ def input_effects(drives: Sequence[Drive]) -> tuple[Effect, ...]:
                (Size("tau", "s", SHIFT, 2e-3, 0, "how much later it acts than its stamps say"),),
                places=at, phrase="input: its clock is not the outputs'", probes=SHIFTS, own=True,
                hooks={"input": time_shift}),
-        Effect("lag", "τ u̇' = u - u'", (Size("tau", "s", 0.01, 5e-4, 1, tau),), (BEFORE,),
-               places=at, phrase="input: lags", probes=(1.0, 20**0.5, 20.0), hooks=LAG),
         Effect("saturation", "u clipped at ±u_max", (share,), (limit,), places=at,
                phrase="input: clipped", hooks={"input": clipped}),
+        Effect("lag", "τ u̇' = u - u'", (Size("tau", "s", 0.01, 5e-4, 1, tau),), (BEFORE,),
+               places=at, phrase="input: lags", probes=(1.0, 20**0.5, 20.0), hooks=LAG),
         Effect("gain_drift", "(1 - α t) u",
                (Size("alpha", "1/s", 0.01, 2e-4, about="relative loss a second"),), places=at,
                phrase="input: gain drifts", hooks={"input": drifting}),

@@ -40,9 +40,9 @@ CATALOGUE: tuple[Effect, ...] = (
     LOAD_DEPENDENT_FRICTION,
     QUADRATIC_FRICTION,
     COGGING,
-    CURRENT_LAG,
-    DELAY,
+    DELAY,  # what acts on the currents, in the order in which they pass it
     CURRENT_SATURATION,
+    CURRENT_LAG,
     CURRENT_OFFSET,
     CURRENT_CROSSTALK,
     DRUM_ECCENTRICITY,

@@ -1,13 +1,14 @@
 """Motors and their currents.
 
     cogging                    Δτ = a cos(n φ) + b sin(n φ)     the rotor's magnets prefer angles
-    current lag                τ i̇ = u - i                      the current loop is a filter
     delay                      i(t) = u(t - τ)                  the current arrives late
     saturation                 i clipped at ±i_max, or i_max tanh(i/i_max)
+    current lag                τ i̇ = u - i                      the current loop is a filter
     current offset             i + c                            its measurement has another zero
     current crosstalk          i_k + a i_(k-1) + b i_(k+1)      its cable lies beside others
 
-Lag and delay act on the currents before they reach the model; their laws are those of any robot
+Delay, saturation and lag act on the currents before they reach the model, in this order: what an
+amplifier limits is what its current loop is asked for. Delay and lag have the laws of any robot
 (`identification.effects.input_laws`). A limit has no size that is zero when it is absent, so that
 the size of the saturation is a share of the clipping: 0 is none, 1 is a real limit.
 """
@@ -34,10 +35,10 @@ def cogging(s, p):  # type: ignore[no-untyped-def]
 
 @njit
 def current_saturation(s, p):  # type: ignore[no-untyped-def]
-    """Δi = c (clip(i, ±i_max) - i), or with i_max tanh(i/i_max) where soft [A]."""
+    """i + c (clip(i, ±i_max) - i), or with i_max tanh(i/i_max) where soft [A], and no moment."""
     c, i_max, soft = p
-    limited = i_max * tanh(s.i / i_max) if soft else max(-i_max, min(i_max, s.i))
-    return c * (limited - s.i)
+    limited = i_max * tanh(s.u / i_max) if soft else max(-i_max, min(i_max, s.u))
+    return s.u + c * (limited - s.u), 0.0
 
 
 @njit
@@ -102,7 +103,7 @@ CURRENT_SATURATION = Effect(
     places=DRIVES_EACH,
     phrase="motor: current clipped",
     reference="data sheet of the amplifier",
-    hooks={"current": current_saturation},
+    hooks={"input": current_saturation},
 )  # fmt: skip
 CURRENT_OFFSET = Effect(
     "current_offset",

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from effect_cases import BY_NAME, full, simulate
+from effect_cases import BY_NAME, CATALOGUE, full, simulate
 
 from identification.effects.input_effects import Drive, input_effects
 from identification.effects.values import changed_inputs
@@ -161,3 +161,29 @@ def test_a_delay_of_whole_samples_is_the_shifted_log():
     straight = simulate(full(), seconds=0.3)[0]
     assert np.abs(shifted[:3]).max() < 1e-12
     assert shifted[2:] == pytest.approx(straight[:-2], abs=1e-9)
+
+
+@pytest.mark.parametrize("soft", [0.0, 1.0])
+def test_a_current_is_limited_before_it_lags(soft):
+    """The lag of the limited current, which is not the limit of the lagged one."""
+    u = np.repeat([[0.2], [1.5], [-1.4]], 40, axis=0)
+    limit = {"current_saturation.c@1": 1.0, "current_saturation.i_max": 0.8,
+             "current_saturation.soft": soft}  # fmt: skip
+    lag = {"current_lag.tau@1": 5e-3, "current_lag.before": 1.0}
+    order = [e for e in CATALOGUE if e.name in ("current_saturation", "current_lag")]
+    absent = {name: 0.0 for e in order for parts in e.parameters_at("1") for name in parts}
+    both = changed_inputs(order, ("1",), {**absent, **limit, **lag}, u, STEP, 1).reshape(u.shape)
+    limited = filtered(BY_NAME["current_saturation"], u, limit)
+    np.testing.assert_allclose(
+        limited, 0.8 * np.tanh(u / 0.8) if soft else np.clip(u, -0.8, 0.8), rtol=1e-14
+    )
+    np.testing.assert_array_equal(both, filtered(BY_NAME["current_lag"], limited, lag))
+    lagged = filtered(BY_NAME["current_lag"], u, lag)
+    assert np.abs(both - filtered(BY_NAME["current_saturation"], lagged, limit)).max() > 0.1
+
+
+@pytest.mark.parametrize("known", [ANY_ROBOT, {e.name: e for e in CATALOGUE}])
+def test_candidates_stand_in_the_order_in_which_an_input_passes_them(known):
+    order = [name.removeprefix("current_") for name, e in known.items() if "input" in e.hooks]
+    at = [order.index(name) for name in ("delay", "saturation", "lag")]
+    assert at == sorted(at)

@@ -23,10 +23,6 @@ LAWS = [
     ("quadratic_friction", "torque", (1e-5, 3.0), {"omega": -3.0}, 27e-5),
     ("friction_mismatch", "torque", (0.1,), {}, -0.1 * S.b_c * BREAK),
     ("cogging", "torque", (3e-3, 4e-3, 6.0), {}, 3e-3 * cos(4.2) + 4e-3 * sin(4.2)),
-    ("current_saturation", "current", (1.0, 0.6, 0.0), {}, -0.2),
-    ("current_saturation", "current", (1.0, 0.6, 0.0), {"i": -0.8}, 0.2),
-    ("current_saturation", "current", (0.5, 0.9, 0.0), {}, 0.0),
-    ("current_saturation", "current", (1.0, 0.8, 1.0), {}, 0.8 * tanh(1) - 0.8),
     ("torque_constant_drift", "current", (0.01, 0.0), {"x": 9.0}, -0.016),
     ("torque_constant_drift", "current", (0.01, 1.0), {"x": 9.0}, -0.072),
     ("torque_constant_drift", "rate", (0.01, 1.0), {}, 0.64),
@@ -89,7 +85,6 @@ def test_wrenches():
     ("cogging", {"a": 1e-3, "b": 2e-3}),
     ("spring_hardening", {"k_3": 400.0}),
     ("spring_hysteresis", {"eta": 0.1}),
-    ("current_saturation", {"c": 1.0, "i_max": 0.55}),
     ("torque_constant_drift", {"alpha": 0.01, "kind": 0.0}),
 ])  # fmt: skip
 def test_what_a_motor_feels_is_the_law(name, values):

@@ -11,7 +11,7 @@ from inca_mj.effects.hooks import DRIVES_EACH
 from inca_mj.robot.inputs import make_input
 from inca_mj.twin.twin import build_twin
 
-MODEL = [e for e in CATALOGUE if "input" not in e.hooks and e.name != "current_saturation"]
+MODEL = [e for e in CATALOGUE if "input" not in e.hooks]
 
 
 def some_of_everything() -> dict[str, float]:
