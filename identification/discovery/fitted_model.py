@@ -175,6 +175,17 @@ def is_relevant(proof: Proof, options: DiscoveryOptions) -> bool:
     return proof.fall > options.min_fall and proof.above > options.min_gap_share
 
 
+def is_far_likelier(candidate: Candidate, gain: float, samples: int) -> bool:
+    """Whether the fitted samples want an effect far more than BIC asks.
+
+    Args:
+        candidate: the effect.
+        gain: of twice the log likelihood with it, less what BIC asks.
+        samples: that were fitted.
+    """
+    return gain > FAR * len(candidate.estimated) * np.log(samples)
+
+
 def is_confirmed(proof: Proof, options: DiscoveryOptions, tried: int = 1) -> bool:
     """Whether unseen samples confirm an effect: beyond chance, and by enough to matter."""
     return is_proven(proof, options, tried) and is_relevant(proof, options)

@@ -137,7 +137,9 @@ def _select(state: SearchState, progress: Progress) -> SearchState:
     selection = select_effect(task, state.model, state.scores, progress)
     new = selection.accepted
     if selection.unproven is not None and most >= 2:
-        new = find_pair(task, state.model, selection.unproven, state.sensitivities, progress)
+        first = selection.unproven
+        along = _compute_all_sensitivities(task, first, state.sensitivities)
+        new = find_pair(task, state.model, first, along, progress)
     watch.stop("refits")
     if not new:
         rejected = selection.rejected

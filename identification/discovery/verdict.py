@@ -33,11 +33,12 @@ def find_remaining(state: SearchState) -> tuple[Finding, ...]:
     """What the model of a finished search leaves unexplained; empty when it explains all."""
     options, model = state.task.options, state.model
     named = [a.candidate.effect.name for a in state.accepted]
+    samples = len(model.refit.point.log)
     findings = (
         *find_structure(model, options),
         *find_robot_change(model.validation, options),
         *find_input_error(model.validation, options),
-        *(() if named else find_doubtful_effect(state.rejected, options)),
+        *(() if named else find_doubtful_effect(state.rejected, samples, options)),
         *find_oversized_effect(state.nominal_scores, named, options),
     )
     if not findings:

@@ -1,9 +1,12 @@
 """Two effects of which neither is proven without the other are found together, or not at all."""
 
+from dataclasses import replace
+
 import pytest
 from discovery_cases import EFFECTS, OPTIONS, disturbed, nominal_model
 
 from identification.discovery.fitted_model import is_confirmed
+from identification.discovery.proof import prove
 from identification.discovery.search import discover
 from identification.discovery.selection.forward_selection import Selection, select_effect
 from identification.discovery.selection.pairs import find_pair
@@ -35,3 +38,22 @@ def test_a_search_goes_on_from_what_is_not_proven_alone(monkeypatch, sizes):
     assert {a.candidate.effect.name for a in pair} == hidden
     assert all(is_confirmed(a.proof, OPTIONS) for a in pair)
     assert not pair or len(pair[-1].model.candidates) == 2
+
+
+@pytest.mark.parametrize(("fall", "hidden"), [(0.9, {"offset", "rubbing"}), (0.0, set())])
+def test_what_the_fitted_samples_want_and_the_free_run_confirms_begins_a_pair(
+    monkeypatch, fall, hidden
+):
+    """As where a second effect makes the one-step errors of the unseen samples larger."""
+
+    def astray(without, with_it, options):
+        proof = prove(without, with_it, options)
+        if len(without.refit.point.q) > len(nominal_model().names):
+            return proof
+        return replace(proof, gain=-100.0, t=-1.6, chance=0.94, fall=fall, above=fall)
+
+    monkeypatch.setattr("identification.discovery.selection.forward_selection.prove", astray)
+    monkeypatch.setattr("identification.discovery.fitted_model.FAR", 1.0)  # of a short log
+    answer = discover(nominal_model(), disturbed(**OFFSET, **RUBBING), EFFECTS)
+    assert {n.candidate.effect.name for n in answer.named} == hidden
+    assert hidden or answer.verdict == "unknown effect"

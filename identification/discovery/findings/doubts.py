@@ -7,24 +7,30 @@ from collections.abc import Sequence
 from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.findings.evidence import DoubtfulEffect, OversizedEffect
 from identification.discovery.findings.finding import Finding, FindingKind
-from identification.discovery.fitted_model import is_relevant
+from identification.discovery.fitted_model import is_far_likelier, is_relevant
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import Score
 from identification.discovery.scoring.significance import find_oversized
 
 
 def find_doubtful_effect(
-    rejected: Sequence[RejectedEffect], options: DiscoveryOptions
+    rejected: Sequence[RejectedEffect], samples: int, options: DiscoveryOptions
 ) -> tuple[Finding, ...]:
     """The best effect that fitted samples want and that would matter, but is not proven.
 
-    Of an effect that makes the unseen samples less likely there is no doubt: it is not there.
+    Of an effect that makes the unseen samples less likely there is no doubt: it is not there. It is
+    another thing where the fitted samples want it far more than BIC asks.
 
     Args:
         rejected: effects that were refitted and not accepted, the best first.
+        samples: that were fitted.
         options: which effects would matter.
     """
-    wanted = [r for r in rejected if r.gain > 0 < r.proof.gain and is_relevant(r.proof, options)]
+    wanted = [
+        r for r in rejected
+        if is_relevant(r.proof, options)
+        and (r.gain > 0 < r.proof.gain or is_far_likelier(r.candidate, r.gain, samples))
+    ]  # fmt: skip
     return tuple(Finding(FindingKind.DOUBTFUL_EFFECT, DoubtfulEffect(r)) for r in wanted[:1])
 
 

@@ -25,7 +25,9 @@ from identification.discovery.fitted_model import (
     collect_parameters,
     fit_model,
     is_confirmed,
+    is_far_likelier,
     is_proven,
+    is_relevant,
     score_candidates,
 )
 from identification.discovery.options import DiscoveryOptions
@@ -52,8 +54,9 @@ class Selection:
     Attributes:
         accepted: the effect to add; none when no effect is worth it.
         rejected: what was refitted instead, the best first; empty when an effect is accepted.
-        unproven: of those the most likely model that predicts unseen samples better one step ahead,
-            although its free run comes no nearer; None when there is none.
+        unproven: of those the most likely model that unseen samples speak for in one way only: they
+            are predicted better one step ahead, or the free run comes much nearer and the fitted
+            samples want the effect far more than BIC asks. None when there is none.
     """
 
     accepted: tuple[AcceptedEffect, ...] = ()
@@ -93,9 +96,12 @@ def select_effect(
         ):
             others = tuple(refitted[:k] + refitted[k + 1 :])
             return Selection(accepted=(AcceptedEffect(new, proof, gain, others),))
-        if gain > 0 and is_proven(proof, options, tried) and unproven is None:
-            unproven = new
         mine = new.candidates[-1]
+        is_wanted = is_far_likelier(mine, gain, len(model.refit.point.log))
+        is_wanted = is_wanted and is_relevant(proof, options)
+        is_half_proven = is_wanted or (gain > 0 and is_proven(proof, options, tried))
+        if is_half_proven and unproven is None:
+            unproven = new
         parameters = collect_parameters(task, new, mine)
         rejected.append(RejectedEffect(mine, parameters, gain, proof))
     return Selection(rejected=tuple(rejected), unproven=unproven)
