@@ -18,6 +18,7 @@ import numpy as np
 from identification.kalman.linear import Linearisation, linearise_along
 from identification.kalman.trajectory import Trajectory
 from identification.model.predictor import Predictor
+from identification.model.quiet import quiet
 
 ACTS = 0.01  # of the largest rms: a degree of freedom with less force is not acted on
 LEAST = 1e-12  # [N or N m] a smaller force is rounding
@@ -143,6 +144,7 @@ def _turning(rate: np.ndarray) -> np.ndarray:
     return np.asarray(np.abs(rate) < most)
 
 
+@quiet()
 def _rates(
     model: mujoco.MjModel, inputs: np.ndarray, along: Trajectory
 ) -> tuple[np.ndarray, np.ndarray]:

@@ -22,6 +22,7 @@ from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.logs.noise import noise_floor
 from identification.model.predictor import output_columns
+from identification.model.quiet import quiet
 from identification.model.rollout import UNLOGGED, logged_inputs
 
 Kind = Literal["hinge", "slide"]
@@ -165,6 +166,7 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
                 float(model.opt.timestep**2 * model.dof_invweight0[dof]))  # fmt: skip
 
 
+@quiet()
 def _heavy(model: mujoco.MjModel, j: int) -> bool:
     """Whether gravity acts on joint j in one of several poses."""
     data, rng = mujoco.MjData(model), np.random.default_rng(0)

@@ -18,12 +18,14 @@ from identification.effects.joint_layout import JointLayout
 from identification.effects.joint_states import GearNumbers, JointState
 from identification.model.paths import write
 from identification.model.predictor import Numbers
+from identification.model.quiet import quiet
 from identification.model.rollout import State
 from identification.native.joint_callback import FIRST
 
 LEAST = 1e-3  # of the largest force of the drives: the smallest std of a force
 
 
+@quiet()
 def first_loads(
     model: mujoco.MjModel, layout: JointLayout, numbers: Numbers, begun: State, inputs: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -80,4 +80,4 @@ def _under_load(g: Group, v_s: Shape) -> list[Effect]:
 
 def _peak(g: Group, speeds: tuple[float, ...]) -> Shape:
     return Shape("v_s", f"{g.x}/s", tuple(g.V * s for s in speeds), 0.01 * g.V, 2 * g.V,
-                 about="half width of the peak")  # fmt: skip
+                 about="rate at which the peak has fallen to 1/e")  # fmt: skip

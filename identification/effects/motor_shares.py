@@ -16,10 +16,12 @@ import numpy as np
 
 from identification.errors import DivergenceError
 from identification.logs.names import listed
+from identification.model.quiet import quiet
 
 POSES = 8  # random ones, behind the model's own
 
 
+@quiet()
 def mobilities(model: mujoco.MjModel, joints: Sequence[str]) -> np.ndarray:
     """A among some joints in several poses, shape (`POSES`, g, g) [1/kg or 1/(kg m²)]."""
     data, rng = mujoco.MjData(model), np.random.default_rng(0)

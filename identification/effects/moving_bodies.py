@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from identification.model.quiet import quiet
+
 POSES = 4  # random states in which forces are compared
 FELT = 1e-9  # of the largest force: a smaller change of it is round-off
 STEP = 0.1  # of a number of a body, relative to its size
@@ -133,6 +135,7 @@ def _states(model: mujoco.MjModel) -> list[tuple[np.ndarray, np.ndarray, np.ndar
     return out
 
 
+@quiet()
 def _forces(
     model: mujoco.MjModel, states: list[tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> np.ndarray:

@@ -15,6 +15,7 @@ import numpy as np
 
 from identification.kalman.trajectory import Trajectory
 from identification.linear.derivatives import FORWARD, Points, differences, position_rows
+from identification.model.quiet import quiet
 
 
 def state_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
@@ -38,6 +39,7 @@ def state_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
     )
 
 
+@quiet()
 def force_derivatives(along: Trajectory, dofs: list[int]) -> np.ndarray:
     """The effect of generalised forces on the rate of change of the state, shape (M, nx, n)."""
     model = along.model

@@ -24,6 +24,7 @@ import numpy as np
 from mujoco.batch import Batch
 
 from identification.errors import DivergenceError
+from identification.model.quiet import quiet
 from identification.model.rollout import threads
 
 FREE, BALL = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_BALL)
@@ -117,7 +118,8 @@ class Points:
         """
         for field, value in changed.items():
             self._batch.bind(field)[:] = value
-        self._batch.forward()
+        with quiet():
+            self._batch.forward()
         out = np.concatenate(self._results, axis=1)
         if changed:
             self._reset()

@@ -124,13 +124,12 @@ def output_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Ite
     """Other signs and places of the outputs that are not explained; see `unit_readings`."""
     y, wrong = log.outputs, np.flatnonzero(bad).tolist()
     out, into = ([column[n] for n in names] for names in (log.output_names, log.input_names))
-    units = [log.units.get(n, "") for n in log.output_names]
     for k in [*([k] for k in wrong), *([wrong] if len(wrong) > 1 else [])]:
         mirror = f", or of {listed(into)}" if len(k) == y.shape[1] else ""  # looks the same
         yield Reading(replace(log, outputs=turned(y, k)), k, "with the other sign",
                       f"turn the sign of {listed(out[i] for i in k)}{mirror}")  # fmt: skip
     for i, j in combinations(range(y.shape[1]), 2):
-        if bad[i] and bad[j] and units[i] == units[j]:
+        if bad[i] and bad[j]:
             yield Reading(replace(log, outputs=_exchanged(y, i, j)), [i, j], "were they exchanged",
                           f"exchange {out[i]} and {out[j]} under [columns]")  # fmt: skip
 

@@ -10,10 +10,8 @@ one `Batch.rollout`, on native threads.
 from __future__ import annotations
 
 import copy
-import ctypes
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -22,6 +20,7 @@ from mujoco.batch import Batch, SimulationError
 
 from identification.errors import DivergenceError, InputError
 from identification.model.paths import Slot
+from identification.model.quiet import quiet
 
 # MuJoCo derives no other number from these entries: after writing them, no mj_setConst is needed.
 UNDERIVED = {
@@ -167,7 +166,7 @@ def rollout(
     shared = np.broadcast_to(controls, (n, *controls.shape[1:]))
     if nu < model.nu:
         shared = np.concatenate([shared, np.zeros((*shared.shape[:2], model.nu - nu))], axis=2)
-    with _quiet():
+    with quiet():
         try:
             steps = batch.rollout(shared.shape[1], shared, record=tuple(record))
         except SimulationError as error:  # of the engine, which no other value may meet
@@ -194,21 +193,6 @@ def _expand(batch: Batch, numbers: Sequence[tuple[Slot, np.ndarray]]) -> None:
         entries[(slice(None), list(slot.rows), *column)] = np.asarray(values)[:, None]
     if not all(slot.field in UNDERIVED for slot, _ in numbers):
         batch.set_const()
-
-
-@ctypes.CFUNCTYPE(None, ctypes.c_char_p)
-def _ignore(message: bytes) -> None:
-    """Ignore a warning: a divergence raises an error; MuJoCo need not write MUJOCO_LOG.TXT."""
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(_ignore)
-    try:
-        yield
-    finally:
-        mujoco.set_mju_user_warning(before)
 
 
 def _unfinished(batch: Batch, begun: np.ndarray, steps: int, timestep: float) -> np.ndarray:

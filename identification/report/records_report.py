@@ -59,6 +59,8 @@ def _records(found: RecordsDiscovery) -> Section:
 def _candidates(found: RecordsDiscovery) -> Section:
     best = best_scores(found)[:BEST]
     named = {n.effect.candidate.effect.name for n in found.named}
+    # What the records cannot tell from a named effect is named with it.
+    named |= {r.candidate.effect.name for n in found.named if n.one_of for r in n.rivals}
     text = "Share of the fitted error that each effect would explain at its best place and shape."
     if found.rejected:
         tried = "\n\n".join(rejected_lines(found))

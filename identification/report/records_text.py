@@ -114,18 +114,18 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
     first = "Missing from the model" if named is found.named[0] else "Missing too"
     if found.verdict == "unlisted effect":
         first += ", in no catalogue and drawn from the data"
-    said = (
-        f"{first}: {describe_effect(named.effect.candidate)}{_twin(named)},"
-        f" {_sizes(named.effect)}; confidence"
-        f" {100 * named.effect.confidence:.0f} %{_compared(named)}."
-    )
-    if named.rivals:
-        each = ", ".join(
-            f"{describe_effect(r.candidate)} ({100 * r.confidence:.0f} %)" for r in named.rivals
+    mine, sizes = f"{describe_effect(named.effect.candidate)}{_twin(named)}", _sizes(named.effect)
+    confidence = f"{100 * named.effect.confidence:.0f} %"
+    others = [f"{describe_effect(r.candidate)} ({100 * r.confidence:.0f} %)" for r in named.rivals]
+    if named.one_of:
+        said = (
+            f"{first} is one of these, which these records cannot tell apart:"
+            f" {'; '.join([f'{mine} ({confidence})', *others])}. The first is put into the model:"
+            f" {sizes}."
         )
-        said += (
-            f" {'These records cannot tell it from' if named.one_of else 'Less likely:'} {each}."
-        )
+    else:
+        said = f"{first}: {mine}, {sizes}; confidence {confidence}{_compared(named)}."
+        said += f" Less likely: {', '.join(others)}." if others else ""
     said += _agreement(found, named)
     if named.disagrees:
         said += f" It raises the error on {', '.join(named.disagrees)}, beyond chance."

@@ -22,6 +22,7 @@ from scipy.optimize import lsq_linear
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.predictor import output_columns
+from identification.model.quiet import quiet
 from identification.robot.moving import follow_bodies, inertial_force, point_force, weights
 
 FACTOR = 4.0  # that a mass, an inertia or a stiffness may be off; more is a matter of units
@@ -129,6 +130,7 @@ def _filtered(signals: np.ndarray, kernel: np.ndarray) -> np.ndarray:
     return np.stack([np.correlate(y, kernel, "valid") for y in signals.T], axis=1)
 
 
+@quiet()
 def _drive_forces(model: mujoco.MjModel, motion: Smooth) -> np.ndarray:
     """Forces of the drives on the joints (n, nv)."""
     data, force = mujoco.MjData(model), np.empty(motion.v.shape)

@@ -163,7 +163,10 @@ def read_robot_file(path: str | Path) -> RobotFile:
             raise InputError(f"parameters.{name} in {path} must be a table")
         check_table(record, _RECORD, f"parameters.{name} in {path}")
         if name not in free:
-            raise InputError(f"{path} tells of parameter {name!r}, which is not among its `free`")
+            raise InputError(
+                f"{path} tells of parameter {name!r}, which is not among its `free`"
+                f" ({', '.join(free)}); correct the name in one of the two places"
+            )
     columns, fixed = content.get("columns", {}), content.get("fixed", {})
     start = content.get("start", {})
     for key, table in (("fixed", fixed), ("start", start)):

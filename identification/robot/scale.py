@@ -22,6 +22,7 @@ import numpy as np
 
 from identification.logs.log import Log
 from identification.logs.readings import EXPLAINED, NEARER, Reading, unit_readings
+from identification.quantities import held
 from identification.robot.balance import Freedom, unbalanced_share
 from identification.robot.parameters import UNITS
 
@@ -59,8 +60,9 @@ def rescaled(
     least = min(left.sum() for _, left in found)
     near = [(r, left) for r, left in found if NEARER * left.sum() <= least]
     reading, left = min(near, key=lambda each: _change(each[0].log, log))
+    times = held(float(np.sqrt(own.max())))
     return reading, (
-        f"needs forces {np.sqrt(own.max()):.2g} times those of the drives for this motion, whatever"
+        f"needs forces {times} times those of the drives for this motion, whatever"
         f" payload and friction it has, and explains {100 * (1 - left.max()):.0f} % of them"
         f" {reading.said}; {reading.cure}"
     )

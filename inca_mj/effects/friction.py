@@ -43,9 +43,16 @@ def quadratic_friction(s, p):  # type: ignore[no-untyped-def]
 STRIBECK_FRICTION = Effect(
     "stribeck_friction",
     "-f_s exp(-|ω/v_s|^n) tanh(β ω)",
-    (Size("f_s", "N m", 0.02, 1e-3, sign=1, about="height of the peak"),),
+    (Size("f_s", "N m", 0.02, 1e-3, sign=1, about="height of the peak, but for tanh(βω)"),),
     (
-        Shape("v_s", "rad/s", (0.3, 0.6, 1.2, 2.4, 5.0), 0.05, 20.0, about="its half width"),
+        Shape(
+            "v_s",
+            "rad/s",
+            (0.3, 0.6, 1.2, 2.4, 5.0),
+            0.05,
+            20.0,
+            about="rate at which it has fallen to 1/e",
+        ),
         Shape("n", "", (1.0, 2.0), 0.5, 3.0, free=False, about="the power"),
     ),
     places=DRIVES_EACH,

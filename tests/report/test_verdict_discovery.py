@@ -20,7 +20,8 @@ def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
     said = discovery_verdict(found())
     assert said[0] == (
         "Missing from the model: friction – Stribeck peak, all drives, f_s = 4.12 ± 0.21 mN m"
-        " (height of the peak), v_s = 1.88 ± 0.10 rad/s (its half width);"
+        " (height of the peak, but for tanh(βω)), v_s = 1.88 ± 0.10 rad/s"
+        " (rate at which it has fallen to 1/e);"
         " confidence 97 % among the known effects."
     )
     alone = replace(found(), named=tuple(replace(n, rivals=()) for n in found().named))

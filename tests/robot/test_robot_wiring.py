@@ -124,6 +124,12 @@ def test_exchanged_columns_are_named(two_joints):
     assert "exchange a and b under [columns]" in said
 
 
+def test_exchanged_columns_of_a_slide_and_a_hinge_are_named(hanging):
+    own, log = hanging
+    said = refused(own, replace(log, outputs=log.outputs[:, ::-1]))
+    assert "exchange pos and ang under [columns]" in said
+
+
 def test_two_units_at_once_and_one_of_two_are_named(hanging, two_joints):
     own, log = hanging
     refuse_miswired(own, log)
