@@ -6,6 +6,7 @@ Nothing that a user made is replaced: neither an input of the command nor anothe
 from __future__ import annotations
 
 import os
+import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from itertools import pairwise
@@ -47,8 +48,13 @@ def refuse_place(command: Any) -> None:
     there = next(p for p in (out, *out.absolute().parents) if p.exists())
     if not there.is_dir():
         raise InputError(f"cannot make folder {out}: {there} is a file; choose another")
-    if not os.access(there, os.W_OK):
-        raise InputError(f"cannot make folder {out}: {there} cannot be written; choose another")
+    try:  # permissions do not tell it of every file system
+        os.rmdir(tempfile.mkdtemp(prefix=".inca-", dir=there))
+    except OSError as error:
+        raise InputError(
+            f"cannot make folder {out}: {there} cannot be written ({error.strerror}); choose"
+            " another"
+        ) from error
     for path in _inputs(command):
         if path.parent.resolve() == out.resolve():
             raise InputError(

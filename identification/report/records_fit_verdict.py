@@ -7,6 +7,7 @@ import numpy as np
 from identification.estimation.identifiability import in_words
 from identification.prediction.records_fit import RecordsFit
 from identification.report.fit_verdict import WEAK
+from identification.report.scale_words import describe_scale
 
 MUCH = 3.0  # times the noise floor, beyond which a fit is told to lack something
 
@@ -25,9 +26,10 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
     windows = sum(len(part.cut.starts) for part in fit.problem.parts)
     floor, rms = found.noise_rms, found.rms
     ratio = f", {rms / floor:.2f} of the noise floor {floor:.3g}" if floor > 0 else ""
-    left = f"{rms:.3g} {found.unit}".rstrip()
+    left = f"{rms:.3g} {found.unit} rms" if found.unit else f"{rms:.3g} rms in the outputs' scale"
     each = "1 window" if windows == 1 else f"{windows} windows"
-    said.append(f"{each} of {found.horizon:g} s leave {left} rms{ratio}.")
+    said.append(f"{each} of {found.horizon:g} s leave {left}{ratio}.")
+    said += describe_scale(found.model, found.unit)
     if floor > 0 and rms > MUCH * floor:
         said.append(
             "That is far more than the sensors make: the model lacks something, or a column is not"

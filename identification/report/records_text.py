@@ -17,6 +17,7 @@ from identification.report.finding_words import (
     sentence,
 )
 from identification.report.records_values import text_table, value_table, value_with_std
+from identification.report.scale_words import describe_scale
 from identification.windows.coarse import OUTPUT_ERROR
 
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
@@ -25,6 +26,10 @@ SHOWN = 6  # candidates with the best scores that are listed
 
 def records_verdict(found: RecordsDiscovery) -> list[str]:
     """The verdict first, then what supports it."""
+    return [*_verdict(found), *describe_scale(found.nominal, found.unit)]
+
+
+def _verdict(found: RecordsDiscovery) -> list[str]:
     if found.verdict == "nothing missing":
         before, noise = alike([found.before.rms, found.noise_rms], found.unit)
         return [
