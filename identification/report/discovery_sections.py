@@ -96,10 +96,12 @@ def rivals_section(found: Discovery) -> Section:
         each.setdefault(score.candidate.effect.name, score)
     best = [*each.values()][:BEST]
     named = {n.candidate.effect.name for n in found.named}
+    # What the log cannot tell from a named effect is named with it.
+    named |= {r.candidate.effect.name for n in found.named if n.one_of for r in n.rivals[:1]}
     figures: tuple[tuple[str, Figure], ...] = ()
     if best:
         figure = gains_figure(
-            [label(s) for s in best],
+            [describe_effect(s.candidate) for s in best],
             np.array([s.gain for s in best]),
             [s.candidate.effect.name in named for s in best],
         )
@@ -131,14 +133,6 @@ def rivals_section(found: Discovery) -> Section:
         figures=figures,
         table=Table(("named", "rival", "confidence", "alike"), rows) if rows else None,
     )
-
-
-def label(score: Score) -> str:
-    """A short label of a candidate: its name, place and shapes."""
-    c = score.candidate
-    where = "" if c.where.startswith("all ") or c.where == "platform" else f" ({c.where})"
-    shape = ", ".join(f"{n} = {v:.3g}" for n, v in c.shape.items())
-    return c.effect.name.replace("_", " ") + where + (f", {shape}" if shape else "")
 
 
 def _errors(found: Discovery) -> tuple[np.ndarray, np.ndarray | None]:
