@@ -1,11 +1,11 @@
-"""The film of a discovery: the nominal and the corrected robot, on seconds that no fit has seen."""
+"""The film of a discovery: the nominal and the corrected robot, on unseen seconds if any."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from identification.discovery.result import Discovery
-from identification.logs.joined import records_of
+from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log, halves
 from identification.report.page import Section
 from inca_mj.rendering.film import Progress, film
@@ -41,7 +41,9 @@ def film_discovery(
     path, picture = folder / "film.mp4", folder / "film.jpg"
     titles = TITLES if after is not None else TITLES[:1]
     film(before, path, beside=after, titles=titles, fps=FPS, picture=picture, progress=progress)
-    return path, _section(path, picture, seconds, after is not None)
+    shown = (log.time >= seconds[0]) & (log.time < seconds[1])
+    is_unseen = not (shown & rows_of(log, "estimation")).any()
+    return path, _section(path, picture, seconds, after is not None, is_unseen)
 
 
 def filmed_seconds(log: Log) -> tuple[float, float]:
@@ -63,14 +65,18 @@ def _scene(robot: Twin, log: Log, seconds: tuple[float, float]) -> Scene:
     return Scene(run, log.outputs, pose_of(log)).between(seconds[0] + late, seconds[1] + late)
 
 
-def _section(path: Path, picture: Path, seconds: tuple[float, float], is_beside: bool) -> Section:
+def _section(
+    path: Path, picture: Path, seconds: tuple[float, float], is_beside: bool, is_unseen: bool
+) -> Section:
     shown = (
         "the model before (left) and with what was missing (right)" if is_beside else "the model"
     )
     begin, end = seconds
+    of = "unseen" if is_unseen else "fitted"
+    which = "that no fit has seen" if is_unseen else "of the first record, which was fitted"
     return Section(
-        f"The film: unseen seconds {begin:.4g} to {end:.4g}",
-        f"It shows {shown}, simulated from the currents alone, over seconds that no fit has seen."
+        f"The film: {of} seconds {begin:.4g} to {end:.4g}",
+        f"It shows {shown}, simulated from the currents alone, over seconds {which}."
         " The handle is orange and the cables have the colour of their tension. The blue outline is"
         " the measured robot: its pose is the one that the measured angles imply for cables that do"
         " not stretch, where the log has no pose. The numbers say how far the handle and the motors"

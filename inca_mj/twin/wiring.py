@@ -69,7 +69,7 @@ def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
         raise InputError(
             f"log {log.name!r}: the angles move {scale:.2g} times as far as the twin's under these"
             " currents; they must be in radians (a revolution is 6.28, a degree 0.0175) and"
-            f" currents in ampere{ADVICE}{_overrule('units')}"
+            f" currents in ampere, each with its sign{ADVICE}{_overrule('units')}"
         )
 
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from identification import Log
 from identification.errors import InputError
-from identification.logs.joined import join_logs
+from identification.logs.joined import join_logs, rows_of
 from identification.model.own import own_name, values_of_record, with_own
 from identification.model.parameter import RECORD, ParameterSet
 from inca_mj.effects.change import DEVIANTS
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
 TIMESTEP = 2e-3  # [s]; RK4 errs by 0.03 mrad, 1/20 of an encoder's noise, at half the cost of 1 ms
 STEPS = 30  # of a fit, at most
+FEWEST = 50  # unseen samples of a record on which a calibration is judged
 
 
 @dataclass(frozen=True)
@@ -122,7 +123,8 @@ def calibrate(
 
     Raises:
         InputError: there is no log, two logs are no records of one robot, or share samples, a log
-            is not wired as the robot is, the spread is of nothing, or a start has no pretension.
+            has a part `estimation` that is not its beginning or leaves no samples unseen, it is
+            not wired as the robot is, the spread is of nothing, or a start has no pretension.
         DivergenceError: the nominal robot cannot be simulated.
     """
     began, spread = time.perf_counter(), spread or spread_of("usual")
@@ -131,6 +133,9 @@ def calibrate(
             "a robot whose drives are all alike has nothing to calibrate; inca identify estimates"
             " its common values"
         )
+    if not confirm:
+        for log in logs:
+            _refuse_split(log)
     every = join_logs([*logs, *confirm])
     step = timestep_for(every.sampling_time, timestep)
     fitted = join_logs([*logs] if confirm else [log.part("estimation") for log in logs])
@@ -175,6 +180,24 @@ def calibrate(
         ),
         seconds=time.perf_counter() - began,
     )
+
+
+def _refuse_split(log: Log) -> None:
+    """Refuse a record whose fitted part is not its beginning, or leaves nothing to judge it by."""
+    seen = rows_of(log, "estimation")
+    count = int(seen.sum())
+    if not seen[:count].all():
+        raise InputError(
+            f"log {log.name!r}: its part 'estimation' does not begin where the log begins; a"
+            " calibration fits the beginning and is judged on the rest: change the split in the"
+            " log's TOML"
+        )
+    if len(log) - count < FEWEST:
+        raise InputError(
+            f"log {log.name!r}: its part 'estimation' leaves {len(log) - count} samples unseen, and"
+            f" a calibration is judged on {FEWEST} or more: change the split in the log's TOML, or"
+            " give --confirm another log"
+        )
 
 
 def nominal_model(plant: Twin, spread: Spread, records: int = 1) -> NominalModel:

@@ -53,10 +53,23 @@ def test_both_models_are_filmed_and_the_section_says_when(tmp_path, monkeypatch)
     path, section = film_discovery(fake_discovery.found(), tmp_path)
     assert path.exists()
     assert section.first
-    assert "no fit has seen" in section.text
+    assert "which was fitted" in section.text  # half a second is left, too little for a film
     begin, end = filmed_seconds(fake_discovery.log())
     assert f"{begin:.4g} to {end:.4g}" in section.title
     with Image.open(section.poster) as picture:
         pixels = np.asarray(picture, int)
     left, right = pixels[:, :640], pixels[:, 640:]
     assert np.abs(left - right).max() > 60  # two models, two pictures
+
+
+@pytest.mark.usefixtures("opengl")
+@pytest.mark.parametrize(("seconds", "said"), [((0.6, 1.0), "unseen"), ((0.3, 0.8), "fitted")])
+def test_the_section_says_whether_a_fit_has_seen_what_is_filmed(
+    tmp_path, monkeypatch, seconds, said
+):
+    """As the first record is fitted whole where others confirm."""
+    monkeypatch.setattr("inca_mj.commands.filmed.FPS", 4)
+    monkeypatch.setattr("inca_mj.commands.filmed.filmed_seconds", lambda log: seconds)
+    _, section = film_discovery(fake_discovery.found(), tmp_path)
+    assert section.title.startswith(f"The film: {said} seconds")
+    assert ("no fit has seen" in section.text) == (said == "unseen")

@@ -1,9 +1,12 @@
 """Calibration: known deviations come back, from one record and from several."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from as_built_cases import COMMON, NOISE, SPREAD, deviations, log_as_built
 
+from identification import InputError
 from inca_mj.report.calibration import calibration_json, calibration_verdict, untold
 from inca_mj.robot.spread import at_drives
 from inca_mj.workflows.calibration import calibrate
@@ -77,3 +80,14 @@ def test_what_cannot_be_calibrated_is_refused(refusal):
     assert "inca identify" in refusal(calibrate, [log], spread=NONE)
     assert "no log" in refusal(calibrate, [], spread=SPREAD)
     assert "given twice" in refusal(calibrate, [log], spread=SPREAD, confirm=[log])
+
+
+@pytest.mark.parametrize(
+    ("part", "said"),
+    [((2.0, 3.9), "does not begin where"), ((0.0, 4.1), "leaves 0 samples unseen")],
+)
+def test_a_part_that_leaves_nothing_to_judge_by_is_refused(part, said):
+    log = log_as_built(4.0)
+    log = replace(log, splits={"estimation": part})
+    with pytest.raises(InputError, match=said):
+        calibrate([log], spread=SPREAD)
