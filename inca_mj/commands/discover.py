@@ -39,7 +39,7 @@ class Discover:
     """
 
     log: Annotated[tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
-    """Logs to explain; the TOML of each may name the split estimation, behind which all is unseen."""
+    """Logs to explain; the TOML of each may name the split estimation; the rest is unseen."""
     confirm: Annotated[
         tuple[tuple[Path, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="LOG")
     ] = ()
