@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, is_dataclass
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import tyro
 
@@ -34,6 +34,14 @@ def say(text: str) -> None:
     """One line of result on stdout."""
     sys.stdout.write(text + "\n")
     sys.stdout.flush()
+
+
+T = TypeVar("T")
+
+
+def flat(groups: Iterable[Iterable[T]]) -> list[T]:
+    """All that was given to an option, however often it was written."""
+    return [each for group in groups for each in group]
 
 
 def note(text: str) -> None:

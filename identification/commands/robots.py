@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, note, output_field
+from identification.commands.common import Output, flat, note, output_field
 
 if TYPE_CHECKING:
     from identification.robot.robot import Robot
@@ -48,8 +48,8 @@ class OnRobot:
         robot = read_robot(
             self.robot,
             self.logs,
-            [path for group in self.confirm for path in group],
-            [word for group in self.trust for word in group],
+            flat(self.confirm),
+            flat(self.trust),
             self.spread,
         )
         for remark in robot.remarks:

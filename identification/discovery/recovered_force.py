@@ -35,6 +35,7 @@ from identification.logs.log import Log
 LINE = 60  # bins of a law's line
 MIXED = 0.2  # u of a force that is shown as a function of one quantity, at most
 NEAR = 200  # one of so many samples is near to a node
+STEP = 0.1  # of a std: for the derivatives of a law by its parameters
 WEAK = 1.0  # of the law's largest force: a point with a larger std tells nothing
 
 
@@ -156,6 +157,35 @@ class Moved:
 
     steps: np.ndarray
     covariance: np.ndarray
+
+
+def law_steps(candidate: Candidate, std: Mapping[str, float]) -> dict[str, float]:
+    """Steps for derivatives of a law by its free parameters, by name, in their units.
+
+    Args:
+        candidate: the effect.
+        std: of fitted values, by name, in their units; a parameter that no data tell is not moved.
+    """
+    known = {name: std.get(name, 0.0) for name in candidate.estimated}
+    return {name: STEP * float(s) for name, s in known.items() if 0 < s < np.inf}
+
+
+def moved_by(
+    steps: Mapping[str, float], names: Sequence[str], covariance: np.ndarray, slope: np.ndarray
+) -> Moved:
+    """Steps of a law's parameters, with what a fit knows of these.
+
+    Args:
+        steps: by name, in the parameters' units.
+        names: of the fit's p coordinates.
+        covariance: of these, shape (p, p).
+        slope: d value/d coordinate, shape (p,).
+    """
+    at = [list(names).index(name) for name in steps]
+    return Moved(
+        np.array([*steps.values()]),
+        covariance[np.ix_(at, at)] * np.outer(slope[at], slope[at]),
+    )
 
 
 def compare_force(

@@ -11,10 +11,11 @@ from threadpoolctl import threadpool_limits
 from identification.discovery.effect_results import Rival
 from identification.discovery.record_forces import force_of_records
 from identification.discovery.recovered_force import (
-    Moved,
     RecoveredForce,
     Shown,
     compare_force,
+    law_steps,
+    moved_by,
     show_forces,
     show_readings,
 )
@@ -22,8 +23,6 @@ from identification.effects.effect import Candidate
 from identification.kalman.noise_model import build_whitener
 from identification.kalman.problem import linearise_criterion
 from identification.kalman.refit import Refit
-
-STEP = 0.1  # of a std: for the derivatives of a law by its parameters
 
 
 def recover_force(
@@ -48,7 +47,9 @@ def recover_force(
     values = fit.point.values
     base = {**values, **dict.fromkeys(candidate.sizes, 0.0)}
     rivals = [r for r in rivals if r.values]
-    steps = _law_steps(fit, candidate)
+    point, space = fit.point, fit.point.space
+    slope = space.slope(point.q)
+    steps = law_steps(candidate, dict(zip(space.names, fit.std * slope, strict=True)))
     moved = [{**values, name: values[name] + step} for name, step in steps.items()]
     sets = [values, *moved, *({**r.values, **_absent(base, r.values)} for r in rivals)]
     with threadpool_limits(1, "blas"):
@@ -57,9 +58,9 @@ def recover_force(
         if shown is None or shown.is_mixed:
             return None
         c, std = _solve(fit, fit.point.log.outputs - shown.predicted, shown.response)
-    return compare_force(
-        candidate, shown, c, std, _moved(fit, steps), [r.candidate for r in rivals]
-    )  # fmt: skip
+    covariance = linearise_criterion(point, fit.level, fit.mean, fit.prior).covariance
+    moved_so = moved_by(steps, space.names, covariance, slope)
+    return compare_force(candidate, shown, c, std, moved_so, [r.candidate for r in rivals])
 
 
 def _of_forces(
@@ -86,22 +87,6 @@ def _of_readings(
     log = predictor.log
     rate = np.gradient(own, log.sampling_time, axis=0)
     return show_readings(log, own, rate, log.time, others)
-
-
-def _law_steps(fit: Refit, candidate: Candidate) -> dict[str, float]:
-    """Steps for derivatives of a law by its free parameters, by name, in their units."""
-    space = fit.point.space
-    std = dict(zip(space.names, fit.std * space.slope(fit.point.q), strict=True))
-    return {name: STEP * float(std[name]) for name in candidate.estimated if std.get(name)}
-
-
-def _moved(fit: Refit, steps: Mapping[str, float]) -> Moved:
-    """Steps of a law's parameters, with what the fit knows of these."""
-    point = fit.point
-    at = [point.space.names.index(name) for name in steps]
-    covariance = linearise_criterion(point, fit.level, fit.mean, fit.prior).covariance
-    slope = point.space.slope(point.q)[at]
-    return Moved(np.array([*steps.values()]), covariance[np.ix_(at, at)] * np.outer(slope, slope))
 
 
 def _absent(values: Mapping[str, float], others: Mapping[str, float]) -> dict[str, float]:

@@ -19,10 +19,11 @@ from threadpoolctl import threadpool_limits
 
 from identification.discovery.force_along import forces_along
 from identification.discovery.recovered_force import (
-    Moved,
     RecoveredForce,
     Shown,
     compare_force,
+    law_steps,
+    moved_by,
     show_forces,
     show_readings,
 )
@@ -34,7 +35,6 @@ from identification.prediction.window_forces import HeldWindows, stretches_of, w
 from identification.windows.shooting import Shooting
 from identification.windows.tangents import Tangent
 
-STEP = 0.1  # of a std: for the derivatives of a law by its parameters
 MOST = 4000  # samples, over all records, along which forces are computed
 FEWEST = 10  # windows of a record
 
@@ -60,16 +60,17 @@ def recover_over_horizon(
         return None
     is_reading = "reading" in candidate.effect.hooks
     rivals = [r for r in rivals if _is_alike(r.candidate, is_reading)]
-    steps = _law_steps(model, candidate)
+    steps = law_steps(candidate, model.std)
     with threadpool_limits(1, "blas"):
         each = [_windows(model, k, candidate, steps, rivals) for k in range(len(model.fit.moves))]
         shown = (_of_readings if is_reading else _of_forces)(candidate, each)
         if shown is None or shown.is_mixed:
             return None
         c, std = _solve(each, shown.response)
-    return compare_force(
-        candidate, shown, c, std, _moved(model, steps), [r.candidate for r in rivals]
-    )  # fmt: skip
+    fit = model.fit
+    slope = fit.problem.prior.space.slope(fit.q)
+    moved_so = moved_by(steps, fit.problem.names, fit.covariance, slope)
+    return compare_force(candidate, shown, c, std, moved_so, [r.candidate for r in rivals])
 
 
 @dataclass(frozen=True)
@@ -156,25 +157,6 @@ def _solve(each: Sequence[_Windows], S: np.ndarray) -> tuple[np.ndarray, np.ndar
     white = np.mean(rest**2) * np.diag(inverse)
     # A node in a few windows only has luck in its blocks, so that its variance is the larger one.
     return c, np.where(np.diag(H) > 0, np.sqrt(np.maximum(by_blocks, white)), np.inf)
-
-
-def _law_steps(model: WindowModel, candidate: Candidate) -> dict[str, float]:
-    """Steps for derivatives of a law by its free parameters, by name, in their units."""
-    std = model.std
-    return {
-        name: STEP * std[name]
-        for name in candidate.estimated
-        if 0 < std.get(name, 0.0) < np.inf
-    }  # fmt: skip
-
-
-def _moved(model: WindowModel, steps: dict[str, float]) -> Moved:
-    """Steps of a law's parameters, with what the fit knows of these."""
-    fit = model.fit
-    at = [fit.problem.names.index(name) for name in steps]
-    slope = fit.problem.prior.space.slope(fit.q)[at]
-    covariance = fit.covariance[np.ix_(at, at)] * np.outer(slope, slope)
-    return Moved(np.array([*steps.values()]), covariance)
 
 
 def _values_of(rival: RefittedEffect) -> dict[str, float]:

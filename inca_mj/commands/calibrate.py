@@ -11,6 +11,7 @@ import tyro
 from identification.commands.common import (
     Output,
     conclude,
+    flat,
     output_field,
     table,
 )
@@ -60,8 +61,9 @@ class Calibrate:
 
         if not self.log:
             raise InputError("no log is given; write inca calibrate LOG...")
-        unseen = [path for paths in self.confirm for path in paths]
-        logs, confirm = ([read_inca_log(path) for path in paths] for paths in (self.log, unseen))
+        logs, confirm = (
+            [read_inca_log(path) for path in paths] for paths in (self.log, flat(self.confirm))
+        )
         spread, parameters, place = (
             spread_of(self.spread), self.robot.parameters(), self.robot.place()
         )  # fmt: skip
@@ -72,7 +74,7 @@ class Calibrate:
             confirm=confirm,
             spread=spread,
             progress=self.output.tell,
-            trust=[word for words in self.trust for word in words],
+            trust=flat(self.trust),
         )
         conclude(self, calibration_json(found), text(found), lambda out: keep(found, out))
         return 0

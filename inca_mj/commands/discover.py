@@ -12,6 +12,7 @@ import tyro
 
 from identification.commands.common import (
     Output,
+    flat,
     keep_if_possible,
     note,
     output_field,
@@ -75,7 +76,7 @@ class Discover:
         if not self.log:
             raise InputError("no log is given; write inca discover LOG")
         logs = [read_inca_log(path) for path in self.log]
-        confirm = [read_inca_log(path) for paths in self.confirm for path in paths]
+        confirm = [read_inca_log(path) for path in flat(self.confirm)]
         parameters, place = self.robot.parameters(), self.robot.place()
         spread = spread_of(self.spread)
         options = None if self.options is None else read_options(self.options)
@@ -91,7 +92,7 @@ class Discover:
             progress=self.output.tell,
             settled=self.settled,
             options=options,
-            trust=[word for words in self.trust for word in words],
+            trust=flat(self.trust),
         )
         from identification.report.discovery_text import discovery_text  # slow to import
 

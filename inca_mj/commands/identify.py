@@ -12,6 +12,7 @@ import tyro
 
 from identification.commands.common import (
     Output,
+    flat,
     keep_if_possible,
     output_field,
     say,
@@ -144,7 +145,7 @@ class Identify:
         )  # fmt: skip
         common: Any = {
             "free": free, "progress": self.output.tell, "timestep": self.robot.step,
-            "trust": [word for words in self.trust for word in words],
+            "trust": flat(self.trust),
         }  # fmt: skip
         if self.windows is not None:
             return identify_windows(log, self.windows, parameters, place, **common)

@@ -24,7 +24,6 @@ from identification.logs.frozen import refuse_frozen
 from identification.logs.names import listed
 from identification.logs.readings import Reading, misread, output_readings, turned
 from identification.robot.trust import TRUST, trusted
-from inca_mj.twin.logs import ANGLES
 from inca_mj.twin.twin import Twin
 
 LONGEST = 10.0  # [s] in which motion must begin
@@ -57,11 +56,13 @@ def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
     if found is None:
         return
     part, predicted = found
+    moves = _moving(part, predicted)
+    if "sensors" not in overruled and not moves.all():
+        raise InputError(f"log {log.name!r}: {_standing(part, moves)}{_overrule('sensors')}")
+    if not moves.any():
+        return
+    part, predicted = _with_outputs(part, moves), predicted[:, moves]
     y = part.outputs - part.outputs[0]
-    if (standing := _standing(y, predicted)) is not None:
-        if "sensors" not in overruled:
-            raise InputError(f"log {log.name!r}: {standing}{_overrule('sensors')}")
-        return  # what stands still has no sign and no scale
     if "wiring" not in overruled and (other := _other_wiring(part, predicted)) is not None:
         raise InputError(f"log {log.name!r}: the twin {other}{ADVICE}{_overrule('wiring')}")
     scale = float(np.exp(np.mean(np.log(np.abs((y * predicted).sum(0) / (predicted**2).sum(0))))))
@@ -78,16 +79,24 @@ def _overrule(word: str) -> str:
     return f"; if you know that {JUDGED[word]}, write --trust {word}"
 
 
-def _standing(y: np.ndarray, predicted: np.ndarray) -> str | None:
-    """Which angles, shape (n, 8) [rad], stand still though the twin's move, in words."""
-    sizes = np.linalg.norm(y, axis=0), np.linalg.norm(predicted, axis=0)
-    dead = np.flatnonzero(sizes[0] <= DEAD * sizes[1])
-    if len(dead) == y.shape[1]:
+def _moving(part: Log, predicted: np.ndarray) -> np.ndarray:
+    """Which angles of a log move, beside the twin's, which all do, shape (8,)."""
+    y = part.outputs - part.outputs[0]
+    return np.asarray(np.linalg.norm(y, axis=0) > DEAD * np.linalg.norm(predicted, axis=0))
+
+
+def _standing(part: Log, moves: np.ndarray) -> str:
+    """Which angles stand still, in words."""
+    if not moves.any():
         return "nothing moves in the log though the currents would move the robot"
-    if len(dead):
-        names = listed(ANGLES[i] for i in dead)
-        return f"{names}: stands still though its motor turns; look for a dead encoder"
-    return None
+    names = listed(n for n, moving in zip(part.output_names, moves, strict=True) if not moving)
+    return f"{names}: stands still though its motor turns; look for a dead encoder"
+
+
+def _with_outputs(part: Log, kept: np.ndarray) -> Log:
+    """A log with some of its outputs, by a mask: what stands still has no sign and no scale."""
+    names = tuple(n for n, keep in zip(part.output_names, kept, strict=True) if keep)
+    return replace(part, outputs=part.outputs[:, kept], output_names=names, units={}, extras={})
 
 
 def _other_wiring(part: Log, predicted: np.ndarray) -> str | None:
@@ -113,7 +122,7 @@ def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Readin
     if 1 < len(back) < y.shape[1]:
         outputs = turned(part.outputs, back)
         yield Reading(replace(part, outputs=outputs), back, "with the other sign",
-                      f"turn the sign of {listed(ANGLES[k] for k in back)}")  # fmt: skip
+                      f"turn the sign of {listed(part.output_names[k] for k in back)}")  # fmt: skip
     from scipy.optimize import linear_sum_assignment  # slow to import
 
     _, at = linear_sum_assignment(1 - _alike(y, predicted))
@@ -121,13 +130,13 @@ def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Readin
     if len(moved) > 2:
         outputs = part.outputs.copy()
         outputs[:, at] = part.outputs
-        pairs = listed(f"{ANGLES[i]} to {ANGLES[at[i]]}" for i in moved)
+        pairs = listed(f"{part.output_names[i]} to {part.output_names[at[i]]}" for i in moved)
         yield Reading(replace(part, outputs=outputs), moved, "were they exchanged",
                       f"rename {pairs} under [columns]")  # fmt: skip
 
 
 def _alike(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:
-    """Cosines between measured and predicted angles, each (n, 8): entry i, j of y_i and ŷ_j."""
+    """Cosines between measured and predicted angles, each (N, n): entry i, j of y_i and ŷ_j."""
     sizes = np.linalg.norm(y, axis=0)[:, None] * np.linalg.norm(predicted, axis=0)
     return np.asarray(y.T @ predicted / sizes)
 

@@ -166,3 +166,18 @@ def test_who_knows_better_overrules_a_check_and_only_this_check(plant, word, cha
 def test_an_unknown_word_lists_the_good_ones(plant):
     with pytest.raises(InputError, match=r"'wires'.*sensors, units, wiring"):
         refuse_miswired(read_inca_log(LOG), plant, ["wires"])
+
+
+def test_beside_an_angle_that_stands_still_the_others_are_judged(plant):
+    def reverse(y):
+        y[:, 4].fill(0.0)
+        y[:, [0, 1, 2, 3, 5, 6, 7]] *= -1
+
+    def convert(y):
+        y[:, 4].fill(0.0)
+        y *= 57.3
+
+    with pytest.raises(InputError, match=r"turn the sign of angle_1, .*angle_8"):
+        refuse_miswired(beside(plant, reverse), plant, ["sensors"])
+    with pytest.raises(InputError, match="must be in radians"):
+        refuse_miswired(beside(plant, convert), plant, ["sensors"])

@@ -18,8 +18,8 @@ def find_doubtful_effect(
 ) -> tuple[Finding, ...]:
     """The best effect that fitted samples want and that would matter, but is not proven.
 
-    Of an effect that makes the unseen samples less likely there is no doubt: it is not there. It is
-    another thing where the fitted samples want it far more than BIC asks.
+    Of an effect that makes the unseen samples less likely there is no doubt: it is not there. Only
+    where the fitted samples want it far more than BIC asks does a doubt remain.
 
     Args:
         rejected: effects that were refitted and not accepted, the best first.
