@@ -1,12 +1,18 @@
 """How much the parts of a robot scatter: the std of a group's prior, from the data.
 
-    x = q - q̄,   x_j ~ N(0, s_g²) for the j of a group g
-    V = (FᵀF + S⁻²)⁻¹,   x̂ = V Fᵀ y,   s_g² ← mean over j of (x̂_j² + V_jj)          (EM)
+    x = q - q̄,   x_j ~ N(0, s_g²) for the n values j of a group g,   p(s_g) ∝ s_g
+    V = (FᵀF + S⁻²)⁻¹,   x̂ = V Fᵀ y,   s_g² ← sum over j of (x̂_j² + V_jj) / (n - 1)     (EM)
 
-F and y are the whitened sensitivities and the residual about a fit. The s that this ends at makes
-the data most likely where x is integrated out (type-II maximum likelihood: MacKay 1992; Tipping
-2001). The table's s is the largest that is believed: what deviates farther is an effect, and no
-scatter. Where the parts are alike s falls towards zero, and their deviations are free of charge.
+F and y are the whitened sensitivities and the residual about a fit. The s that this ends at is the
+most probable one where x is integrated out (type-II maximum likelihood: MacKay 1992; Tipping 2001).
+The prior p(s) ∝ s makes n - 1 of n. Without it the best s is often almost zero though the data tell
+little of it, and then the std of every x_j is far too small (Chung, Rabe-Hesketh, Dorie, Gelman,
+Liu 2013, Psychometrika 78). With it s falls only where the data say so, by more than one unit of
+log likelihood.
+
+The table's s is the largest that is believed: what deviates farther is an effect, and no scatter.
+Where the parts are alike s falls to a fraction of what the data can tell of one part, and the
+deviations are almost free of charge.
 """
 
 from __future__ import annotations
@@ -24,11 +30,11 @@ LEAST = 1e-2  # of the table's s: below it a deviation moves nothing that a log 
 
 
 def estimate_scatter(fit: Refit, groups: Mapping[str, Sequence[str]]) -> dict[str, float]:
-    """The std of each group's prior that makes the fitted data most likely, by group.
+    """The most probable std of each group's prior, given the fitted data, by group.
 
     Args:
         fit: a fit under the table's std.
-        groups: names of free parameters that share one std.
+        groups: names of free parameters that share one std, two or more in each.
     """
     point = fit.point
     places = {g: [point.space.names.index(n) for n in names] for g, names in groups.items()}
@@ -42,7 +48,7 @@ def estimate_scatter(fit: Refit, groups: Mapping[str, Sequence[str]]) -> dict[st
         V = np.linalg.inv(H + np.diag(prior**2))
         power = (V @ b) ** 2 + np.diag(V)
         new = {
-            g: float(np.clip(np.sqrt(power[at].mean()), LEAST * table[g], table[g]))
+            g: float(np.clip(np.sqrt(power[at].sum() / (len(at) - 1)), LEAST * table[g], table[g]))
             for g, at in places.items()
         }
         moved = max((abs(new[g] / s[g] - 1) for g in new), default=0.0)

@@ -40,7 +40,8 @@ def test_scatters_of_two_groups_are_found():
         x = rng.standard_normal(P) * np.tile([0.2, 0.5], P // 2)
         found.append([*estimate_scatter(fit_of(x, 0.1, seed), groups()).values()])
     mean = np.mean(np.square(found), axis=0)
-    np.testing.assert_allclose(mean, [0.2**2, 0.5**2], rtol=5 * np.sqrt(2 / 12 / 40))
+    expected = np.array([0.2**2, 0.5**2]) * 12 / 11  # a sum of 12 squares over 12 - 1
+    np.testing.assert_allclose(mean, expected, rtol=5 * np.sqrt(2 / 12 / 40))
 
 
 def test_parts_that_are_alike_have_no_scatter():
@@ -67,3 +68,22 @@ def test_the_order_of_groups_changes_nothing():
     once, again = estimate_scatter(fit, groups()), estimate_scatter(fit, turned)
     for g in once:
         assert once[g] == pytest.approx(again[g], rel=1e-9)
+
+
+def test_values_that_the_data_hardly_tell_are_not_told_too_surely():
+    """Of values that scatter as the table says, 95 % lie within 1.96 of the std that is told.
+
+    The data alone tell each value to 1.4 times its scatter. With n in place of n - 1 the scatter is
+    often almost zero, and 76 % lie inside.
+    """
+    inside = []
+    for seed in range(60):
+        x = TABLE * np.random.default_rng(300 + seed).standard_normal(P)
+        fit = fit_of(x, noise := 1.4 * TABLE * np.sqrt(2 * N), seed)
+        s = estimate_scatter(fit, groups())
+        each = np.tile([s["even"], s["odd"]], P // 2)
+        F = fit.point.J.reshape(-1, P) / noise
+        V = np.linalg.inv(F.T @ F + np.diag(each**-2.0))
+        error = V @ F.T @ (fit.point.e.ravel() / noise) - x
+        inside.append(np.abs(error) <= 1.96 * np.sqrt(np.diag(V)))
+    assert np.mean(inside) == pytest.approx(0.95, abs=0.03)
