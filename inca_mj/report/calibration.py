@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from scipy.stats import norm
 
 from identification.quantities import alike, matched, quantity
 from inca_mj.robot.geometry import DRIVES
@@ -16,6 +17,8 @@ from inca_mj.workflows.spread import INERTIAS
 
 TOLD = 0.8  # a group whose deviations keep more than this share of their prior std is not told
 ALIKE = 0.1  # parts that scatter less than this share of what is usual are alike
+MOST = 3  # values far from usual that are told in words
+RARE = 0.01  # share of usual robots that have one or more values told as far from usual
 _WORDS = {
     "R": "roller radius", "R_s": "spring drum radius", "k_s": "drum spring",
     "lambda": "cable elasticity", "b": "cable damping", "J": "motor inertia",
@@ -51,7 +54,15 @@ def calibration_verdict(found: Calibration) -> list[str]:
         said.append(
             "The records do not tell the single deviations of: "
             + ", ".join(_WORDS[g] for g in unknown)
-            + ". What is said of them is what is usual."
+            + ". What is said of them is the common value, with the scatter of all parts as std."
+        )
+    far = unusual(found)
+    if far:
+        said.append(
+            f"Far from what is usual: {'; '.join(_far(found, *one) for one in far[:MOST])}"
+            + (f"; and {len(far) - MOST} more" if len(far) > MOST else "")
+            + ". So large a difference is a fault of this part or of a sensor, or it stands for an"
+            " effect that the twin lacks: run inca discover on the same logs."
         )
     if "exit" in found.spread.points:
         own, together = point_std(found, "exit")
@@ -72,6 +83,30 @@ def untold(found: Calibration) -> tuple[str, ...]:
         if left > TOLD**2 and found.scatter[group] >= ALIKE * usual:
             out.append(group)
     return tuple(out)
+
+
+def unusual(found: Calibration) -> tuple[tuple[str, str, float], ...]:
+    """Values farther from the others than usual parts ever are, the farthest first.
+
+    Returns:
+        The group, the name of the deviation, and how many times the usual std it is. A robot whose
+        parts scatter as usual has any such value with a probability of `RARE` at most.
+    """
+    usual = {**found.spread.drives, **found.spread.points}
+    every = [(g, name) for g, names in found.spread.groups.items() for name in names]
+    most = norm.isf(RARE / 2 / max(1, len(every)))
+    times = [(g, name, abs(found.values[name]) / usual[g]) for g, name in every]
+    return tuple(sorted((t for t in times if t[2] > most), key=lambda t: -t[2]))
+
+
+def _far(found: Calibration, group: str, name: str, times: float) -> str:
+    """One value in words: where it is, how large, and how many times what is usual."""
+    number = name.partition("@")[2]
+    if group in found.spread.points:
+        axis = name.partition("@")[0][-1]
+        point = _WORDS[group].removesuffix("s")
+        return f"{point} {number}, {axis} {_millimetres(found, name)} mm ({times:.2g} times)"
+    return f"drive {number}, {_WORDS[group]} {_percent(found, name)} % ({times:.2g} times)"
 
 
 def point_std(found: Calibration, point: str) -> tuple[float, float]:
@@ -139,6 +174,7 @@ def calibration_json(found: Calibration) -> dict[str, Any]:
         "points": _by_place([f"{p}_{a}" for p in found.spread.points for a in AXES], row, "m"),
         "scatter": dict(found.scatter),
         "not_told": list(untold(found)),
+        "unusual": [{"name": name, "times": times} for _, name, times in unusual(found)],
         "exits": found.robot.geometry.A.tolist(),
         "connectors": found.robot.geometry.B.tolist(),
         "records": [vars(gap) for gap in found.unseen],

@@ -7,7 +7,7 @@ import pytest
 from as_built_cases import COMMON, NOISE, SPREAD, deviations, log_as_built
 
 from identification import InputError
-from inca_mj.report.calibration import calibration_json, calibration_verdict, untold
+from inca_mj.report.calibration import calibration_json, calibration_verdict, unusual, untold
 from inca_mj.robot.spread import at_drives
 from inca_mj.workflows.calibration import calibrate
 from inca_mj.workflows.spread import NONE
@@ -37,6 +37,7 @@ def test_the_calibrated_robot_predicts_what_it_has_not_seen(one):
     (gap,) = one.unseen
     assert gap.after < 2 * NOISE < gap.before
     assert not untold(one)
+    assert not unusual(one)
     assert "one record" in calibration_verdict(one)[0]
 
 
@@ -66,6 +67,19 @@ def test_the_twin_has_the_values_that_are_told(one):
     told = calibration_json(one)
     assert told["drives"]["K_t"][2]["value"] == one.values["K_t@3"]
     assert told["records"][0]["after"] == one.unseen[0].after
+
+
+def test_a_part_far_from_what_is_usual_is_told(one):
+    """The same calibration, where usual robots scatter by a tenth of what this one does."""
+    tight = {name: std / 10 for name, std in SPREAD.drives.items()}
+    judged = replace(one, spread=replace(SPREAD, drives=tight))
+    names = {name for _, name, _ in unusual(judged)}
+    limit = 4 * 0.1  # of 16 normal variables the largest is below 3.4 std in 99 % of robots
+    expected = {n for n, x in deviations().items() if abs(x) > limit * SPREAD.drives[n[:-2]]}
+    assert expected and expected <= names
+    said = " ".join(calibration_verdict(judged))
+    assert "Far from what is usual: drive " in said and "run inca discover" in said
+    assert calibration_json(judged)["unusual"][0]["name"] in names
 
 
 @pytest.mark.long
