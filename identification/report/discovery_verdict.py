@@ -105,10 +105,12 @@ def unexplained(found: Discovery) -> str:
 
 def _nearest(rejected: RejectedEffect) -> str:
     """A sentence on what was refitted, is beyond chance, and is not named."""
+    fall = 100 * rejected.proof.fall
+    free_run = f"{'falls' if fall >= 0 else 'rises'} by {abs(fall):.2g} %"
     return (
-        f"Nearest comes {describe_effect(rejected.candidate)}: it predicts unseen samples better"
-        f" ({describe_chance(rejected.proof)}), but it is either too small to matter or not the"
-        " likeliest."
+        f"Nearest comes {describe_effect(rejected.candidate)}: it predicts each next unseen sample"
+        f" better ({describe_chance(rejected.proof)}), and with it the mean square of the free run"
+        f" {free_run}. It is too small to matter, or not the likeliest."
     )
 
 
@@ -125,8 +127,8 @@ def _named(found: Discovery, named: NamedEffect) -> str:
             + [f"{describe_effect(r.candidate)} ({100 * r.confidence:.0f} %)" for r in rivals]
         )
         return (
-            f"{first} is one of these, which this log cannot tell apart: {each};"
-            f" together {100 * min(total, 1.0):.0f} %. The first is put into the model:"
+            f"{first} is one of these, which this log does not surely tell apart: {each};"
+            f" together {_percent(total)}. The first is put into the model:"
             f" {describe_sizes(named)}." + (f" {named.advice}" if named.advice else "")
         )
     return (
@@ -203,6 +205,11 @@ def floor_rms(found: Discovery) -> float:
 
 def _size(found: Discovery, rms: float) -> str:
     return alike([rms], found.log.output_unit, HELD)[0]
+
+
+def _percent(chance: float) -> str:
+    """A probability in percent; rounding makes no certainty of it."""
+    return "more than 99 %" if chance > 0.995 else f"{100 * chance:.0f} %"
 
 
 def _unique(names: Iterable[str]) -> list[str]:

@@ -10,24 +10,26 @@ from identification.discovery.result import Discovery
 from identification.logs.joined import JoinedLog, records_of, rows_of
 from identification.quantities import alike
 
-CONFIRMS = 0.75  # a record of which more is unseen was given to confirm
-
 
 def record_gaps(found: Discovery) -> list[dict[str, Any]]:
-    """Per record: its name, and the rms of free runs over its unseen samples.
+    """Per record: its name, its role, and the rms of free runs over its unseen samples.
 
-    A record of which every sample was fitted has no gap: its rms are None.
+    A record of which every sample was fitted has no gap: its rms are None. Records are fitted whole
+    where others confirm, and those others are all that is left.
     """
     whole = found.log.outputs
     errors = [whole - p for p in (found.predicted_before, found.predicted_after)]
+    records = [record for _, record in records_of(found.log)]
+    unseens = [~rows_of(record, "estimation") for record in records]
+    confirmed = not all(unseen.any() for unseen in unseens)
     out, begun = [], 0
-    for _, record in records_of(found.log):
-        rows, unseen = slice(begun, begun + len(record)), ~rows_of(record, "estimation")
+    for record, unseen in zip(records, unseens, strict=True):
+        rows = slice(begun, begun + len(record))
         begun += len(record)
         before, after = (
             float(np.sqrt(np.mean(e[rows][unseen] ** 2))) if unseen.any() else None for e in errors
         )
-        role = "fit" if before is None or unseen.mean() < CONFIRMS else "confirm"
+        role = "confirm" if confirmed and unseen.any() else "fit"
         out.append({"file": record.name, "role": role, "before": before, "after": after})
     return out
 

@@ -124,7 +124,7 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
     others = [f"{describe_effect(r.candidate)} ({100 * r.confidence:.0f} %)" for r in named.rivals]
     if named.one_of:
         said = (
-            f"{first} is one of these, which these records cannot tell apart:"
+            f"{first} is one of these, which these records do not surely tell apart:"
             f" {'; '.join([f'{mine} ({confidence})', *others])}. The first is put into the model:"
             f" {sizes}."
         )

@@ -3,17 +3,20 @@
 from dataclasses import replace
 from math import hypot
 
+import numpy as np
 import pytest
 from fake_discovery import DRIVE_3, NOISE, REJECTED, SLOW, found
 
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
+from identification.logs.joined import join_logs
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_tables import parameters_section
 from identification.report.discovery_text import discovery_text
 from identification.report.discovery_verdict import diff_line, discovery_verdict, floor_rms
 from identification.report.effect_words import describe_effect
 from identification.report.finding_words import describe_finding, sentence
+from identification.report.record_gaps import record_gaps
 
 
 def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
@@ -51,7 +54,9 @@ def test_input_errors_that_cannot_be_believed_are_no_noise(verdict, input_error,
 
 def test_look_alikes_are_a_set() -> None:
     first = discovery_verdict(found(one_of=True))[0]
-    assert first.startswith("Missing from the model is one of these, which this log cannot tell")
+    assert first.startswith(
+        "Missing from the model is one of these, which this log does not surely"
+    )
     assert "Stribeck peak, all drives (61 %)" in first
     assert "drive 3 (36 %)" in first
     assert "together 97 %" in first
@@ -63,8 +68,13 @@ def test_what_is_left_is_said_last() -> None:
     assert said[-1].endswith(sentence(describe_finding(DRIVE_3)))
     proven = replace(REJECTED, gain=50.0, proof=replace(REJECTED.proof, t=8.3, chance=1e-6))
     said = discovery_verdict(replace(found(unexplained=True), rejected=(proven,)))
-    nearest = f"Nearest comes {describe_effect(REJECTED.candidate)}: it predicts unseen samples"
+    nearest = f"Nearest comes {describe_effect(REJECTED.candidate)}: it predicts each next unseen"
     assert nearest in said[-1]
+    rise = -100 * REJECTED.proof.fall
+    assert f"the mean square of the free run rises by {rise:.2g} %" in said[-1]
+    rising = replace(proven, proof=replace(proven.proof, fall=-0.187))
+    said = discovery_verdict(replace(found(unexplained=True), rejected=(rising,)))
+    assert "the mean square of the free run rises by 19 %" in said[-1]
     assert "(t = 8.3, chance 1e-06)" in said[-1]
 
 
@@ -145,3 +155,18 @@ def test_where_nothing_was_tried_beside_a_name_the_next_is_told_and_why_not() ->
 def test_a_diff_line_reads_as_one() -> None:
     (named,) = found().named
     assert diff_line(named).startswith("+ friction – Stribeck peak, all drives: f_s = 4.12 ± 0.21")
+
+
+def test_a_short_record_that_confirms_is_told_as_such() -> None:
+    """Whatever part of it tells where it begins: half of 3 s, a tenth of 20 s."""
+    one = found()
+    begin, h = float(one.log.time[0]), one.log.sampling_time
+    middle, end = float(one.log.time[len(one.log) // 2]), float(one.log.time[-1]) + h
+    whole = replace(one.log, name="a", splits={"estimation": (begin, end)})
+    begun = replace(one.log, name="b", splits={"estimation": (begin, middle)})
+    plain = replace(one.log, name="c", splits={})
+    for records, roles in (([whole, begun], ["fit", "confirm"]), ([begun, plain], ["fit", "fit"])):
+        log = join_logs([replace(r, outputs=r.outputs + k) for k, r in enumerate(records)])
+        twice = np.concatenate([one.predicted_after] * 2)
+        joined = replace(one, log=log, predicted_before=twice, predicted_after=twice)
+        assert [gap["role"] for gap in record_gaps(joined)] == roles
