@@ -99,6 +99,8 @@ def _sentence(text: str, name: str, arguments: Sequence[str], commands: dict[str
         words = sorted({*re.findall(r"'([^']*)'", found[3])} - {"None"})  # their order varies
         return f"{found[2]} is {found[1]}; give one of {', '.join(words)}"
     if found := re.search(r"Missing value for argument '([^']+)'", text):
+        if what := _positional(commands[command]).get(found[1]):
+            return f"{what} is missing; write {name} {command} {what}{see}"
         return f"{found[1]} has no value; give one behind it{see}"
     if found := re.search(r"Missing from [^:]+: (\S+)", text):
         return f"{found[1]} is missing; write {name} {command} {found[1]}{see}"
@@ -138,10 +140,26 @@ def _commands(kind: Any) -> Iterator[tuple[str, type]]:
             yield from ((str(m.name), one) for m in marks if getattr(m, "name", None))
 
 
+def _positional(command: type) -> dict[str, str]:
+    """What a command takes without an option: the words of its help by the names of the fields."""
+    hints = get_type_hints(command, include_extras=True)
+    marks = {field: hint.__metadata__ for field, hint in hints.items() if _is_annotated(hint)}
+    return {
+        field: next((m.metavar for m in each if getattr(m, "metavar", None)), field.upper())
+        for field, each in marks.items()
+        if tyro.conf.Positional in each
+    }
+
+
+def _is_annotated(hint: Any) -> bool:
+    return get_origin(hint) is Annotated
+
+
 def _options(command: type) -> Iterator[str]:
     """The names of a command's options, those of its parts among them."""
+    positional = _positional(command)
     for field, hint in get_type_hints(command).items():
         if dataclasses.is_dataclass(hint):
             yield from _options(hint)  # type: ignore[arg-type]
-        else:
+        elif field not in positional:
             yield field.replace("_", "-")

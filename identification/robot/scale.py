@@ -64,7 +64,8 @@ def rescaled(
     return reading, (
         f"needs forces {times} times those of the drives for this motion, whatever"
         f" payload and friction it has, and explains {100 * (1 - left.max()):.0f} % of them"
-        f" {reading.said}; {reading.cure}"
+        f" {reading.said}; {reading.cure} (where the outputs are right, the inputs are in a larger"
+        " unit: write that of the inputs)"
     )
 
 

@@ -38,6 +38,7 @@ WRONG = [
     (inca, "simulate --figure 3.2 --input step", "is made with --input prbs, not step"),
     (inca, "simulate --figure 2.16 --duration 11", "is made with --duration 10.0, not 11.0"),
     (inca, "identify", "LOG is missing; write inca identify LOG"),
+    (inca, "identify --nope", "LOG is missing; write inca identify LOG"),
     (inca, "compare a.csv b.csv", "b.csv is one argument too many"),
     (inca, "discover a.csv --spread", "--spread has no value; give one behind it"),
     (inca, "crosscheck --step 0.001", "unknown option of inca crosscheck: '--step'; did you mean"),
@@ -71,3 +72,11 @@ def test_help_calls_a_log_a_log(capsys, command):
     assert not end.value.code
     said = capsys.readouterr().out
     assert "LOG" in said.split("options", 1)[0]
+
+
+def test_a_list_of_options_has_no_arguments_that_are_none(capsys):
+    """What is given without an option is no option to choose."""
+    assert inca(["discover", "a.csv", "--nope"]) == 2
+    said = capsys.readouterr().err
+    assert "--confirm" in said
+    assert "--log" not in said

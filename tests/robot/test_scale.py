@@ -58,6 +58,14 @@ def test_degrees_are_told_whatever_the_model_lacks(tmp_path, xml, world, factor,
     refuse_miswired(replace(own, file=replace(own.file, trust=("units", "wiring"))), read)
 
 
+def test_inputs_in_a_larger_unit_are_among_the_causes(tmp_path):
+    """A thousand times less torque is the same to the balance as motions that are too large."""
+    log = log_of(ARM, payload)
+    own, read = robot(tmp_path, ARM, replace(log, inputs=1e-3 * log.inputs), "horizon = 0.2")
+    with pytest.raises(InputError, match="the inputs are in a larger unit"):
+        refuse_miswired(own, read)
+
+
 @pytest.mark.parametrize(
     ("late", "step"), [(0, 0.0), (0, 1.5e-3), (-3, 0.0), (-3, 2e-2), (6, 0.0), (6, 2e-2)]
 )
