@@ -6,13 +6,12 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
+from as_built_calibrations import calibration_lines
+from as_built_rows import Row, commits_of, median_time, rate_of, records_of
 
 from identification.sweep.discovery_rates import in_set, right, size_errors
-from identification.sweep.statistics import rate
 from inca_mj.worlds import HIDDEN_EFFECTS, UNLISTED
 
-Row = Mapping[str, Any]
 USUAL = 20.0  # length of a world's log where nothing is said [s]
 CLOSE = 0.15  # relative error of a size that is called right
 HEAD = """# Robots as they are built
@@ -36,7 +35,7 @@ def page(
 ) -> str:
     """The page, from all rows: those of labelled robots, and those of sweeps over worlds."""
     parts = (
-        _calibrations(calibrations), _discoveries(discoveries), _worlds(worlds), _times(times),
+        calibration_lines(calibrations), _discoveries(discoveries), _worlds(worlds), _times(times),
     )  # fmt: skip
     return "\n".join([HEAD, *(line for part in parts for line in part)])
 
@@ -46,7 +45,7 @@ def _times(rows: Sequence[Row]) -> list[str]:
     if not rows:
         return []
     lines = [
-        f"## Time on two quiet cores ({_commits(rows)})", "",
+        f"## Time on two quiet cores ({commits_of(rows)})", "",
         "    python benchmarks/as_built.py time --robot robot_00 [--records abc]", "",
         "| robot | records | truth | whole search | processor time | nominal fit | sensitivities"
         " | refits |",
@@ -55,7 +54,7 @@ def _times(rows: Sequence[Row]) -> list[str]:
     for row in rows:
         s = row["stages"]
         lines.append(
-            f"| {row['robot']} | {_records(row)[0]} |"
+            f"| {row['robot']} | {records_of(row)[0]} |"
             f" {' + '.join(row['truth']['effects']) or 'nothing'} | {row['seconds']:.0f} s |"
             f" {row['processor_seconds']:.0f} s | {s['nominal fit']:.0f} s |"
             f" {s['sensitivities']:.0f} s | {s['refits']:.0f} s |"
@@ -63,64 +62,19 @@ def _times(rows: Sequence[Row]) -> list[str]:
     return [*lines, ""]
 
 
-def _calibrations(rows: Sequence[Row]) -> list[str]:
-    done = [row for row in rows if "drives" in row]
-    lines = [
-        "## Calibration", "", "    inca calibrate LOG... [--confirm LOG...]", "",
-        "Errors are relative to the truth. *Told* is the mean std that the calibration gives;"
-        " *inside* is the share of the errors within 1.96 of their std, which should be 95 %."
-        " Without records that confirm, the first half of each record is fitted.", "",
-    ]  # fmt: skip
-    for key in sorted({_records(row) for row in done}):
-        mine = [row for row in done if _records(row) == key]
-        fitted, confirm = key
-        named = f"Fitted: records {fitted}" + (f"; {confirm} confirms" if confirm else ", halves")
-        lines += [f"### {named} ({len(mine)} robots, {_commits(mine)})", ""]
-        lines += ["| value | rms error | told | inside |", "|---|---|---|---|"]
-        for name in mine[0]["drives"]:
-            error, std = _stack(mine, lambda row, n=name: row["drives"][n])
-            lines.append(f"| {name} of each drive | {_percent(error)} | {_percent(std)} |"
-                         f" {_inside(error, std)} |")  # fmt: skip
-        every = [_stack(mine, lambda row, n=name: row["drives"][n]) for name in mine[0]["drives"]]
-        error, std = (np.concatenate(part) for part in zip(*every, strict=True))
-        lines.append(f"| all values of drives | | | {_inside(error, std)} |")
-        for point in ("exit", "connector"):
-            error, std = _stack(mine, lambda row, p=point: row["points"][p])
-            before = np.concatenate([np.ravel(row["points"][point]["before"]) for row in mine])
-            now, drawn, told = (f"{1e3 * _rms(x):.2f} mm" for x in (error, before, std))
-            lines.append(
-                f"| {point} points, each coordinate | {now} (as drawn {drawn}) | {told} |"
-                f" {_inside(error, std)} |"
-            )
-        for name in ("I_x", "I_y", "I_z", "m"):
-            error, std = _stack(mine, lambda row, n=name: row["platform"][n])
-            lines.append(
-                f"| {name} | {_percent(error)} | {_percent(std)} | {_inside(error, std)} |"
-            )
-        gaps = [gap for row in mine for gap in row["unseen"]]
-        before, after = (1e3 * _rms(np.array([g[w] for g in gaps])) for w in ("before", "after"))
-        lines += [
-            "",
-            f"Free runs over unseen samples are off by {after:.1f} mrad rms; with all drives alike"
-            f" and all points as drawn by {before:.0f} mrad. {_time(mine)}",
-            "",
-        ]  # fmt: skip
-    return lines
-
-
 def _discoveries(rows: Sequence[Row]) -> list[str]:
     done = [row for row in rows if "verdict" in row]
     lines = ["## Discovery", "", "    inca discover LOG... --spread usual", ""]
-    for key in sorted({(*_records(row), row["key"].split("/")[3]) for row in done}):
-        mine = [row for row in done if (*_records(row), row["key"].split("/")[3]) == key]
+    for key in sorted({(*records_of(row), row["key"].split("/")[3]) for row in done}):
+        mine = [row for row in done if (*records_of(row), row["key"].split("/")[3]) == key]
         fitted, confirm, spread = key
         what = f"records {fitted}" + (f", {confirm} confirms" if confirm else "")
-        lines += [f"### {what}, spread {spread} ({len(mine)} robots, {_commits(mine)})", ""]
+        lines += [f"### {what}, spread {spread} ({len(mine)} robots, {commits_of(mine)})", ""]
         for kind, title in _KINDS.items():
             some = [row for row in mine if row["truth"]["kind"] == kind]
             if some:
                 lines.append(f"- {title}: {'; '.join(_rates(kind, some))}.")
-        lines += ["", f"{_time(mine)}", "", "| robot | truth | answer | best score |",
+        lines += ["", f"{median_time(mine)}", "", "| robot | truth | answer | best score |",
                   "|---|---|---|---|"]  # fmt: skip
         lines += [_line(row) for row in sorted(mine, key=lambda row: row["robot"])] + [""]
     failed = [f"{row['key']}: {row['error']}" for row in rows if "error" in row]
@@ -163,7 +117,7 @@ def _worlds(rows: Sequence[Row]) -> list[str]:
         for kind, title in {**_KINDS, "unknown": "an unlisted effect"}.items():
             some = [r for r in done if _group(r) == group and r["truth"]["kind"] == kind]
             if some and kind in tests:
-                rates = (f"{what} {_rate(some, test)}" for what, test in tests[kind].items())
+                rates = (f"{what} {rate_of(some, test)}" for what, test in tests[kind].items())
                 lines.append(f"- {_words(group)}, {title}: {'; '.join(rates)}.")
     close = [error <= CLOSE for error in size_errors(done)]
     if close:
@@ -240,7 +194,7 @@ def _rates(kind: str, rows: Sequence[Row]) -> list[str]:
             "two or three right": lambda r: len(_right(r)) >= 2,
             "a wrong name": lambda r: len(_right(r)) < len(r["named"]),
         }
-    return [f"{what} {_rate(rows, test)}" for what, test in tests.items()]
+    return [f"{what} {rate_of(rows, test)}" for what, test in tests.items()]
 
 
 def _truth(row: Row) -> set[str]:
@@ -274,41 +228,3 @@ def _line(row: Row) -> str:
     answer = f"{answer or row['verdict']}{', something left' if row['unexplained'] else ''}"
     best = row["scores"][0]
     return f"| {row['robot']} | {truth} | {answer} | {best[0]}, {best[1]} |"
-
-
-def _records(row: Row) -> tuple[str, str]:
-    _, fitted, confirm, _ = row["key"].split("/")
-    return fitted, confirm
-
-
-def _commits(rows: Sequence[Row]) -> str:
-    return ", ".join(sorted({row["commit"] for row in rows}))
-
-
-def _time(rows: Sequence[Row]) -> str:
-    seconds = np.median([row["processor_seconds"] for row in rows])
-    return f"Median processor time {seconds:.0f} s."
-
-
-def _rate(rows: Sequence[Row], test: Any) -> str:
-    r = rate(rows, test)
-    return f"{r['hits']} of {r['of']} [{100 * r['low']:.0f}, {100 * r['high']:.0f} %]"
-
-
-def _stack(rows: Sequence[Row], part: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Errors and std of all rows, flat."""
-    parts = [part(row) for row in rows]
-    error, std = (np.concatenate([np.ravel(p[key]) for p in parts]) for key in ("error", "std"))
-    return error, std
-
-
-def _rms(x: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(np.square(x))))
-
-
-def _percent(x: np.ndarray) -> str:
-    return f"{100 * _rms(x):.2g} %"
-
-
-def _inside(error: np.ndarray, std: np.ndarray) -> str:
-    return f"{100 * np.mean(np.abs(error) < 1.96 * std):.0f} %"
