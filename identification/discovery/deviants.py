@@ -1,10 +1,13 @@
 """Parts of a robot that deviate from the others by more than parts do: these are effects.
 
-    |x_j| > 3 s_g          x_j: the deviation of a part in the nominal fit, s_g: the usual std
+    |x_j - mean of n others| > 3 s_g √(1 + 1/n)     x_j: the deviation of a part in the nominal fit
+                                                    s_g: the usual std
 
 The nominal fit follows such a part, because only its prior speaks against it: nothing is left for a
 candidate to explain. So, once no candidate is left to add, the deviation becomes an effect of that
-part, and from here on every part is kept within three std of the others.
+part, and from here on every part is kept within three std of the others. In the model without the
+effect their common value stays where the n other parts have it, but for the little by which the
+root is above one: else it moves towards the part that is off, and all others are off the other way.
 """
 
 from __future__ import annotations
@@ -39,16 +42,25 @@ def find_deviants(task: DiscoveryTask, model: FittedModel) -> tuple[Candidate, .
     """
     nominal, values = task.nominal_model, model.refit.point.values
     has = {candidate.key for candidate in model.candidates}
+    groups = nominal.grouped
     far: dict[tuple[str, str], float] = {}
     for name, std in zip(nominal.names, nominal.std, strict=True):
         at = nominal.deviants.get(name)
         if at is not None and at not in has:
-            off = abs(values[name]) / std
+            others = [n for n in nominal.groups.get(groups.get(name, ""), ()) if n != name]
+            off = _distance(values[name], [values[n] for n in others]) / std
             if off > task.options.max_scatter:
                 far[at] = max(off, far.get(at, 0.0))
     effects = {effect.name: effect for effect in task.effects}
     known = [at for at in sorted(far, key=lambda at: -far[at]) if at[0] in effects]
     return tuple(Candidate(effects[name], where, {}) for name, where in known)
+
+
+def _distance(value: float, others: Sequence[float]) -> float:
+    """How far a part is from n others: of parts that scatter alike with an std s, |N(0, s²)|."""
+    if not others:
+        return abs(value)
+    return float(abs(value - np.mean(others)) / np.sqrt(1 + 1 / len(others)))
 
 
 def accept_deviants(
@@ -117,6 +129,7 @@ def _take_out(
         for size, name in zip(candidate.sizes, own, strict=True):
             far = task.options.max_scatter * std[name]
             values[name] = float(np.clip(values[name] + values.pop(size), -far, far))
+    task = _with_common_held(task, candidates, values)
     out = {candidate.key for candidate in candidates}
     rest = tuple(c for c in model.candidates if c.key not in out)
     few = try_fit(task, rest, values, model, FEW)
@@ -125,6 +138,23 @@ def _take_out(
     if few is None or few.negative_bic < model.negative_bic - far:
         return few
     return try_fit(task, rest, few.refit.point.values, few)
+
+
+def _with_common_held(
+    task: DiscoveryTask, candidates: Sequence[Candidate], values: Mapping[str, float]
+) -> DiscoveryTask:
+    """The task in which the common values of some parts stay where all other parts have them."""
+    nominal, options = task.nominal_model, task.options
+    std = dict(zip(nominal.names, nominal.std, strict=True))
+    out = {candidate.key for candidate in candidates}
+    held = dict(nominal.held)
+    for common, names in nominal.groups.items():
+        others = [name for name in names if nominal.deviants.get(name) not in out]
+        if common in std and common not in names and 0 < len(others) < len(names):
+            beyond = np.sqrt(1 + 1 / len(others)) - 1
+            room = float(np.exp(options.max_scatter * std[names[0]] * beyond))
+            held[common] = values[common] / room, values[common] * room
+    return replace(task, nominal_model=replace(nominal, held=held))
 
 
 def _as_effects(

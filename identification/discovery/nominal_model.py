@@ -38,13 +38,15 @@ class NominalModel:
             own value, where every search begins.
         own_values: by record and by name, where the search of a record's own values begins; the
             plant's own value where not given.
-        groups: names that share one std, by what they have in common: deviations of the drives,
-            displacements of points. Their std is the largest that is believed.
+        groups: names that share one std, by what they have in common: deviations of the drives by
+            the name of their common value, displacements of points. Their std is the largest that
+            is believed.
         scattering: those groups whose std the data show; of the others it stays.
         scatter: the std of some groups, as the data show it; `std` where not given.
         deviants: by the name of a deviation, the effect and its place that it is when it is too
             large for scatter; of an effect of several sizes in their order.
         is_bounded: whether fits keep every member of a group within `max_scatter` std.
+        held: by name, the least and the largest value that fits believe, in the parameter's unit.
 
     Raises:
         InputError: there is not one std for each name.
@@ -62,6 +64,7 @@ class NominalModel:
     scatter: Mapping[str, float] = field(default_factory=dict)
     deviants: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     is_bounded: bool = False
+    held: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if np.shape(self.std) != (len(self.names),):
@@ -134,6 +137,7 @@ def fit_with_effects(
     space = _within_factor(space, parameters, nominal_model.names, options.nominal_factor)
     if nominal_model.is_bounded:
         space = _within_scatter(space, nominal_model, options.max_scatter)
+    space = _within_held(space, nominal_model.held)
     # A size has no prior, so that the mean of its prior is never used.
     known = {*nominal_model.names, *shapes}
     middle = {**own, **nominal_model.mean}
@@ -187,6 +191,15 @@ def _within_scatter(space: Coordinates, nominal: NominalModel, most: float) -> C
     return replace(
         space, lower=np.maximum(space.lower, -far), upper=np.minimum(space.upper, far)
     )  # fmt: skip
+
+
+def _within_held(space: Coordinates, held: Mapping[str, tuple[float, float]]) -> Coordinates:
+    """Coordinates in which some parameters stay within ranges of their own."""
+    everywhere = -np.inf, np.inf
+    low, high = np.array([held.get(name, everywhere) for name in space.names]).T
+    mine = np.isin(space.names, [*held])
+    low, high = (np.where(mine, space.encode(np.where(mine, x, 1.0)), x) for x in (low, high))
+    return replace(space, lower=np.maximum(space.lower, low), upper=np.minimum(space.upper, high))
 
 
 def _nonzero(record: Parameter, value: float) -> float:

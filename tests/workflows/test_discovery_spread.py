@@ -9,6 +9,7 @@ from as_built_cases import COMMON, NOISE, SPREAD, log_as_built, robot_as_built
 from identification.report.discovery_json import discovery_to_json
 from inca_mj.effects.catalogue import CATALOGUE
 from inca_mj.robot.inputs import prbs
+from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.workflows.discovery import discover
@@ -60,3 +61,18 @@ def test_each_record_is_told_by_itself(off):
     records = discovery_to_json(off)["records"]
     assert [r["file"] for r in records] == ["record 3", "record 4"]
     assert all(r["role"] == "fit" and r["after"] < r["before"] for r in records)
+
+
+@pytest.mark.long
+def test_the_common_value_does_not_hide_a_drive_that_is_off():
+    """A drive 45 % off is 1.45 of the others; parts within three std may be 1.3/0.7 = 1.86."""
+    kind = tuple(e for e in CATALOGUE if e.name == "viscous_friction_mismatch")
+    off = 0.45
+    found = discover(log_with(5, 4.0, **{"b_v@6": off}), spread=SPREAD, effects=(*SOME, *kind))
+    (named,) = found.named
+    assert named.candidate.key == ("viscous_friction_mismatch", "drive 6")
+    v = found.final.point.values
+    ((value, _, _),) = named.parameters.values()
+    whole = v["b_v"] * (1 + v["b_v@6"]) * (1 + value)
+    assert whole == pytest.approx(parameter_set().values()["b_v"] * (1 + off), rel=0.05)
+    assert found.after.rms < 2 * NOISE

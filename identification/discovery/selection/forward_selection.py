@@ -1,9 +1,10 @@
 """Forward selection: the best candidates are refitted, and the most likely one is to be proven.
 
 The refitted models are ordered by BIC. The first one is accepted that unseen samples confirm beyond
-chance and by enough to matter; a second name is often only the wrong shape of the first. A first
-effect need not matter where the nominal model leaves no structure unexplained: such an effect is
-small, but it is all that is missing. Where no score is beyond chance but the noise model has an
+chance and by enough to matter; a second name is often only the wrong shape of the first. An effect
+need not matter to the free run where the model leaves no structure unexplained: such an effect is
+small, but it is all that is missing. Beside effects that are named already the fitted samples must
+then want it far more than BIC asks. Where no score is beyond chance but the noise model has an
 error of the inputs, in which an effect may hide, the best candidates are refitted all the same, and
 their gain must then be beyond chance.
 """
@@ -82,24 +83,19 @@ def select_effect(
     rejected: list[RejectedEffect] = []
     unproven: FittedModel | None = None
     tried = len(refitted)
-    is_clean = not model.candidates and not find_structure(model, options)
+    is_clean = not find_structure(model, options)
     for k, new in enumerate(refitted):
         proof = prove(model.validation, new.validation, options)
-        gain = new.negative_bic - model.negative_bic
-        if gain > 0 and (
-            is_confirmed(proof, options, tried)
-            or (
-                is_clean
-                and is_proven(proof, options, tried)
-                and not find_input_error(new.validation, options)
-            )
+        gain, mine = new.negative_bic - model.negative_bic, new.candidates[-1]
+        is_wanted = is_far_likelier(mine, gain, len(model.refit.point.log))
+        is_sure = gain > 0 and is_proven(proof, options, tried)
+        is_small = is_clean and is_sure and (is_wanted or not model.candidates)
+        if (gain > 0 and is_confirmed(proof, options, tried)) or (
+            is_small and not find_input_error(new.validation, options)
         ):
             others = tuple(refitted[:k] + refitted[k + 1 :])
             return Selection(accepted=(AcceptedEffect(new, proof, gain, others),))
-        mine = new.candidates[-1]
-        is_wanted = is_far_likelier(mine, gain, len(model.refit.point.log))
-        is_wanted = is_wanted and is_relevant(proof, options)
-        is_half_proven = is_wanted or (gain > 0 and is_proven(proof, options, tried))
+        is_half_proven = is_sure or (is_wanted and is_relevant(proof, options))
         if is_half_proven and unproven is None:
             unproven = new
         parameters = collect_parameters(task, new, mine)
