@@ -62,7 +62,7 @@ def _diff(found: Discovery) -> list[str]:
             lines.append(f"    rival: {said}")
         if (other := named.retuned).confidence >= SHOWN:
             lines.append(
-                f"    no effect, but {words[other.parameter]} {other.distance:+.2g} std from what"
+                f"    no effect, but {words[other.parameter]} {other.distance:+z.2g} std from what"
                 f" was known: confidence {100 * other.confidence:.0f} %"
             )
     return lines

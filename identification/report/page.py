@@ -227,4 +227,4 @@ def _holds_numbers(column: Iterable[object]) -> bool:
 def _text(cell: object) -> str:
     if cell is None:
         return "–"
-    return f"{cell:.5g}" if isinstance(cell, float) else str(cell)
+    return f"{cell:z.5g}" if isinstance(cell, float) else str(cell)

@@ -132,7 +132,7 @@ class Lettering:
             off: of the simulated robot from the measured one: the platform [m], the motors [rad].
         """
         frame[self._rows] = (self._ink + frame[self._rows] * self._see) // 255
-        self._say(frame, self._clock, f"t = {time:.2f} s", 1.15)
+        self._say(frame, self._clock, f"t = {time:z.2f} s", 1.15)
         if off is not None:
             left, top = self._off
             self._say(frame, (left, top), f"platform {1e3 * off[0]:.2f} mm", READOUT)
@@ -192,4 +192,4 @@ class Lettering:
         y = top + height + em // 4
         for part, anchor in ((0.0, "la"), (0.5, "ma"), (1.0, "ra")):
             value = scale.low + part * (scale.high - scale.low)
-            pen.text((left + int(part * width), y), f"{value:g}", INK, font, anchor=anchor)
+            pen.text((left + int(part * width), y), f"{value:zg}", INK, font, anchor=anchor)

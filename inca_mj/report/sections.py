@@ -27,8 +27,8 @@ def compare_verdict(result: Comparison) -> list[str]:
     if not np.isnan(fit).all():
         worst = int(np.nanargmin(fit))
         said = [
-            f"The twin explains {np.nanmean(fit):.1f} % of the motor angles' motion (mean fit);"
-            f" drive {worst + 1} is worst with {fit[worst]:.1f} %."
+            f"The twin explains {np.nanmean(fit):z.1f} % of the motor angles' motion (mean fit);"
+            f" drive {worst + 1} is worst with {fit[worst]:z.1f} %."
         ]
     if still := [str(i + 1) for i in np.flatnonzero(np.isnan(fit))]:
         said.append(f"No fit is said of drives that never move: {', '.join(still)}.")
