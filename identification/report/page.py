@@ -113,6 +113,7 @@ def write_report(
     environment.filters["whole"] = whole_quantities
     page = environment.get_template("report.html").render(
         title=title,
+        file=Path(path).name,
         verdict=list(verdict),
         sections=[_section(section, number) for number, section in enumerate(sections, 1)],
         mood={True: "good", False: "bad", None: "plain"}[good],
