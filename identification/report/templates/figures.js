@@ -189,7 +189,8 @@
       box.classList.toggle("on", box.scrollLeft < most - 1);
     }
     box.addEventListener("scroll", look);
-    new ResizeObserver(look).observe(box);
+    new ResizeObserver(look).observe(box);  // a table that is unfolded, a screen that is turned
+    look();
   });
   document.documentElement.classList.add("scripted");
 })();
