@@ -1,6 +1,8 @@
 """Quantities as a person writes them: value ± std, an SI prefix, the digits that are known.
 
 0.00412 ± 0.00021 N m  ->  4.12 ± 0.21 mN m
+
+A number that rounds to zero has no minus sign: the `z` of a format, here and in all sentences.
 """
 
 from __future__ import annotations
@@ -41,8 +43,8 @@ def quantity(value: float, std: float = float("nan"), unit: str = "") -> str:
         return f"{_plain(value, _DIGITS)} {unit}".strip()
     places = min(max(0, _decimals(std)), _MOST)
     if std < _FINEST:
-        return f"{value:.{places}f} ± {std:.1e} {unit}".strip()
-    return f"{value:.{places}f} ± {std:.{places}f} {unit}".strip()
+        return f"{value:z.{places}f} ± {std:.1e} {unit}".strip()
+    return f"{value:z.{places}f} ± {std:.{places}f} {unit}".strip()
 
 
 def matched(value: float, std: float, sign: str = "") -> tuple[str, str]:
@@ -54,14 +56,14 @@ def matched(value: float, std: float, sign: str = "") -> tuple[str, str]:
         sign: "+" where the sign is always written.
     """
     if not isfinite(std):
-        return f"{value:{sign}.6g}", "unknown"
+        return f"{value:{sign}z.6g}", "unknown"
     if std <= 0:
-        return f"{value:{sign}.6g}", f"{std:.2g}"
+        return f"{value:{sign}z.6g}", f"{std:.2g}"
     places = _decimals(std)
     if std < _FINEST or abs(value) >= _LARGE:  # a power of ten, with the std's digits
         lead = floor(log10(max(abs(value), std)))
-        return f"{value:{sign}.{min(max(0, lead + places), _MOST)}e}", f"{std:.1e}"
-    return f"{value:{sign}.{max(0, places)}f}", f"{std:.{max(0, places)}f}"
+        return f"{value:{sign}z.{min(max(0, lead + places), _MOST)}e}", f"{std:.1e}"
+    return f"{value:{sign}z.{max(0, places)}f}", f"{std:.{max(0, places)}f}"
 
 
 def probability(p: float) -> str:
@@ -135,8 +137,8 @@ def _rounded(value: float, digits: int) -> float:
 
 def _plain(value: float, digits: int) -> str:
     if value == 0 or (value == round(value) and abs(value) < 1e6):
-        return f"{value:.0f}"
+        return f"{value:z.0f}"
     if abs(value) < _LEAST:
-        return f"{value:.{digits - 1}e}"
+        return f"{value:z.{digits - 1}e}"
     places = max(0, digits - ceil(log10(abs(value)) + 1e-12))
-    return f"{value:.{places}f}"
+    return f"{value:z.{places}f}"

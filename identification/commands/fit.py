@@ -52,7 +52,7 @@ def _text(record: dict[str, Any]) -> str:
 
     cells = [
         (name, *matched(p["value"], float("inf") if p["std"] is None else p["std"]), p["unit"],
-         f"{p['initial']:.6g}", "at bound" if p["at_bound"] else "")
+         f"{p['initial']:z.6g}", "at bound" if p["at_bound"] else "")
         for name, p in record["parameters"].items()
     ]  # fmt: skip
     head = ("parameter", "value", "std", "unit", "start", "")

@@ -95,7 +95,7 @@ def accept_deviants(
             return model, ()
         proof = prove(parent.validation, best.validation, task.options)
         gain = best.negative_bic - parent.negative_bic
-        progress(f"{candidate.effect.name}, {candidate.where}: deviates, gain {gain:.0f}")
+        progress(f"{candidate.effect.name}, {candidate.where}: deviates, gain {gain:z.0f}")
         if gain > 0 and is_confirmed(proof, task.options):
             kept.insert(0, (candidate, proof, gain))
         else:

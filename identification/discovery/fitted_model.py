@@ -143,7 +143,7 @@ def collect_parameters(
     out = {}
     for name in (*candidate.sizes, *candidate.fixed):
         record = task.nominal_model.plant.parameters[name]
-        out[record.symbol or record.name] = (
+        out[record.letter] = (
             point.values[name], float(std.get(name, 0.0)), record.unit,
         )  # fmt: skip
     return out

@@ -183,4 +183,4 @@ def _basis(rows: np.ndarray) -> np.ndarray:
 def in_words(direction: np.ndarray, names: Sequence[str], least: float = 0.1) -> str:
     """A direction as text, by its largest entries: `R_s +0.45, k_s -0.89`."""
     order = np.argsort(-np.abs(direction))
-    return ", ".join(f"{names[i]} {direction[i]:+.2f}" for i in order if abs(direction[i]) > least)
+    return ", ".join(f"{names[i]} {direction[i]:+z.2f}" for i in order if abs(direction[i]) > least)

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from identification.model.parameter import RECORD, ParameterSet
+from identification.model.parameter import RECORD, Parameter, ParameterSet
 
 _OWN = re.compile(r"(?P<name>.+) \[(?P<number>\d+)\]")
 
@@ -32,13 +32,22 @@ def with_own(parameters: ParameterSet, names: Sequence[str], records: int) -> Pa
         InputError: a name is unknown.
     """
     known = {p.name for p in parameters}
-    new = [
-        replace(parameters[name], name=own_name(name, k), where=RECORD, ties=())
-        for k in range(2, records + 1)
-        for name in names
-    ]
+    new = [_own(parameters[name], k) for k in range(2, records + 1) for name in names]
     return replace(
         parameters, records=(*parameters.records, *(p for p in new if p.name not in known))
+    )
+
+
+def _own(parameter: Parameter, number: int) -> Parameter:
+    """The value of a record, which has its number in its name and in its words."""
+    short, colon, detail = parameter.about.partition(":")
+    return replace(
+        parameter,
+        name=own_name(parameter.name, number),
+        where=RECORD,
+        symbol=parameter.letter,
+        about=f"{short}, record {number}{colon}{detail}" if short else "",
+        ties=(),
     )
 
 

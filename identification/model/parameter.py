@@ -27,7 +27,7 @@ class Parameter:
         lower: smallest admissible value [unit].
         upper: largest admissible value [unit].
         symbol: letter in the equations; `name` when not given.
-        about: what it is, in words.
+        about: what it is, in words; what stands before a colon is its short name.
         source: table, data sheet or paper the value was taken from.
         ties: further paths that get its value, each multiplied by a factor.
         scale: a magnitude that matters [unit]; a search divides by it where the value may be zero.
@@ -68,6 +68,16 @@ class Parameter:
                     f"parameter {self.name!r} is tied to {path!r} by the factor {factor:g}; give a"
                     " finite one that is not zero"
                 )
+
+    @property
+    def letter(self) -> str:
+        """What the equations call it."""
+        return self.symbol or self.name
+
+    @property
+    def short(self) -> str:
+        """What it is, in few words; "" where nobody said it."""
+        return self.about.partition(":")[0]
 
     @property
     def places(self) -> tuple[tuple[str, float], ...]:

@@ -114,7 +114,7 @@ def refit_contenders(
             parent, out = judge(parent, [*(c.model for c in out), *more])
     for c in out:
         fall, t = c.prediction.fall, c.prediction.t
-        progress(f"{_label(c.candidate)}: unseen mean square {-100 * fall:+.0f} %, t {t:.1f}")
+        progress(f"{_label(c.candidate)}: unseen mean square {-100 * fall:+z.0f} %, t {t:z.1f}")
     return parent, _ranked(out, options)
 
 

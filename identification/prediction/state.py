@@ -118,7 +118,7 @@ def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
         worse = nominal.unseen
         progress(
             "the fitted values predict unseen records worse (mean square"
-            f" {100 * rise(begun, worse):+.0f} %) than those with which the fit began: these are"
+            f" {100 * rise(begun, worse):+z.0f} %) than those with which the fit began: these are"
             " kept"
         )
         nominal = as_begun(base, nominal, begun)

@@ -51,7 +51,7 @@ def compare_figure(
                 continue
             upper.plot(time, measured[:, k], color=INK, lw=2.2, alpha=0.45, label=labels[0])
             upper.plot(time, simulated[:, k], color=SIMULATED, lw=1.1, label=labels[1])
-            fit = f"{fit_percent[k]:.2f} %" if np.isfinite(fit_percent[k]) else "none: constant"
+            fit = f"{fit_percent[k]:z.2f} %" if np.isfinite(fit_percent[k]) else "none: constant"
             upper.set_title(literal(f"{names[k]}   fit {fit}"), loc="left", color=INK)
             upper.set_ylabel(literal(f"[{unit}]"))
             lower.plot(time, measured[:, k] - simulated[:, k], color=SERIES[0], lw=0.8)

@@ -9,6 +9,7 @@ from identification.quantities import quantity
 from identification.report.discovery_limits import split_detectable
 from identification.report.effect_words import describe_effect, describe_gains
 from identification.report.page import Section, Table
+from identification.report.parameter_words import words_of
 
 
 def diff_section(found: Discovery, files: str = "") -> Section:
@@ -42,13 +43,14 @@ def parameters_section(found: Discovery) -> Section:
     plant = found.final.point.predictor.plant
     first, last = collect_std(found.nominal), collect_std(found.final)
     nominal, values = found.nominal.point.values, collect_final_values(found)
+    words = words_of(found)
     rows, held = [], []
     for p in plant.parameters:
         if p.name not in last and p.name not in first:
-            held += [p.name] if p.where not in ("effect", "start") else []
+            held += [words[p.name]] if p.where not in ("effect", "start") else []
             continue
         row = (
-            p.name,
+            words[p.name],
             "–" if p.where == "effect" else quantity(p.value, unit=p.unit),
             _value(nominal.get(p.name), first.get(p.name), p.unit),
             _value(values[p.name], last.get(p.name), p.unit),
@@ -56,6 +58,9 @@ def parameters_section(found: Discovery) -> Section:
         rows.append(row if found.named else row[:3])
     titles = ("parameter", "nominal", "fitted without effects", "fitted with what is named")
     said = "A std holds if the model is right; that of a wrong model is too small."
+    if any("@" in p.name and p.name in last and p.where != "effect" for p in plant.parameters):
+        said += " Values of single parts are their relative deviations from the common value, and"
+        said += " those of single points their displacements."
     if held:
         said += f" It is also too small where the true value of {' or '.join(held)}, which was held"
         said += " fixed, is not the nominal one."

@@ -19,6 +19,7 @@ from identification.report.discovery_verdict import (
 from identification.report.effect_words import describe_effect, describe_gains, describe_rejected
 from identification.report.finding_words import describe_finding
 from identification.report.fitted_values import shown_values, unknown_shares
+from identification.report.parameter_words import words_of
 from identification.report.record_gaps import record_lines
 from identification.report.records_text import records_text, search_time
 from identification.report.records_values import text_table
@@ -52,7 +53,7 @@ def _list(title: str, findings: Sequence[Finding]) -> str:
 
 
 def _diff(found: Discovery) -> list[str]:
-    lines = []
+    lines, words = [], words_of(found)
     for named in found.named:
         lines += [diff_line(named), f"    law: {named.candidate.effect.law}"]
         lines.append(f"    {describe_gains(named)}")
@@ -61,8 +62,8 @@ def _diff(found: Discovery) -> list[str]:
             lines.append(f"    rival: {said}")
         if (other := named.retuned).confidence >= SHOWN:
             lines.append(
-                f"    no effect, but {other.parameter} {other.distance:+.2g} std from what was"
-                f" known: confidence {100 * other.confidence:.0f} %"
+                f"    no effect, but {words[other.parameter]} {other.distance:+z.2g} std from what"
+                f" was known: confidence {100 * other.confidence:.0f} %"
             )
     return lines
 
@@ -86,7 +87,9 @@ def _values(found: Discovery) -> list[str]:
     if found_table is None or not found_table.rows:
         return []
     rows = [[str(cell) for cell in row] for row in found_table.rows]
-    shown, rest = shown_values(rows, unknown_shares(found.final))
+    words = words_of(found)
+    shares = {words[name]: share for name, share in unknown_shares(found.final).items()}
+    shown, rest = shown_values(rows, shares)
     return [
         "fitted values:",
         *text_table(found_table.columns, shown),

@@ -18,6 +18,7 @@ from identification.report.effect_words import (
     phrase,
 )
 from identification.report.finding_words import describe_finding, sentence
+from identification.report.parameter_words import words_of
 
 RETUNED = 0.05  # the explanation without an effect gets a sentence above this confidence
 
@@ -29,7 +30,7 @@ def discovery_verdict(found: Discovery) -> list[str]:
     if found.verdict == "unknown effect":
         return [unknown(found)]
     said = [
-        f"{_named(found, named)}{_retuned(named)}{_outside(named)}{_agreement(named)}"
+        f"{_named(found, named)}{_retuned(found, named)}{_outside(named)}{_agreement(named)}"
         for named in found.named
     ]
     said.append(_proof(found))
@@ -138,13 +139,14 @@ def _named(found: Discovery, named: NamedEffect) -> str:
     )
 
 
-def _retuned(named: NamedEffect) -> str:
+def _retuned(found: Discovery, named: NamedEffect) -> str:
     """A sentence where a parameter farther from what was known of it would explain the same."""
     other = named.retuned
     if other.confidence < RETUNED:
         return ""
+    what = words_of(found)[other.parameter]
     return (
-        f" Or it is no effect ({100 * other.confidence:.0f} %): with {other.parameter}"
+        f" Or it is no effect ({100 * other.confidence:.0f} %): with {what}"
         f" {abs(other.distance):.2g} std {'above' if other.distance > 0 else 'below'} what was said"
         " to be known of it, the model explains the same. Measure it, or record another motion."
     )

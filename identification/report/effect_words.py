@@ -64,18 +64,18 @@ def _describe_next(scores: Sequence[Score], options: DiscoveryOptions) -> str:
     why = f"chance {luck:.2g} that one of {len(scores)} does as well by luck"
     if luck < options.significance:
         why = "beyond chance, but at a size of the wrong sign, or larger than physics admits"
-    return f"{describe_effect(best.candidate)}: gain {best.gain:.3g}, {why}"
+    return f"{describe_effect(best.candidate)}: gain {best.gain:z.3g}, {why}"
 
 
 def describe_chance(proof: Proof) -> str:
     """How far unseen samples are from chance."""
     chance = f"{proof.chance:.2g}" if proof.chance > FEW else probability(proof.chance)
-    return f"t = {proof.t:.1f}, chance {chance}"
+    return f"t = {proof.t:z.1f}, chance {chance}"
 
 
 def describe_gains(named: NamedEffect) -> str:
     """What a named effect gains on fitted and on unseen samples."""
-    gains = f"gain {named.gain:.4g} on fitted samples, {named.proof.gain:.4g} on unseen"
+    gains = f"gain {named.gain:z.4g} on fitted samples, {named.proof.gain:z.4g} on unseen"
     return f"{gains} ({describe_chance(named.proof)})"
 
 
@@ -85,7 +85,7 @@ def _describe_proof(rejected: RejectedEffect) -> str:
     instead = f"; instead of it, {describe_outside(outside)}" if outside is not None else ""
     turn = "falls" if proof.fall >= 0 else "rises"
     return (
-        f"gain {rejected.gain:.4g} on fitted samples; on unseen ones {describe_chance(proof)}, and"
+        f"gain {rejected.gain:z.4g} on fitted samples; on unseen ones {describe_chance(proof)}, and"
         f" the mean square {turn} by {100 * abs(proof.fall):.3g} %"
         f"{instead}"
     )

@@ -125,7 +125,7 @@ def _structured_input_error(e: evidence.StructuredInputError) -> str:
     return (
         f"an unlogged error of the inputs, {quantity(e.rms, unit=e.unit)} rms, is not random:"
         f" it follows {FOLLOWED[e.regressor]}, most of all on {e.input}, and with it the mean"
-        f" square on unseen data is {100 * e.fall:.0f} % less"
+        f" square on unseen data is {100 * e.fall:z.0f} % less"
     )
 
 
@@ -133,7 +133,7 @@ def _doubtful_effect(e: evidence.DoubtfulEffect) -> str:
     r = e.rejected
     return (
         f"{describe_effect(r.candidate)}, {describe_sizes(r)}, explains the fitted samples"
-        f" beyond chance and {100 * r.proof.fall:.0f} % of the error on unseen data, but is not"
+        f" beyond chance and {100 * r.proof.fall:z.0f} % of the error on unseen data, but is not"
         f" proven there ({describe_chance(r.proof)})"
     )
 
@@ -148,7 +148,7 @@ def _oversized_effect(e: evidence.OversizedEffect) -> str:
     )
     return (
         f"{describe_effect(e.score.candidate)}, would explain more than what is named (gain"
-        f" {e.score.gain:.4g}), but only at {said}"
+        f" {e.score.gain:z.4g}), but only at {said}"
     )
 
 
@@ -162,7 +162,7 @@ def _different_record(e: records_evidence.DifferentRecord) -> str:
 def _shifted_record(e: records_evidence.ShiftedRecord) -> str:
     return (
         f"record {e.record} looks as if its inputs acted {describe_shift(e)} than their time stamps"
-        f" say, which takes {100 * e.fall:.0f} % off its mean square; check how it was logged, and"
+        f" say, which takes {100 * e.fall:z.0f} % off its mean square; check how it was logged, and"
         " shift its inputs if that is so"
     )
 
@@ -175,7 +175,7 @@ def describe_shift(e: records_evidence.ShiftedRecord) -> str:
 def _worse_fit(e: records_evidence.WorseFit) -> str:
     return (
         "without effects the fitted values predicted unseen data worse than those of the model"
-        f" (mean square {100 * e.rise:+.0f} %), so that the search began with the latter"
+        f" (mean square {100 * e.rise:+z.0f} %), so that the search began with the latter"
     )
 
 
@@ -203,7 +203,7 @@ DOUBTS = {
 def _unproven_effect(e: records_evidence.UnprovenEffect) -> str:
     return (
         f"{without_colon(e.phrase)}, {e.where}, predicts unseen data better on average (mean"
-        f" square {-100 * e.fall:+.0f} %, t = {e.t:.1f}), but is not proven: {DOUBTS[e.doubt]}"
+        f" square {-100 * e.fall:+z.0f} %, t = {e.t:z.1f}), but is not proven: {DOUBTS[e.doubt]}"
     )
 
 

@@ -28,8 +28,8 @@ def shown_values(
     """The rows that matter, and a sentence on those that are left out.
 
     Args:
-        rows: of a table of parameters; each begins with a name.
-        shares: see `unknown_shares`.
+        rows: of a table of parameters; each begins with what the parameter is called.
+        shares: see `unknown_shares`, by what the table calls them.
 
     Returns:
         All rows but those of single parts that are better known than the worst few, and "" where

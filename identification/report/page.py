@@ -113,6 +113,7 @@ def write_report(
     environment.filters["whole"] = whole_quantities
     page = environment.get_template("report.html").render(
         title=title,
+        file=Path(path).name,
         verdict=list(verdict),
         sections=[_section(section, number) for number, section in enumerate(sections, 1)],
         mood={True: "good", False: "bad", None: "plain"}[good],
@@ -227,4 +228,4 @@ def _holds_numbers(column: Iterable[object]) -> bool:
 def _text(cell: object) -> str:
     if cell is None:
         return "–"
-    return f"{cell:.5g}" if isinstance(cell, float) else str(cell)
+    return f"{cell:z.5g}" if isinstance(cell, float) else str(cell)

@@ -92,7 +92,7 @@ def _worse(found: RecordsFit) -> list[str]:
     percent = 100 * ((after / before) ** 2 - 1)
     return [
         "The fitted values predict what was not fitted worse than the values with which the fit"
-        f" began (mean square {percent:+.0f} %, t = {found.worse.t:.1f}): do not use them. Fit more"
-        " records, state in the robot's file what is known of the free parameters (known), or leave"
-        " some of them out."
+        f" began (mean square {percent:+z.0f} %, t = {found.worse.t:z.1f}): do not use them. Fit"
+        " more records, state in the robot's file what is known of the free parameters (known), or"
+        " leave some of them out."
     ]

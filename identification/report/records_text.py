@@ -56,7 +56,7 @@ def records_text(found: RecordsDiscovery) -> str:
         lines = [f"  {said}" for said in rejected_lines(found)]
         parts.append("\n".join(["tried, and not proven on unseen data:", *lines]))
     scores = [
-        f"  {describe_effect(s.candidate)}: {100 * s.fall:.0f} % of the fitted error, chance"
+        f"  {describe_effect(s.candidate)}: {100 * s.fall:z.0f} % of the fitted error, chance"
         f" {s.p_value:.2g}"
         for s in best_scores(found)[:SHOWN]
     ]
@@ -96,7 +96,7 @@ def describe_refitted(effect: RefittedEffect) -> str:
     fall = 100 * effect.prediction.fall
     return (
         f"{describe_effect(effect.candidate)}, {_sizes(effect)}; unseen mean square"
-        f" {-fall:+.0f} %, t = {effect.prediction.t:.1f}"
+        f" {-fall:+z.0f} %, t = {effect.prediction.t:z.1f}"
         + (f"; {DOUBTS[effect.doubt]}" if effect.doubt else "")
     )
 
@@ -176,7 +176,7 @@ def _shifts(found: RecordsDiscovery) -> list[str]:
         " say, where both halves of it tell the same:"
     ]
     for s in found.shifts:
-        lines.append(f"  {s.record}: {describe_shift(s)}, {100 * s.fall:.0f} % of its mean square")
+        lines.append(f"  {s.record}: {describe_shift(s)}, {100 * s.fall:z.0f} % of its mean square")
     return lines
 
 
@@ -197,8 +197,8 @@ def _proof(found: RecordsDiscovery) -> str:
     fall = 1 - (found.after.rms / found.before.rms) ** 2
     return (
         f"On records that no fit has seen, the error of prediction over {found.horizon:g} s falls"
-        f" from {was} to {now} rms (mean square {-100 * fall:+.0f} %); the sensors make {noise}."
-        f" That is {100 * found.share:.0f} % of the power above the sensors' noise."
+        f" from {was} to {now} rms (mean square {-100 * fall:+z.0f} %); the sensors make {noise}."
+        f" That is {100 * found.share:z.0f} % of the power above the sensors' noise."
     )
 
 

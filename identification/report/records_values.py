@@ -10,6 +10,7 @@ from identification.discovery.findings.finding import FindingKind
 from identification.prediction.model import WindowModel
 from identification.prediction.result import RecordsDiscovery
 from identification.quantities import quantity
+from identification.report.parameter_words import parameter_words
 
 NOT_TOLD = "± unknown"  # too few windows tell of a value for its std to be known
 
@@ -36,7 +37,11 @@ def value_table(found: RecordsDiscovery) -> tuple[tuple[str, ...], list[tuple[st
     names = [*dict.fromkeys(name for column in columns for name in column)]
     without = "as begun, without effects" if is_begun else "fitted without effects"
     head = ("parameter", without, "fitted with what is named")
-    rows = [(name, *(column.get(name, "–") for column in columns)) for name in names]
+    effects = [named.effect.candidate.effect for named in found.named]
+    words = parameter_words(found.final.plant.parameters, effects)
+    rows = [
+        (words.get(name, name), *(column.get(name, "–") for column in columns)) for name in names
+    ]
     return head[: 1 + len(models)], rows
 
 

@@ -81,13 +81,14 @@ class Alike:
         ties = tuple((path, x / nominal[0]) for path, x in zip(self.of, nominal, strict=True))[1:]
         common = Parameter(
             name=self.name, value=nominal[0], unit=unit, where=self.of[0], lower=0.0, ties=ties,
-            scale=nominal[0], about="common value, at the first place",
+            scale=nominal[0], about=f"{self.name}: common value, at the first place",
         )  # fmt: skip
         lower, upper = FARTHEST
         each = [
             Parameter(
                 name=name, value=0.0, unit="", where=DEVIATION, lower=lower, upper=upper,
-                ties=((path, 1.0),), about=f"relative deviation of {path}",
+                ties=((path, 1.0),), symbol=self.name,
+                about=f"{name.replace('@', ', ')}: relative deviation of {path}",
             )
             for name, path in self.deviations.items()
         ]  # fmt: skip

@@ -40,7 +40,7 @@ class Confirmation:
         before, after = alike([self.before, self.after], self.unit)
         first, second = self.models
         return (
-            f"On {self.log}: {before} rms {first}, {after} {second}; mean square {change:+.0f} %."
+            f"On {self.log}: {before} rms {first}, {after} {second}; mean square {change:+z.0f} %."
         )
 
 

@@ -24,6 +24,7 @@ FILES = "The calibrated robot is in model.xml and effects.json; inca_mj.load_twi
 
 GAPS = ("record", "role", "alike", "calibrated")
 COMMON = ("parameter", "nominal", "common value")
+EACH = ("parameter", *(f"drive {k}" for k in range(1, 9)))
 POINTS = ("point", "x", "y", "z")
 
 
@@ -88,8 +89,7 @@ def text(found: Calibration) -> str:
         "\n".join(told.calibration_verdict(found)),
         table(GAPS, told.gap_rows(found)),
         table(COMMON, told.common_rows(found)),
-        "deviation of each drive [%]\n"
-        + table(("drive", *found.spread.drives), told.drive_rows(found)),
+        "deviation of each drive [%]\n" + table(EACH, told.drive_rows(found)),
     ]
     if found.spread.points:
         parts.append("displacement [mm]\n" + table(POINTS, told.point_rows(found)))
@@ -124,9 +124,7 @@ def keep(found: Calibration, out: Path) -> None:
         ),
         Section("Common values", table=Table(COMMON, common)),
         Section("Drives and points", figures=captions),
-        Section(
-            "Deviation of each drive [%]", table=Table(("drive", *found.spread.drives), drives)
-        ),
+        Section("Deviation of each drive [%]", table=Table(EACH, drives)),
         Section("Displacement of each point [mm]", table=Table(POINTS, points)),
     ]  # fmt: skip
     write_report(

@@ -63,7 +63,7 @@ def summary(result: Comparison) -> str:
     from identification.estimation.metrics import mean_fit
 
     rows = [
-        (name, "-" if fit != fit else f"{fit:.2f}", f"{1e3 * error:.2f}")
+        (name, "-" if fit != fit else f"{fit:z.2f}", f"{1e3 * error:.2f}")
         for name, fit, error in zip(
             result.log.output_names, result.fit_percent, result.rms, strict=True
         )

@@ -16,6 +16,10 @@ from inca_mj.workflows.discovery_model import named_twin, nominal_twin, rerun
 
 FILMED = 6.0  # [s]; drawing costs several times as long
 FPS = 15
+LARGER = (
+    " In the close view of the handle the outline is drawn farther away than it is: the differences"
+    " of both sides are enlarged by the factor that is written there."
+)
 TITLES = ("before: the model, fitted", "after: with what was missing")
 
 
@@ -80,7 +84,7 @@ def _section(
         " The handle is orange and the cables have the colour of their tension. The blue outline is"
         " the measured robot: its pose is the one that the measured angles imply for cables that do"
         " not stretch, where the log has no pose. The numbers say how far the handle and the motors"
-        " of the model are from it.",
+        f" of the model are from it.{LARGER if is_beside else ''}",
         video=path,
         poster=picture,
         first=True,

@@ -175,7 +175,7 @@ def summary(result: Identification, fit: Fit) -> str:
 
     cells = [
         (name, *matched(value, std), unit,
-         f"{first:.6g}", "at bound" if bound else "")
+         f"{first:z.6g}", "at bound" if bound else "")
         for name, value, std, unit, first, bound in rows(result, fit)
     ]  # fmt: skip
     seconds = fit.estimate.seconds + (result.windows.seconds if result.windows else 0.0)

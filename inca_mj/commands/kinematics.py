@@ -120,7 +120,7 @@ def jacobian_text(cables: Cables) -> str:
     from inca_mj.kinematics.jacobians import jacobian
 
     names = ("cable", "∂/∂x", "∂/∂y", "∂/∂z", "∂/∂ω_x [m]", "∂/∂ω_y [m]", "∂/∂ω_z [m]")
-    rows = [(str(k + 1), *(f"{x:+.4f}" for x in row)) for k, row in enumerate(jacobian(cables))]
+    rows = [(str(k + 1), *(f"{x:+z.4f}" for x in row)) for k, row in enumerate(jacobian(cables))]
     return "Jacobian of the lengths by twist, along O:\n" + table(names, rows)
 
 
@@ -131,7 +131,7 @@ def log_text(found: LogPoses) -> str:
     from inca_mj.twin.logs import POSE
 
     some = np.unique(np.linspace(0, len(found.log) - 1, 11).round().astype(int))
-    rows = [(f"{found.log.time[k]:.2f}", *(f"{x:.4f}" for x in found.pose[k])) for k in some]
+    rows = [(f"{found.log.time[k]:.2f}", *(f"{x:z.4f}" for x in found.pose[k])) for k in some]
     return table(("time [s]", *(f"{n} [{'m' if n in 'xyz' else 'rad'}]" for n in POSE)), rows)
 
 

@@ -157,7 +157,7 @@ def _text(result: Run) -> str:
     from inca_mj.workflows.remarks import remarks
 
     rows = [
-        (str(k + 1), f"{angle:.3f}", f"{low:.2f}", f"{high:.2f}")
+        (str(k + 1), f"{angle:z.3f}", f"{low:z.2f}", f"{high:z.2f}")
         for k, (angle, low, high) in enumerate(
             zip(
                 result.motor_angle[-1],
@@ -167,7 +167,7 @@ def _text(result: Run) -> str:
             )
         )
     ]
-    place = ", ".join(f"{x:.4f}" for x in result.position[-1])
+    place = ", ".join(f"{x:z.4f}" for x in result.position[-1])
     return (
         table(("drive", "angle at end [rad]", "least tension [N]", "largest [N]"), rows)
         + f"\nplatform after {result.time[-1]:g} s at ({place}) m"

@@ -98,7 +98,7 @@ def summary(found: StaticAnalysis) -> str:
         ("cable", "low [N]", "high [N]", "tension [N]", "current [A]"),
         [
             (str(k + 1), f"{held.low[k]:.2f}", f"{held.high[k]:.2f}", f"{held.within[k]:.3f}",
-             f"{held.current[k] + 0.0:.3f}")
+             f"{held.current[k]:z.3f}")
             for k in range(len(held.within))
         ],
     )  # fmt: skip

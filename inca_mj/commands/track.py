@@ -131,7 +131,7 @@ def _text(result: Tracking) -> str:
         f"The platform is {1e3 * result.rms:.3f} mm rms from the point that is asked,"
         f" {1e3 * result.largest:.3f} mm at most, and {1e3 * result.cross_track_rms:.3f} mm rms off"
         f" the path; by the controller's own estimate {1e3 * result.seen_rms:.3f} mm rms.\n"
-        f"Currents from {run.currents.min():.2f} to {run.currents.max():.2f} A, tensions from"
+        f"Currents from {run.currents.min():z.2f} to {run.currents.max():z.2f} A, tensions from"
         f" {run.tension.min():.1f} to {run.tension.max():.1f} N."
         + "".join(f"\n{line}" for line in remarks(run))
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 SLACK = (0.62, 0.64, 0.66, 1.0)
 ASKED = "#009E73"  # green of Okabe and Ito, which no tension has
-HANDLE, DRUMS = "#ED7321", "#4C5259"  # as the model has them
+HANDLE, FRAME, DRUMS, MOTORS = "#ED7321", "#999EA8", "#4C525C", "#1F1F21"  # as the model has them
 TRACE = "#111111"
 HALO = "#FFFFFF"  # round the trace, which passes dark parts of the robot
 # Plasma is perceptually uniform; its last tenth, a bright yellow, is lost on a light background.

@@ -1,6 +1,7 @@
 """A film of a run: the simulated robot in full colour, the measured one as an outline over it.
 
-Two runs are filmed side by side, at the same times.
+Two runs are filmed side by side, at the same times. If both have a measured robot, the close view
+enlarges how far it is from the simulated one (`inca_mj.rendering.difference`).
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ import numpy as np
 from identification.errors import InputError
 from inca_mj.kinematics.rotations import quaternion
 from inca_mj.kinematics.stiff import poses_with_stiff_cables
+from inca_mj.rendering.difference import Difference
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.twin.twin import Twin
 
@@ -34,10 +35,10 @@ def ghost_positions(robot: Twin, angles: np.ndarray, poses: np.ndarray | None) -
     return np.hstack([poses[:, :3], turned, angles])
 
 
-def ghost_errors(
+def ghost_difference(
     robot: Twin, simulated: np.ndarray, ghost: np.ndarray, is_pose_measured: bool
-) -> tuple[np.ndarray, np.ndarray]:
-    """How far a simulated robot is from the measured one, sample by sample.
+) -> Difference:
+    """A simulated robot beside the measured one.
 
     Args:
         robot: the twin.
@@ -45,14 +46,23 @@ def ghost_errors(
         ghost: of the measured one, shape (N, 15).
         is_pose_measured: whether the pose of the ghost was measured; else it follows from the
             angles for cables that do not stretch, and that of the simulated robot is taken so too.
+    """
+    own = simulated if is_pose_measured else ghost_positions(robot, simulated[:, 7:], None)
+    return Difference(simulated, own, ghost)
+
+
+def ghost_errors(off: Difference) -> tuple[np.ndarray, np.ndarray]:
+    """How far a simulated robot is from the measured one, sample by sample.
+
+    Args:
+        off: both robots.
 
     Returns:
         The distance of the platform, shape (N,) [m], and the rms of the eight motor angles' errors,
         shape (N,) [rad].
     """
-    own = simulated if is_pose_measured else ghost_positions(robot, simulated[:, 7:], None)
-    distance = np.linalg.norm(own[:, :3] - ghost[:, :3], axis=1)
-    turned = np.sqrt(np.mean((simulated[:, 7:] - ghost[:, 7:]) ** 2, axis=1))
+    distance = np.linalg.norm(off.moved, axis=1)
+    turned = np.sqrt(np.mean((off.simulated[:, 7:] - off.measured[:, 7:]) ** 2, axis=1))
     return distance, turned
 
 

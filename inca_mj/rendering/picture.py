@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,8 +10,9 @@ import matplotlib
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from identification.report.style import INK, MEASURED
-from inca_mj.rendering.colours import ASKED, DRUMS, HANDLE, TRACE, TensionScale, shade
+from identification.report.style import INK
+from inca_mj.rendering.colours import ASKED, TRACE, TensionScale, shade
+from inca_mj.rendering.legend import MEASURED_ROBOT, ROBOT, Entry, draw_mark
 
 Box = tuple[int, int, int, int]  # left, top, width, height [px]
 BACKGROUND = (255, 255, 255)
@@ -70,7 +72,8 @@ class Lettering:
     """What is written on every frame, drawn once, and the clock, drawn each time."""
 
     def __init__(self, size: tuple[int, int], boxes: Layout, scale: TensionScale, *, ghost: bool,
-                 assumed: bool, magnify: float | None, title: str) -> None:  # fmt: skip
+                 assumed: bool, magnify: float | None, times: float,
+                 title: str) -> None:  # fmt: skip
         """Draw what does not change.
 
         Args:
@@ -80,6 +83,7 @@ class Lettering:
             ghost: whether there is a measured robot.
             assumed: whether the geometry is.
             magnify: by how much a trace magnifies its deviation; None where there is no trace.
+            times: by how much the close view enlarges the difference from the measured robot.
             title: stands over the picture; nothing when empty.
         """
         self._em = em_of(size[1])
@@ -88,8 +92,7 @@ class Lettering:
         pen = ImageDraw.Draw(image)
         left, top, width, height = area
         em, below = self._em, top + height
-        robots = [("platform, simulated", HANDLE, 0.33), ("frame and drums", DRUMS, 0.33)]
-        robots += [("measured robot", "", 0.33)] if ghost else []
+        robots = [*ROBOT, *([MEASURED_ROBOT] if ghost else [])]
         high = int((3.0 + 1.4 * len(robots) + (4.6 if ghost else 0.0)) * em)
         self._card(pen, left, top, int(12.5 * em), high)
         self._clock = (left + em, top + em)
@@ -102,7 +105,8 @@ class Lettering:
         if magnify is not None:  # beside the clock's card where there is room, else under it
             beside = width >= 26 * em
             at = (left + int(12.5 * em), top) if beside else (left, top + high)
-            paths = [("asked path", ASKED, 0.08), (f"trace, error × {magnify:g}", TRACE, 0.14)]
+            said = f"trace, error × {magnify:g}"
+            paths = [Entry("asked path", (ASKED,), 0.08), Entry(said, (TRACE,), 0.14)]
             self._card(pen, *at, int(12.5 * em), int(4.8 * em))
             self._legend(pen, paths, at[0] + em, at[1] + int(1.05 * em))
             self._readout = (at[0] + em, at[1] + int(3.25 * em))
@@ -114,7 +118,7 @@ class Lettering:
         if boxes.handle is not None:
             left, top, width, height = boxes.handle
             pen.rectangle((left, top, left + width - 1, top + height - 1), outline="#C9CED4")
-            pen.text((left + self._em // 2, top + self._em // 2), "handle", INK, self._font(0.75))
+            self._caption(pen, left, top, width, times)
         self._title(pen, title, size[0])
         pixels = np.asarray(image, np.uint16)
         self._rows = np.flatnonzero(pixels[..., 3].any(axis=1))
@@ -132,7 +136,7 @@ class Lettering:
             off: of the simulated robot from the measured one: the platform [m], the motors [rad].
         """
         frame[self._rows] = (self._ink + frame[self._rows] * self._see) // 255
-        self._say(frame, self._clock, f"t = {time:.2f} s", 1.15)
+        self._say(frame, self._clock, f"t = {time:z.2f} s", 1.15)
         if off is not None:
             left, top = self._off
             self._say(frame, (left, top), f"platform {1e3 * off[0]:.2f} mm", READOUT)
@@ -156,6 +160,17 @@ class Lettering:
             shown = shown.removesuffix("…")[:-1] + "…" if len(shown) > 1 else ""
         pen.text((self._em, self._em), shown, INK, font, anchor="lm")
 
+    def _caption(self, pen: ImageDraw.ImageDraw, left: int, top: int, room: int,
+                 times: float) -> None:  # fmt: skip
+        """What the close view shows, and by how much it enlarges a difference: as long as fits."""
+        said, font = ["handle"], self._font(0.8)
+        if times != 1:
+            said = [f"handle; blue: difference drawn {times:g} times", f"difference × {times:g}"]
+        each = [int(pen.textlength(text, font)) + self._em for text in said]
+        fits = next((k for k, wide in enumerate(each) if wide < room), len(said) - 1)
+        self._card(pen, left, top, each[fits], 2 * self._em)
+        pen.text((left + 2 * self._em // 3, top + self._em), said[fits], INK, font, anchor="lm")
+
     def _font(self, ems: float) -> ImageFont.FreeTypeFont:
         # matplotlib brings this font, so that every machine writes alike.
         file = Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
@@ -167,18 +182,13 @@ class Lettering:
         box = (left + inset, top + inset, left + width, top + height - inset)
         pen.rounded_rectangle(box, inset, fill=(255, 255, 255, 170))
 
-    def _legend(self, pen: ImageDraw.ImageDraw, rows: list[tuple[str, str, float]], left: int,
+    def _legend(self, pen: ImageDraw.ImageDraw, rows: Sequence[Entry], left: int,
                 top: int) -> None:  # fmt: skip
-        """Rows of text, colour and half the height of the mark [em]; no colour is the outline."""
         em = self._em
-        for row, (text, colour, high) in enumerate(rows):
-            y, half = top + int(1.4 * em * row), max(1, int(high * em))
-            box, corner = (left, y - half, left + int(1.2 * em), y + half), min(half, em // 4)
-            if colour:
-                pen.rounded_rectangle(box, corner, fill=colour)
-            else:
-                pen.rounded_rectangle(box, corner, outline=MEASURED, width=max(1, em // 6))
-            pen.text((left + int(1.7 * em), y), text, INK, self._font(0.85), anchor="lm")
+        for row, entry in enumerate(rows):
+            y = top + int(1.4 * em * row)
+            draw_mark(pen, entry, left, y, em)
+            pen.text((left + int(1.7 * em), y), entry.text, INK, self._font(0.85), anchor="lm")
 
     def _bar(self, image: Image.Image, pen: ImageDraw.ImageDraw, box: Box,
              scale: TensionScale) -> None:  # fmt: skip
@@ -192,4 +202,4 @@ class Lettering:
         y = top + height + em // 4
         for part, anchor in ((0.0, "la"), (0.5, "ma"), (1.0, "ra")):
             value = scale.low + part * (scale.high - scale.low)
-            pen.text((left + int(part * width), y), f"{value:g}", INK, font, anchor=anchor)
+            pen.text((left + int(part * width), y), f"{value:zg}", INK, font, anchor=anchor)

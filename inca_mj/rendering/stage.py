@@ -11,7 +11,8 @@ import numpy as np
 from identification.errors import InputError
 from inca_mj.rendering.checks import refuse_magnify, refuse_titles
 from inca_mj.rendering.colours import TensionScale, tension_scale
-from inca_mj.rendering.ghost import ghost_errors, ghost_positions
+from inca_mj.rendering.difference import Difference, common_factor
+from inca_mj.rendering.ghost import ghost_difference, ghost_errors, ghost_positions
 from inca_mj.rendering.panel import Panel
 from inca_mj.rendering.picture import BACKGROUND, Layout, Lettering, layout, paste
 from inca_mj.rendering.scene import Scene
@@ -58,7 +59,8 @@ class Look:
 def stage(scenes: Sequence[Scene], look: Look) -> Iterator[Callable[[float], np.ndarray]]:
     """A function from a time [s] to the frame, shape (height, width, 3) of bytes.
 
-    Pictures of two scenes stand side by side, with one scale of the tensions.
+    Pictures of two scenes stand side by side, with one scale of the tensions, and their close views
+    draw the difference from the measured robot larger, by one factor.
 
     Raises:
         InputError: there are other numbers of titles and scenes, the frame is too narrow for two,
@@ -74,20 +76,25 @@ def stage(scenes: Sequence[Scene], look: Look) -> Iterator[Callable[[float], np.
         )
     scale = tension_scale(np.concatenate([s.run.tension for s in scenes]))
     plots = len(scenes) == 1 if look.plots is None else look.plots
+    each = [_difference(scene) for scene in scenes]
+    known = [one for one in each if one is not None]
+    times = common_factor(known) if len(known) > 1 else 1.0
+    titles = look.titles or [""] * len(scenes)
     with ExitStack() as views:
         stages = [
-            views.enter_context(_stage(scene, size, look, plots, scale, title))
-            for scene, title in zip(scenes, look.titles or [""] * len(scenes), strict=True)
+            views.enter_context(_stage(scene, off, times, size, look, plots, scale, title))
+            for scene, off, title in zip(scenes, each, titles, strict=True)
         ]
         yield lambda time: np.hstack([one.frame(time) for one in stages])
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Stage:
-    """Everything that frames of one run share."""
+    """Everything that frames of one run share; `near` is the measured robot in the close view."""
 
     run: Run
     ghost: np.ndarray | None
+    near: np.ndarray | None
     errors: np.ndarray | None
     trace: Trace | None
     scale: TensionScale
@@ -108,7 +115,8 @@ class _Stage:
         lines = () if self.trace is None else self.trace.lines(time, thickness)
         paste(frame, self.boxes.scene, self.scene.draw(qpos, colours, ghost, lines))
         if self.handle is not None and self.boxes.handle is not None:
-            paste(frame, self.boxes.handle, self.handle.draw(qpos, colours, ghost, lines))
+            near = None if self.near is None else _between(run.time, self.near, time)
+            paste(frame, self.boxes.handle, self.handle.draw(qpos, colours, near, lines))
         if self.panel is not None and self.boxes.plots is not None:
             paste(frame, self.boxes.plots, self.panel.at(time))
         off = None if self.errors is None else _between(run.time, self.errors, time)
@@ -119,22 +127,19 @@ class _Stage:
 
 @contextmanager
 def _stage(
-    shown: Scene, size: tuple[int, int], look: Look, plots: bool, scale: TensionScale, title: str
-) -> Iterator[_Stage]:
+    shown: Scene, off: Difference | None, times: float, size: tuple[int, int], look: Look,
+    plots: bool, scale: TensionScale, title: str,
+) -> Iterator[_Stage]:  # fmt: skip
     run, measured = shown.run, shown.angles
-    ghost = None if measured is None else ghost_positions(run.twin, measured, shown.pose)
-    errors = None
-    if ghost is not None:
-        of = ghost_errors(run.twin, run.qpos, ghost, shown.pose is not None)
-        errors = np.stack(of, axis=1)
+    errors = None if off is None else np.stack(ghost_errors(off), axis=1)
     trace = trace_of(run, look.magnify)
     boxes = layout(size, look.camera, plots, bool(title))
     panel = None
     if boxes.plots is not None:
         panel = Panel(run.time, run.motor_angle, measured, boxes.plots[2:])
     lettering = Lettering(
-        size, boxes, scale, ghost=ghost is not None, assumed=run.twin.geometry.assumed,
-        magnify=None if trace is None else trace.magnify, title=title,
+        size, boxes, scale, ghost=off is not None, assumed=run.twin.geometry.assumed,
+        magnify=None if trace is None else trace.magnify, times=times, title=title,
     )  # fmt: skip
     with ExitStack() as open_views:
         model = run.twin.model
@@ -147,7 +152,8 @@ def _stage(
             )
         yield _Stage(
             run=run,
-            ghost=ghost,
+            ghost=None if off is None else off.measured,
+            near=None if off is None else off.enlarged(times),
             errors=errors,
             trace=trace,
             scale=scale,
@@ -158,6 +164,15 @@ def _stage(
             lettering=lettering,
             canvas=np.full((size[1], size[0], 3), BACKGROUND, np.uint8),
         )
+
+
+def _difference(shown: Scene) -> Difference | None:
+    """The simulated robot beside the measured one; None where none was measured."""
+    if shown.angles is None:
+        return None
+    robot = shown.run.twin
+    ghost = ghost_positions(robot, shown.angles, shown.pose)
+    return ghost_difference(robot, shown.run.qpos, ghost, shown.pose is not None)
 
 
 def _between(time: np.ndarray, values: np.ndarray, at: float) -> np.ndarray:

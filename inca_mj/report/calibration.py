@@ -9,6 +9,7 @@ import numpy as np
 from scipy.stats import norm
 
 from identification.quantities import alike, matched, quantity
+from identification.report.parameter_words import describe_parameter
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES, EACH_DRIVE, POINTS
 from inca_mj.twin.logs import POSE
@@ -19,12 +20,6 @@ TOLD = 0.8  # a group whose deviations keep more than this share of their prior 
 ALIKE = 0.1  # parts that scatter less than this share of what is usual are alike
 MOST = 3  # values far from usual that are told in words
 RARE = 0.01  # share of usual robots that have one or more values told as far from usual
-_WORDS = {
-    "R": "roller radius", "R_s": "spring drum radius", "k_s": "drum spring",
-    "lambda": "cable elasticity", "b": "cable damping", "J": "motor inertia",
-    "b_v": "viscous friction", "b_c": "Coulomb friction", "beta": "friction smoothness",
-    "K_t": "torque constant", "exit": "exit points", "connector": "connectors",
-}  # fmt: skip
 
 
 def calibration_verdict(found: Calibration) -> list[str]:
@@ -46,14 +41,14 @@ def calibration_verdict(found: Calibration) -> list[str]:
             " not use it. Record longer, or with inputs that move the platform farther."
         )
     usual = {**found.spread.drives, **found.spread.points}
-    same = [_WORDS[g] for g, s in found.scatter.items() if s < ALIKE * usual[g]]
+    same = [_kind(found, g) for g, s in found.scatter.items() if s < ALIKE * usual[g]]
     if same:
         said.append(f"All parts are alike in: {', '.join(same)}.")
     unknown = untold(found)
     if unknown:
         said.append(
             "The records do not tell the single deviations of: "
-            + ", ".join(_WORDS[g] for g in unknown)
+            + ", ".join(_kind(found, g) for g in unknown)
             + ". What is said of them is the common value, with the scatter of all parts as std."
         )
     far = unusual(found)
@@ -99,14 +94,20 @@ def unusual(found: Calibration) -> tuple[tuple[str, str, float], ...]:
     return tuple(sorted((t for t in times if t[2] > most), key=lambda t: -t[2]))
 
 
+def _kind(found: Calibration, group: str) -> str:
+    """What the deviations of a group are of, in words."""
+    return f"{POINTS[group]}s" if group in POINTS else found.robot.parameters[group].short
+
+
 def _far(found: Calibration, group: str, name: str, times: float) -> str:
     """One value in words: where it is, how large, and how many times what is usual."""
     number = name.partition("@")[2]
     if group in found.spread.points:
         axis = name.partition("@")[0][-1]
-        point = _WORDS[group].removesuffix("s")
-        return f"{point} {number}, {axis} {_millimetres(found, name)} mm ({times:.2g} times)"
-    return f"drive {number}, {_WORDS[group]} {_percent(found, name)} % ({times:.2g} times)"
+        return (
+            f"{POINTS[group]} {number}, {axis} {_millimetres(found, name)} mm ({times:.2g} times)"
+        )
+    return f"drive {number}, {_kind(found, group)} {_percent(found, name)} % ({times:.2g} times)"
 
 
 def point_std(found: Calibration, point: str) -> tuple[float, float]:
@@ -126,21 +127,22 @@ def point_std(found: Calibration, point: str) -> tuple[float, float]:
 
 
 def common_rows(found: Calibration) -> list[tuple[str, str, str]]:
-    """Common values: name, nominal value, value with std."""
+    """Common values: what it is, nominal value, value with std."""
     parameters, nominal = found.robot.parameters, found.fit.point.predictor.plant.parameters
     names = [n for n in (*EACH_DRIVE, "m", *INERTIAS, *POSE) if n in found.std]
     return [
-        (n, quantity(nominal[n].value, 0.0, nominal[n].unit),
+        (describe_parameter(nominal[n]), quantity(nominal[n].value, 0.0, nominal[n].unit),
          quantity(parameters[n].value, found.std[n], parameters[n].unit))
         for n in names
     ]  # fmt: skip
 
 
 def drive_rows(found: Calibration) -> list[tuple[str, ...]]:
-    """Deviations of the drives: the drive, then the deviation of each parameter [%]."""
+    """Deviations of the drives: the parameter, then its deviation at each drive [%]."""
+    parameters, every = found.robot.parameters, range(1, DRIVES + 1)
     return [
-        (str(k), *(_percent(found, f"{name}@{k}") for name in found.spread.drives))
-        for k in range(1, DRIVES + 1)
+        (describe_parameter(parameters[name]), *(_percent(found, f"{name}@{k}") for k in every))
+        for name in found.spread.drives
     ]
 
 

@@ -6,7 +6,8 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, STYLE
+from identification.report.parameter_words import describe_parameter
+from identification.report.style import GREY, INK, MEASURED, SERIES, SIMULATED, STYLE, literal
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES
 from inca_mj.workflows.calibration import Calibration
@@ -53,6 +54,7 @@ def points_figure(found: Calibration, point: str = "exit") -> Figure:
 def drives_figure(found: Calibration) -> Figure:
     """The deviation of each drive from the common value, with its std, a panel a parameter."""
     names, k = [*found.spread.drives], np.arange(1, DRIVES + 1)
+    parameters = found.robot.parameters
     columns = min(5, len(names))
     rows = -(-len(names) // columns)
     with matplotlib.rc_context(STYLE):
@@ -63,7 +65,8 @@ def drives_figure(found: Calibration) -> Figure:
             std = 100 * np.array([found.std[f"{name}@{i}"] for i in k])
             ax.errorbar(k, own, std, fmt="o", color=SERIES[0], ms=4, lw=1)
             ax.axhline(0, color=GREY, lw=0.8)
-            ax.set_title(f"{name} [%]", loc="left", color=INK)
+            what = literal(describe_parameter(parameters[name]))
+            ax.set_title(f"{what} [%]", loc="left", color=INK, fontsize=8)
             ax.set_xticks(k)
         for ax in panels[len(names) :]:
             ax.set_axis_off()

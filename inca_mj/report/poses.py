@@ -64,8 +64,8 @@ def cables_rows(cables: Cables) -> tuple[tuple[str, ...], list[tuple[str, ...]]]
         (
             str(k + 1),
             f"{cables.lengths[k]:.5f}",
-            " ".join(f"{x:+.4f}" for x in cables.directions[k]),
-            *(f"{x:.2f}" for x in np.degrees(cables.angles[k])),
+            " ".join(f"{x:+z.4f}" for x in cables.directions[k]),
+            *(f"{x:z.2f}" for x in np.degrees(cables.angles[k])),
         )
         for k in range(len(cables.lengths))
     ]
@@ -75,7 +75,7 @@ def cables_rows(cables: Cables) -> tuple[tuple[str, ...], list[tuple[str, ...]]]
 def cables_section(pose: np.ndarray, cables: Cables, geometry: Geometry) -> Section:
     """The cables of a pose: picture and table."""
     head, rows = cables_rows(cables)
-    place = ", ".join(f"{name} {x:g}" for name, x in zip(POSE, pose, strict=True))
+    place = ", ".join(f"{name} {x:zg}" for name, x in zip(POSE, pose, strict=True))
     return Section(
         "The cables of the pose",
         f"Pose: {place} [m, rad]. φ and θ are the Euler angles of the cable (thesis 2.9, 2.10).",
@@ -174,7 +174,7 @@ def write_poses(found: LogPoses, path: Path) -> Path:
     table = np.column_stack(
         [found.log.time, found.pose, found.std, found.tension, found.tension_std]
     )
-    lines = [",".join(names), *(",".join(f"{x:.10g}" for x in row) for row in table)]
+    lines = [",".join(names), *(",".join(f"{x:z.10g}" for x in row) for row in table)]
     return write_text(path, "\n".join(lines) + "\n")
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from identification.estimation.metrics import mean_fit
 from identification.report.compare_figure import compare_figure
 from identification.report.page import Section, Table
+from identification.report.parameter_words import parameter_words
 from inca_mj.report.figures import crosscheck_figure, simulation_figures
 from inca_mj.twin.run import Run
 from inca_mj.twin.twin import Twin
@@ -26,8 +27,8 @@ def compare_verdict(result: Comparison) -> list[str]:
     if not np.isnan(fit).all():
         worst = int(np.nanargmin(fit))
         said = [
-            f"The twin explains {np.nanmean(fit):.1f} % of the motor angles' motion (mean fit);"
-            f" drive {worst + 1} is worst with {fit[worst]:.1f} %."
+            f"The twin explains {np.nanmean(fit):z.1f} % of the motor angles' motion (mean fit);"
+            f" drive {worst + 1} is worst with {fit[worst]:z.1f} %."
         ]
     if still := [str(i + 1) for i in np.flatnonzero(np.isnan(fit))]:
         said.append(f"No fit is said of drives that never move: {', '.join(still)}.")
@@ -90,11 +91,15 @@ def crosscheck_section(result: CrossCheck) -> Section:
 def model_section(robot: Twin) -> Section:
     """Every number of the robot and where it comes from."""
     assumed = " These coordinates are assumed." if robot.geometry.assumed else ""
+    words = parameter_words(robot.parameters, robot.effects)
     return Section(
         "The model",
         f"Parameter set {robot.parameters.name}. Geometry: {robot.geometry.source}.{assumed}",
         table=Table(
-            ("parameter", "value", "unit", "what", "source"),
-            tuple((p.name, p.value, p.unit, p.about, p.source) for p in robot.parameters),
+            ("parameter", "value", "unit", "more", "source"),
+            tuple(
+                (words[p.name], p.value, p.unit, p.about.partition(": ")[2], p.source)
+                for p in robot.parameters
+            ),
         ),
     )

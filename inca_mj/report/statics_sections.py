@@ -24,8 +24,8 @@ def statics_verdict(found: StaticAnalysis) -> list[str]:
         f"The cables have rank {found.closure.rank} and closure: the best internal tension has a"
         f" smallest tension of {found.closure.margin:.2f} of the largest.",
         f"Tensions from {held.within.min():.2f} to {held.within.max():.2f} N hold the platform,"
-        f" with currents from {held.current.min():.2f} to {held.current.max():.2f} A.",
-        f"With the power off it rests at ({x:.3f}, {y:.3f}, {z:.3f}) m,"
+        f" with currents from {held.current.min():z.2f} to {held.current.max():z.2f} A.",
+        f"With the power off it rests at ({x:z.3f}, {y:z.3f}, {z:z.3f}) m,"
         f" {'stable' if rest.stable else 'NOT stable'}; Coulomb friction may hold it up to"
         f" {1e3 * rest.friction_band[:3].max():.0f} mm away from there.",
         f"With locked drums the softest direction is {push.words[0]}, {push.values[0] / 1e3:.1f}"

@@ -109,9 +109,9 @@ def _figure_2_16(found: ThesisResults) -> Section:
         "Figure 2.16: Outputs of simulation",
         "2 A in motor 1 and no current in the others, with Table 2.1. The caption of part d repeats"
         " \"angles of the motors\"; the text means roll, pitch and yaw.\n\nThe platform ends at"
-        f" ({x:.3f}, {y:.3f}, {z:.3f}) m, and the tensions lie between {run.tension.min():.2f} and"
-        f" {run.tension.max():.2f} N. The thesis prints no number of this figure, and how long it"
-        " is, is not known.",
+        f" ({x:z.3f}, {y:z.3f}, {z:z.3f}) m, and the tensions lie between {run.tension.min():.2f}"
+        f" and {run.tension.max():.2f} N. The thesis prints no number of this figure, and how long"
+        " it is, is not known.",
         figures=tuple((f"2.16 {what}", drawn[name]) for name, what in PARTS.items()),
     )  # fmt: skip
 

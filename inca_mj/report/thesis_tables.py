@@ -105,10 +105,10 @@ def fits_table(number: str, fit: np.ndarray, loss: float) -> Table:
     """
     printed = FITS[number]
     rows = [
-        (f"Angle of motor {k}", f"{theirs:g} %", f"{ours:.3f} %")
+        (f"Angle of motor {k}", f"{theirs:g} %", f"{ours:z.3f} %")
         for k, (theirs, ours) in enumerate(zip(printed.fits, fit, strict=True), 1)
     ]
-    rows.append(("Summary", f"{printed.mean:g} %", f"{fit.mean():.3f} %"))
+    rows.append(("Summary", f"{printed.mean:g} %", f"{fit.mean():z.3f} %"))
     rows.append(("Loss function, equation 3.5", f"{printed.loss:.4g}", f"{loss:.3g}"))
     if printed.matlab_loss is not None:
         rows.append(("Loss function, as MATLAB prints it", f"{printed.matlab_loss:.6g}", "–"))

@@ -17,9 +17,11 @@ import numpy as np
 
 from identification.model.parameter import Parameter, ParameterSet
 from inca_mj.robot.geometry import DRIVES, Geometry
+from inca_mj.robot.parameters import parameter_set
 
 EACH_DRIVE = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t")
-POINTS = {"exit": "exit point of cable", "connector": "connector of cable"}
+POINTS = {"exit": "exit point", "connector": "connector"}
+_LETTERS = {"exit": "A", "connector": "B"}
 AXES = ("x", "y", "z")
 FARTHEST = 0.3  # an anchor that is farther from its nominal place is another geometry [m]
 
@@ -28,11 +30,13 @@ DRIVE, POINT = "drive", "point"  # where a deviation goes, as `Parameter.where` 
 
 def deviations(names: tuple[str, ...] = EACH_DRIVE) -> Iterator[Parameter]:
     """The relative deviation of each of some parameters at each drive."""
+    common = parameter_set()
     for name in names:
         for k in range(1, DRIVES + 1):
             yield Parameter(
                 name=f"{name}@{k}", value=0.0, unit="", where=DRIVE, lower=-0.9, upper=9.0,
-                about=f"relative deviation of {name} at drive {k}", source="nominal robot",
+                symbol=common[name].letter, source="nominal robot",
+                about=f"{common[name].short}, drive {k}: relative deviation",
             )  # fmt: skip
 
 
@@ -43,8 +47,8 @@ def displacements() -> Iterator[Parameter]:
             for axis in AXES:
                 yield Parameter(
                     name=f"{point}_{axis}@{k}", value=0.0, unit="m", where=POINT,
-                    lower=-FARTHEST, upper=FARTHEST,
-                    about=f"{about} {k}, displacement along {axis}", source="nominal robot",
+                    lower=-FARTHEST, upper=FARTHEST, symbol=_LETTERS[point],
+                    about=f"{about}, cable {k}, along {axis}: displacement", source="nominal robot",
                 )  # fmt: skip
 
 

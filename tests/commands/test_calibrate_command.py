@@ -32,6 +32,9 @@ def test_a_folder_of_results_is_whole(files, tmp_path, capsys):
     names = {path.name for path in out.iterdir()}
     assert {"model.xml", "effects.json", "geometry.toml", "report.html", "result.json",
             "exit_points.png", "drives.png"} <= names  # fmt: skip
+    page = (out / "report.html").read_text()
+    assert "torque constant K_t" in page
+    assert "K_t@" not in page
     record = json.loads((out / "result.json").read_text())
     robot = load_twin(out)
     np.testing.assert_array_equal(robot.geometry.A, record["exits"])

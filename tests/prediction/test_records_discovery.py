@@ -58,7 +58,8 @@ def test_friction_under_the_transmitted_load_is_named_with_its_size():
     head, *rows = said[said.index("fitted values:") :].splitlines()[1:5]
     assert head.split("  ")[1] == "parameter"
     assert head.endswith("fitted without effects  fitted with what is named")
-    assert [row.split()[0] for row in rows] == ["J", "d", MU]
+    first = [row.strip().split("  ")[0] for row in rows]
+    assert first == ["J", "d", "mu, friction – grows with the transmitted load, joint hinge"]
     assert all("±" in row for row in rows)
     assert "g m^2" in rows[0]
 

@@ -8,7 +8,7 @@ import subprocess
 import pytest
 from matplotlib.figure import Figure
 
-from identification.report.page import Section, write_report
+from identification.report.page import LONG, Section, Table, write_report
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 BROWSER = next(filter(None, map(shutil.which, NAMES)), None)
@@ -37,10 +37,19 @@ window.addEventListener("load", function () {
   said.again = document.querySelector(".tip").textContent;
   document.querySelector(".reset").click();
   said.after = texts();
-  window.dispatchEvent(new Event("beforeprint"));
   document.body.setAttribute("data-said", JSON.stringify(said));
 });
 </script></body>"""
+
+
+def browse(path, *asked, width=1000):
+    """What the browser writes on stdout of a page in a window of some width."""
+    return subprocess.run(
+        [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", f"--window-size={width},800",
+         "--virtual-time-budget=2000", f"--user-data-dir={path.parent / 'profile'}", *asked,
+         path.as_uri()],
+        capture_output=True, text=True, timeout=120, check=False,
+    ).stdout  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -52,13 +61,8 @@ def said(tmp_path_factory):
     ax.set(xlim=(0, 4), ylim=(0, 10), xlabel="time [s]", ylabel="height [m]")
     path = write_report(folder / "r.html", "t", [], [Section("s", figures=(("A peak", figure),))])
     path.write_text(path.read_text(encoding="utf-8").replace("</body>", PROBE), encoding="utf-8")
-    done = subprocess.run(
-        [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--window-size=1000,800",
-         f"--user-data-dir={folder / 'profile'}", "--dump-dom", path.as_uri()],
-        capture_output=True, text=True, timeout=120, check=False,
-    )  # fmt: skip
-    found = re.search(r'data-said="([^"]*)"', done.stdout)
-    assert found, done.stdout[-500:] + done.stderr[-500:]
+    found = re.search(r'data-said="([^"]*)"', dom := browse(path, "--dump-dom"))
+    assert found, dom[-500:]
     return json.loads(found[1].replace("&quot;", '"').replace("&amp;", "&"))
 
 
@@ -79,3 +83,39 @@ def test_a_drag_zooms_and_draws_new_ticks(said):
 
 def test_all_of_it_comes_back(said):
     assert said["after"] == []
+
+
+def boxes(page, width):
+    """Classes of the parts that may be wider than the screen."""
+    return re.findall(
+        r'class="(?:table )?(sideways[^"]*)"', browse(page, "--dump-dom", width=width)
+    )
+
+
+def test_what_is_wider_than_the_screen_says_so_and_nothing_else_does(tmp_path):
+    figure = Figure((6.0, 3.0))
+    figure.subplots().plot([0, 1, 2])
+    tables = [
+        Table(tuple(f"column_{k}" for k in range(n)), (("a_single_word",) * n,)) for n in (2, 7)
+    ]
+    parts = [Section("s", figures=(("A line", figure),), table=tables[0])]
+    parts.append(Section("t", table=tables[1]))
+    page = write_report(tmp_path / "r.html", "t", [], parts)
+    assert boxes(page, 1600) == ["sideways"] * 3
+    narrow, figure_box, wide = boxes(page, 420)
+    assert narrow == "sideways"
+    assert figure_box == wide == "sideways on"
+
+
+def test_a_folded_table_is_one_line_on_paper_and_an_unfolded_one_is_printed(tmp_path):
+    rows = tuple((f"row {k}", float(k)) for k in range(20 * LONG))
+    page = write_report(tmp_path / "r.html", "t", [], [Section("s", table=Table(("a", "b"), rows))])
+    assert pages(page) == 1
+    page.write_text(page.read_text().replace("<details>", '<details open="">'))
+    assert pages(page) > 3
+
+
+def pages(page):
+    out = page.with_suffix(".pdf")
+    browse(page, f"--print-to-pdf={out}")
+    return len(re.findall(rb"/Type\s*/Page\b", out.read_bytes()))

@@ -1,10 +1,22 @@
 """Prefixes, and as many digits as are known."""
 
-import pytest
+import re
+from pathlib import Path
 
-from identification.quantities import HELD, alike, held, probability, quantity
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import identification
+import inca_mj
+from identification.quantities import HELD, alike, held, matched, probability, quantity
+from identification.report.page import Section, Table, write_report
 
 NAN, INF = float("nan"), float("inf")
+VALUES = st.floats(-1e9, 1e9) | st.floats(-1e-3, 1e-3) | st.just(-0.0)
+STDS = st.floats(1e-20, 1e9) | st.floats(1e-20, 1e-2) | st.sampled_from((0.0, NAN, INF))
+UNITS = st.sampled_from(("", "m", "rad", "kg", "N m", "m²", "1/s"))
+MINUS_ZERO = re.compile(r"-0(?:\.0*)?(?:e[-+]?\d+)?(?![\d.])")
 
 
 @pytest.mark.parametrize(
@@ -53,3 +65,38 @@ def test_an_error_of_a_model_has_two_digits():
 def test_a_chance_that_underflows_is_not_called_zero() -> None:
     assert probability(3.4e-21) == "3e-21"
     assert probability(0.0) == "below 1e-300"
+
+
+@given(VALUES, STDS, UNITS)
+def test_what_rounds_to_zero_has_no_minus_sign(value: float, std: float, unit: str) -> None:
+    said = [
+        quantity(value, std, unit),
+        *(matched(value, std, sign)[0] for sign in ("", "+")),
+        *alike([value, std], unit),
+        *alike([value], unit, HELD),
+        held(value),
+    ]
+    assert not [text for text in said if MINUS_ZERO.search(text)]
+
+
+@given(st.floats(1e-9, 1e9), STDS, UNITS)
+def test_a_negative_number_is_said_as_the_positive_one_behind_a_minus_sign(
+    value: float, std: float, unit: str
+) -> None:
+    said, of = quantity(-value, std, unit), quantity(value, std, unit)
+    assert said in (f"-{of}", of)
+    assert (said == of) == (float(said.split(" ")[0]) == 0)
+
+
+def test_a_cell_of_a_table_has_no_minus_before_zero(tmp_path: Path) -> None:
+    table = Table(("a", "b"), ((-0.0, -1.5),))
+    page = write_report(tmp_path / "r.html", "t", [], [Section("s", table=table)]).read_text()
+    assert '<td class="number">0</td>' in page
+    assert '<td class="number">-1.5</td>' in page
+
+
+def test_every_number_that_is_written_with_its_sign_says_zero_without_minus() -> None:
+    """`+` writes the sign of what may be negative; the `z` behind it takes it from minus zero."""
+    for package in (identification, inca_mj):
+        for file in Path(package.__file__).parent.rglob("*.py"):
+            assert not re.findall(r"\{[^{}]*:\+(?!z)[^{}]*\}", file.read_text()), file

@@ -90,7 +90,7 @@ def test_two_effects_are_two_sentences() -> None:
 
 def test_the_table_says_what_was_held_and_has_no_column_of_names_where_there_are_none() -> None:
     named, none = parameters_section(found()), parameters_section(found("unknown effect"))
-    assert "I_x or I_y or I_z" in named.text
+    assert "platform inertia I_x or platform inertia I_y or platform inertia I_z" in named.text
     assert "b_v" not in named.text
     assert len(named.table.columns) == len(none.table.columns) + 1 == 4
     assert all(len(row) == 3 for row in none.table.rows)
@@ -128,7 +128,7 @@ def test_text_begins_with_the_verdict_and_holds_no_nan(verdict: str) -> None:
     text = discovery_text(outcome)
     assert text.startswith(discovery_verdict(outcome)[0])
     assert "nan" not in text
-    (b_v,) = [line for line in text.splitlines() if line.startswith("  b_v ")]
+    (b_v,) = [line for line in text.splitlines() if line.startswith("  viscous friction b_v ")]
     assert "240 ± 5 µN m s/rad" in b_v
     assert ("+ friction – Stribeck peak" in text) == (verdict == "named")
 

@@ -181,9 +181,16 @@
     }
   });
 
-  /* A long table is unfolded on paper. */
-  window.addEventListener("beforeprint", function () {
-    document.querySelectorAll("details").forEach(function (one) { one.open = true; });
+  /* What is wider than the screen fades on the side where there is more of it. */
+  document.querySelectorAll(".sideways").forEach(function (box) {
+    function look() {
+      var most = box.scrollWidth - box.clientWidth;
+      box.classList.toggle("from", box.scrollLeft > 1);
+      box.classList.toggle("on", box.scrollLeft < most - 1);
+    }
+    box.addEventListener("scroll", look);
+    new ResizeObserver(look).observe(box);  // a table that is unfolded, a screen that is turned
+    look();
   });
   document.documentElement.classList.add("scripted");
 })();

@@ -1,0 +1,57 @@
+"""Parameters in words, for readers: "cable elasticity λ, drive 5" and not `lambda@5`.
+
+The words are those of the parameter's own record, its short name and its letter. JSON and files
+keep the names.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from identification.discovery.result import Discovery
+from identification.effects.effect import Effect
+from identification.model.parameter import Parameter
+from identification.report.effect_words import phrase
+
+
+def describe_parameter(parameter: Parameter) -> str:
+    """What a parameter is, with its letter before the place; its name where nobody said it."""
+    if not parameter.short:
+        return parameter.name
+    return with_letter(parameter.short, parameter.letter)
+
+
+def with_letter(words: str, letter: str) -> str:
+    """Words with a letter of the equations before their first comma, where they have it not."""
+    if re.search(rf"(?<!\w){re.escape(letter)}(?!\w)", words):
+        return words
+    what, comma, where = words.partition(",")
+    return f"{what} {letter}{comma}{where}"
+
+
+def parameter_words(
+    parameters: Iterable[Parameter], effects: Iterable[Effect] = ()
+) -> dict[str, str]:
+    """The words of some parameters by name.
+
+    Args:
+        parameters: of a robot.
+        effects: those whose parameters may be among them; a size is said with its place.
+    """
+    words = {p.name: describe_parameter(p) for p in parameters}
+    for effect in effects:
+        what = phrase(effect)
+        words |= {f"{effect.name}.{shape.name}": f"{shape.name}, {what}" for shape in effect.shapes}
+        words |= {
+            effect.parameter(size.name, where): f"{size.name}, {what}, {where}"
+            for size in effect.sizes
+            for where in effect.places
+        }
+    return words
+
+
+def words_of(found: Discovery) -> dict[str, str]:
+    """The words of all parameters of a discovery by name."""
+    parameters = found.final.point.predictor.plant.parameters
+    return parameter_words(parameters, [named.candidate.effect for named in found.named])
