@@ -98,9 +98,9 @@ def accept_deviants(
         progress(f"{candidate.effect.name}, {candidate.where}: deviates, gain {gain:z.0f}")
         if gain > 0 and is_confirmed(proof, task.options):
             kept.insert(0, (candidate, proof, gain))
-        else:
-            best = parent
-    if len(kept) > 1 or (kept and parent is best):  # the last one tried is not the only one kept
+        elif kept or candidate is not candidates[0]:  # the common value is free again
+            best = try_fit(task, parent.candidates, parent.refit.point.values, parent)
+    if kept and [candidate for candidate, *_ in kept] != [*candidates[:1]]:
         parent = _take_out(task, [candidate for candidate, *_ in kept], best)
     if best is None or parent is None or not kept:
         return model, ()

@@ -52,6 +52,8 @@ class HiddenEffect:
     largest: ClassVar[float] = inf
     reach: ClassVar[float] = 1.0
     positive: ClassVar[tuple[str, ...]] = ()
+    is_smooth: ClassVar[bool] = True  # whether a small size of it acts as a large one does
+    is_part: ClassVar[bool] = False  # whether it is a part that deviates, as every part may
 
     def __post_init__(self) -> None:
         for field, value in self.values().items():
@@ -113,6 +115,7 @@ class HiddenDriveEffect(HiddenEffect):
 class HiddenOneDriveEffect(HiddenDriveEffect):
     """An effect that tells one drive from the others."""
 
+    is_part: ClassVar[bool] = True
     drive: int | None = 1
 
     def __post_init__(self) -> None:

@@ -78,6 +78,7 @@ class HiddenCurrentSaturation(HiddenDriveEffect):
     """
 
     name: ClassVar[str] = "current_saturation"
+    is_smooth: ClassVar[bool] = False  # a small loss is one of the peaks alone
     sizes: ClassVar[tuple[str, ...]] = ("i_max",)
     positive: ClassVar[tuple[str, ...]] = ("i_max", "onset")
     i_max: float = 0.95

@@ -84,6 +84,7 @@ class HiddenComOffset(HiddenEffect):
     """Centre of mass at (x, y, z) of the platform frame [m]; its inertia is about that point."""
 
     name: ClassVar[str] = "com_offset"
+    is_part: ClassVar[bool] = True  # all connectors deviate alike
     acts_on: ClassVar[str] = "platform"
     sizes: ClassVar[tuple[str, ...]] = ("x", "y", "z")
     largest: ClassVar[float] = 0.02  # a payload on one side of the handle [m]

@@ -11,6 +11,14 @@ of (I − S S⁺) e(s) in units of σ.
 
 `sized` solves r(s) = ratio by secants; r(0) = 0, and r is nearly proportional to s mostly. A size
 that no robot has is not looked for: what cannot be absorbed may be little of any effect.
+
+    r₁(s) = r(εs)/ε,  ε = 0.01        what is left to first order
+
+S and D are taken without the effect. A large one moves the parameters so far that they hold no
+longer, and what r then counts is their curvature, which a robot that is tuned again absorbs: where
+r₁ is less than a tenth of r, the effect is a change of parameters and no effect. (A hysteresis of
+the drum springs may be all friction: r = 20, r₁ = 0.5.) A part that deviates is a change of
+parameters by its nature, and an effect where it deviates by more than parts do.
 """
 
 from __future__ import annotations
@@ -32,6 +40,8 @@ POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 COARSE = 1e-3  # step of these simulations: 4e-8 rad from the world's own, in half its time [s]
 NEAR = 0.02  # a ratio this near to the asked one, relative, is good enough
 ATTEMPTS = 12
+SMALL = 0.01  # of a size: effects of this much are linear in it
+LITTLE = 0.1  # of r: where r₁ is less, nearly all of r is curvature
 
 
 class HiddenAbsorbed:
@@ -56,7 +66,7 @@ class HiddenAbsorbed:
             sampling_time: [s].
             names: the base parameters; the start pose is always among them.
             tolerances: how much drives, points and platform may differ.
-            noise: rms of the measurement noise [rad]; it counts where parts may differ.
+            noise: σ, rms of the measurement noise [rad]; it counts where parts may differ.
         """
         self._robot = (parameters, geometry, currents, sampling_time)
         self._without = self._angles(parameters, ())
@@ -82,6 +92,12 @@ class HiddenAbsorbed:
         seen = self._parts.T @ e
         return float(np.sqrt((e @ e - seen @ self._inverse @ seen) / e.size))
 
+    def is_absorbed(self, effect: HiddenEffect) -> bool:
+        """Whether nearly nothing is left of an effect to first order, r₁ < r/10."""
+        if effect.is_part or not effect.is_smooth or not self._parts.size:
+            return False
+        return self.rms([effect.scaled(SMALL)]) < SMALL * LITTLE * self.rms([effect])
+
     def _column(self, name: str, h: float) -> np.ndarray:
         """What a change h of a parameter does to all angles [rad]."""
         moved = self._robot[0].with_values({name: self._robot[0][name].value + h})
@@ -102,8 +118,18 @@ def sized(effect: HiddenEffect, absorbed: HiddenAbsorbed, goal: float) -> Hidden
     """The effect with a size whose unabsorbed rms is `goal` [rad], to 2 %.
 
     Raises:
-        UnreachedError: no size that a robot may have gives it.
+        UnreachedError: no size that a robot may have gives it, or a change of parameters would.
     """
+    found = _solved(effect, absorbed, goal)
+    if absorbed.is_absorbed(found):
+        raise UnreachedError(
+            f"{effect.name}: other parameters do the same to first order; ask for another effect"
+        )
+    return found
+
+
+def _solved(effect: HiddenEffect, absorbed: HiddenAbsorbed, goal: float) -> HiddenEffect:
+    """The effect with a size that solves r(s) σ = goal."""
     # Sizes and rms of two trials; the first stands for no effect at all.
     below, above = (0.0, 0.0), (np.inf, np.inf)
     s, r, most = min(1.0, effect.most), 0.0, effect.most

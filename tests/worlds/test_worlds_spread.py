@@ -19,8 +19,12 @@ from inca_mj.worlds import (
     EVERY,
     EXACT,
     VARIED,
+    HiddenCogging,
+    HiddenCurrentSaturation,
     HiddenDrumEccentricity,
+    HiddenFrictionMismatch,
     HiddenSetting,
+    HiddenSpringHysteresis,
     HiddenStribeckFriction,
     Tolerances,
     make_currents,
@@ -29,7 +33,7 @@ from inca_mj.worlds import (
     simulate_world,
     world,
 )
-from inca_mj.worlds.measure import encode
+from inca_mj.worlds.measure import encode, noise_rms
 from inca_mj.worlds.ratio import HiddenAbsorbed
 from inca_mj.worlds.robot import true_robot
 from inca_mj.worlds.tolerances import as_built, usual_std
@@ -226,3 +230,21 @@ def test_bad_tolerances_are_refused(bad):
 def test_bad_records_are_refused(bad):
     with pytest.raises(InputError, match="one record or more"):
         records(1, setting=SHORT, **bad)
+
+
+def test_what_other_parameters_do_as_well_is_no_effect():
+    """A hysteresis that is friction and stiffness to first order gives its place to another one."""
+    setting = replace(BUILT, duration=2.0)
+    robot, u = true_robot(6, setting), make_currents(6, setting)
+    names, σ = setting.absorbed, noise_rms(setting.counts, setting.noise)
+    absorbed = HiddenAbsorbed(robot, INCA, u, 0.01, names, AS_BUILT, σ)
+    hysteresis, cogging = HiddenSpringHysteresis(eta=0.05), HiddenCogging()
+    assert absorbed.is_absorbed(hysteresis)
+    assert not absorbed.is_absorbed(cogging)
+    assert not absorbed.is_absorbed(HiddenFrictionMismatch(drive=2, delta=0.5))  # a part
+    assert not absorbed.is_absorbed(HiddenCurrentSaturation(i_max=0.99))  # it is not linear
+    exact = HiddenAbsorbed(robot, INCA, u, 0.01, names, noise=σ)
+    assert not exact.is_absorbed(hysteresis)  # where drives are alike the ratio is what it says
+    ratio = absorbed.rms([hysteresis]) / σ
+    (made,) = records(6, [hysteresis], n=1, ratio=ratio, setting=setting, others=[cogging])
+    assert made.truth.effects[0].name == "cogging"
