@@ -78,6 +78,8 @@ def conclude(
 ) -> None:
     """Keep the results in the folder that was asked for, whole or not at all, and say them.
 
+    They are said even where they cannot be kept: a full disk must not cost what took minutes.
+
     Args:
         command: with its `output`; its fields are the configuration that result.json tells.
         record: the results as plain values: result.json, and what `--json` prints.
@@ -90,15 +92,17 @@ def conclude(
     from identification.folders import whole_folder
 
     output: Output = command.output
-    if output.out is not None:
-        with whole_folder(output.out) as out:
-            write_result(out / "result.json", command, record)
-            if keep is not None:
-                keep_if_possible("figures and report", partial(keep, out))
-    if output.json:
-        say_json(record)
-    else:
-        say(text)
+    try:
+        if output.out is not None:
+            with whole_folder(output.out) as out:
+                write_result(out / "result.json", command, record)
+                if keep is not None:
+                    keep_if_possible("figures and report", partial(keep, out))
+    finally:
+        if output.json:
+            say_json(record)
+        else:
+            say(text)
 
 
 def keep_if_possible(what: str, write: Callable[[], object]) -> bool:

@@ -67,8 +67,6 @@ class Discover:
             do_not_draw()
         from identification.discovery.options import read_options
         from identification.errors import InputError
-        from identification.folders import whole_folder
-        from identification.progress import duration
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.discovery import discover
         from inca_mj.workflows.spread import spread_of
@@ -82,7 +80,6 @@ class Discover:
         options = None if self.options is None else read_options(self.options)
         for path, log in zip(self.log, logs, strict=True):
             self.output.tell(f"log {path}: {log.duration:.4g} s, {len(log)} samples")
-        out = self.output.out
         found = discover(
             logs,
             parameters,
@@ -99,20 +96,30 @@ class Discover:
         if not self.output.json:
             say(discovery_text(found))
         files: dict[str, Path] = {}
-        begun = time.monotonic()
-        if out is not None:
-            if blind:
-                note(f"no film: {blind}")
-            with whole_folder(out) as draft:
-                files = keep(found, draft, self, film=self.film and not blind)
-            files = {what: out / path.name for what, path in files.items()}
-            drawn = duration(time.monotonic() - begun)
-            self.output.tell(f"report, figures and film took {drawn}, beside the search")
-        if self.output.json:
-            say_json(as_json(found, files.get("model")))
-        elif files:
+        try:
+            files = self._keep(found, blind)
+        finally:  # what was found is said even where it cannot be kept
+            if self.output.json:
+                say_json(as_json(found, files.get("model")))
+        if files and not self.output.json:
             say("\n" + "\n".join(f"{what + ':':<8} {path}" for what, path in files.items()))
         return 0
+
+    def _keep(self, found: Discovery, blind: str) -> dict[str, Path]:
+        """Keep the results in the folder that was asked for; the paths by kind."""
+        from identification.folders import whole_folder
+        from identification.progress import duration
+
+        if (out := self.output.out) is None:
+            return {}
+        begun = time.monotonic()
+        if blind:
+            note(f"no film: {blind}")
+        with whole_folder(out) as draft:
+            files = keep(found, draft, self, film=self.film and not blind)
+        drawn = duration(time.monotonic() - begun)
+        self.output.tell(f"report, figures and film took {drawn}, beside the search")
+        return {what: out / path.name for what, path in files.items()}
 
 
 def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
