@@ -65,7 +65,15 @@ def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
     y = part.outputs - part.outputs[0]
     if "wiring" not in overruled and (other := _other_wiring(part, predicted)) is not None:
         raise InputError(f"log {log.name!r}: the twin {other}{ADVICE}{_overrule('wiring')}")
-    scale = float(np.exp(np.mean(np.log(np.abs((y * predicted).sum(0) / (predicted**2).sum(0))))))
+    scales = np.abs((y * predicted).sum(0) / (predicted**2).sum(0))
+    scale, far = float(np.exp(np.mean(np.log(scales)))), np.flatnonzero(scales > UNIT[1])
+    if "units" not in overruled and UNIT[0] < scale < UNIT[1] and len(far):
+        names = listed(part.output_names[k] for k in far)
+        raise InputError(
+            f"log {log.name!r}: {names}: moves {scales[far].max():.2g} times as far as the twin's"
+            " under these currents, and the other angles do not; all must be in radians (a degree"
+            f" is 0.0175){ADVICE}{_overrule('units')}"
+        )
     if "units" not in overruled and not UNIT[0] < scale < UNIT[1]:
         raise InputError(
             f"log {log.name!r}: the angles move {scale:.2g} times as far as the twin's under these"
@@ -125,14 +133,24 @@ def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Readin
                       f"turn the sign of {listed(part.output_names[k] for k in back)}")  # fmt: skip
     from scipy.optimize import linear_sum_assignment  # slow to import
 
-    _, at = linear_sum_assignment(1 - _alike(y, predicted))
-    moved = np.flatnonzero(at != np.arange(len(at))).tolist()
-    if len(moved) > 2:
-        outputs = part.outputs.copy()
-        outputs[:, at] = part.outputs
-        pairs = listed(f"{part.output_names[i]} to {part.output_names[at[i]]}" for i in moved)
-        yield Reading(replace(part, outputs=outputs), moved, "were they exchanged",
-                      f"rename {pairs} under [columns]")  # fmt: skip
+    every, names = np.arange(y.shape[1]), part.output_names
+    cosine = _alike(y, predicted)
+    for likeness in (cosine, np.abs(cosine)):  # whatever the signs, in the second
+        _, at = linear_sum_assignment(1 - likeness)
+        moved = np.flatnonzero(at != every).tolist()
+        back = np.flatnonzero(cosine[every, at] < 0).tolist() if likeness is not cosine else []
+        if len(moved) > 2 or (moved and back):
+            outputs = part.outputs.copy()
+            outputs[:, at] = turned(part.outputs, back)
+            pairs = listed(f"{names[i]} to {names[at[i]]}" for i in moved)
+            turn = f", and turn the sign of {listed(names[i] for i in back)}" if back else ""
+            changed = [k for k in every.tolist() if k in (*at[moved], *at[back])]
+            wrong = [k for k in changed if 1 - cosine[k, k] > RIGHT]  # others are right by a mirror
+            if not wrong:
+                continue
+            how = " and turned" if back else ""
+            yield Reading(replace(part, outputs=outputs), wrong, f"were they exchanged{how}",
+                          f"rename {pairs} under [columns]{turn}")  # fmt: skip
 
 
 def _alike(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:

@@ -106,6 +106,36 @@ def test_several_encoders_at_once(plant):
         refuse_miswired(changed(rotate), plant)
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_encoders_that_are_exchanged_and_turned(plant, seed):
+    """Two mistakes in one log: some encoders are exchanged, and one to three are turned."""
+    rng = np.random.default_rng(seed)
+    at, back = np.arange(8), rng.choice(8, size=rng.integers(1, 4), replace=False)
+    which = rng.choice(8, size=rng.integers(2, 5), replace=False)
+    at[which] = np.roll(which, 1)
+
+    def mistake(y):
+        y[:] = y[:, at]
+        y[:, back] *= -1
+
+    with pytest.raises(InputError, match="were they exchanged and turned") as refused:
+        refuse_miswired(changed(mistake), plant)
+    said = str(refused.value)
+    for k in which:  # what is called angle_k is of another drive
+        assert f"angle_{k + 1} to angle_{at[k] + 1}" in said
+    turned = said.partition("turn the sign of ")[2].partition(";")[0]
+    assert {*turned.replace(" and ", ", ").split(", ")} == {f"angle_{k + 1}" for k in back}
+
+
+@pytest.mark.parametrize("drive", [0, 5])
+def test_one_angle_in_degrees(plant, drive):
+    def degrees(y):
+        y[:, drive] *= 180 / np.pi
+
+    with pytest.raises(InputError, match=f"angle_{drive + 1}: moves .* times as far as the twin's"):
+        refuse_miswired(changed(degrees), plant)
+
+
 @pytest.mark.parametrize("rest", [1.0, 1.99, 2.0, 2.5, 12.0])
 def test_a_log_that_rests_first_is_not_judged_by_its_noise(plant, rest):
     still = np.repeat(make_input("prbs", 0.1)[:1] * 0, round(rest / 0.01), axis=0)
