@@ -47,8 +47,9 @@ def find_deviants(task: DiscoveryTask, model: FittedModel) -> tuple[Candidate, .
     for name, std in zip(nominal.names, nominal.std, strict=True):
         at = nominal.deviants.get(name)
         if at is not None and at not in has:
-            others = [n for n in nominal.groups.get(groups.get(name, ""), ()) if n != name]
-            off = _distance(values[name], [values[n] for n in others]) / std
+            group = groups.get(name, "")
+            beside = nominal.groups[group] if group in nominal.names else ()  # of a common value
+            off = _distance(values[name], [values[n] for n in beside if n != name]) / std
             if off > task.options.max_scatter:
                 far[at] = max(off, far.get(at, 0.0))
     effects = {effect.name: effect for effect in task.effects}
@@ -57,7 +58,11 @@ def find_deviants(task: DiscoveryTask, model: FittedModel) -> tuple[Candidate, .
 
 
 def _distance(value: float, others: Sequence[float]) -> float:
-    """How far a part is from n others: of parts that scatter alike with an std s, |N(0, s²)|."""
+    """How far a part is from n others: |N(0, s²)| of parts that scatter alike with an std s.
+
+    A part without a common value, such as a point that is not where the drawing has it, is so far
+    from zero.
+    """
     if not others:
         return abs(value)
     return float(abs(value - np.mean(others)) / np.sqrt(1 + 1 / len(others)))
