@@ -34,7 +34,7 @@ lint: .venv/.complete  ## check style, format, types and layers
 	@.venv/bin/lint-imports --no-cache --no-logo
 
 docs: .venv-docs/.complete  ## build the pages of docs/ into site/, and run the notebooks
-	@NO_MKDOCS_2_WARNING=1 .venv-docs/bin/mkdocs build --strict --quiet $(ARGS)
+	@NO_MKDOCS_2_WARNING=1 .venv-docs/bin/mkdocs build --strict $(ARGS)
 	@echo "Ready: site/index.html"
 
 bench: .venv/.complete  ## measure how near the limit all runs; ARGS=--quick for a step only

@@ -37,8 +37,9 @@ class ForceAlong:
         drives: forces of the base's actuators, shape (M, n) [N or N m].
         position: shape (M, n) [rad or m].
         rate: shape (M, n) [rad/s or m/s].
-        turning: where the rate changes by more than itself to the point before or behind: in a step
-            of the simulation in which a joint turns, friction has both signs, shape (M, n).
+        turning: where the rate changes by more than itself to the point before or behind, and one
+            point beside: in a step of the simulation in which a joint turns or stops, friction has
+            both signs, shape (M, n).
         time: in its record, shape (M, n) [s].
         kind: of the joints, `mujoco.mjtJoint`.
         late: the first force at the same states and inputs, had the clock run backwards,
@@ -137,11 +138,19 @@ def _dofs(model: mujoco.MjModel, force: np.ndarray) -> tuple[list[int], int]:
 
 
 def _turning(rate: np.ndarray) -> np.ndarray:
-    """Where rates change by more than themselves to a neighbour, along one trajectory (M, n)."""
+    """Where rates change by more than themselves to a neighbour, along one trajectory (M, n).
+
+    The neighbours are told too: in the step that ends with a joint at rest, what holds it is any
+    force below its friction.
+    """
     change = np.abs(np.diff(rate, axis=0))
     none = np.zeros_like(rate[:1])
     most = np.maximum(np.concatenate([none, change]), np.concatenate([change, none]))
-    return np.asarray(np.abs(rate) < most)
+    turned = np.abs(rate) < most
+    near = turned.copy()
+    near[1:] |= turned[:-1]
+    near[:-1] |= turned[1:]
+    return near
 
 
 @quiet()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isfinite
 
 from identification.discovery.effect_results import NamedEffect, Outside, Proof, RejectedEffect
 from identification.discovery.options import DiscoveryOptions
@@ -31,12 +32,14 @@ def without_colon(said: str) -> str:
 
 
 def describe_sizes(found: NamedEffect | RejectedEffect) -> str:
-    """Sizes and shapes of a fitted effect, each with its std."""
+    """Sizes and shapes of a fitted effect, each with its std; no shape that no data tell."""
     effect = found.candidate.effect
+    untold = {s.name for s in effect.shapes}
     about = {s.name: s.about for s in effect.sizes} | {s.name: s.about for s in effect.shapes}
     return ", ".join(
         f"{name} = {quantity(value, std, unit)}" + (f" ({about[name]})" if about.get(name) else "")
         for name, (value, std, unit) in found.parameters.items()
+        if name not in untold or isfinite(std)
     )
 
 

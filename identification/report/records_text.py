@@ -102,9 +102,12 @@ def describe_refitted(effect: RefittedEffect) -> str:
 
 
 def _sizes(effect: RefittedEffect) -> str:
+    """Sizes and shapes, each with its std; no shape that no data tell."""
+    untold = {s.name for s in effect.candidate.effect.shapes}
     return ", ".join(
         f"{name} not felt" if np.isinf(std) else f"{name} = {value_with_std(v, std, unit)}"
         for name, (v, std, unit) in effect.parameters.items()
+        if name not in untold or np.isfinite(std)
     )
 
 
@@ -133,7 +136,9 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
         said += f" Less likely: {', '.join(others)}." if others else ""
     said += _agreement(found, named)
     if named.disagrees:
-        said += f" It raises the error on {', '.join(named.disagrees)}, beyond chance."
+        said += (
+            f" The named effect raises the error on {', '.join(named.disagrees)}, beyond chance."
+        )
     return said
 
 
@@ -162,7 +167,7 @@ def _agreement(found: RecordsDiscovery, named: NamedByPrediction) -> str:
     helped = sum(name in named.agrees for name in distinct)
     if not distinct:
         return " All unseen records repeat what was fitted, so that they hardly confirm it."
-    said = f" It lowers the error on {helped} of {len(distinct)} unseen records."
+    said = f" The named effect lowers the error on {helped} of {len(distinct)} unseen records."
     if found.repeats:
         one = len(found.repeats) == 1
         said += f" {', '.join(found.repeats)} {'repeats' if one else 'repeat'} the motion of others"

@@ -143,7 +143,8 @@ def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Readin
             outputs = part.outputs.copy()
             outputs[:, at] = turned(part.outputs, back)
             pairs = listed(f"{names[i]} to {names[at[i]]}" for i in moved)
-            turn = f", and turn the sign of {listed(names[i] for i in back)}" if back else ""
+            turned_names = listed(names[i] for i in back)
+            turn = f", and in the file turn the sign of what is {turned_names} now" if back else ""
             changed = [k for k in every.tolist() if k in (*at[moved], *at[back])]
             wrong = [k for k in changed if 1 - cosine[k, k] > RIGHT]  # others are right by a mirror
             if not wrong:

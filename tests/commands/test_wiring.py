@@ -123,7 +123,7 @@ def test_encoders_that_are_exchanged_and_turned(plant, seed):
     said = str(refused.value)
     for k in which:  # what is called angle_k is of another drive
         assert f"angle_{k + 1} to angle_{at[k] + 1}" in said
-    turned = said.partition("turn the sign of ")[2].partition(";")[0]
+    turned = said.partition("turn the sign of what is ")[2].partition(" now;")[0]
     assert {*turned.replace(" and ", ", ").split(", ")} == {f"angle_{k + 1}" for k in back}
 
 

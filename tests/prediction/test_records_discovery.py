@@ -53,7 +53,7 @@ def test_friction_under_the_transmitted_load_is_named_with_its_size():
     assert all(describe_finding(f) for f in answer.findings)
     said = records_text(answer)
     assert "grows with the transmitted load" in said
-    assert "It lowers the error on 2 of 2 unseen records." in said
+    assert "The named effect lowers the error on 2 of 2 unseen records." in said
     assert answer.repeats == ()
     head, *rows = said[said.index("fitted values:") :].splitlines()[1:5]
     assert head.split("  ")[1] == "parameter"
