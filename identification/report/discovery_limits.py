@@ -18,7 +18,10 @@ def hiding(found: Discovery) -> str:
     if not found.hidden:
         return ""
     listed = "; ".join(map(_describe, found.hidden[:SHOWN]))
-    return f" The fitted noise may still hide effects up to these sizes: {listed}."
+    return (
+        " The fitted noise may still hide effects up to these sizes (what the log seems to show of"
+        f" each, by luck or not, and 1.96 std more): {listed}."
+    )
 
 
 def _describe(h: Hidden) -> str:
