@@ -33,7 +33,8 @@ def test_a_named_effect_is_said_with_size_place_confidence_and_proof() -> None:
     assert said[1].count("mrad") == 3
     assert said[2] == (
         "Nothing else is missing that this log shows. The fitted noise may still hide effects up"
-        " to these sizes (what the log seems to show of each, by luck or not, and 1.96 std more): friction – Coulomb part differs at one drive, drive 3, delta 0.600 % (it"
+        " to these sizes (what the log seems to show of each, by luck or not, and 1.96 std more): "
+        "friction – Coulomb part differs at one drive, drive 3, delta 0.600 % (it"
         " would be 30 % of what passes for errors of the inputs)."
     )
     assert len(said) == 3
