@@ -126,7 +126,7 @@ def window_sentences(found: WindowEstimate, floor: float) -> list[str]:
     if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
         said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
     said += _weak(found)
-    ratio = f", {held(found.rms / floor)} of the noise floor {floor:.3g}" if floor > 0 else ""
+    ratio = f", {held(found.rms / floor)} times the noise floor of {floor:.3g}" if floor > 0 else ""
     said.append(
         f"{len(found.residual)} windows of {found.length:g} s leave {found.rms:.2g} rms{ratio}."
     )
@@ -151,7 +151,7 @@ def _above(fit: Fit) -> float:
 def _enough(fit: Fit) -> list[str]:
     floor, ratio = _floor(fit), _above(fit)
     sentences = [
-        f"The residual is {fit.rms:.2g} rms, {held(ratio)} of the noise floor {floor:.3g}."
+        f"The residual is {fit.rms:.2g} rms, {held(ratio)} times the noise floor of {floor:.3g}."
     ]
     dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
     coloured = coloured_outputs(fit)
