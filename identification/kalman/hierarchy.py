@@ -34,7 +34,7 @@ def estimate_scatter(fit: Refit, groups: Mapping[str, Sequence[str]]) -> dict[st
 
     Args:
         fit: a fit under the table's std.
-        groups: names of free parameters that share one std, two or more in each.
+        groups: names of free parameters that share one std; that of a single one stays.
     """
     point = fit.point
     places = {g: [point.space.names.index(n) for n in names] for g, names in groups.items()}
@@ -48,7 +48,7 @@ def estimate_scatter(fit: Refit, groups: Mapping[str, Sequence[str]]) -> dict[st
         V = np.linalg.inv(H + np.diag(prior**2))
         power = (V @ b) ** 2 + np.diag(V)
         new = {
-            g: float(np.clip(np.sqrt(power[at].sum() / (len(at) - 1)), LEAST * table[g], table[g]))
+            g: float(np.clip(_most_probable(power[at]), LEAST * table[g], table[g]))
             for g, at in places.items()
         }
         moved = max((abs(new[g] / s[g] - 1) for g in new), default=0.0)
@@ -58,3 +58,9 @@ def estimate_scatter(fit: Refit, groups: Mapping[str, Sequence[str]]) -> dict[st
         if moved < ENDED:
             break
     return s
+
+
+def _most_probable(power: np.ndarray) -> float:
+    """The s of a group, from x̂² + V of its n values; one value alone tells no scatter."""
+    n = len(power)
+    return float(np.sqrt(power.sum() / (n - 1))) if n > 1 else np.inf

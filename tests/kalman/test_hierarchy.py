@@ -61,6 +61,11 @@ def test_more_than_the_table_is_not_believed():
     assert s == {"even": TABLE, "odd": TABLE}
 
 
+def test_one_value_alone_tells_no_scatter():
+    fit = fit_of(np.zeros(P), 0.1, 5)
+    assert estimate_scatter(fit, {"alone": ["p0"]}) == {"alone": TABLE}
+
+
 def test_the_order_of_groups_changes_nothing():
     x = np.random.default_rng(7).standard_normal(P) * 0.3
     fit = fit_of(x, 0.1, 8)
