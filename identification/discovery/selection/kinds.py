@@ -3,8 +3,11 @@
 A torque constant that falls with time looks like one that falls with heat as long as something else
 is missing. So every accepted effect is compared, to first order, with its other kinds and powers,
 which are no free shapes; where one of them explains more it is refitted, and the likelier model is
-kept. A limit (a current that is clipped, or that bends) is far from linear in its shape: its other
-kinds are scored on the model without it, and the best of each is refitted.
+kept. A free shape is chosen anew for each kind: a Stribeck peak of the power 2 is as wide as one of
+the power 1 at another speed. Where the model leaves structure the wrong kind may have moved other
+parameters far, and the first order is wrong by much: each kind is then refitted that explains half
+of what the effect does. A limit (a current that is clipped, or that bends) is far from linear in
+its shape: its other kinds are scored on the model without it, and the best of each is refitted.
 """
 
 from __future__ import annotations
@@ -12,6 +15,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
+
+import numpy as np
 
 from identification.discovery.fitted_model import (
     FEW,
@@ -24,8 +29,11 @@ from identification.discovery.replacement import replace_effect
 from identification.discovery.scoring.scores import Score
 from identification.discovery.scoring.sensitivities import Sensitivity, compute_beside
 from identification.discovery.scoring.significance import gain_of_whole, is_plausible
+from identification.discovery.selection.shapes import is_structured
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
+
+ENOUGH = 0.5  # of the gain of an effect: another kind that explains so much may be the true one
 
 
 def improve_kinds(
@@ -53,27 +61,51 @@ def improve_kinds(
             if mine.free
             else _list_limits(task, mine, model, sensitivities)
         )
+        best, parent = mine, model
         for other, start in kinds:
-            candidates = tuple(other if c.key == other.key else c for c in model.candidates)
-            begin, least = {**model.refit.point.values, **start}, model.refit.log_posterior
-            new = try_fit(task, candidates, begin, model, least=least)
+            new = _fit_kind(task, other, start, parent)
             if new is not None and new.negative_bic > model.negative_bic:
-                # Gain and rivals stay those of the round in which it was accepted.
-                begun = replace(old.model, candidates=(*old.model.candidates[:-1], other))
-                kept[i], model = replace(old, model=begun), new
+                best, model = other, new
+        if best is not mine:
+            # Gain and rivals stay those of the round in which it was accepted.
+            begun = replace(old.model, candidates=(*old.model.candidates[:-1], best))
+            kept[i] = replace(old, model=begun)
     return tuple(kept), model
+
+
+def _fit_kind(
+    task: DiscoveryTask, other: Candidate, start: Mapping[str, float], model: FittedModel
+) -> FittedModel | None:
+    """A model with an effect of another kind; a short search where it leaves no structure."""
+    candidates = tuple(other if c.key == other.key else c for c in model.candidates)
+    begin, least = {**model.refit.point.values, **start}, model.refit.log_posterior
+    if is_structured(model, task.options):
+        return try_fit(task, candidates, begin)
+    return try_fit(task, candidates, begin, model, least=least)
 
 
 def _list_kinds(
     task: DiscoveryTask, old: Candidate, model: FittedModel
 ) -> list[tuple[Candidate, dict[str, float]]]:
-    """An effect of each other kind that explains more, to first order, with its sizes."""
-    out, fit = [], model.refit
+    """An effect of each other kind that explains more, or enough to be refitted, to first order.
+
+    Returns:
+        The effect of each such kind, and the values of its sizes and shapes to begin at.
+    """
+    best: dict[tuple[float, ...], tuple[float, Candidate, np.ndarray]] = {}
+    kinds, fit = [s.name for s in old.effect.shapes if not s.free], model.refit
+    enough = ENOUGH if kinds and is_structured(model, task.options) else 1.0
     for s in compute_beside(fit.point, _other_kinds(old, model)):
         other = replace_effect(fit, old, s.S, fit.level)
-        if other.loss < 0 and is_plausible(s.candidate, other.size, task.options):
-            out.append((s.candidate, dict(zip(old.sizes, other.size.tolist(), strict=True))))
-    return out
+        kind = tuple(s.candidate.shape[name] for name in kinds)
+        is_best = kind not in best or other.loss < best[kind][0]
+        is_enough = other.share * enough < 1
+        if is_best and is_enough and is_plausible(s.candidate, other.size, task.options):
+            best[kind] = other.loss, s.candidate, other.size
+    return [
+        (new, {**new.fixed, **dict(zip(new.sizes, size.tolist(), strict=True))})
+        for _, new, size in best.values()
+    ]
 
 
 def _list_limits(
@@ -108,14 +140,19 @@ def _list_limits(
 
 
 def _other_kinds(old: Candidate, model: FittedModel) -> list[Candidate]:
-    """An effect with every other combination of its fixed shapes, and its fitted free ones."""
+    """An effect with every other combination of its fixed shapes.
+
+    Its free shapes have their fitted values, or those of their grids.
+    """
     values, shapes = model.refit.point.values, old.effect.shapes
-    free = {s.name: values[old.effect.parameter(s.name, old.where)] for s in shapes if s.free}
-    fixed = [s for s in shapes if not s.free]
-    names = [s.name for s in fixed]
-    every = [dict(zip(names, each, strict=True)) for each in product(*(s.grid for s in fixed))]
+    grids = [
+        (values[old.effect.parameter(s.name, old.where)], *s.grid) if s.free else s.grid
+        for s in shapes
+    ]
+    every = (dict(zip([s.name for s in shapes], each, strict=True)) for each in product(*grids))
+    fixed = [s.name for s in shapes if not s.free]
     return [
-        replace(old, shape={**free, **kind})
-        for kind in every
-        if any(kind[name] != old.shape[name] for name in names)
+        replace(old, shape=shape)
+        for shape in every
+        if any(shape[name] != old.shape[name] for name in fixed)
     ]
