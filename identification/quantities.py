@@ -76,6 +76,16 @@ def held(value: float) -> str:
     return _plain(_rounded(value, HELD), HELD) if isfinite(value) else "unknown"
 
 
+def error(value: float, unit: str) -> str:
+    """The error of a model with its unit, two digits.
+
+    Args:
+        value: in `unit`.
+        unit: SI unit, "" where there is none or where outputs have several.
+    """
+    return alike([value], unit, HELD)[0]
+
+
 def alike(values: Sequence[float], unit: str, digits: int = _DIGITS) -> list[str]:
     """Several values with one prefix, so that they compare at a glance.
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 from identification.discovery.result import Discovery
+from identification.effects.effect import Effect
 from identification.kalman.refit import Refit
 
 
@@ -18,6 +21,18 @@ def collect_final_values(found: Discovery) -> dict[str, float]:
             key = f"{effect.name}.{name}" if name in shapes else effect.parameter(name, where)
             out[key] = value
     return out
+
+
+def keep_of_robot(values: Mapping[str, float], effects: Sequence[Effect]) -> dict[str, float]:
+    """The values of a robot that hold in every log.
+
+    Args:
+        values: values by name.
+        effects: the effects that the robot may have; shapes that tell something of one log (what
+            an input did before its first sample) are left out.
+    """
+    of_log = {f"{e.name}.{s.name}" for e in effects for s in e.shapes if s.of_log}
+    return {name: value for name, value in values.items() if name not in of_log}
 
 
 def collect_std(fit: Refit) -> dict[str, float]:

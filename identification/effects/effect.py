@@ -71,6 +71,8 @@ class Shape:
         usual: the value where nothing is said; the grid's middle when None.
         step: how far apart values are tried beside the best of the grid, where the likelihood has
             so many maxima that a refit does not find the way; 0 where it does [unit].
+        of_log: whether it tells something of one log and nothing of the robot, so that it is kept
+            for no other log.
     """
 
     name: str
@@ -82,11 +84,12 @@ class Shape:
     about: str = ""
     usual: float | None = None
     step: float = 0.0
+    of_log: bool = False
 
 
 # Of an input that comes late: its first value times this had been there before the log. It was
 # mostly nothing or that value; whatever else it was costs one more number and no second search.
-BEFORE = Shape("before", "", (0.0, 1.0), -2.0, 2.0, usual=0.0,
+BEFORE = Shape("before", "", (0.0, 1.0), -2.0, 2.0, usual=0.0, of_log=True,
                about="share of the first value that had been there before the log")  # fmt: skip
 
 

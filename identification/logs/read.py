@@ -81,6 +81,7 @@ def read_log(
         )
     table = _read_table(raw, path, inputs, outputs, optional, sidecar, lenient)
     check_keys(f"column under 'units' in {sidecar.path}:", sidecar.units, ("time", *columns))
+    check_keys(f"column under 'factors' in {sidecar.path}:", sidecar.factors, columns)
     table = renamed(table, sidecar)
     if "time" not in table.names and sidecar.sampling_time:
         table = _with_time(table, sidecar.sampling_time)
@@ -168,7 +169,7 @@ def _with_time(table: Table, step: float) -> Table:
 def _conversions(
     table: Table, sidecar: Sidecar, units: Mapping[str, str]
 ) -> tuple[dict[str, str], dict[str, float]]:
-    """The SI unit of each column, where known, and the factor from the file's unit to SI."""
+    """The SI unit of each column, where known, and the factor from the file's number to SI."""
     si: dict[str, str] = {}
     factors: dict[str, float] = {}
     for name in table.names:
@@ -181,6 +182,7 @@ def _conversions(
             )
         if unit:
             si[name] = unit
+        factors[name] *= lookup(sidecar.factors, name) or 1.0
     return si, factors
 
 

@@ -127,7 +127,8 @@ def output_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Ite
     for k in [*([k] for k in wrong), *([wrong] if len(wrong) > 1 else [])]:
         mirror = f", or of {listed(into)}" if len(k) == y.shape[1] else ""  # looks the same
         yield Reading(replace(log, outputs=turned(y, k)), k, "with the other sign",
-                      f"turn the sign of {listed(out[i] for i in k)}{mirror}")  # fmt: skip
+                      f"turn the sign of {listed(out[i] for i in k)}{mirror}"
+                      f"{how_to_turn([out[i] for i in k])}")  # fmt: skip
     for i, j in combinations(range(y.shape[1]), 2):
         if bad[i] and bad[j]:
             yield Reading(replace(log, outputs=_exchanged(y, i, j)), [i, j], "were they exchanged",
@@ -141,10 +142,16 @@ def input_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iter
     for k in range(u.shape[1]):
         yield Reading(replace(log, inputs=turned(u, [k])), wrong,
                       "with the other sign of an input",
-                      f"turn the sign of {into[k]}")  # fmt: skip
+                      f"turn the sign of {into[k]}{how_to_turn([into[k]])}")  # fmt: skip
     for i, j in combinations(range(u.shape[1]), 2):
         yield Reading(replace(log, inputs=_exchanged(u, i, j)), wrong, "were inputs exchanged",
                       f"exchange {into[i]} and {into[j]} under [columns]")  # fmt: skip
+
+
+def how_to_turn(columns: Sequence[str]) -> str:
+    """What a user writes to turn the sign of some columns of a log, for a message."""
+    told = ", ".join(f"{name} = -1" for name in columns)
+    return f": write {told} under [factors] of the log's TOML"
 
 
 def turned(signals: np.ndarray, columns: Sequence[int]) -> np.ndarray:

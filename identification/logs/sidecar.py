@@ -8,6 +8,8 @@ ignore = ["temperature"]            # columns of the file to leave out
 current = "mA"
 [columns]                           # column of the file = name it should have
 q1 = "angle_1"                      # or, of a file without a header, columns = ["time", "skip", …]
+[factors]                           # by column or by group: what its numbers are multiplied with
+angle_2 = -1                        # turns a sign; a factor comes on top of the unit
 [splits]                            # [start, end) [s]
 estimation = [0, 10]
 validation = [10, 20]
@@ -40,6 +42,7 @@ class Sidecar:
     header: tuple[str, ...] = ()
     units: Mapping[str, str] = field(default_factory=dict)
     columns: Mapping[str, str] = field(default_factory=dict)
+    factors: Mapping[str, float] = field(default_factory=dict)
     splits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     values: Mapping[str, float] = field(default_factory=dict)
 
@@ -132,6 +135,13 @@ def _numbers(value: object) -> dict[str, float]:
     return numbers
 
 
+def _factors(value: object) -> dict[str, float]:
+    numbers = _numbers(value)
+    if not all(numbers.values()):
+        raise TypeError
+    return numbers
+
+
 def _splits(value: object) -> dict[str, tuple[float, float]]:
     if not isinstance(value, dict):
         raise TypeError
@@ -150,6 +160,7 @@ _KEYS: dict[str, tuple[str, Callable[[object], Any]]] = {
     "ignore": ('a list of columns, such as ["temperature"]', _names),
     "units": ('a table of units, such as current = "mA"', _texts),
     "columns": ('a table of names, such as q1 = "angle_1", or a list of them', _texts),
+    "factors": ("a table of numbers other than zero, such as angle_2 = -1", _factors),
     "splits": ("a table of parts in seconds, such as estimation = [0, 10]", _splits),
     "values": ('a table of numbers, such as "body/weight.mass" = 1.0', _numbers),
 }

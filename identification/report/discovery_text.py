@@ -16,7 +16,12 @@ from identification.report.discovery_verdict import (
     discovery_verdict,
     floor_rms,
 )
-from identification.report.effect_words import describe_effect, describe_gains, describe_rejected
+from identification.report.effect_words import (
+    describe_effect,
+    describe_gains,
+    describe_rejected,
+    phrase,
+)
 from identification.report.finding_words import describe_finding
 from identification.report.fitted_values import shown_values, unknown_shares
 from identification.report.parameter_words import words_of
@@ -102,10 +107,9 @@ def _detectable(found: Discovery) -> list[str]:
     if not found.detectable:
         return []
     lines = ["what this log would have shown in 9 cases of 10, and what not:"]
-    width = max(len(d.candidate.effect.name) for d in found.detectable)
-    for d in seen:
-        lines.append(f"  {d.candidate.effect.name:<{width}}  {d.size} >="
-                     f" {quantity(d.smallest, unit=d.unit)}")  # fmt: skip
-    lines += [f"  {d.candidate.effect.name:<{width}}  {d.size}: not at any plausible size"
-              for d in blind]  # fmt: skip
+    width = max(len(phrase(d.candidate.effect)) for d in found.detectable)
+    words = [f"  {phrase(d.candidate.effect):<{width}}  {d.size}" for d in (*seen, *blind)]
+    shown = [f"at least {quantity(d.smallest, unit=d.unit)}" for d in seen]
+    shown += ["at no plausible size"] * len(blind)
+    lines += [f"{what} {size}" for what, size in zip(words, shown, strict=True)]
     return lines

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from identification.estimation.identifiability import in_words
-from identification.quantities import held, matched
+from identification.quantities import error, held, matched
 
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
@@ -118,18 +118,24 @@ def _percent(share: float) -> str:
     return f"{100 * share:.0f} %" if share > 0.1 else f"{100 * share:.2g} %"
 
 
-def window_sentences(found: WindowEstimate, floor: float) -> list[str]:
-    """How a search over windows ended, which parameters it cannot know, and its residual."""
+def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str]:
+    """How a search over windows ended, which parameters it cannot know, and its residual.
+
+    Args:
+        found: the search.
+        floor: rms of the noise over all outputs, in `unit`.
+        unit: of the outputs, "" where they have several.
+    """
     said = ["The search converged." if found.converged else "The search ran out of iterations."]
     if bound := [n for n, at in zip(found.values, found.at_bound, strict=True) if at]:
         said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
     if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
         said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
     said += _weak(found)
-    ratio = f", {held(found.rms / floor)} times the noise floor of {floor:.3g}" if floor > 0 else ""
-    said.append(
-        f"{len(found.residual)} windows of {found.length:g} s leave {found.rms:.2g} rms{ratio}."
-    )
+    share, own = held(found.rms / floor) if floor > 0 else "", error(floor, unit)
+    ratio = f", {share} times the noise floor of {own}" if share else ""
+    left = error(found.rms, unit)
+    said.append(f"{len(found.residual)} windows of {found.length:g} s leave {left} rms{ratio}.")
     return said
 
 
@@ -143,15 +149,21 @@ def _floor(fit: Fit) -> float:
     return float(np.sqrt(np.mean(fit.floor**2)))
 
 
+def _error(fit: Fit, value: float) -> str:
+    """A residual of a fit with the unit of its outputs."""
+    return error(value, fit.estimate.predictor.log.output_unit)
+
+
 def _above(fit: Fit) -> float:
     """The residual as a multiple of the noise floor."""
     return fit.rms / _floor(fit) if _floor(fit) > 0 else np.inf
 
 
 def _enough(fit: Fit) -> list[str]:
-    floor, ratio = _floor(fit), _above(fit)
+    floor, ratio = _error(fit, _floor(fit)), _above(fit)
     sentences = [
-        f"The residual is {fit.rms:.2g} rms, {held(ratio)} times the noise floor of {floor:.3g}."
+        f"The residual is {_error(fit, fit.rms)} rms, {held(ratio)} times the noise floor of"
+        f" {floor}."
     ]
     dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
     coloured = coloured_outputs(fit)
@@ -178,6 +190,7 @@ def _enough(fit: Fit) -> list[str]:
 def _unseen(fit: Fit) -> list[str]:
     if fit.validation_rms is None:
         return ["There is no unseen data to confirm it on."]
+    unseen = _error(fit, fit.validation_rms)
     likely = max(fit.rms, fit.validation_expected or 0.0)
     ratio = fit.validation_rms / likely if likely > 0 else np.inf
     said = "it does not hold: too many parameters, or an effect missing"
@@ -187,11 +200,11 @@ def _unseen(fit: Fit) -> list[str]:
             said = "no worse than on what was fitted, but what is missing is missing there too"
     if ratio < HOLDS and fit.validation_rms > GROWN * fit.rms:
         return [
-            f"On unseen data the residual is {fit.validation_rms:.2g} rms,"
+            f"On unseen data the residual is {unseen} rms,"
             f" {fit.validation_rms / fit.rms:.0f} times that of the fitted part; so small errors of"
             " the parameters may do that there, and it says little. Judge over a horizon."
         ]
     return [
-        f"On unseen data the residual is {fit.validation_rms:.2g} rms,"
+        f"On unseen data the residual is {unseen} rms,"
         f" {held(ratio)} times what the fit leads one to expect: {said}."
     ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from identification.discovery.final_values import collect_final_values
+from identification.discovery.final_values import collect_final_values, keep_of_robot
 from identification.discovery.result import Discovery
 from identification.errors import InputError, refuse_kind
 from identification.prediction.model import predict_fitted
@@ -75,7 +75,8 @@ def _over_free_run(
     """Two sets of values on the records, or on the unseen part of the only log."""
     if not robot.records:
         return (compare_unseen(robot, before, after, models),)
-    return tuple(compare_values(robot, log, before, after, models) for log in robot.records)
+    kept = keep_of_robot(after, robot.plant.effects)
+    return tuple(compare_values(robot, log, before, kept, models) for log in robot.records)
 
 
 def _over_windows(robot: Robot, fit: RobotFit, found: RecordsFit) -> tuple[Confirmation, ...]:

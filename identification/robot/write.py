@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from identification.discovery.final_values import keep_of_robot
 from identification.files import write_text
 from identification.robot.parameters import KNOWN, Free, effect_sizes
 from identification.robot.robot import Robot
@@ -24,7 +25,8 @@ def write_robot(
     """Write a robot with new values; sizes of named effects become free parameters.
 
     What was known of a parameter before the fit stays as it was: a fit of the same log would else
-    count that log twice.
+    count that log twice. A shape that tells something of the fitted log alone, such as what an
+    input did before its first sample, is not written.
 
     Args:
         robot: the robot that was fitted.
@@ -38,6 +40,7 @@ def write_robot(
     own_values = own_values or {}
     own = [*dict.fromkeys([*file.own, *(n for each in own_values.values() for n in each)])]
     values = {**_means([n for n in own if n not in file.own], own_values), **values}
+    values = keep_of_robot(values, robot.plant.effects)
     shapes = {f"{e.name}.{s.name}" for e in robot.plant.effects for s in e.shapes}
     fixed = {**file.fixed, **{n: v for n, v in values.items() if n in shapes}}
     alike = {n for a in file.spread for n in a.names}

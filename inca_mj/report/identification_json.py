@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from identification.estimation.fit import Fit
 from identification.estimation.profiles import Profile
 from identification.kalman.estimate import InnovationsFit
-from identification.quantities import finite_or_none
+from identification.quantities import error, finite_or_none
 from identification.report.fit_json import fit_to_json
 from identification.report.fit_verdict import (
     HOLDS,
@@ -70,7 +71,8 @@ def identification_verdict(result: Identification) -> list[str]:
     if held := held_sentence(result.fit):
         said.append(held)
     if result.starts:
-        said.append(starts_sentence(result.starts[result.best]))
+        unit = result.fit.estimate.predictor.log.output_unit
+        said.append(starts_sentence(result.starts[result.best], unit))
     return said
 
 
@@ -94,11 +96,13 @@ def rows(result: Identification, fit: Fit) -> list[Row]:
 
 def windows_verdict(found: WindowEstimate, fit: Fit) -> list[str]:
     """What the windows found, and how well their parameters predict a free run."""
-    floor = float(np.sqrt(np.mean(fit.floor**2)))
-    said = window_sentences(found, floor)
-    unseen = "" if fit.validation_rms is None else f" and {fit.validation_rms:.3g} on unseen data"
+    floor, unit = float(np.sqrt(np.mean(fit.floor**2))), fit.estimate.predictor.log.output_unit
+    said = window_sentences(found, floor, unit)
+    unseen = ""
+    if fit.validation_rms is not None:
+        unseen = f" and {error(fit.validation_rms, unit)} on unseen data"
     said.append(
-        f"A free run with them, its start pose fitted, leaves {fit.rms:.3g} rms{unseen};"
+        f"A free run with them, its start pose fitted, leaves {error(fit.rms, unit)} rms{unseen};"
         " there small errors of parameters, and all that disturbs the robot, add up."
     )
     return said
@@ -111,24 +115,26 @@ def innovations_verdict(found: InnovationsFit) -> list[str]:
     if fit.estimate.status == "stopped":  # it says nothing of the model
         return said
     said += identifiable_sentences(fit)
+    log = fit.estimate.predictor.log
+    unit, sensors = log.output_unit, error(noise.sigma, log.output_unit)
     if noise.noise.ratio:
-        log = fit.estimate.predictor.log
-        unit = log.units.get(log.input_names[0], "")
+        inputs = error(noise.input_std, log.units.get(log.input_names[0], ""))
         said.append(
-            f"The inputs err by {noise.input_std:.2g} {unit} rms beside what the log says, for"
-            f" {noise.noise.time:g} s at a time; the sensors' noise is {noise.sigma:.3g}."
+            f"The inputs err by {inputs} rms beside what the log says, for"
+            f" {noise.noise.time:g} s at a time; the sensors' noise is {sensors}."
         )
     else:
-        said.append(f"The inputs are as the log says; the sensors' noise is {noise.sigma:.3g}.")
+        said.append(f"The inputs are as the log says; the sensors' noise is {sensors}.")
     if found.validation_rms is not None:
         ratio = found.validation_rms / found.rms
         held = "the model holds there too" if ratio < HOLDS else "the model does not hold there"
         said.append(
-            f"One step ahead it errs by {found.rms:.3g} rms,"
-            f" by {found.validation_rms:.3g} on unseen data: {held}."
+            f"One step ahead it errs by {error(found.rms, unit)} rms,"
+            f" by {error(found.validation_rms, unit)} on unseen data: {held}."
         )
+        unseen = nan if fit.validation_rms is None else fit.validation_rms
         said.append(
-            f"A free run errs by {fit.rms:.3g}, by {fit.validation_rms:.3g} on unseen data;"
+            f"A free run errs by {error(fit.rms, unit)}, by {error(unseen, unit)} on unseen data;"
             " there all that disturbs the robot adds up."
         )
     said.append(
@@ -151,15 +157,20 @@ def held_sentence(fit: Fit) -> str:
     )
 
 
-def starts_sentence(errors: np.ndarray) -> str:
-    """Says how many starts were needed, and how well they agree."""
+def starts_sentence(errors: np.ndarray, unit: str) -> str:
+    """Says how many starts were needed, and how well they agree.
+
+    Args:
+        errors: rms error at which each ended, in `unit`.
+        unit: of the outputs, "" where they have several.
+    """
     best = float(errors.min())
     same = int((errors < 1.01 * best).sum())
     if len(errors) == 1:
         return "The first start ended near the noise floor; no other was needed."
     return (
-        f"{len(errors)} starts were tried; {same} ended within 1 % of the best, {best:.3g} rms,"
-        f" the worst at {float(errors.max()):.3g}."
+        f"{len(errors)} starts were tried; {same} ended within 1 % of the best,"
+        f" {error(best, unit)} rms, the worst at {error(float(errors.max()), unit)}."
     )
 
 

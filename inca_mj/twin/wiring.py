@@ -22,7 +22,7 @@ from identification import Log, Predictor
 from identification.errors import DivergenceError, InputError
 from identification.logs.frozen import refuse_frozen
 from identification.logs.names import listed
-from identification.logs.readings import Reading, misread, output_readings, turned
+from identification.logs.readings import Reading, how_to_turn, misread, output_readings, turned
 from identification.robot.trust import TRUST, trusted
 from inca_mj.twin.twin import Twin
 
@@ -126,14 +126,15 @@ def _other_wiring(part: Log, predicted: np.ndarray) -> str | None:
 
 def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Reading]:
     """What is wrong with several encoders at once: signs, and an exchange of more than two."""
-    back = np.flatnonzero((y * predicted).sum(axis=0) < 0).tolist()
+    names, back = part.output_names, np.flatnonzero((y * predicted).sum(axis=0) < 0).tolist()
     if 1 < len(back) < y.shape[1]:
         outputs = turned(part.outputs, back)
         yield Reading(replace(part, outputs=outputs), back, "with the other sign",
-                      f"turn the sign of {listed(part.output_names[k] for k in back)}")  # fmt: skip
+                      f"turn the sign of {listed(names[k] for k in back)}"
+                      f"{how_to_turn([names[k] for k in back])}")  # fmt: skip
     from scipy.optimize import linear_sum_assignment  # slow to import
 
-    every, names = np.arange(y.shape[1]), part.output_names
+    every = np.arange(y.shape[1])
     cosine = _alike(y, predicted)
     for likeness in (cosine, np.abs(cosine)):  # whatever the signs, in the second
         _, at = linear_sum_assignment(1 - likeness)
@@ -143,8 +144,8 @@ def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Readin
             outputs = part.outputs.copy()
             outputs[:, at] = turned(part.outputs, back)
             pairs = listed(f"{names[i]} to {names[at[i]]}" for i in moved)
-            turned_names = listed(names[i] for i in back)
-            turn = f", and in the file turn the sign of what is {turned_names} now" if back else ""
+            new = [names[at[i]] for i in back]
+            turn = f", and turn the sign of the new {listed(new)}{how_to_turn(new)}" if back else ""
             changed = [k for k in every.tolist() if k in (*at[moved], *at[back])]
             wrong = [k for k in changed if 1 - cosine[k, k] > RIGHT]  # others are right by a mirror
             if not wrong:

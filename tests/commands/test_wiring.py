@@ -48,7 +48,7 @@ def test_a_reversed_encoder(plant, drive):
     def reverse(y):
         y[:, drive] *= -1
 
-    with pytest.raises(InputError, match=f"turn the sign of angle_{drive + 1};"):
+    with pytest.raises(InputError, match=f"turn the sign of angle_{drive + 1}: write"):
         refuse_miswired(changed(reverse), plant)
 
 
@@ -96,7 +96,7 @@ def test_several_encoders_at_once(plant):
     def reverse(y):
         y[:, [1, 4, 6]] *= -1
 
-    with pytest.raises(InputError, match="turn the sign of angle_2, angle_5, angle_7;"):
+    with pytest.raises(InputError, match="turn the sign of angle_2, angle_5, angle_7: write"):
         refuse_miswired(changed(reverse), plant)
 
     def rotate(y):
@@ -123,8 +123,8 @@ def test_encoders_that_are_exchanged_and_turned(plant, seed):
     said = str(refused.value)
     for k in which:  # what is called angle_k is of another drive
         assert f"angle_{k + 1} to angle_{at[k] + 1}" in said
-    turned = said.partition("turn the sign of what is ")[2].partition(" now;")[0]
-    assert {*turned.replace(" and ", ", ").split(", ")} == {f"angle_{k + 1}" for k in back}
+    turned = said.partition("turn the sign of the new ")[2].partition(": write")[0]
+    assert {*turned.split(", ")} == {f"angle_{at[k] + 1}" for k in back}
 
 
 @pytest.mark.parametrize("drive", [0, 5])

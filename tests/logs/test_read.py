@@ -55,6 +55,17 @@ def test_a_column_s_own_unit_wins_over_its_group_s(csv):
     assert log.units["current_1"] == "A"
 
 
+def test_a_factor_comes_on_top_of_the_unit(csv):
+    path = csv(TEXT)
+    path.with_suffix(".toml").write_text(
+        'units.angle = "deg"\n[factors]\nangle_1 = -1\ncurrent = 0.5\n'
+    )
+    log = read(path, units=UNITS)
+    assert log.outputs[0] == pytest.approx(np.deg2rad([-3, 4]))
+    assert log.inputs[0] == pytest.approx([0.5, 1])
+    assert log.units["angle_1"] == "rad"
+
+
 def test_everything_a_sidecar_can_say(csv):
     path = csv(TEXT.replace("angle_1", "q1").replace("angle_2", "q2").replace("time", "hour"))
     path.with_suffix(".toml").write_text(

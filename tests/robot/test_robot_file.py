@@ -91,6 +91,18 @@ def test_a_robot_with_an_effect_reads_back_to_the_bit(folder, tmp_path):
     assert again.records["mass"]["path"] == "body/cart.mass"
 
 
+def test_what_an_input_did_before_one_log_is_kept_for_no_other(folder, tmp_path):
+    file = read_robot_file(folder / "robot.toml")
+    robot = robot_of(file, read_robot_log(file, str(folder / "hidden.csv")))
+    (name,) = (p.name for p in robot.plant.parameters if p.name.endswith("delay.before"))
+    values = {"mass": 1.8, "delay.tau@force": 0.01, name: 0.7}
+    again = read_robot_file(write_robot(robot, values, tmp_path / "late.toml", tmp_path))
+    back = robot_of(again, robot.log).plant.parameters
+    assert back["delay.tau@force"].value == 0.01
+    assert back[name].value == 0.0
+    assert not again.fixed
+
+
 def test_where_nothing_is_missing_the_fitted_model_is_confirmed(folder, capsys):
     path = folder / "nothing.toml"
     path.write_text(TOML + '[effects]\nonly = ["stiffness"]\n')
