@@ -111,9 +111,24 @@ class JointPlant:
         steps = 1 if self.states else max(self.steps, self.slope_steps)
         model = copy.copy(self.model)
         model.opt.timestep = steps * self.bare.model.opt.timestep
+        return self._stopping(model, max(GENTLE, steps))
+
+    def with_step(self, factor: float) -> JointPlant:
+        """The same plant with another step of the user's model, in which joints stop as they did.
+
+        Args:
+            factor: new step over the old one.
+        """
+        model = copy.copy(self.bare.model)
+        model.opt.timestep *= factor
+        bare = replace(self.bare, model=self._stopping(model, factor))
+        return replace(self, bare=bare, steps=1, slope_steps=1)
+
+    def _stopping(self, model: mujoco.MjModel, factor: float) -> mujoco.MjModel:
+        """A copy of the model, whose joints now take so many times as long to stop."""
         column = int(model.nuser_jnt) - self.layout.entries + STOP
         for joint in self.joints:
-            model.jnt_user[int(model.joint(joint).id), column] *= max(GENTLE, steps)
+            model.jnt_user[int(model.joint(joint).id), column] *= factor
         return model
 
     def with_values(self, values: Mapping[str, float]) -> JointPlant:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from identification.model.predictor import Plant
 from identification.prediction.fit import WindowFit
 from identification.prediction.own_values import Own
 from identification.prediction.records import Record
+from identification.prediction.step_shift import step_shift
 from identification.prediction.told_std import told_std
 from identification.prediction.unseen import Unseen, predict
 
@@ -64,6 +66,11 @@ class WindowModel:
     def told_std(self) -> dict[str, float]:
         """These std as far as they can be known; NaN where too few windows tell of a value."""
         return dict(zip(self.fit.problem.names, told_std(self.fit).tolist(), strict=True))
+
+    @cached_property
+    def step_shift(self) -> dict[str, float]:
+        """By how much each free value would change with a quarter of the step, in its unit."""
+        return dict(zip(self.fit.problem.names, step_shift(self.fit).tolist(), strict=True))
 
     @property
     def std(self) -> dict[str, float]:

@@ -12,12 +12,13 @@ from identification.report.records_fit_verdict import records_fit_verdict
 def records_fit_to_json(found: RecordsFit) -> dict[str, Any]:
     """The numbers and the verdict of a fit; unknown and infinite numbers are null."""
     rows = zip(found.values.items(), found.std, found.start, found.at_bound, strict=True)
+    shift = found.model.step_shift
     units = {p.name: p.unit for p in found.model.plant.parameters}
     return {
         "parameters": {
             name: {"value": value, "std": finite_or_none(std),
                    "unit": units[name.partition(" [")[0]], "initial": float(first),
-                   "at_bound": bool(bound)}
+                   "at_bound": bool(bound), "step_shift": finite_or_none(shift[name])}
             for (name, value), std, first, bound in rows
         },
         "rms": found.rms,

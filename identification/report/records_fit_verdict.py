@@ -8,6 +8,7 @@ from identification.estimation.identifiability import in_words
 from identification.prediction.records_fit import RecordsFit
 from identification.report.fit_verdict import WEAK
 from identification.report.scale_words import describe_scale
+from identification.report.step_words import step_sentences
 
 MUCH = 3.0  # times the noise floor, beyond which a fit is told to lack something
 
@@ -30,6 +31,7 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
     each = "1 window" if windows == 1 else f"{windows} windows"
     said.append(f"{each} of {found.horizon:g} s leave {left}{ratio}.")
     said += describe_scale(found.model, found.unit)
+    said += step_sentences(found.model)
     if floor > 0 and rms > MUCH * floor:
         said.append(
             "That is far more than the sensors make: the model lacks something, or a column is not"

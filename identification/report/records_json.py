@@ -53,8 +53,11 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
 
 def _values_to_json(model: WindowModel) -> dict[str, Any]:
     """Fitted values, those of one record as `name [record]`, and what effects hold fixed."""
-    values, std = {**model.values, **model.fit.values}, model.told_std
-    return {name: {"value": value, "std": std.get(name)} for name, value in values.items()}
+    values, std, shift = {**model.values, **model.fit.values}, model.told_std, model.step_shift
+    return {
+        name: {"value": value, "std": std.get(name), "step_shift": shift.get(name)}
+        for name, value in values.items()
+    }
 
 
 def _refitted_to_json(effect: RefittedEffect) -> dict[str, Any]:

@@ -16,8 +16,14 @@ from identification.report.finding_words import (
     describe_shift,
     sentence,
 )
-from identification.report.records_values import text_table, value_table, value_with_std
+from identification.report.records_values import (
+    text_table,
+    value_table,
+    value_with_std,
+    value_words,
+)
 from identification.report.scale_words import describe_scale
+from identification.report.step_words import step_sentences
 from identification.windows.coarse import OUTPUT_ERROR
 
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
@@ -186,14 +192,16 @@ def _shifts(found: RecordsDiscovery) -> list[str]:
 
 
 def steps_taken(found: RecordsDiscovery) -> list[str]:
-    """A sentence where simulations took longer steps than the user's model; else none."""
+    """What steps simulations took, where longer than the model's, and which values they move."""
     taken, own = found.steps
+    said = step_sentences(found.final, value_words(found))
     if taken <= own:
-        return []
+        return said
     return [
         f"Simulations took steps of {quantity(taken, unit='s')} where the model has"
         f" {quantity(own, unit='s')}: this changes what is predicted by less than"
-        f" {100 * OUTPUT_ERROR:.0f} % of its error."
+        f" {100 * OUTPUT_ERROR:.0f} % of its error.",
+        *said,
     ]
 
 

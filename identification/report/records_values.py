@@ -37,12 +37,17 @@ def value_table(found: RecordsDiscovery) -> tuple[tuple[str, ...], list[tuple[st
     names = [*dict.fromkeys(name for column in columns for name in column)]
     without = "as begun, without effects" if is_begun else "fitted without effects"
     head = ("parameter", without, "fitted with what is named")
-    effects = [named.effect.candidate.effect for named in found.named]
-    words = parameter_words(found.final.plant.parameters, effects)
+    words = value_words(found)
     rows = [
         (words.get(name, name), *(column.get(name, "–") for column in columns)) for name in names
     ]
     return head[: 1 + len(models)], rows
+
+
+def value_words(found: RecordsDiscovery) -> dict[str, str]:
+    """The words of the fitted values by name."""
+    effects = [named.effect.candidate.effect for named in found.named]
+    return parameter_words(found.final.plant.parameters, effects)
 
 
 def text_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:

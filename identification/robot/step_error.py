@@ -133,9 +133,9 @@ def _cure(robot: Robot) -> str:
 
 def _stepped(robot: Robot, factor: float, integrator: int | None = None) -> Robot:
     """The same robot with another timestep and, if given, another integrator."""
-    model = copy.copy(robot.plant.bare.model)
-    model.opt.timestep *= factor
+    plant = robot.plant.with_step(factor)
     if integrator is not None:
+        model = copy.copy(plant.bare.model)
         model.opt.integrator = integrator
-    plant = replace(robot.plant, bare=replace(robot.plant.bare, model=model))
+        plant = replace(plant, bare=replace(plant.bare, model=model))
     return replace(robot, plant=plant)

@@ -1,0 +1,82 @@
+"""What the step of a simulation does to an estimate is what a search with a finer step finds."""
+
+import runpy
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from identification import Log, fit
+from identification.prediction.step_shift import FINER, step_shift
+from identification.report.step_words import step_sentences
+from identification.robot.file import read_robot_file
+from identification.robot.robot import robot_of
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "elbow"
+FRICTION = "coulomb_friction.f_c@elbow"
+
+
+def recorded(elbow, seed):
+    time, current, angle = elbow["record"](seed).T
+    names = {"input_names": ("current",), "output_names": ("angle",), "name": f"log {seed}"}
+    return Log(time=time, inputs=current[:, None], outputs=angle[:, None], **names)
+
+
+@pytest.fixture(scope="module")
+def elbow(tmp_path_factory):
+    """The elbow with dry friction, fitted with its own step and with a quarter of it."""
+    source = runpy.run_path(str(EXAMPLE / "record.py"))
+    logs = [recorded(source, seed) for seed in (21, 121)]
+    folder = tmp_path_factory.mktemp("elbow")
+    toml = (EXAMPLE / "elbow.toml").read_text()
+    toml = toml.replace('"damping"]', f'"damping", "{FRICTION}"]')
+    (folder / "elbow.toml").write_text(
+        toml + f'\n[parameters."{FRICTION}"]\nunit = "N m"\nvalue = 0.1\nknown = 1.0\n'
+    )
+    model, fits = (EXAMPLE / "elbow.xml").read_text(), []
+    for step in (0.005, 0.005 / FINER):
+        text = model.replace('timestep="0.005"', f'timestep="{step}"')
+        (folder / "elbow.xml").write_text(text)
+        robot = robot_of(read_robot_file(folder / "elbow.toml"), logs[0], (), (logs[1],))
+        fits.append(fit(robot).found)
+    return fits
+
+
+def test_it_is_the_change_of_a_search_with_a_finer_step(elbow):
+    coarse, fine = (found.model for found in elbow)
+    shift, std = coarse.step_shift, coarse.told_std
+    real = {n: fine.fit.values[n] - v for n, v in coarse.fit.values.items()}
+    moved = {n: real[n] / std[n] for n in real}
+    assert max(map(abs, moved.values())) > 3  # the std know nothing of it
+    for name in real:
+        assert shift[name] / std[name] == pytest.approx(moved[name], abs=0.6)
+    # From the values of the finer step there is little left to move.
+    left = {n: s / fine.told_std[n] for n, s in fine.step_shift.items()}
+    assert max(map(abs, left.values())) < 0.5 * max(map(abs, moved.values()))
+
+
+def test_it_is_said_where_it_exceeds_the_std(elbow):
+    coarse = elbow[0].model
+    (said,) = step_sentences(coarse, {"mass": "the forearm's mass"})
+    assert said.startswith("The steps of the simulation move the forearm's mass by 4")
+    assert "timestep of 1.25 ms or less" in said
+    assert "(it has 5 ms)" in said
+    sure = replace(coarse)
+    sure.__dict__["step_shift"] = {n: 0.9 * s for n, s in coarse.told_std.items()}
+    assert step_sentences(sure) == []
+    sure.__dict__["step_shift"] = dict.fromkeys(coarse.told_std, np.nan)
+    assert step_sentences(sure) == []
+
+
+def test_a_finer_step_moves_nothing_where_all_is_smooth(elbow):
+    """RK4 errs by so little there that no std feels it."""
+    coarse = elbow[0].model.fit
+    problem, names = coarse.problem, coarse.problem.names
+    at = problem.prior.space.decode(coarse.q)
+    at[names.index(FRICTION)] = 1e-12
+    q = problem.prior.space.encode(at)
+    smooth = replace(coarse, q=q, tangents=problem.tangents(q, coarse.moves))
+    shift = step_shift(smooth)[[names.index(n) for n in ("mass", "damping")]]
+    std = coarse.std[[names.index(n) for n in ("mass", "damping")]]
+    assert np.all(np.abs(shift) < 0.01 * std)
