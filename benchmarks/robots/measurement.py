@@ -74,7 +74,8 @@ def measure(robot: MeasuredRobot, say: Callable[[str], None]) -> dict[str, Any]:
     record["sizes"] = _sizes(compiled, found, known)
     fitted = {NOMINAL: found.nominal.values}
     fitted |= {FINAL: found.final.values} if found.named else {}
-    return plain({**record, **_beside(robot, compiled.plant, fitted)})
+    own = _own_values(compiled.plant, record["discovery"])
+    return plain({**record, **_beside(robot, compiled.plant, fitted, own)})
 
 
 def measure_again(robot: MeasuredRobot, record: dict[str, Any]) -> dict[str, Any]:
@@ -90,18 +91,45 @@ def measure_again(robot: MeasuredRobot, record: dict[str, Any]) -> dict[str, Any
         path = write_model(robot, Path(folder))
         compiled = read_robot(path, list(robot.fit), list(robot.confirm))
     kept = record["discovery"]
-    fitted = {NOMINAL: {n: v["value"] for n, v in kept["nominal"].items()}}
+    fitted = {NOMINAL: _shared(kept["nominal"])}
     if kept["effects"]:
-        fitted[FINAL] = {n: v["value"] for n, v in kept["final"].items()}
-    published = [vars(p) for p in robot.published]
-    return plain({**record, "published": published, **_beside(robot, compiled.plant, fitted)})
+        fitted[FINAL] = _shared(kept["final"])
+    own, published = _own_values(compiled.plant, kept), [vars(p) for p in robot.published]
+    found = _beside(robot, compiled.plant, fitted, own)
+    return plain({**record, "published": published, **found})
+
+
+def _shared(values: dict[str, Any]) -> dict[str, float]:
+    """The fitted values that hold for all records, of a discovery's JSON."""
+    return {n: v["value"] for n, v in values.items() if not n.endswith("]")}
+
+
+def _own_values(plant: JointPlant, found: dict[str, Any]) -> dict[str, dict[str, float]]:
+    """By record and name what each record has for itself with what is named, as a shift of a clock.
+
+    Of a record that confirms it is the mean of what its halves tell: one number of a whole record.
+    """
+    effects, out = {e.name: e for e in plant.effects}, {}
+    for named in found["effects"]:
+        for said, parameter in named["parameters"].items():
+            size, _, record = said.removesuffix("]").partition(" [")
+            if record:
+                name = effects[named["name"]].parameter(size, named["where"])
+                out.setdefault(record, {})[name] = parameter["value"]
+    return out
 
 
 def _beside(
-    robot: MeasuredRobot, plant: JointPlant, fitted: dict[str, dict[str, float]]
+    robot: MeasuredRobot,
+    plant: JointPlant,
+    fitted: dict[str, dict[str, float]],
+    own: dict[str, dict[str, float]],
 ) -> dict[str, Any]:
     """Errors of the fitted models and of those of others on unseen records; other evidence."""
-    models = {name: errors_of(plant, values) for name, values in fitted.items()}
+    models = {
+        name: errors_of(plant, values, own if name == FINAL else {})
+        for name, values in fitted.items()
+    }
     last = [*models.values()][-1]
     every = {NOMINAL: models[NOMINAL], BEGUN: errors_of(plant, {}), **models,
              **{m.name: m.errors for m in robot.models}}  # fmt: skip

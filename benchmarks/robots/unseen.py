@@ -19,9 +19,22 @@ MOST = 60  # windows of a record that are predicted: an arm of six joints takes 
 PARTS = 6  # of a record that has more
 
 
-def errors_of(plant: Plant, values: Mapping[str, float]) -> Errors:
-    """The window errors of a plant with some values."""
-    return lambda log, horizon: window_error(plant, log, horizon, values)
+def errors_of(
+    plant: Plant,
+    values: Mapping[str, float],
+    own: Mapping[str, Mapping[str, float]] | None = None,
+) -> Errors:
+    """The window errors of a plant with some values.
+
+    Args:
+        plant: the model.
+        values: by name, the same for all records.
+        own: by record and by name, what a record has for itself.
+    """
+    each = own or {}
+    return lambda log, horizon: window_error(
+        plant, log, horizon, {**values, **each.get(log.name, {})}
+    )
 
 
 def compare(models: Mapping[str, Errors], logs: Sequence[Log], horizon: float) -> dict[str, Any]:
