@@ -39,8 +39,11 @@ class Discover(OnRobot):
 
     def run(self) -> int:
         """Discover, confirm, say, keep."""
-        from identification.discovery.final_values import collect_final_values
         from identification.discovery.options import read_options
+
+        options = None if self.options is None else read_options(self.options)
+        robot = self.read()  # before the imports that are slow: a wrong file is refused at once
+        from identification.discovery.final_values import collect_final_values
         from identification.folders import whole_folder
         from identification.prediction.result import RecordsDiscovery
         from identification.report.discovery_json import discovery_to_json
@@ -51,8 +54,6 @@ class Discover(OnRobot):
         from identification.robot.repetition import find_repetitions
         from identification.robot.write import write_robot
 
-        options = None if self.options is None else read_options(self.options)
-        robot = self.read()
         found = discover(robot, progress=self.output.tell, options=options)
         if isinstance(found, RecordsDiscovery):
             return self._keep_records(robot, found)

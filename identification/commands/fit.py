@@ -27,12 +27,12 @@ class Fit(OnRobot):
 
     def run(self) -> int:
         """Fit, confirm, say, keep; 1 where unseen records are predicted worse, 130 when stopped."""
+        robot = self.read()  # before the imports that are slow: a wrong file is refused at once
         from identification.robot.confirmation import confirm
         from identification.robot.fit_json import robot_fit_to_json
         from identification.robot.fitting import fit
         from identification.robot.write import write_robot
 
-        robot = self.read()
         found = fit(robot, self.output.tell)
         record = robot_fit_to_json(found, confirm(robot, found))
 

@@ -41,10 +41,13 @@ class OnRobot:
             InputError: as `identification.read_robot`.
         """
         from identification.errors import InputError
-        from identification.robot.reading import read_robot
+        from identification.robot.file import read_robot_file
 
         if not self.logs:
             raise InputError("no log is given; write LOG behind the robot's file")
+        read_robot_file(self.robot)  # refuses a wrong file before the imports that are slow
+        from identification.robot.reading import read_robot
+
         robot = read_robot(
             self.robot,
             self.logs,

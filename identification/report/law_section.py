@@ -6,6 +6,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from identification.discovery.recovered_force import RecoveredForce
 from identification.discovery.recovery import recover_force
 from identification.discovery.result import Discovery
@@ -13,6 +15,7 @@ from identification.effects.effect import Candidate
 from identification.errors import DivergenceError
 from identification.prediction.recovery import recover_over_horizon
 from identification.prediction.result import RecordsDiscovery
+from identification.quantities import quantity
 from identification.report.effect_words import describe_effect
 from identification.report.law_figure import law_figure
 from identification.report.page import Section
@@ -58,7 +61,11 @@ def law_sections(found: Discovery | RecordsDiscovery) -> list[Section]:
             continue
         what = "error" if "reading" in candidate.effect.hooks else "force"
         figures.append((f"Missing {what} and its law: {effect}", law_figure(of)))
-        said.append(f"{effect[0].upper()}{effect[1:]}: {candidate.effect.law}.")
+        most = quantity(float(np.abs(of.law.force).max()), unit=of.units[1])
+        said.append(
+            f"{effect[0].upper()}{effect[1:]}: {candidate.effect.law}. Along this motion it is"
+            f" {most} at most, which need not be the value of one of its parameters."
+        )
     return [Section(LAWS, "\n\n".join(said), figures=tuple(figures))]
 
 
