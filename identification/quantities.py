@@ -26,18 +26,20 @@ def finite_or_none(value: float | None) -> float | None:
     return None if value is None or not isfinite(value) else float(value)
 
 
-def quantity(value: float, std: float = float("nan"), unit: str = "") -> str:
+def quantity(value: float, std: float = float("nan"), unit: str = "", like: float = 0.0) -> str:
     """A value with its std and unit.
 
     Args:
         value: in `unit`.
         std: in `unit`; not said when it is not finite or zero.
         unit: SI unit, "" when dimensionless: small numbers are then said in percent.
+        like: the largest value beside which it stands, in `unit`: both then have one prefix.
     """
     if not isfinite(value):
         return "unknown"
     known = isfinite(std) and std > 0
-    factor, unit = _scale(max(abs(value), std if known else 0.0), unit, exact=std == 0)
+    largest = abs(like) or max(abs(value), std if known else 0.0)
+    factor, unit = _scale(largest, unit, exact=std == 0)
     value, std = value / factor, std / factor
     if not known:
         return f"{_plain(value, _DIGITS)} {unit}".strip()

@@ -49,11 +49,13 @@ def parameters_section(found: Discovery) -> Section:
         if p.name not in last and p.name not in first:
             held += [words[p.name]] if p.where not in ("effect", "start") else []
             continue
+        told = (nominal.get(p.name, 0.0), values[p.name], 0.0 if p.where == "effect" else p.value)
+        like = max(map(abs, told))
         row = (
             words[p.name],
-            "–" if p.where == "effect" else quantity(p.value, unit=p.unit),
-            _value(nominal.get(p.name), first.get(p.name), p.unit),
-            _value(values[p.name], last.get(p.name), p.unit),
+            "–" if p.where == "effect" else quantity(p.value, unit=p.unit, like=like),
+            _value(nominal.get(p.name), first.get(p.name), p.unit, like),
+            _value(values[p.name], last.get(p.name), p.unit, like),
         )
         rows.append(row if found.named else row[:3])
     titles = ("parameter", "nominal", "fitted without effects", "fitted with what is named")
@@ -91,8 +93,8 @@ def unseen_section(found: Discovery) -> Section:
     )
 
 
-def _value(value: float | None, std: float | None, unit: str) -> str:
-    return "–" if value is None or std is None else quantity(value, std, unit)
+def _value(value: float | None, std: float | None, unit: str, like: float) -> str:
+    return "–" if value is None or std is None else quantity(value, std, unit, like)
 
 
 def _sized(value: float, unit: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -15,17 +15,18 @@ from identification.report.parameter_words import parameter_words
 NOT_TOLD = "± unknown"  # too few windows tell of a value for its std to be known
 
 
-def value_with_std(value: float, std: float, unit: str) -> str:
+def value_with_std(value: float, std: float, unit: str, like: float = 0.0) -> str:
     """A value with its std, and said so where the std cannot be known.
 
     Args:
         value: in `unit`.
         std: in `unit`; NaN where too few windows tell of it, inf where none feels it.
         unit: SI unit.
+        like: see `quantity`.
     """
     if np.isinf(std):
-        return f"{quantity(value, unit=unit)}, not felt"
-    said = quantity(value, std, unit)
+        return f"{quantity(value, unit=unit, like=like)}, not felt"
+    said = quantity(value, std, unit, like)
     return f"{said} {NOT_TOLD}" if np.isnan(std) else said
 
 
@@ -33,7 +34,11 @@ def value_table(found: RecordsDiscovery) -> tuple[tuple[str, ...], list[tuple[st
     """Head and rows: each fitted value, of the nominal model and of the one with what is named."""
     models = [found.nominal, found.final] if found.named else [found.nominal]
     is_begun = any(f.kind is FindingKind.WORSE_FIT for f in found.findings)
-    columns = [_values(m, is_begun and m is found.nominal) for m in models]
+    like: dict[str, float] = {}
+    for model in models:
+        for name, value in {**model.fit.values, **model.values}.items():
+            like[name] = max(like.get(name, 0.0), abs(value))
+    columns = [_values(m, like, is_begun and m is found.nominal) for m in models]
     names = [*dict.fromkeys(name for column in columns for name in column)]
     without = "as begun, without effects" if is_begun else "fitted without effects"
     head = ("parameter", without, "fitted with what is named")
@@ -59,12 +64,15 @@ def text_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     ]
 
 
-def _values(model: WindowModel, is_begun: bool) -> dict[str, str]:
+def _values(model: WindowModel, like: Mapping[str, float], is_begun: bool) -> dict[str, str]:
     """What was fitted, or was begun with, and what effects hold fixed, in words by name."""
     std, parameters = model.told_std, model.plant.parameters
     out = {}
     for name, value in {**model.fit.values, **model.values}.items():
         unit = parameters[name.partition(" [")[0]].unit
-        known = name in std and not is_begun
-        out[name] = value_with_std(value, std[name], unit) if known else quantity(value, unit=unit)
+        most = like[name]
+        if name in std and not is_begun:
+            out[name] = value_with_std(value, std[name], unit, most)
+        else:
+            out[name] = quantity(value, unit=unit, like=most)
     return out
