@@ -106,5 +106,5 @@ def test_values_that_stand_side_by_side_have_one_prefix():
     assert quantity(1.02e-3, 4e-5, "N m", like=1.02e-3) == "1.02 ± 0.04 mN m"
     assert quantity(9.5e-4, 4e-5, "N m", like=1.02e-3) == "0.95 ± 0.04 mN m"
     assert quantity(9.5e-4, 4e-5, "N m") == "950 ± 40 µN m"
-    assert quantity(0.98, 0.02, like=1.02) == "0.98 ± 0.02"
+    assert quantity(0.98, 0.02, like=1.02) == "0.980 ± 0.020"
     assert quantity(0.0, 0.0, "rad", like=0.0) == "0 rad"
