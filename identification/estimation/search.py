@@ -5,6 +5,7 @@
 - A horizon ends at a relative gain of `ROUGH` if a longer one follows; the last horizon ends at the
   `tolerance` of the options.
 - No sensitivities are computed at the point where the search ends.
+- Sensitivities are kept where the outputs changed as they had promised (see `slopes`).
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from scipy.optimize import least_squares
 
 from identification.errors import DivergenceError, InputError
 from identification.estimation.options import Options, Progress, Status, prior_weight
+from identification.estimation.slopes import Slopes
 from identification.logs.noise import relative_weight, whitener_of
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
@@ -34,7 +36,7 @@ EXACT = 1e-11  # residual over outputs below which only round-off is left
 
 
 class _Settled(Exception):
-    """The search ends here, so that the next sensitivities would not be used."""
+    """The search ends here: what would come next is not worth its simulations."""
 
 
 class Search:
@@ -148,16 +150,24 @@ class Search:
         size = np.where(self.space.logarithmic, 1.0, np.maximum(1.0, np.abs(origin)))
         hold = HOLD[samples == len(self.predictor.log)] / size
 
+        slopes: Slopes | None = None
+
+        def stacked(q: np.ndarray, weighed: np.ndarray) -> np.ndarray:
+            return np.concatenate(
+                [weighed.ravel(), (q - self.first) * self.prior, (q - origin) * hold]
+            )
+
         def residual(q: np.ndarray) -> np.ndarray:
             nonlocal cost, gain
             try:
                 weighed = (weight * self.error(q, samples)) @ self.whitener.T
             except InputError:  # no simulation is possible here: the search must try another point
                 weighed = np.full((samples, len(self.whitener)), np.inf)
-            r = np.concatenate(
-                [weighed.ravel(), (q - self.first) * self.prior, (q - origin) * hold]
-            )
-            if (now := float(r @ r)) < cost:
+            r = stacked(q, weighed)
+            now = float(r @ r)
+            if linear and cost <= now <= cost * (1 + tolerance):
+                raise _Settled  # no step leads down any more
+            if now < cost:
                 gain, cost, self.best = cost - now, now, q.copy()
                 self._tell(samples, weighed)
             return r
@@ -165,11 +175,17 @@ class Search:
         def jacobian(q: np.ndarray) -> np.ndarray:
             if linear and (gain <= tolerance * cost or cost <= exact):
                 raise _Settled
-            self.jacobians += 1
-            J = forward_sensitivity(self.predictor, self.space, q, self.predicted(q, samples))
-            J = weight[:, :, None] * J
-            weighed = -np.einsum("ij,njp->nip", self.whitener, J).reshape(-1, len(q))
-            return np.concatenate([weighed, np.diag(self.prior), np.diag(hold)])
+            nonlocal slopes
+            r = stacked(q, (weight * self.error(q, samples)) @ self.whitener.T)
+            slopes = slopes and slopes.moved(q, r)
+            if slopes is None:
+                self.jacobians += 1
+                J = forward_sensitivity(self.predictor, self.space, q, self.predicted(q, samples))
+                J = weight[:, :, None] * J
+                weighed = -np.einsum("ij,njp->nip", self.whitener, J).reshape(-1, len(q))
+                J = np.concatenate([weighed, np.diag(self.prior), np.diag(hold)])
+                slopes = Slopes(q.copy(), r, J)
+            return slopes.J
 
         bounded: dict[str, Any] = {}
         if self.options.method != "lm":

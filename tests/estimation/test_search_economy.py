@@ -9,6 +9,7 @@ import pytest
 
 from identification import Log
 from identification.estimation.estimation import Options, estimate
+from identification.estimation.slopes import Slopes
 from identification.model.coordinates import coordinates
 from identification.model.predictor import Predictor
 from identification.model.sensitivity import forward_sensitivity, sensitivity
@@ -66,3 +67,33 @@ def test_rough_horizons_do_not_move_the_end(robot, noisy):
 def test_no_sensitivities_are_taken_where_a_horizon_ends(robot, noisy):
     found = estimate(robot, noisy, NAMES, START, Options(horizons=(1.0,)))
     assert found.jacobians < found.evaluations
+
+
+def test_kept_slopes_save_simulations_and_move_nothing(robot, noisy, monkeypatch):
+    kept = estimate(robot, noisy, NAMES, START)
+    monkeypatch.setattr("identification.estimation.slopes.KEPT", 0.0)
+    fresh = estimate(robot, noisy, NAMES, START)
+    assert kept.jacobians < 0.7 * fresh.jacobians
+    np.testing.assert_allclose(kept.q, fresh.q, rtol=0, atol=1e-6)
+
+
+def test_kept_slopes_have_the_change_that_was_seen_and_keep_what_was_not():
+    rng = np.random.default_rng(4)
+    J, q, step = rng.standard_normal((30, 5)), rng.standard_normal(5), rng.standard_normal(5)
+    slopes = Slopes(q, np.zeros(30), J)
+    change = J @ step
+    change += 0.05 * np.linalg.norm(change) * np.eye(30)[3]
+    moved = slopes.moved(q + step, change)
+    np.testing.assert_allclose(moved.J @ step, change, rtol=1e-12)
+    # Across the step, where a length is that of the outputs' change, the slopes are what they were.
+    across = rng.standard_normal(5)
+    weight = np.sum(J**2, axis=0)
+    across -= (across * weight) @ step / (step * weight @ step) * step
+    np.testing.assert_allclose(moved.J @ across, J @ across, rtol=1e-12)
+    # Units of a parameter change nothing.
+    unit = np.array([1.0, 1e3, 1e-4, 7.0, 1.0])
+    scaled = Slopes(q / unit, np.zeros(30), J * unit).moved((q + step) / unit, change)
+    np.testing.assert_allclose(scaled.J / unit, moved.J, rtol=1e-9)
+    # A change that was not promised needs new slopes.
+    assert slopes.moved(q + step, change + 0.2 * np.linalg.norm(change) * np.eye(30)[7]) is None
+    assert slopes.moved(q + step, np.full(30, np.nan)) is None
