@@ -8,6 +8,8 @@ from difflib import get_close_matches
 _LONGEST = 60  # of an argument in a message
 _WORD = 240  # letters of a word in a message, such as a path
 _ENDS = 80  # letters of a longer one that are shown, at each end
+LISTED = 60  # good names that a message lists; of more the nearest `NEAREST` ones
+NEAREST = 20
 
 
 class InputError(ValueError):
@@ -88,8 +90,15 @@ def refuse_kind(value: object, kinds: type | tuple[type, ...], what: str) -> Non
 
 
 def unknown_name(what: str, name: str, known: Iterable[str]) -> InputError:
-    """An `InputError` for a misspelt name, with the likely one first and all good ones listed."""
+    """An `InputError` for a misspelt name, with the likely one first and all good ones listed.
+
+    Of more than `LISTED` good ones the nearest are listed.
+    """
     names = sorted(known)
     close = get_close_matches(name, names, n=1)
     hint = f" did you mean {close[0]!r}?" if close else ""
-    return InputError(f"unknown {what} {name!r};{hint} known: {', '.join(names)}")
+    shown, rest = names, ""
+    if len(names) > LISTED:
+        shown = get_close_matches(name, names, n=NEAREST, cutoff=0.0)
+        rest = f" and {len(names) - len(shown)} more"
+    return InputError(f"unknown {what} {name!r};{hint} known: {', '.join(shown)}{rest}")
