@@ -11,6 +11,8 @@ of a log.
 
 from __future__ import annotations
 
+import json
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, product
@@ -150,8 +152,10 @@ def input_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iter
 
 def how_to_turn(columns: Sequence[str]) -> str:
     """What a user writes to turn the sign of some columns of a log, for a message."""
-    told = ", ".join(f"{name} = -1" for name in columns)
-    return f": write {told} under [factors] of the log's TOML"
+    keys = (n if re.fullmatch(r"[A-Za-z0-9_-]+", n) else json.dumps(n) for n in columns)
+    told = " and ".join(f"{key} = -1" for key in keys)
+    lines = ", a line each," if len(columns) > 1 else ""
+    return f": write {told}{lines} under [factors] of the log's TOML, or turn the sign that it has"
 
 
 def turned(signals: np.ndarray, columns: Sequence[int]) -> np.ndarray:

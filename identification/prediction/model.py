@@ -17,7 +17,7 @@ from identification.model.predictor import Plant
 from identification.prediction.fit import WindowFit
 from identification.prediction.own_values import Own
 from identification.prediction.records import Record
-from identification.prediction.step_shift import step_shift
+from identification.prediction.step_shift import StepShift, step_shift
 from identification.prediction.told_std import told_std
 from identification.prediction.unseen import Unseen, predict
 
@@ -68,9 +68,14 @@ class WindowModel:
         return dict(zip(self.fit.problem.names, told_std(self.fit).tolist(), strict=True))
 
     @cached_property
+    def finer(self) -> StepShift:
+        """What a quarter of the model's step would do to the fit."""
+        return step_shift(self.fit)
+
+    @property
     def step_shift(self) -> dict[str, float]:
         """By how much each free value would change with a quarter of the step, in its unit."""
-        return dict(zip(self.fit.problem.names, step_shift(self.fit).tolist(), strict=True))
+        return dict(zip(self.fit.problem.names, self.finer.values.tolist(), strict=True))
 
     @property
     def std(self) -> dict[str, float]:

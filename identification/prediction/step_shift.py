@@ -12,8 +12,7 @@ integrator of any order errs by about Δ, and so does the estimate. H, S_w, P_w 
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,38 +26,48 @@ from identification.prediction.point import projected
 FINER = 4  # an error that is proportional to the step falls by three quarters
 
 
-def step_shift(found: WindowFit) -> np.ndarray:
-    """By how much each value would change with a quarter of the model's step, shape (p,).
+@dataclass(frozen=True)
+class StepShift:
+    """What a quarter of the model's step would do to a fit, to first order.
+
+    Attributes:
+        values: change of each value, shape (p,), in their units; zero where the windows do not feel
+            a value, NaN where they cannot be simulated with finer steps.
+        error: rms error of the fitted windows then, over what it is now; NaN likewise.
+    """
+
+    values: np.ndarray
+    error: float
+
+
+def step_shift(found: WindowFit) -> StepShift:
+    """How a fit would answer to a quarter of the model's step.
 
     Args:
         found: a fit.
-
-    Returns:
-        In the units of the values; zero where the windows do not feel a value, and NaN where they
-        cannot be simulated with finer steps.
     """
     problem, q = found.problem, found.q
-    plant = _finer(problem.plant)
+    plant, unknown = _finer(problem.plant), StepShift(np.full(len(q), np.nan), np.nan)
     if plant is None:
-        return np.full(len(q), np.nan)
+        return unknown
     parts = (replace(p, predictor=replace(p.predictor, plant=plant)) for p in problem.parts)
     try:
         errors = replace(problem, parts=tuple(parts)).held(q).residuals(found.moves)
         problem.cost_of(q, errors)
     except DivergenceError:
-        return np.full(len(q), np.nan)
-    return _answer(found, errors) * problem.prior.space.slope(q)
-
-
-def _answer(found: WindowFit, errors: Sequence[np.ndarray]) -> np.ndarray:
-    """The step of q that other residuals ask for, shape (p,)."""
-    H = np.diag(found.problem.prior.weight**2)
-    g = np.zeros(len(found.q))
+        return unknown
+    H = np.diag(problem.prior.weight**2)
+    g, before, after = np.zeros(len(q)), 0.0, 0.0
     for t, r in zip(found.tangents, errors, strict=True):
-        S, change = projected(replace(t, r=r - t.r))
+        S, own = projected(t)
+        finer = projected(replace(t, r=r))[1]
         H = H + np.einsum("wmp,wmq->pq", S, S)
-        g = g + np.einsum("wmp,wm->p", S, change)
-    return np.asarray(np.linalg.pinv(H, rcond=1e-14, hermitian=True) @ g)
+        g = g + np.einsum("wmp,wm->p", S, finer - own)
+        before, after = before + float(np.sum(own**2)), after + float(np.sum(finer**2))
+    move = np.linalg.pinv(H, rcond=1e-14, hermitian=True) @ g
+    after -= float(g @ move)
+    error = float(np.sqrt(max(after, 0.0) / before)) if before > 0 else np.nan
+    return StepShift(move * problem.prior.space.slope(q), error)
 
 
 def _finer(plant: Plant) -> JointPlant | ModelPlant | None:

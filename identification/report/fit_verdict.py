@@ -149,6 +149,10 @@ def _floor(fit: Fit) -> float:
     return float(np.sqrt(np.mean(fit.floor**2)))
 
 
+def _outputs(count: int) -> str:
+    return "1 output" if count == 1 else f"{count} outputs"
+
+
 def _error(fit: Fit, value: float) -> str:
     """A residual of a fit with the unit of its outputs."""
     return error(value, fit.estimate.predictor.log.output_unit)
@@ -173,12 +177,13 @@ def _enough(fit: Fit) -> list[str]:
         )
     if dependent:
         sentences.append(
-            f"{dependent} outputs' residuals depend on the input: what is missing is excited by it."
+            f"The residual of {_outputs(dependent)} depends on the input, which excites what is"
+            " missing."
         )
     elif coloured:
         sentences.append(
-            f"{coloured} outputs' residuals are coloured, none depends on the input: noise that is"
-            " not white, or an effect that the input does not excite."
+            f"The residual of {_outputs(coloured)} is coloured, none depends on the input: noise"
+            " that is not white, or an effect that the input does not excite."
         )
     elif ratio > ABOVE:
         sentences.append("It is white and independent of the input: look at the sensors first.")

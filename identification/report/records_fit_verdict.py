@@ -6,6 +6,7 @@ import numpy as np
 
 from identification.estimation.identifiability import in_words
 from identification.prediction.records_fit import RecordsFit
+from identification.quantities import error, held
 from identification.report.fit_verdict import WEAK
 from identification.report.scale_words import describe_scale
 from identification.report.step_words import step_sentences
@@ -26,8 +27,9 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
     said += _blind(found) + _weak(found) + _unknown_std(found)
     windows = sum(len(part.cut.starts) for part in fit.problem.parts)
     floor, rms = found.noise_rms, found.rms
-    ratio = f", {rms / floor:.2f} of the noise floor {floor:.3g}" if floor > 0 else ""
-    left = f"{rms:.3g} {found.unit} rms" if found.unit else f"{rms:.3g} rms in the outputs' scale"
+    own = error(floor, found.unit)
+    ratio = f", {held(rms / floor)} times the noise floor of {own}" if floor > 0 else ""
+    left = f"{error(rms, found.unit)} rms" + ("" if found.unit else " in the outputs' scale")
     each = "1 window" if windows == 1 else f"{windows} windows"
     said.append(f"{each} of {found.horizon:g} s leave {left}{ratio}.")
     said += describe_scale(found.model, found.unit)

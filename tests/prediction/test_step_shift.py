@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from identification import Log, fit
-from identification.prediction.step_shift import FINER, step_shift
+from identification.prediction.step_shift import FINER, StepShift, step_shift
 from identification.report.step_words import step_sentences
 from identification.robot.file import read_robot_file
 from identification.robot.robot import robot_of
@@ -56,17 +56,32 @@ def test_it_is_the_change_of_a_search_with_a_finer_step(elbow):
     assert max(map(abs, left.values())) < 0.5 * max(map(abs, moved.values()))
 
 
+def test_the_error_that_finer_steps_leave_is_that_of_a_search_with_them(elbow):
+    coarse, fine = (found.model for found in elbow)
+    real = np.sqrt(np.mean(fine.fit.errors[0] ** 2) / np.mean(coarse.fit.errors[0] ** 2))
+    assert real < 0.99
+    assert coarse.finer.error == pytest.approx(real, abs=0.02)
+
+
 def test_it_is_said_where_it_exceeds_the_std(elbow):
     coarse = elbow[0].model
     (said,) = step_sentences(coarse, {"mass": "the forearm's mass"})
-    assert said.startswith("The steps of the simulation move the forearm's mass by 4")
-    assert "timestep of 1.25 ms or less" in said
-    assert "(it has 5 ms)" in said
-    sure = replace(coarse)
-    sure.__dict__["step_shift"] = {n: 0.9 * s for n, s in coarse.told_std.items()}
-    assert step_sentences(sure) == []
-    sure.__dict__["step_shift"] = dict.fromkeys(coarse.told_std, np.nan)
-    assert step_sentences(sure) == []
+    assert said.startswith("Simulations with steps of 0.00125 s would move the forearm's mass by 4")
+    assert said.endswith(
+        'write timestep="0.00125" into the <option> of the model, and do this once more.'
+    )
+    std = np.array([*coarse.told_std.values()])
+    for values, error, words in (
+        (0.9 * std, 0.95, None),
+        (np.nan * std, np.nan, None),
+        (0.9 * std, 0.43, "would lower the error of the fitted windows to 0.43 of what it is"),
+        (2.3 * std, 0.43, "by 2.3 std, of which the std tell nothing, and would lower the error"),
+    ):
+        other = replace(coarse)
+        other.__dict__["finer"] = StepShift(values, error)
+        sentences = step_sentences(other)
+        assert bool(sentences) == bool(words)
+        assert all(words in said for said in sentences)
 
 
 def test_a_finer_step_moves_nothing_where_all_is_smooth(elbow):
@@ -77,6 +92,6 @@ def test_a_finer_step_moves_nothing_where_all_is_smooth(elbow):
     at[names.index(FRICTION)] = 1e-12
     q = problem.prior.space.encode(at)
     smooth = replace(coarse, q=q, tangents=problem.tangents(q, coarse.moves))
-    shift = step_shift(smooth)[[names.index(n) for n in ("mass", "damping")]]
+    shift = step_shift(smooth).values[[names.index(n) for n in ("mass", "damping")]]
     std = coarse.std[[names.index(n) for n in ("mass", "damping")]]
     assert np.all(np.abs(shift) < 0.01 * std)
