@@ -55,7 +55,8 @@ def test_what_needs_no_discovery_is_measured_again_from_the_kept_values(plant):
     robot, _ = plant
     nominal = {n: {"value": v} for n, v in TRUE.items()}
     final = {**nominal, "hardening.k_3@slide": {"value": 2.0}}
-    kept = {"discovery": {"effects": [{}], "nominal": nominal, "final": final}, "seconds": 1.0}
+    named = {"name": "hardening", "where": "joint slide", "parameters": {"k_3": {"value": 2.0}}}
+    kept = {"discovery": {"effects": [named], "nominal": nominal, "final": final}, "seconds": 1.0}
     more = Apart(what="the same once more", logs=robot.confirm, refit=("m",))
     record = measure_again(replace(robot, apart=(more,)), kept)
     assert record["seconds"] == 1.0
@@ -66,6 +67,26 @@ def test_what_needs_no_discovery_is_measured_again_from_the_kept_values(plant):
     )
     (found,) = record["apart"][0]["refitted"].values()
     assert found["values"]["m"]["before"] == TRUE["m"]
+
+
+def test_a_record_is_predicted_with_what_it_has_for_itself(plant):
+    robot, own = plant
+    (record,) = robot.confirm
+    ((where, suffix),) = (
+        item for e in own.effects if e.name == "time_shift" for item in e.places.items()
+    )
+    late = {"discovery": {
+        "effects": [{"name": "time_shift", "where": where, "parameters": {
+            f"tau [{record.name}]": {"value": 2 * record.sampling_time}}}],
+        "nominal": {n: {"value": v} for n, v in TRUE.items()},
+        "final": {n: {"value": v} for n, v in TRUE.items()}
+        | {"time_shift.tau [another]": {"value": 1.0}},
+    }}  # fmt: skip
+    seen = measure_again(robot, late)["unseen"]
+    values = {**TRUE, f"time_shift.tau{suffix}": 2 * record.sampling_time}
+    expected = np.sqrt(np.mean(window_error(own, record, robot.horizon, values) ** 2))
+    assert seen["rms"]["with what is named"] == pytest.approx(expected)
+    assert seen["rms"]["with what is named"] > 1.2 * seen["rms"]["nominal, fitted"]
 
 
 def test_a_true_model_predicts_better_than_one_with_a_wrong_mass(plant):
