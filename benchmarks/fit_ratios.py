@@ -31,7 +31,7 @@ from inca_mj.workflows.identification import MECHANICS
 
 FREE = (*MECHANICS, *POSE)
 DURATION, NOISE = 10.0, 6.7e-4  # [s], [rad]
-PATIENCE = 18.0  # longest wait for another program, in times of our fit
+PATIENCE = 60.0  # longest wait for another program, in times of our fit
 
 
 @dataclass
