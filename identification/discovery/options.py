@@ -112,7 +112,8 @@ class DiscoveryOptions(PredictionOptions):
     retry_share: float = option(
         0.5, "of the gain of the named effect",
         "An effect that was refitted in its place is tried again beside the other named effects"
-        " unless its negative BIC was lower by more than this share.",
+        " unless its negative BIC was lower by more than this share; so is another kind of it where"
+        " structure is left, unless it loses more to first order.",
         "judgement", most=1.0,
     )  # fmt: skip
     bare_bic: float = option(

@@ -114,7 +114,7 @@ class JointPlant:
         return self._stopping(model, max(GENTLE, steps))
 
     def with_step(self, factor: float) -> JointPlant:
-        """The same plant with another step of the user's model, in which joints stop as they did.
+        """The same plant with another step of the user's model; joints stop in as many steps.
 
         Args:
             factor: new step over the old one.
@@ -125,7 +125,7 @@ class JointPlant:
         return replace(self, bare=bare, steps=1, slope_steps=1)
 
     def _stopping(self, model: mujoco.MjModel, factor: float) -> mujoco.MjModel:
-        """A copy of the model, whose joints now take so many times as long to stop."""
+        """The model itself, changed: its joints take so many times as long to stop."""
         column = int(model.nuser_jnt) - self.layout.entries + STOP
         for joint in self.joints:
             model.jnt_user[int(model.joint(joint).id), column] *= factor

@@ -97,14 +97,19 @@ class WindowFit:
         return np.where(felt, std, np.inf)
 
     @property
+    def curvature(self) -> np.ndarray:
+        """H, shape (p, p), in one over the squares of the coordinates."""
+        H = np.diag(self.problem.prior.weight**2)
+        return H + sum(np.einsum("wmp,wmq->pq", S, S) for S, _ in map(projected, self.tangents))
+
+    @property
     def covariance(self) -> np.ndarray:
         """Covariance of q, shape (p, p)."""
         scores = np.concatenate([np.einsum("wmp,wm->wp", *projected(t)) for t in self.tangents])
         blocks = min(BLOCKS, max(2, len(scores)))
         g = np.array([part.sum(axis=0) for part in np.array_split(scores, blocks)])
         W2 = np.diag(self.problem.prior.weight**2)
-        H = sum(np.einsum("wmp,wmq->pq", S, S) for S, _ in map(projected, self.tangents)) + W2
-        inverse = np.linalg.pinv(H, rcond=1e-14, hermitian=True)
+        inverse = np.linalg.pinv(self.curvature, rcond=1e-14, hermitian=True)
         return np.asarray(inverse @ (g.T @ g * blocks / (blocks - 1) + W2) @ inverse)
 
 

@@ -56,15 +56,13 @@ def step_shift(found: WindowFit) -> StepShift:
         problem.cost_of(q, errors)
     except DivergenceError:
         return unknown
-    H = np.diag(problem.prior.weight**2)
     g, before, after = np.zeros(len(q)), 0.0, 0.0
     for t, r in zip(found.tangents, errors, strict=True):
         S, own = projected(t)
         finer = projected(replace(t, r=r))[1]
-        H = H + np.einsum("wmp,wmq->pq", S, S)
         g = g + np.einsum("wmp,wm->p", S, finer - own)
         before, after = before + float(np.sum(own**2)), after + float(np.sum(finer**2))
-    move = np.linalg.pinv(H, rcond=1e-14, hermitian=True) @ g
+    move = np.linalg.pinv(found.curvature, rcond=1e-14, hermitian=True) @ g
     after -= float(g @ move)
     error = float(np.sqrt(max(after, 0.0) / before)) if before > 0 else np.nan
     return StepShift(move * problem.prior.space.slope(q), error)

@@ -12,9 +12,7 @@ from identification.quantities import held
 from identification.windows.coarse import own_step
 
 MOVED = 1.0  # std: a value that moves by less is within what its std tells
-LOWER = (
-    0.9  # of the error of the fitted windows: one that finer steps lower to less than this is told
-)
+LOWER = 0.9  # of the error of the fitted windows: a fall below it with finer steps is told
 SHOWN = 3  # values that are told, those that move most first
 
 

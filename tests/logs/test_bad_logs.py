@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tomllib
 import warnings
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -16,6 +17,7 @@ from scipy.io import savemat
 
 from identification import InputError, Log, write_log
 from identification.files import MAX_BYTES
+from identification.logs.readings import how_to_turn
 
 
 @pytest.mark.parametrize(
@@ -259,3 +261,11 @@ def test_a_gap_in_an_even_log_is_found_where_it_is(refusal):
     text = refusal(Log, time=time, inputs=u, outputs=u, **named)
     assert "time jumps from 1.19 s to 1.73 s where the step is 0.01 s" in text
     assert "cut the log there" in text
+
+
+@pytest.mark.parametrize("columns", [["angle_2"], ["angle_2", "q.1", "elbow angle"]])
+def test_the_advice_to_turn_signs_is_toml(columns):
+    told = how_to_turn(columns).partition(": write ")[2].partition(" under [factors]")[0]
+    lines = told.removesuffix(", a line each,").split(" and ")
+    said = tomllib.loads("\n".join(["[factors]", *lines]))
+    assert said == {"factors": dict.fromkeys(columns, -1)}

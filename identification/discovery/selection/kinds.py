@@ -5,9 +5,10 @@ is missing. So every accepted effect is compared, to first order, with its other
 which are no free shapes; where one of them explains more it is refitted, and the likelier model is
 kept. A free shape is chosen anew for each kind: a Stribeck peak of the power 2 is as wide as one of
 the power 1 at another speed. Where the model leaves structure the wrong kind may have moved other
-parameters far, and the first order is wrong by much: each kind is then refitted that explains half
-of what the effect does. A limit (a current that is clipped, or that bends) is far from linear in
-its shape: its other kinds are scored on the model without it, and the best of each is refitted.
+parameters far, and the first order is wrong by much: each kind is then refitted that explains
+enough of what the effect does (`retry_share`). A limit (a current that is clipped, or that bends)
+is far from linear in its shape: its other kinds are scored on the model without it, and the best of
+each is refitted.
 """
 
 from __future__ import annotations
@@ -32,8 +33,6 @@ from identification.discovery.scoring.significance import gain_of_whole, is_plau
 from identification.discovery.selection.shapes import is_structured
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
-
-ENOUGH = 0.5  # of the gain of an effect: another kind that explains so much may be the true one
 
 
 def improve_kinds(
@@ -94,12 +93,12 @@ def _list_kinds(
     """
     best: dict[tuple[float, ...], tuple[float, Candidate, np.ndarray]] = {}
     kinds, fit = [s.name for s in old.effect.shapes if not s.free], model.refit
-    enough = ENOUGH if kinds and is_structured(model, task.options) else 1.0
+    share = task.options.retry_share if is_structured(model, task.options) else 0.0
     for s in compute_beside(fit.point, _other_kinds(old, model)):
         other = replace_effect(fit, old, s.S, fit.level)
         kind = tuple(s.candidate.shape[name] for name in kinds)
         is_best = kind not in best or other.loss < best[kind][0]
-        is_enough = other.share * enough < 1
+        is_enough = other.share * (1 - share) < 1  # it loses less than this share of the gain
         if is_best and is_enough and is_plausible(s.candidate, other.size, task.options):
             best[kind] = other.loss, s.candidate, other.size
     return [
