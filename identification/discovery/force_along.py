@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 import mujoco
 import numpy as np
 
+from identification.engine import quiet
 from identification.kalman.linear import Linearisation, linearise_along
 from identification.kalman.trajectory import Trajectory
 from identification.model.predictor import Predictor
-from identification.model.quiet import quiet
 
 ACTS = 0.01  # of the largest rms: a degree of freedom with less force is not acted on
 LEAST = 1e-12  # [N or N m] a smaller force is rounding

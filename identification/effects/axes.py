@@ -16,13 +16,13 @@ from typing import Literal
 import mujoco
 import numpy as np
 
+from identification.engine import quiet
 from identification.errors import InputError
 from identification.logs.frozen import refuse_frozen
 from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.logs.noise import noise_floor
 from identification.model.predictor import output_columns
-from identification.model.quiet import quiet
 from identification.model.rollout import UNLOGGED, logged_inputs
 
 Kind = Literal["hinge", "slide"]

@@ -160,6 +160,11 @@ class Effect:
             return f"{self.name}.{name}"
         return f"{self.name}.{name}{self.places[where]}"
 
+    @cached_property
+    def every_size(self) -> tuple[str, ...]:
+        """Names of the plant's parameters for all its sizes at all its places."""
+        return tuple(self.parameter(size.name, at) for at in self.places for size in self.sizes)
+
     def parameters_at(self, thing: str) -> tuple[tuple[str, ...], ...]:
         """Names of the plant's parameters that add up to each of its numbers at one thing.
 

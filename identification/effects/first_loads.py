@@ -16,9 +16,9 @@ import numpy as np
 
 from identification.effects.joint_layout import JointLayout
 from identification.effects.joint_states import GearNumbers, JointState
+from identification.engine import quiet
 from identification.model.paths import write
 from identification.model.predictor import Numbers
-from identification.model.quiet import quiet
 from identification.model.rollout import State
 from identification.native.joint_callback import FIRST
 

@@ -14,9 +14,9 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
+from identification.engine import quiet
 from identification.errors import DivergenceError
 from identification.logs.names import listed
-from identification.model.quiet import quiet
 
 POSES = 8  # random ones, behind the model's own
 

@@ -13,9 +13,9 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
+from identification.engine import quiet
 from identification.kalman.trajectory import Trajectory
 from identification.linear.derivatives import FORWARD, Points, differences, position_rows
-from identification.model.quiet import quiet
 
 
 def state_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:

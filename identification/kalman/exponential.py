@@ -1,19 +1,28 @@
 """Transitions of many small linear systems at once, from a series.
 
-    ẋ = F x + g  over Δt:    x ← A x + Γ g,    X = F Δt
+    ẋ = F x + g  over Δt:    x ← A x + Γ g,    X = D⁻¹ F Δt D
     φ(X) = Σ_k X^k/(k+1)!,    A = e^X = I + X φ(X),    Γ = Δt φ(X)
     φ(2X) = φ(X) (2 I + X φ(X))/2                              (Moler, Van Loan 2003, method 3)
 
-The series is taken where no X is longer than `LONGEST`, and doubled from there. `scipy.linalg.expm`
-takes the matrices one by one, which for a robot with a few states is most of a linearisation.
+D balances the states' units by powers of two, which rounds nothing (Parlett, Reinsch 1969): an
+elastic cable in metres beside angles makes a matrix of norm 1e5, whose doublings cost more than all
+else; balanced it is 10. The series is taken where no X is longer than `LONGEST`, and doubled from
+there. Its polynomial is taken in groups of four powers (Paterson, Stockmeyer 1973), with 6 products
+of matrices in place of 14. `scipy.linalg.expm` takes the matrices one by one, which for a robot
+with a few states is most of a linearisation.
 """
 
 from __future__ import annotations
 
+from math import factorial
+
 import numpy as np
+from scipy.linalg import matrix_balance
 
 LONGEST = 0.5  # 1-norm; 0.5^15/16! is below the rounding of doubles
-TERMS = 14
+GROUP, GROUPS = 4, 4
+SERIES = np.array([1 / factorial(k + 1) for k in range(GROUP * GROUPS)]).reshape(GROUPS, GROUP)
+TOGETHER = 32  # matrices whose products stay in a processor's own cache
 
 
 def transitions(F: np.ndarray, duration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -26,14 +35,38 @@ def transitions(F: np.ndarray, duration: np.ndarray) -> tuple[np.ndarray, np.nda
     Returns:
         A and Γ, both of shape (n, nx, nx).
     """
-    X, one = F * duration[:, None, None], np.eye(F.shape[1])
+    X = F * duration[:, None, None]
+    D = _balance(X)
+    X *= D / D[:, None]
+    A, φ = np.empty_like(X), np.empty_like(X)
+    for k in range(0, len(X), TOGETHER):
+        some = slice(k, k + TOGETHER)
+        A[some], φ[some] = _exponential(X[some])
+    back = D[:, None] / D
+    return A * back, duration[:, None, None] * φ * back
+
+
+def _balance(X: np.ndarray) -> np.ndarray:
+    """D of all matrices together, shape (nx,)."""
+    largest = np.abs(X).max(axis=0, initial=0.0)
+    if not np.isfinite(largest).all() or not largest.size:  # what is not finite stays so
+        return np.ones(len(largest))
+    _, (D, _) = matrix_balance(largest, permute=False, separate=True)
+    return np.asarray(D)
+
+
+def _exponential(X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """e^X and φ(X) of matrices X, shape (n, nx, nx)."""
+    one = np.eye(X.shape[1])
     longest = np.abs(X).sum(axis=1).max(initial=0.0)
-    is_long = LONGEST < longest < np.inf  # what is not finite gives NaN
+    is_long = LONGEST < longest < np.inf
     doublings = int(np.ceil(np.log2(longest / LONGEST))) if is_long else 0
     X = X / 2**doublings
-    φ = np.broadcast_to(one, X.shape)
-    for k in range(TERMS, 0, -1):  # φ = I + X/2 (I + X/3 (I + …))
-        φ = one + X @ φ / (k + 1)
+    X2 = X @ X
+    X3, X4 = X2 @ X, X2 @ X2
+    *lower, φ = (c[0] * one + c[1] * X + c[2] * X2 + c[3] * X3 for c in SERIES)
+    for group in reversed(lower):
+        φ = group + X4 @ φ
     for _ in range(doublings):
         φ, X = φ @ (one + X @ φ / 2), 2 * X
-    return one + X @ φ, duration[:, None, None] * φ
+    return one + X @ φ, φ

@@ -23,8 +23,8 @@ import mujoco
 import numpy as np
 from mujoco.batch import Batch
 
+from identification.engine import quiet, untimed
 from identification.errors import DivergenceError
-from identification.model.quiet import quiet
 from identification.model.rollout import threads
 
 FREE, BALL = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_BALL)
@@ -118,7 +118,7 @@ class Points:
         """
         for field, value in changed.items():
             self._batch.bind(field)[:] = value
-        with quiet():
+        with quiet(), untimed():
             self._batch.forward()
         out = np.concatenate(self._results, axis=1)
         if changed:

@@ -18,9 +18,9 @@ import mujoco
 import numpy as np
 from mujoco.batch import Batch, SimulationError
 
+from identification.engine import quiet, untimed
 from identification.errors import DivergenceError, InputError
 from identification.model.paths import Slot
-from identification.model.quiet import quiet
 
 # MuJoCo derives no other number from these entries: after writing them, no mj_setConst is needed.
 UNDERIVED = {
@@ -166,7 +166,7 @@ def rollout(
     shared = np.broadcast_to(controls, (n, *controls.shape[1:]))
     if nu < model.nu:
         shared = np.concatenate([shared, np.zeros((*shared.shape[:2], model.nu - nu))], axis=2)
-    with quiet():
+    with quiet(), untimed():
         try:
             steps = batch.rollout(shared.shape[1], shared, record=tuple(record))
         except SimulationError as error:  # of the engine, which no other value may meet

@@ -7,33 +7,18 @@ them can be kept and loaded again by another process.
 from __future__ import annotations
 
 import ctypes
-from pathlib import Path
 from typing import Any
 
 import llvmlite.binding as llvm
-import mujoco
 from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-
-def _library() -> ctypes.CDLL:
-    """MuJoCo's library, which `import mujoco` has loaded."""
-    folder = Path(mujoco.__file__).parent
-    found = sorted(p for p in folder.iterdir() if "mujoco" in p.name and _is_library(p))
-    if not found:
-        raise ImportError(f"{folder} holds no libmujoco; install mujoco again")
-    return ctypes.CDLL(str(found[0]))
-
-
-def _is_library(path: Path) -> bool:
-    return path.name.startswith(("libmujoco.", "mujoco.")) and any(
-        end in path.suffixes for end in (".so", ".dylib", ".dll")
-    )
+from identification.engine import library
 
 
 def _enter(name: str) -> None:
-    address = ctypes.cast(getattr(_library(), name), ctypes.c_void_p).value
+    address = ctypes.cast(getattr(library(), name), ctypes.c_void_p).value
     llvm.add_symbol(name, address)
 
 

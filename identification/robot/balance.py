@@ -19,10 +19,10 @@ import mujoco
 import numpy as np
 from scipy.optimize import lsq_linear
 
+from identification.engine import quiet
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.predictor import output_columns
-from identification.model.quiet import quiet
 from identification.robot.moving import follow_bodies, inertial_force, point_force, weights
 
 FACTOR = 4.0  # that a mass, an inertia or a stiffness may be off; more is a matter of units

@@ -15,7 +15,7 @@ import numpy as np
 from identification.effects import values as effect_values
 from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
-from identification.effects.values import Values, is_present, numbers_at, table_at
+from identification.effects.values import Values, numbers_at, table_at
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.paths import Slot
 from inca_mj.effects.hooks import THINGS, Platform
@@ -46,7 +46,7 @@ def drive_values(effect: Effect, values: Mapping[str, float]) -> np.ndarray:
 
 def present(effect: Effect, values: Mapping[str, float]) -> bool:
     """Whether any size of an effect is not zero."""
-    return is_present(effect, THINGS, values)
+    return any(values[name] != 0.0 for name in effect.every_size)
 
 
 def numbers(

@@ -10,7 +10,7 @@ change this.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -127,6 +127,55 @@ def start_from(
         balance=balance,
         own=own_states(values, strain, layout),
     )
+
+
+def starts_from(
+    own: Mapping[str, float], names: Sequence[str], values: np.ndarray, geometry: Geometry,
+    layout: Layout = NO_EFFECTS,
+) -> list[Start]:  # fmt: skip
+    """`start_from` for n value sets.
+
+    Sets that agree with the first in all values that its start was made of share that start: most
+    columns of a Jacobian move a parameter that no start asks for.
+
+    Args:
+        own: values of all parameters.
+        names: parameters that differ from them.
+        values: theirs, shape (n, p).
+        geometry: anchors of the cables.
+        layout: the candidate effects.
+
+    Raises:
+        InputError: for the reasons of `pretension`.
+    """
+    asked = _Asked({**own, **dict(zip(names, values[0], strict=True))})
+    first = start_from(asked, geometry, layout)
+    seen = [k for k, name in enumerate(names) if name in asked.names]
+    same = (values[:, seen] == values[0, seen]).all(axis=1)
+    return [
+        first if alike
+        else start_from({**own, **dict(zip(names, row, strict=True))}, geometry, layout)
+        for alike, row in zip(same, values, strict=True)
+    ]  # fmt: skip
+
+
+class _Asked(Mapping[str, float]):
+    """Values, and the names that were asked for."""
+
+    def __init__(self, values: Mapping[str, float]) -> None:
+        self._values = values
+        self.names: set[str] = set()
+
+    def __getitem__(self, name: str) -> float:
+        self.names.add(name)
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        self.names.update(self._values)
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
 
 
 def activations(begin: Start) -> np.ndarray:

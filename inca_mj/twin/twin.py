@@ -30,7 +30,7 @@ from inca_mj.robot.step import TIMESTEP
 from inca_mj.twin import native
 from inca_mj.twin.mjcf import build, check_inertia
 from inca_mj.twin.numbers import model_numbers
-from inca_mj.twin.statics import Start, activations, start, start_from
+from inca_mj.twin.statics import Start, activations, start, starts_from
 
 
 @dataclass(frozen=True)
@@ -99,10 +99,7 @@ class Twin:
         """
         native.install(self.layout)
         own = self.parameters.values()
-        starts = [
-            start_from({**own, **dict(zip(names, row, strict=True))}, self.geometry, self.layout)
-            for row in values
-        ]
+        starts = starts_from(own, names, values, self.geometry, self.layout)
         balance = np.array([begin.balance for begin in starts])
         for name in names:
             self.parameters[name]
