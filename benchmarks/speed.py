@@ -21,7 +21,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -31,9 +31,11 @@ import mujoco
 import step_ratios
 from mujoco.batch import Batch
 
+from identification.engine import untimed
 from identification.estimation.estimation import estimate
-from identification.linear import derivatives
+from identification.linear import points
 from identification.model import rollout
+from identification.native import forward
 from identification.sweep.code import commit
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import Twin, build_twin
@@ -49,18 +51,34 @@ COMMANDS = (  # whose starts are measured: no help, a simulation, a comparison, 
 DISCOVERY = ("discover", LOG, "--spread", "none")
 
 
+@dataclass(frozen=True)
+class Bare:
+    """Seconds of a step, of an evaluation, and of one that shares its positions, and no more."""
+
+    step: float
+    evaluation: float
+    shared: float
+
+
 @dataclass
 class Asked:
     """What the simulator was asked for, and the processor time of the whole [s]."""
 
     steps: int = 0
     evaluations: int = 0
+    shared: int = 0
     processor: float = 0.0
+
+    def share(self, bare: Bare) -> float:
+        """Bare time of what was asked over the processor time that it took."""
+        return (
+            self.steps * bare.step + self.evaluations * bare.evaluation + self.shared * bare.shared
+        ) / self.processor
 
 
 @contextmanager
 def counted() -> Iterator[Asked]:
-    """Counts the steps and evaluations of all batches."""
+    """Counts the steps of all batches, and the evaluations at all points."""
     asked = Asked()
 
     class Counted(Batch):
@@ -72,39 +90,67 @@ def counted() -> Iterator[Asked]:
             asked.steps += steps * self.many
             return super().rollout(steps, *rest, **more)
 
-        def forward(self) -> Any:
-            asked.evaluations += self.many
-            return super().forward()
+    def evaluate(base: Any, cases: Any, results: Any, *, shares: bool, threads: int) -> Any:
+        many = len(base.states) * len(cases)
+        asked.shared += many if shares else 0
+        asked.evaluations += 0 if shares else many
+        return forward.evaluate(base, cases, results, shares=shares, threads=threads)
 
     begin = time.process_time()
     with (
         mock.patch.object(rollout, "Batch", Counted),
-        mock.patch.object(derivatives, "Batch", Counted),
+        mock.patch.object(points, "evaluate", evaluate),
     ):
         yield asked
     asked.processor = time.process_time() - begin
 
 
-def bare_times(robot: Twin) -> tuple[float, float]:
-    """Seconds of a step and of an evaluation in loops that do nothing else."""
-    model = rollout.without_sensors(robot.model)
-    data, at = mujoco.MjData(model), robot.state()
+def lean(robot: Twin) -> Twin:
+    """The robot as fits simulate it: without shapes to draw, and without sensors."""
+    bare = build_twin(robot.parameters, visual=False)
+    return replace(bare, model=rollout.without_sensors(bare.model))
+
+
+def bare_times(robot: Twin) -> Bare:
+    """What each takes in a loop that does nothing else."""
+    model, at = robot.model, robot.state()
+    data = mujoco.MjData(model)
     data.qpos[:], data.act[:] = at.qpos, at.act
 
     def evaluations() -> None:
         for _ in range(step_ratios.BURST):
             mujoco.mj_forward(model, data)
 
-    step, evaluation = step_ratios.least([step_ratios.stepper(robot), evaluations], 200)
-    return step / step_ratios.BURST, evaluation / step_ratios.BURST
+    def shared() -> None:
+        for _ in range(step_ratios.BURST):
+            mujoco.mj_forwardSkip(model, data, mujoco.mjtStage.mjSTAGE_POS, 0)
+
+    evaluations()
+    each = step_ratios.least([step_ratios.stepper(robot), evaluations, shared], 200)
+    return Bare(*(seconds / step_ratios.BURST for seconds in each))
 
 
-def share_of_limit(asked: Asked, step: float, evaluation: float) -> float:
-    """Bare time of what was asked over the processor time that it took."""
-    return (asked.steps * step + asked.evaluations * evaluation) / asked.processor
+def measure_steps(robot: Twin) -> tuple[dict[str, dict], Bare]:
+    """Ratios of a step, and what it takes at least."""
+    as_fits = lean(robot)
+    timed = bare_times(as_fits)
+    with untimed():
+        bare = bare_times(as_fits)
+        law, drawn = step_ratios.law_ratio(as_fits), step_ratios.law_ratio(robot)
+    return {
+        "step_with_law_over_without": entry(law, 1.03, "as fits simulate it"),
+        "step_with_law_over_without_drawn": entry(drawn, None, "with shapes and sensors"),
+        "step_with_clock_over_without": entry(timed.step / bare.step),
+        "python_callback_over_native": entry(step_ratios.python_ratio(robot), 4.0),
+        "batch_on_2_threads_over_loop_on_1": entry(step_ratios.batch_ratio(robot)),
+        "reference_adaptive_over_twin": entry(step_ratios.reference_ratio(robot, "adaptive")),
+        "step_microseconds": entry(1e6 * bare.step),
+        "evaluation_microseconds": entry(1e6 * bare.evaluation),
+        "shared_evaluation_microseconds": entry(1e6 * bare.shared),
+    }, bare
 
 
-def measure_fit(step: float, evaluation: float) -> dict[str, dict]:
+def measure_fit(bare: Bare) -> dict[str, dict]:
     """A fit of seventeen parameters, beside `mujoco.sysid` and what an engineer writes first."""
     robot, log = build_twin(parameter_set("trial")), fit_ratios.practice()
     with counted() as asked, fit_ratios.watched() as work:
@@ -112,14 +158,14 @@ def measure_fit(step: float, evaluation: float) -> dict[str, dict]:
     other, why = fit_ratios.sysid_seconds(robot, log, found.seconds)
     naive = fit_ratios.naive_seconds(robot, log, work.simulated)
     return {
-        "fit_share_of_bare_steps": entry(share_of_limit(asked, step, evaluation), 0.93),
+        "fit_share_of_bare_steps": entry(asked.share(bare), 0.93),
         "sysid_over_fit": entry(other and other / found.seconds, 15.0, why),
         "solve_ivp_over_fit": entry(naive / found.seconds, 50.0),
         "fit_processors_used": entry(work.processor / found.seconds),
     }
 
 
-def measure_discovery(step: float, evaluation: float) -> dict[str, dict]:
+def measure_discovery(bare: Bare) -> dict[str, dict]:
     """A discovery on the shipped log, in this process."""
     from inca_mj.twin.logs import read_inca_log
     from inca_mj.workflows.discovery import discover
@@ -130,7 +176,7 @@ def measure_discovery(step: float, evaluation: float) -> dict[str, dict]:
     stages = {name: round(seconds / total, 3) for name, seconds in found.seconds.items()}
     return {
         "discovery_share_of_bare_steps": entry(
-            share_of_limit(asked, step, evaluation), None,
+            asked.share(bare), None,
             f"processor time {asked.processor:.1f} s; stages {stages}",
         ),
     }  # fmt: skip
@@ -184,19 +230,10 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="append the result as a row")
     parser.add_argument("--quick", action="store_true", help="the ratios of a step only")
     options = parser.parse_args()
-    robot = build_twin()
-    step, evaluation = bare_times(robot)
-    found: dict[str, dict] = {
-        "step_with_law_over_without": entry(step_ratios.law_ratio(robot), 1.03),
-        "python_callback_over_native": entry(step_ratios.python_ratio(robot), 4.0),
-        "batch_on_2_threads_over_loop_on_1": entry(step_ratios.batch_ratio(robot)),
-        "reference_adaptive_over_twin": entry(step_ratios.reference_ratio(robot, "adaptive")),
-        "step_microseconds": entry(1e6 * step),
-        "evaluation_microseconds": entry(1e6 * evaluation),
-    }
+    found, bare = measure_steps(build_twin())
     parts: list[Callable[[], dict[str, dict]]] = [
-        lambda: measure_fit(step, evaluation),
-        lambda: measure_discovery(step, evaluation),
+        lambda: measure_fit(bare),
+        lambda: measure_discovery(bare),
         measure_starts,
     ]
     for part in () if options.quick else parts:

@@ -15,7 +15,8 @@ import numpy as np
 
 from identification.engine import quiet
 from identification.kalman.trajectory import Trajectory
-from identification.linear.derivatives import FORWARD, Points, differences, position_rows
+from identification.linear.derivatives import FORWARD, differences, position_rows
+from identification.linear.points import Points
 
 
 def state_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:

@@ -13,15 +13,16 @@ also changes that course, such as a creep with another time constant, is simulat
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import mujoco
 import numpy as np
 
 from identification.kalman.linear import Linearisation, tangent_index
-from identification.kalman.trajectory import Trajectory, average_inputs
-from identification.linear.derivatives import Points
-from identification.model.numbers import with_numbers
+from identification.kalman.trajectory import average_inputs
+from identification.linear.points import Change, Points
+from identification.model.numbers import each_with_numbers
 from identification.model.predictor import Predictor, output_columns
 from identification.model.protocol import with_states
 from identification.model.rollout import hold, substeps
@@ -97,27 +98,46 @@ def _forcing(
     numbers = predictor.settings(rows)[1]
     sent = predictor.inputs(rows)(hold(log.inputs, every, log.hold))
     inputs = average_inputs(sent, along.steps, model.nu)
-    f = Points(along).rates()[:, felt]
+    others = range(1, 1 + len(change))
+
+    def changes(**fields: np.ndarray) -> Iterator[Change]:
+        models = each_with_numbers(along.model, numbers, 0, others)
+        return (Change(fields, *own) for own in models)
+
+    def with_inputs() -> Iterator[Change]:
+        for row, own in zip(others, changes(), strict=True):
+            is_moved = len(inputs) > 1 and not np.array_equal(inputs[row], inputs[0])
+            yield replace(own, fields={"ctrl": inputs[row]}) if is_moved else own
+
+    points = Points(along)
+    f = points.rates()[:, felt]
     g = np.empty((len(linear.A), f.shape[1], len(change)))
-    known = np.ones(len(change), bool)
-    for j, size in enumerate(change):
-        own = with_numbers(along.model, numbers, 1 + j, like=0)
-        moved = Points(along, own).rates(ctrl=inputs[1 + j if len(inputs) > 1 else 0])[:, felt]
-        g[..., j] = along.average((moved - f) / size)
-        known[j] = felt.all() or not _reads_what_it_changes(along.some(FEW), own, felt)
-    return g, known
+    for j, (moved, size) in enumerate(zip(points.each(with_inputs()), change, strict=True)):
+        g[..., j] = along.average((moved[:, felt] - f) / size)
+    if felt.all():
+        return g, np.ones(len(change), bool)
+    some = along.some(FEW)
+    away = changes(act=some.act + SHIFT * ~felt[model.nv :])
+    return g, ~_read_what_they_change(Points(some), changes(), away, felt)
 
 
-def _reads_what_it_changes(along: Trajectory, model: mujoco.MjModel, felt: np.ndarray) -> bool:
-    """Whether a model reads activations that no output felt, and that it makes run otherwise."""
-    runs, nominally = (Points(along, m).rates()[:, ~felt] for m in (model, along.model))
-    return not np.array_equal(runs, nominally) and _reads(along, model, felt)
+def _read_what_they_change(
+    points: Points, changes: Iterable[Change], away: Iterable[Change], felt: np.ndarray
+) -> np.ndarray:
+    """Which models read activations that no output felt, and make them run otherwise.
 
-
-def _reads(along: Trajectory, model: mujoco.MjModel, felt: np.ndarray) -> bool:
-    """Whether what outputs feel depends, in a model, on activations that they do not feel."""
-    at, shifted = Points(along, model), along.act + SHIFT * ~felt[model.nv :]
-    return not np.array_equal(at.rates()[:, felt], at.rates(act=shifted)[:, felt])
+    Args:
+        points: some of the trajectory.
+        changes: the models.
+        away: the same with those activations shifted.
+        felt: which rates the outputs feel.
+    """
+    nominally = points.rates()[:, ~felt]
+    return np.array([
+        not np.array_equal(runs[:, ~felt], nominally)
+        and not np.array_equal(runs[:, felt], moved[:, felt])
+        for runs, moved in zip(points.each(changes), points.each(away), strict=True)
+    ])  # fmt: skip
 
 
 def _first(

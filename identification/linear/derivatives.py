@@ -9,26 +9,19 @@ The rates of positions need no differences:
 
     δq̇ = δv                      of a slide or a hinge, and of the position of a free body
     δθ̇ = δω - ω × δθ             of an orientation, in the body's own frame
-
-All points are one batch.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Protocol
 
 import mujoco
 import numpy as np
-from mujoco.batch import Batch
 
-from identification.engine import quiet, untimed
-from identification.errors import DivergenceError
-from identification.model.rollout import threads
+from identification.linear.points import AtPoints, Change, Points
 
 FREE, BALL = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_BALL)
-RATES = ("qacc", "act_dot")
 
 
 @dataclass(frozen=True)
@@ -47,88 +40,6 @@ class Scheme:
 FORWARD = Scheme(1e-7, is_central=False)
 # A cable of the stiffest robots here goes slack after some 1e-5 m: the step stays below that.
 CENTRAL = Scheme(1e-6, is_central=True)
-
-
-class AtPoints(Protocol):
-    """M states of one model, each array with M rows."""
-
-    @property
-    def model(self) -> mujoco.MjModel:
-        """The model."""
-
-    @property
-    def qpos(self) -> np.ndarray:
-        """Positions, shape (M, nq)."""
-
-    @property
-    def qvel(self) -> np.ndarray:
-        """Velocities, shape (M, nv)."""
-
-    @property
-    def act(self) -> np.ndarray:
-        """Activations, shape (M, na)."""
-
-    @property
-    def inputs(self) -> np.ndarray:
-        """Inputs that reach the model, shape (M, nu)."""
-
-    @property
-    def time(self) -> np.ndarray:
-        """Of the points [s], shape (M,)."""
-
-
-class Points:
-    """States at which one model is evaluated many times.
-
-    Args:
-        at: the states.
-        model: with other numbers; that of the states when None.
-        results: fields of MjData that are returned side by side.
-    """
-
-    def __init__(
-        self,
-        at: AtPoints,
-        model: mujoco.MjModel | None = None,
-        results: Sequence[str] = RATES,
-    ) -> None:
-        self._at = at
-        self._batch = Batch(model or at.model, len(at.time), min(threads(), len(at.time)))
-        self._batch.bind("time")[:] = at.time
-        own = (model or at.model).na, (model or at.model).nsensordata
-        empty = {"act_dot": own[0] == 0, "sensordata": own[1] == 0}
-        self._results = [self._batch.bind(f) for f in results if not empty.get(f, False)]
-        self._reset()
-
-    def _reset(self) -> None:
-        for field in ("qpos", "qvel", "act"):
-            if (value := getattr(self._at, field)).shape[1]:
-                self._batch.bind(field)[:] = value
-        if self._at.inputs.shape[1]:
-            self._batch.bind("ctrl")[:] = self._at.inputs
-
-    def rates(self, **changed: np.ndarray) -> np.ndarray:
-        """The results, by default accelerations and rates of activations, shape (M, nv + na).
-
-        Args:
-            changed: values of `qpos`, `qvel`, `act` or `ctrl` that differ from the states' own.
-
-        Raises:
-            DivergenceError: they are not finite.
-        """
-        for field, value in changed.items():
-            self._batch.bind(field)[:] = value
-        with quiet(), untimed():
-            self._batch.forward()
-        out = np.concatenate(self._results, axis=1)
-        if changed:
-            self._reset()
-        if not np.isfinite(out).all():
-            raise DivergenceError(
-                "the accelerations along the trajectory are not finite; use values nearer to the"
-                " nominal ones"
-            )
-        return out
 
 
 def differences(
@@ -152,29 +63,27 @@ def differences(
     Raises:
         DivergenceError: the results are not finite.
     """
-    model, h = at.model, scheme.step
-    nv, na, nu = model.nv, model.na, at.inputs.shape[1]
-    f = None if scheme.is_central else points.rates()
+    h, nx = scheme.step, 2 * at.model.nv + at.model.na
+    ahead = points.each(_shifted(at, h))
+    if scheme.is_central:
+        pairs = zip(ahead, points.each(_shifted(at, -h)), strict=True)
+        each = [mean((there - back) / (2 * h)) for there, back in pairs]
+    else:
+        f = points.rates()
+        each = [mean((there - f) / h) for there in ahead]
+    of_state, of_inputs = np.stack(each[:nx], axis=-1), each[nx:]
+    if not of_inputs:
+        return of_state, np.zeros((*of_state.shape[:-1], 0))
+    return of_state, np.stack(of_inputs, axis=-1)
 
-    def difference(moved: Callable[[float], dict[str, np.ndarray]]) -> np.ndarray:
-        ahead = points.rates(**moved(h))
-        if f is None:
-            return mean((ahead - points.rates(**moved(-h))) / (2 * h))
-        return mean((ahead - f) / h)
 
-    def shifted(field: str, value: np.ndarray, i: int) -> np.ndarray:
-        return difference(lambda by: {field: value + by * np.eye(value.shape[1])[i]})
-
-    def turned(i: int) -> np.ndarray:
-        return difference(lambda by: {"qpos": shift_position(model, at.qpos, i, by)})
-
-    of_state = [turned(i) for i in range(nv)]
-    of_state += [shifted("qvel", at.qvel, i) for i in range(nv)]
-    of_state += [shifted("act", at.act, i) for i in range(na)]
-    of_inputs = [shifted("ctrl", at.inputs, i) for i in range(nu)]
-    if not nu:
-        return np.stack(of_state, axis=-1), np.zeros((*of_state[0].shape, 0))
-    return np.stack(of_state, axis=-1), np.stack(of_inputs, axis=-1)
+def _shifted(at: AtPoints, by: float) -> Iterator[Change]:
+    """The states and the inputs, with one after the other of them shifted."""
+    for i in range(at.model.nv):
+        yield Change({"qpos": shift_position(at.model, at.qpos, i, by)})
+    for field, value in (("qvel", at.qvel), ("act", at.act), ("ctrl", at.inputs)):
+        for unit in np.eye(value.shape[1]):
+            yield Change({field: value + by * unit})
 
 
 def position_rows(model: mujoco.MjModel, qvel: np.ndarray) -> np.ndarray:

@@ -14,9 +14,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from identification.linear.derivatives import CENTRAL, Points, differences, position_rows
+from identification.linear.derivatives import CENTRAL, differences, position_rows
 from identification.linear.names import input_names, output_places, state_names
 from identification.linear.operating_points import OperatingPoints
+from identification.linear.points import Points
 from identification.linear.system import LinearSystem
 
 RESULTS = ("qacc", "act_dot", "sensordata")

@@ -17,7 +17,8 @@ import mujoco
 import numpy as np
 
 from identification.errors import DivergenceError, InputError
-from identification.linear.derivatives import CENTRAL, Points, differences
+from identification.linear.derivatives import CENTRAL, differences
+from identification.linear.points import Points
 from identification.model.numbers import with_numbers
 from identification.model.predictor import Predictor
 from identification.model.rollout import State, rollout, substeps

@@ -23,6 +23,7 @@ from identification.errors import DivergenceError, InputError
 from identification.model.paths import Slot
 
 # MuJoCo derives no other number from these entries: after writing them, no mj_setConst is needed.
+# Nor does anything depend on them that follows from positions alone.
 UNDERIVED = {
     "actuator_user",
     "tendon_user",

@@ -70,7 +70,7 @@ def _drive_alone(m, d, j, room):  # type: ignore[no-untyped-def]
 def _hold_together(m, d, stop, room, n):  # type: ignore[no-untyped-def]
     """Subtract the friction of all joints; `room` has their drives and largest frictions."""
     A, full, w = np.empty((n, n)), np.zeros((n, n)), np.zeros(n)
-    mj_rne(m, d, 0, word(d, D.qfrc_bias))  # MuJoCo itself does so right after the passive forces
+    mj_rne((m, d, 0, word(d, D.qfrc_bias)))  # MuJoCo itself does so right after the passive forces
     for i in range(n):
         first = integer(m, M.M_rowadr, i)
         for k in range(first, first + integer(m, M.M_rownnz, i)):

@@ -1,4 +1,4 @@
-"""Functions of MuJoCo's library that compiled callbacks call.
+"""Functions of MuJoCo's library that compiled code calls.
 
 LLVM finds them by their names, as it finds those of the C library, so that machine code that calls
 them can be kept and loaded again by another process.
@@ -12,31 +12,47 @@ from typing import Any
 import llvmlite.binding as llvm
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
 from numba.extending import intrinsic
 
 from identification.engine import library
 
-
-def _enter(name: str) -> None:
-    address = ctypes.cast(getattr(library(), name), ctypes.c_void_p).value
-    llvm.add_symbol(name, address)
+POINTER, INT = 64, 32  # bits of an argument
 
 
-_enter("mj_rne")
+def _function(name: str, bits: tuple[int, ...]) -> Any:
+    """The compiled function (arguments in a tuple, all int64) -> None that calls one of MuJoCo's.
+
+    Args:
+        name: of the function.
+        bits: of its arguments.
+    """
+    llvm.add_symbol(name, ctypes.cast(getattr(library(), name), ctypes.c_void_p).value)
+
+    @intrinsic
+    def call(typing_context, arguments):  # type: ignore[no-untyped-def]
+        def emit(context, builder, signature, args):  # type: ignore[no-untyped-def]
+            kinds: list[Any] = [ir.IntType(n) for n in bits]
+            function = builder.module.globals.get(name)
+            if function is None:
+                kind = ir.FunctionType(ir.VoidType(), kinds)
+                function = ir.Function(builder.module, kind, name)
+            given = cgutils.unpack_tuple(builder, args[0])
+            narrowed = [
+                value if value.type == kind else builder.trunc(value, kind)
+                for value, kind in zip(given, kinds, strict=True)
+            ]
+            builder.call(function, narrowed)
+            return context.get_dummy_value()
+
+        return types.void(arguments), emit
+
+    return call
 
 
-@intrinsic
-def mj_rne(typing_context, m, d, with_acceleration, result):  # type: ignore[no-untyped-def]
-    """Recursive Newton-Euler: bias forces of a model and its data to the address `result`."""
-
-    def emit(context, builder, signature, args):  # type: ignore[no-untyped-def]
-        kinds: list[Any] = [ir.IntType(64), ir.IntType(64), ir.IntType(32), ir.IntType(64)]
-        function = builder.module.globals.get("mj_rne")
-        if function is None:
-            kind = ir.FunctionType(ir.VoidType(), kinds)
-            function = ir.Function(builder.module, kind, "mj_rne")
-        m, d, flag, out = args
-        builder.call(function, [m, d, builder.trunc(flag, kinds[2]), out])
-        return context.get_dummy_value()
-
-    return types.void(types.int64, types.int64, types.int64, types.int64), emit
+# model, data, whether with accelerations, address of the result: recursive Newton-Euler
+mj_rne = _function("mj_rne", (POINTER, POINTER, INT, POINTER))
+# model, data: all that follows from positions
+mj_fwdPosition = _function("mj_fwdPosition", (POINTER, POINTER))
+# model, data, the last stage that is there already, whether sensors are left out
+mj_forwardSkip = _function("mj_forwardSkip", (POINTER, POINTER, INT, INT))

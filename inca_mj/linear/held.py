@@ -19,8 +19,8 @@ from dataclasses import replace
 import numpy as np
 
 from identification.errors import InputError
-from identification.linear.derivatives import Points
 from identification.linear.operating_points import OperatingPoints
+from identification.linear.points import Points
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.pose import pose_values
 from inca_mj.robot.spread import at_drives

@@ -1,0 +1,118 @@
+"""Points, evaluated together, are exactly what `mj_forward` says one by one."""
+
+from unittest import mock
+
+import mujoco
+import numpy as np
+import pytest
+from effect_cases import full
+from linear_cases import PENDULUM, compiled
+
+from identification.engine import untimed
+from identification.errors import DivergenceError
+from identification.linear import points as of_points
+from identification.linear.operating_points import OperatingPoints
+from identification.linear.points import Change, Points
+from identification.model.numbers import each_with_numbers, with_numbers
+from identification.model.rollout import without_sensors
+
+LIMITED = """<mujoco><option timestep="0.001"/><worldbody><body>
+  <joint name="hinge" axis="0 1 0" range="-0.5 0.5" limited="true" frictionloss="0.05"/>
+  <geom type="capsule" size="0.02" fromto="0 0 0 0 0 -0.5" mass="1"/></body></worldbody>
+  <actuator><motor name="torque" joint="hinge"/></actuator></mujoco>"""
+FIELDS = {"qpos": "qpos", "qvel": "qvel", "act": "act", "ctrl": "inputs"}
+
+
+def drawn(model, qpos, act, count=7, seed=0):
+    rng = np.random.default_rng(seed)
+    still = np.tile(qpos, (count, 1))
+    return OperatingPoints(
+        model=model,
+        qpos=still + 0.01 * rng.normal(size=still.shape),
+        qvel=rng.normal(0, 0.3, (count, model.nv)),
+        act=np.tile(act, (count, 1)),
+        inputs=rng.normal(0, 0.5, (count, model.nu)),
+        time=rng.uniform(0, 1, count),
+    )
+
+
+def one_by_one(at, change):
+    """The slow obvious way: a new mjData for each point."""
+    model = change.model or at.model
+    own = {f: change.fields.get(f, getattr(at, there)) for f, there in FIELDS.items()}
+    rows = []
+    for k, time in enumerate(at.time):
+        data = mujoco.MjData(model)
+        data.time = time
+        for field, values in own.items():
+            getattr(data, field)[:] = values[k]
+        mujoco.mj_forward(model, data)
+        rows.append(np.concatenate([data.qacc, data.act_dot]))
+    return np.array(rows)
+
+
+def twin():
+    robot = full()
+    state = robot.state()
+    return robot, drawn(without_sensors(robot.model), state.qpos, state.act)
+
+
+@pytest.mark.parametrize("threads", [1, 2, 20])
+def test_the_twin_with_parameters_effects_states_and_inputs_moved(threads):
+    robot, at = twin()
+    names = ("lambda", "J", "m", "K_t", "x", "stribeck_friction.f_s", "pulley_radius.r_p")
+    own = robot.parameters.values()
+    values = np.tile([own[n] for n in names], (1 + len(names), 1))
+    values[1:] += np.diag([1e-3 * v or 1e-3 for v in values[0]])
+    numbers = robot.settings(names, values)[1]
+    rows = range(1, 1 + len(names))
+    changes = [Change({}, *own) for own in each_with_numbers(at.model, numbers, 0, rows)]
+    assert {change.is_derived for change in changes} == {False, True}
+    changes += [Change({f: 1.001 * getattr(at, there)}) for f, there in FIELDS.items()]
+    changes += [Change(), Change({"ctrl": 0.9 * at.inputs}, changes[0].model)]
+    with mock.patch.object(of_points, "threads", return_value=threads):
+        together = list(Points(at).each(changes))
+    for change, rates in zip(changes, together, strict=True):
+        np.testing.assert_array_equal(rates, one_by_one(at, change))
+
+
+@pytest.mark.parametrize("xml", [PENDULUM, LIMITED], ids=["free", "constrained"])
+def test_other_models_and_more_changes_than_are_taken_together(xml):
+    model = compiled(xml)
+    at = drawn(model, [0.499], [])
+    count = of_points.TOGETHER + 3
+    changes = [Change({"qvel": at.qvel + 0.1 * k, "ctrl": at.inputs - k}) for k in range(count)]
+    for change, rates in zip(changes, Points(at).each(iter(changes)), strict=True):
+        np.testing.assert_array_equal(rates, one_by_one(at, change))
+
+
+def test_copies_have_the_numbers_of_their_value_set():
+    robot, _ = twin()
+    own, names = robot.parameters.values(), ("m", "lambda", "b_c")
+    values = np.array([own[n] for n in names]) * [[1.0, 1, 1], [1.1, 1, 1], [1, 1, 1.2]]
+    numbers = robot.settings(names, values)[1]
+    first = with_numbers(robot.model, numbers, 0)
+    copies = [*each_with_numbers(first, numbers, 0, (1, 2))]
+    assert [is_derived for _, is_derived in copies] == [True, False]
+    for row, (copy, _) in zip((1, 2), copies, strict=True):
+        whole = with_numbers(robot.model, numbers, row)
+        for field in ("body_mass", "body_inertia", "dof_invweight0", "actuator_user", "qpos0"):
+            np.testing.assert_array_equal(getattr(copy, field), getattr(whole, field))
+
+
+def test_what_is_not_finite_is_refused():
+    at = drawn(compiled(PENDULUM), [0.1], [])
+    with pytest.raises(DivergenceError, match="not finite"):
+        Points(at).rates(qvel=np.full((7, 1), np.nan))
+
+
+def test_the_engine_takes_no_times_inside_and_takes_them_again_after():
+    model = compiled(PENDULUM)
+    data = mujoco.MjData(model)
+    timer = data.timer[mujoco.mjtTimer.mjTIMER_FORWARD]
+    with untimed(), untimed():
+        mujoco.mj_forward(model, data)
+    assert timer.number == 1
+    assert timer.duration == 0.0
+    mujoco.mj_forward(model, data)
+    assert timer.duration > 0.0
