@@ -47,9 +47,10 @@ def install(law: Law) -> None:
     """
     for kind in law.functions:
         trampolines.refuse_foreign(kind)
+    compiled = _compiled(law)
     for kind, address in _addresses(law).items():
-        enter(kind, law.key, address)
-        trampolines.hold(kind)
+        laws = enter(kind, law.key, address)
+        trampolines.hold(kind, compiled[kind] if laws == 1 else None)
 
 
 def uninstall() -> None:

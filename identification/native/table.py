@@ -5,7 +5,7 @@
 MuJoCo holds one callback of a kind in a process, and a process may need several laws: a robot with
 other effects, or with joints in place of cables. A law has a key, which its models carry. The
 callback that MuJoCo holds calls all laws of the table, and each law leaves alone the models that
-carry another key.
+carry another key. The callback of a law that is alone is held itself.
 
 Compiled code knows a table by its symbol. The entries are only ever added or pointed elsewhere, so
 that a simulation in another thread never misses a law.
@@ -33,8 +33,11 @@ for _kind, _words in _TABLES.items():
     llvm.add_symbol(f"identification_laws_{_kind}", _words.ctypes.data)
 
 
-def enter(kind: str, key: float, address: int) -> None:
+def enter(kind: str, key: float, address: int) -> int:
     """Put the callback of a law into a table, in place of one with the same key.
+
+    Returns:
+        How many laws the table has.
 
     Raises:
         RuntimeError: the table is full.
@@ -49,6 +52,7 @@ def enter(kind: str, key: float, address: int) -> None:
     words[2 + 2 * at] = address
     words[1 + 2 * at : 2 + 2 * at].view(np.float64)[0] = key
     words[0] = max(count, at + 1)
+    return int(words[0])
 
 
 @cache

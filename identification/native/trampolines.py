@@ -2,6 +2,8 @@
 
 passive, sensor      every law does its part
 act_dyn, act_bias    the answer of the one law that knows the actuator; the others return zero
+
+A law that is alone is held itself: the second call is a quarter of what the law of a twin takes.
 """
 
 from __future__ import annotations
@@ -79,7 +81,7 @@ def _trampoline(kind: str) -> Any:
     return compile_once(_function(kind), SIGNATURES[kind])
 
 
-_OURS: dict[str, Any] = {}  # kind -> its trampoline, once compiled
+_OURS: dict[str, list[Any]] = {}  # kind -> what MuJoCo was ever given of it
 
 
 def refuse_foreign(kind: str) -> None:
@@ -89,23 +91,33 @@ def refuse_foreign(kind: str) -> None:
         InputError: another library has installed a callback of this kind.
     """
     present = getattr(mujoco, f"get_mjcb_{kind}")()
-    if present is not None and present is not _OURS.get(kind):
+    if present is not None and not _is_ours(kind, present):
         raise InputError(
             f"another library has installed mjcb_{kind}, and MuJoCo holds one a process;"
             f" release it with mujoco.set_mjcb_{kind}(None), or use a process of its own"
         )
 
 
-def hold(kind: str) -> None:
-    """Let MuJoCo hold the trampoline of a kind; `refuse_foreign` comes first."""
-    if kind not in _OURS:
-        _OURS[kind] = _trampoline(kind)
-    if getattr(mujoco, f"get_mjcb_{kind}")() is not _OURS[kind]:
-        getattr(mujoco, f"set_mjcb_{kind}")(_OURS[kind])
+def hold(kind: str, alone: Any | None) -> None:
+    """Let MuJoCo hold a callback; `refuse_foreign` comes first.
+
+    Args:
+        kind: of the callback.
+        alone: of the only law of this process; None where there are more.
+    """
+    ours = _trampoline(kind) if alone is None else alone
+    if not _is_ours(kind, ours):
+        _OURS.setdefault(kind, []).append(ours)
+    if getattr(mujoco, f"get_mjcb_{kind}")() is not ours:
+        getattr(mujoco, f"set_mjcb_{kind}")(ours)
 
 
 def release() -> None:
-    """Take the trampolines back from MuJoCo; callbacks of other libraries stay."""
+    """Take the callbacks back from MuJoCo; those of other libraries stay."""
     for kind in KINDS:
-        if kind in _OURS and getattr(mujoco, f"get_mjcb_{kind}")() is _OURS[kind]:
+        if _is_ours(kind, getattr(mujoco, f"get_mjcb_{kind}")()):
             getattr(mujoco, f"set_mjcb_{kind}")(None)
+
+
+def _is_ours(kind: str, callback: Any) -> bool:
+    return any(callback is own for own in _OURS.get(kind, ()))
