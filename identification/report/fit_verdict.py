@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from identification.estimation.identifiability import in_words
-from identification.quantities import error, held, matched
+from identification.quantities import error, held
+from identification.report.untold_words import identifiable_sentences, weak_sentences
 
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
-    from identification.estimation.identifiability import Identifiability
     from identification.windows.window_estimate import WindowEstimate
 
 # A residual above this multiple of the noise floor is more than noise; the floor itself is an upper
@@ -20,8 +19,6 @@ ABOVE = 1.2
 HOLDS = 1.2  # a fit holds on unseen data up to this multiple of the residual that is expected there
 GROWN = 10.0  # a free run that errs by more than this multiple of the fitted residual has diverged
 LEVEL = 0.01  # significance of the tests of the residual: one false alarm in a hundred
-WEAK = 0.5  # of its value: the std of a value that is not worth its digits
-ROUGH = 1e-4  # relative error of a sensitivity, which a smooth simulation stays far below
 
 
 def fit_verdict(fit: Fit) -> list[str]:
@@ -44,80 +41,6 @@ def search_sentences(fit: Fit) -> list[str]:
     return [said]
 
 
-def identifiable_sentences(fit: Fit) -> list[str]:
-    """Which parameters, or products of them, can be known from the log."""
-    found = fit.found
-    if not len(found.blind):
-        values = np.array(list(fit.estimate.values.values()))
-        relative = fit.std / np.where(fit.estimate.space.logarithmic, np.abs(values), np.inf)
-        weak = [n for n, r in zip(found.names, relative, strict=True) if r > 0.5]
-        said = f"All {len(found.names)} directions of the parameters are felt by the outputs."
-        if weak:
-            said += (
-                f" Too weakly for this noise: {', '.join(weak)}, their std exceeds half the value."
-            )
-        return [said]
-    felt = f"{found.rank} of {len(found.names)} directions are felt"
-    sentences = []
-    if found.symmetries:
-        scaled = [n for n in found.names if any(n in s.powers for s in found.symmetries)]
-        along = "; ".join(in_words(s.row(found.names), found.names) for s in found.symmetries)
-        sentences.append(
-            f"{felt}: {' and '.join(scaled)} trade off along ({along}) without any output feeling"
-            " it."
-        )
-    for combination, value, std in fit.combinations:
-        told, known = matched(value, std)
-        error = f" ± {known}" if np.isfinite(std) else " (its std is not known)"
-        sentences.append(
-            f"Of {' and '.join(combination.exponents)} only {combination} can be known from this"
-            f" log: {told}{error}; fix one of them."
-        )
-    if k := len(found.unresolved):
-        count = f"{k} more" if found.symmetries else f"{felt}; {k}"
-        sentences.append(f"{count} {'are' if k > 1 else 'is'}{unresolved_words(found)}")
-    return sentences
-
-
-def unresolved_words(found: Identifiability) -> str:
-    """What directions that differences cannot resolve lack, and which parameters that leaves."""
-    moved = found.moved_by_unresolved
-    names = [n for n, m in zip(found.names, moved, strict=True) if m]
-    share = np.where(moved, found.errors / np.where(found.norms > 0, found.norms, np.inf), 0.0)
-    worst = np.argsort(-share)[: min(3, len(names))]
-    errors = ", ".join(f"{_percent(share[i])} for {found.names[i]}" for i in worst)
-    listed = " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
-    said = (
-        f" lost in the errors of the sensitivities ({errors}), so that {listed}"
-        f" {'have' if len(names) > 1 else 'has'} no std."
-    )
-    if share.max() > ROUGH:
-        said += " The simulation is rough at these values; a smaller timestep may resolve more."
-    return said
-
-
-def _weak(found: WindowEstimate) -> list[str]:
-    """Parameters of which the noise leaves too little, and what they trade off along."""
-    names, values = found.found.names, np.array(list(found.values.values()))
-    known = ~found.found.undetermined & np.isfinite(found.std)
-    weak = [n for n, v, s, k in zip(names, values, found.std, known, strict=True)
-            if k and s > WEAK * abs(v) and v > 0]  # fmt: skip
-    if not weak:
-        return []
-    felt = found.found.directions[: found.found.rank]
-    at = [names.index(n) for n in weak]
-    share = np.linalg.norm(felt[:, at], axis=1)  # of each direction that lies in the weak ones
-    words = in_words(felt[np.argmax(share / found.found.strengths[: len(felt)])], names)
-    said = f"Too weakly for this noise: {', '.join(weak)}, their std exceeds half the value."
-    if "," in words:
-        said += f" They trade off along ({words}): what does not change along it is known."
-    return [said + " Fix one of them, or record a motion that tells more of them."]
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.0f} %" if share > 0.1 else f"{100 * share:.2g} %"
-
-
 def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str]:
     """How a search over windows ended, which parameters it cannot know, and its residual.
 
@@ -131,7 +54,7 @@ def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str
         said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
     if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
         said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
-    said += _weak(found)
+    said += weak_sentences(found)
     share, own = held(found.rms / floor) if floor > 0 else "", error(floor, unit)
     ratio = f", {share} times the noise floor of {own}" if share else ""
     left = error(found.rms, unit)

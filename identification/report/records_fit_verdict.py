@@ -7,9 +7,9 @@ import numpy as np
 from identification.estimation.identifiability import in_words
 from identification.prediction.records_fit import RecordsFit
 from identification.quantities import error, held
-from identification.report.fit_verdict import WEAK
 from identification.report.scale_words import describe_scale
 from identification.report.step_words import step_sentences
+from identification.report.untold_words import WEAK, cure, too_weak
 
 MUCH = 3.0  # times the noise floor, beyond which a fit is told to lack something
 
@@ -69,10 +69,7 @@ def _weak(found: RecordsFit) -> list[str]:
     weak = [n for (n, v), std, positive in rows if positive and std > WEAK * abs(v)]
     if not weak:
         return []
-    return [
-        f"Too weakly for these windows: {', '.join(weak)}, their std exceeds half the value. Fix"
-        " one of them, or record a motion that tells more of them."
-    ]
+    return [f"{too_weak(weak, 'windows')} {cure(weak)}"]
 
 
 def _unknown_std(found: RecordsFit) -> list[str]:
