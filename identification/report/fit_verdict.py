@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from identification.logs.by_unit import relative
 from identification.quantities import error, held
+from identification.report.error_words import error_words
 from identification.report.untold_words import identifiable_sentences, weak_sentences
 
 if TYPE_CHECKING:
@@ -67,31 +67,19 @@ def coloured_outputs(fit: Fit) -> int:
     return int((fit.tests.white < LEVEL / len(fit.tests.white)).sum())
 
 
-def _floor(fit: Fit) -> float:
-    """Rms of the noise over all outputs."""
-    return float(np.sqrt(np.mean(fit.floor**2)))
-
-
 def _outputs(count: int) -> str:
     return "1 output" if count == 1 else f"{count} outputs"
 
 
-def _error(fit: Fit, value: float) -> str:
-    """A residual of a fit with the unit of its outputs."""
-    return error(value, fit.estimate.predictor.log.output_unit)
-
-
 def _above(fit: Fit) -> float:
     """The residual as a multiple of the noise floor."""
-    return fit.rms / _floor(fit) if _floor(fit) > 0 else np.inf
+    return relative(fit.rms_by_unit, fit.floor_by_unit)
 
 
 def _enough(fit: Fit) -> list[str]:
-    floor, ratio = _error(fit, _floor(fit)), _above(fit)
-    sentences = [
-        f"The residual is {_error(fit, fit.rms)} rms, {held(ratio)} times the noise floor of"
-        f" {floor}."
-    ]
+    ratio, (floor,) = _above(fit), error_words([fit.floor_by_unit], "")
+    (left,) = error_words([fit.rms_by_unit])
+    sentences = [f"The residual is {left}, {held(ratio)} times the noise floor of {floor}."]
     dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
     coloured = coloured_outputs(fit)
     if ratio > ABOVE:
@@ -116,23 +104,23 @@ def _enough(fit: Fit) -> list[str]:
 
 
 def _unseen(fit: Fit) -> list[str]:
-    if fit.validation_rms is None:
+    there, expected = fit.validation_rms_by_unit, fit.validation_expected_by_unit
+    if there is None or expected is None:
         return ["There is no unseen data to confirm it on."]
-    unseen = _error(fit, fit.validation_rms)
-    likely = max(fit.rms, fit.validation_expected or 0.0)
-    ratio = fit.validation_rms / likely if likely > 0 else np.inf
+    (unseen,) = error_words([there])
+    ratio, grown = relative(there, expected), relative(there, fit.rms_by_unit)
     said = "it does not hold: too many parameters, or an effect missing"
     if ratio < HOLDS:
         said = "what was fitted holds there too"
         if _above(fit) > ABOVE:
             said = "no worse than on what was fitted, but what is missing is missing there too"
-    if ratio < HOLDS and fit.validation_rms > GROWN * fit.rms:
+    if ratio < HOLDS and grown > GROWN:
         return [
-            f"On unseen data the residual is {unseen} rms,"
-            f" {fit.validation_rms / fit.rms:.0f} times that of the fitted part; so small errors of"
-            " the parameters may do that there, and it says little. Judge over a horizon."
+            f"On unseen data the residual is {unseen}, {grown:.0f} times that of the fitted part;"
+            " so small errors of the parameters may do that there, and it says little. Judge over"
+            " a horizon."
         ]
     return [
-        f"On unseen data the residual is {unseen} rms,"
-        f" {held(ratio)} times what the fit leads one to expect: {said}."
+        f"On unseen data the residual is {unseen}, {held(ratio)} times what the fit leads one to"
+        f" expect: {said}."
     ]
