@@ -32,14 +32,12 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
     left = f"{error(rms, found.unit)} rms" + ("" if found.unit else " in the outputs' scale")
     each = "1 window" if windows == 1 else f"{windows} windows"
     said.append(f"{each} of {found.horizon:g} s leave {left}{ratio}.")
-    said += describe_scale(found.model, found.unit)
-    said += step_sentences(found.model)
     if floor > 0 and rms > MUCH * floor:
         said.append(
             "That is far more than the sensors make: the model lacks something, or a column is not"
             " what the model takes it for; discover looks for what is missing."
         )
-    return said
+    return [*said, *describe_scale(found.model, found.unit), *step_sentences(found.model)]
 
 
 def _blind(found: RecordsFit) -> list[str]:
