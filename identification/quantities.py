@@ -2,11 +2,13 @@
 
 0.00412 ± 0.00021 N m  ->  4.12 ± 0.21 mN m
 
-A number that rounds to zero has no minus sign: the `z` of a format, here and in all sentences.
+A number that rounds to zero has no minus sign: the `z` of a format, here and in all sentences. A
+value that would read as zero beside its std is said with one digit more: 0.02 ± 0.50 nm.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from math import ceil, floor, isfinite, log10
 
@@ -18,6 +20,7 @@ _LARGE = 1e6  # a larger value in a table is a power of ten
 _FINEST = 1e-5  # a smaller std is said as a power of ten
 _MOST = 15  # decimals, beyond which a number of a computer has none
 _DIGITS = 3  # of a value whose std is not known
+_ALONE = re.compile(r"\(([^\W\d_]+)\)")  # brackets around one symbol
 HELD = 2  # digits of the error of a model that are said (docs/identification.md)
 
 
@@ -33,17 +36,18 @@ def quantity(value: float, std: float = float("nan"), unit: str = "", like: floa
         value: in `unit`.
         std: in `unit`; not said when it is not finite or zero.
         unit: SI unit, "" when dimensionless: small numbers are then said in percent.
-        like: the largest value beside which it stands, in `unit`: both then have one prefix.
+        like: the largest value, or std, beside which it stands, in `unit`: both then have one
+            prefix.
     """
     if not isfinite(value):
         return "unknown"
     known = isfinite(std) and std > 0
-    largest = abs(like) or max(abs(value), std if known else 0.0)
+    largest = max(abs(like), abs(value), std if known else 0.0)
     factor, unit = _scale(largest, unit, exact=std == 0)
     value, std = value / factor, std / factor
     if not known:
         return f"{_plain(value, _DIGITS)} {unit}".strip()
-    places = min(max(0, _decimals(std)), _MOST)
+    places = min(max(0, _shared(value, std)), _MOST)
     if std < _FINEST:
         return f"{value:z.{places}f} ± {std:.1e} {unit}".strip()
     return f"{value:z.{places}f} ± {std:.{places}f} {unit}".strip()
@@ -61,7 +65,7 @@ def matched(value: float, std: float, sign: str = "") -> tuple[str, str]:
         return f"{value:{sign}z.6g}", "unknown"
     if std <= 0:
         return f"{value:{sign}z.6g}", f"{std:.2g}"
-    places = _decimals(std)
+    places = _shared(value, std)
     if std < _FINEST or abs(value) >= _LARGE:  # a power of ten, with the std's digits
         lead = floor(log10(max(abs(value), std)))
         return f"{value:{sign}z.{min(max(0, lead + places), _MOST)}e}", f"{std:.1e}"
@@ -107,8 +111,26 @@ def alike(values: Sequence[float], unit: str, digits: int = _DIGITS) -> list[str
     return [f"{_plain(v, digits)} {name}".strip() if isfinite(v) else "unknown" for v in sizes]
 
 
+def plain_unit(unit: str) -> str:
+    """A unit without brackets around single symbols, as somebody may have written it: m/(N)."""
+    return _ALONE.sub(r"\1", unit)
+
+
+def per(over: str, under: str, power: int = 1) -> str:
+    """The unit of a quotient, with brackets only where they are needed: m/N, rad/(N m), 1/(N m)^2.
+
+    Args:
+        over: unit of the numerator; "1" where it has none.
+        under: unit of the denominator.
+        power: of the denominator.
+    """
+    below = under if under.isalnum() else f"({under})"
+    return f"{over}/{below}" + (f"^{power}" if power != 1 else "")
+
+
 def _scale(magnitude: float, unit: str, exact: bool) -> tuple[float, str]:
     """Unit to divide by, in the old one, and its name."""
+    unit = plain_unit(unit)
     if not unit:
         return (0.01, "%") if magnitude < 1 and not exact else (1.0, "")
     lead, rest = _lead(unit)
@@ -140,6 +162,13 @@ def _decimals(std: float) -> int:
     """Decimals that show two digits of a std that starts with 1 to 3, else one."""
     first = floor(log10(std))
     return -first + (1 if std / 10.0**first < 3.5 else 0)
+
+
+def _shared(value: float, std: float) -> int:
+    """Decimals of a value and its std: one more where the value would read as zero."""
+    places = _decimals(std)
+    is_lost = value != 0 and abs(value) < 0.5 * 10.0**-places
+    return places + 1 if is_lost and std / 10.0 ** floor(log10(std)) >= 3.5 else places
 
 
 def _rounded(value: float, digits: int) -> float:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from identification.quantities import plain_unit
+
 PREFIXES = ((1e-6, "µ"), (1e-3, "m"), (1.0, ""))
 
 
@@ -22,7 +24,7 @@ def number(value: float | None, std: float | None, unit: str) -> str:
     if value is None:
         return ""
     said = f"{value:.4g}" + (f" ± {std:.2g}" if std is not None else "")
-    return f"{said} {unit}".strip()
+    return f"{said} {plain_unit(unit)}".strip()
 
 
 def percent(share: float) -> str:

@@ -48,11 +48,11 @@ class Fit(OnRobot):
 
 
 def _text(record: dict[str, Any]) -> str:
-    from identification.quantities import matched
+    from identification.quantities import matched, plain_unit
 
     cells = [
-        (name, *matched(p["value"], float("inf") if p["std"] is None else p["std"]), p["unit"],
-         f"{p['initial']:z.6g}", "at bound" if p["at_bound"] else "")
+        (name, *matched(p["value"], float("inf") if p["std"] is None else p["std"]),
+         plain_unit(p["unit"]), f"{p['initial']:z.6g}", "at bound" if p["at_bound"] else "")
         for name, p in record["parameters"].items()
     ]  # fmt: skip
     head = ("parameter", "value", "std", "unit", "start", "")

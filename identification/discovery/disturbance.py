@@ -10,7 +10,7 @@ import numpy as np
 
 
 def propagate_input_error(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -> np.ndarray:
-    """Variance over σ² that input errors cause in a free run, mean over the outputs, shape (N,).
+    """Variance over σ² that input errors cause in a free run, of each output, shape (N, ny).
 
     Args:
         A: transitions of the state of plant and input error, shape (N-1, nz, nz).
@@ -19,13 +19,13 @@ def propagate_input_error(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -
         nu: number of inputs.
     """
     if not A.size:
-        return np.zeros(0)
+        return np.zeros((0, len(C)))
     P = np.zeros(A.shape[1:])
     P[-nu:, -nu:] = ratio**2 * np.eye(nu)
-    out = [0.0]
+    out = [np.zeros(len(C))]
     for step in A:
         a = step[-1, -1]
         P = step @ P @ step.T
         P[-nu:, -nu:] += (1 - a**2) * ratio**2 * np.eye(nu)
-        out.append(float(np.einsum("ij,jk,ik->", C, P, C)) / len(C))
+        out.append(np.einsum("ij,jk,ik->i", C, P, C))
     return np.array(out)

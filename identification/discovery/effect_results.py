@@ -45,10 +45,13 @@ class Gap:
     Attributes:
         rms: over all outputs, in their unit.
         fit_percent: of each output, shape (ny,) [%].
+        rms_by_unit: rms by the outputs' units, each in it; empty over a horizon, where errors count
+            in the scale of each output.
     """
 
     rms: float
     fit_percent: np.ndarray
+    rms_by_unit: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

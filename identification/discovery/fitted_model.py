@@ -10,10 +10,11 @@ import numpy as np
 from identification.discovery.effect_results import Proof
 from identification.discovery.nominal_model import STEPS, fit_with_effects
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.proof import Validation, allowed_chance, validate
+from identification.discovery.proof import allowed_chance
 from identification.discovery.scoring.scores import Score, score
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.discovery.task import DiscoveryTask
+from identification.discovery.validation import Validation, validate
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
 from identification.kalman.refit import Refit

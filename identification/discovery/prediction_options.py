@@ -84,3 +84,15 @@ class PredictionOptions(KalmanOptions):
         " torques are seldom better.",
         "judgement",
     )  # fmt: skip
+    told_step_shift: float = option(
+        1.0, "std",
+        "Over a horizon: a value that a quarter of the model's step would move by more is told;"
+        " less is within what its std tells.",
+        "judgement",
+    )  # fmt: skip
+    told_step_error: float = option(
+        0.9, "of the error of the fitted windows",
+        "Over a horizon: if a quarter of the model's step would lower the error below this, it is"
+        " told: a fifth of the mean square is then of the steps, and nothing that is missing.",
+        "judgement", most=1.0,
+    )  # fmt: skip

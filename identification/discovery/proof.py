@@ -17,88 +17,19 @@ is what input errors do to it. (A robot that is judged over a horizon has a proo
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import t as student
 from threadpoolctl import threadpool_limits
 
-from identification.discovery.disturbance import propagate_input_error
-from identification.discovery.effect_results import Gap, Proof
+from identification.discovery.effect_results import Proof
 from identification.discovery.options import DiscoveryOptions
-from identification.estimation.metrics import fit_percent
-from identification.kalman.noise_model import Whitener, build_whitener
-from identification.kalman.point import extend_point
-from identification.kalman.refit import Refit
-from identification.logs.joined import records_of, rows_of
-from identification.logs.log import Log
+from identification.discovery.validation import Validation
+from identification.logs.joined import records_of
 
 SHORTEST = 5  # samples of a block at least
 MOST_FLIPS = 32  # blocks whose flips are counted, 2^16 sums of each half
 ROUNDING = 1e-12  # of the blocks' sizes: sums that differ by less are one
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Validation:
-    """The prediction of a whole log by a model that was fitted on a part of it.
-
-    Attributes:
-        refit: the fit.
-        log: the whole log, of N samples.
-        e: residual of the free run, shape (N, ny).
-        innovations: whitened residual in units of σ, shape (N, ny).
-        filter: the whitening filter.
-        seen: true for the samples that were fitted, shape (N,).
-        disturbance: rms of what input errors do to the judged error, in the outputs' unit.
-        measured: outputs of the unseen samples that are judged, shape (n, ny).
-        judged: their error, of the free run or of the windows, shape (n, ny).
-    """
-
-    refit: Refit
-    log: Log
-    e: np.ndarray
-    innovations: np.ndarray
-    filter: Whitener
-    seen: np.ndarray
-    disturbance: float
-    measured: np.ndarray
-    judged: np.ndarray
-
-    @property
-    def rms(self) -> float:
-        """Rms of the judged error, over all outputs."""
-        return float(np.sqrt(np.mean(self.judged**2)))
-
-    @property
-    def gap(self) -> Gap:
-        """The judged error as a gap."""
-        return Gap(self.rms, fit_percent(self.measured, self.measured - self.judged))
-
-
-def validate(fit: Refit, log: Log) -> Validation:
-    """Predict a whole log with a fit.
-
-    Args:
-        fit: of the log's part `estimation`.
-        log: the whole log.
-
-    Raises:
-        DivergenceError: the model cannot be simulated over the whole log.
-    """
-    point = extend_point(fit.point, log)
-    seen = rows_of(log, "estimation")
-    with threadpool_limits(1, "blas"):
-        filter_ = build_whitener(point.linear, fit.level.noise, log.sampling_time)
-        E = filter_(point.e) / fit.level.sigma
-        nu, ratio = point.linear.B.shape[2], fit.level.noise.ratio
-        measured, judged = log.outputs[~seen], point.e[~seen]
-        moved = propagate_input_error(filter_.A, filter_.C, ratio, nu)
-        moved = moved[~seen] if moved.size else moved
-    disturbance = fit.level.sigma * np.sqrt(moved.mean()) if moved.size else 0.0
-    return Validation(
-        refit=fit, log=log, e=point.e, innovations=E, filter=filter_, seen=seen,
-        disturbance=float(disturbance), measured=measured, judged=judged,
-    )  # fmt: skip
 
 
 def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -> Proof:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -39,6 +39,9 @@ class Discovery:
         noise_rms: rms of the sensors' noise, estimated from the data, in the outputs' unit.
         disturbance_rms: rms of what unlogged input errors do to the free run, by the noise model;
             zero where these errors are not random.
+        noise_by_unit: what the filter leaves of the fitted samples, one step ahead, by the outputs'
+            units, each in it.
+        disturbance_by_unit: `disturbance_rms` likewise.
         before: the gap of the fitted nominal model.
         after: the gap of the model with the named effects.
         nominal: the fit without effects.
@@ -64,6 +67,8 @@ class Discovery:
     unexplained: bool
     noise_rms: float
     disturbance_rms: float
+    noise_by_unit: Mapping[str, float] = field(default_factory=dict)
+    disturbance_by_unit: Mapping[str, float] = field(default_factory=dict)
     before: Gap
     after: Gap
     nominal: Refit

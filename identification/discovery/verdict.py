@@ -24,6 +24,7 @@ from identification.discovery.result import Discovery, Verdict
 from identification.discovery.scoring.detectability import list_detectable
 from identification.discovery.scoring.hidden import list_hidden
 from identification.discovery.state import SearchState
+from identification.logs.by_unit import by_unit
 
 # With these findings a model is not believed, and nothing is named that leaves anything.
 DISBELIEVED = (FindingKind.PARAMETERS_AT_LIMIT, FindingKind.OVERSIZED_EFFECT)
@@ -123,6 +124,7 @@ def conclude(state: SearchState) -> Discovery:
     forces = estimate_missing_forces(nominal.refit, options) if is_missing else ()
     located = locate_error(nominal.refit, forces, options) if is_missing else ()
     is_random = not _has(findings, FindingKind.STRUCTURED_INPUT_ERROR)
+    disturbed = by_unit(model.validation.disturbances, log)
     return Discovery(
         log=log,
         options=options,
@@ -132,6 +134,8 @@ def conclude(state: SearchState) -> Discovery:
         unexplained=bool(findings or unnamed or beside),
         noise_rms=model.refit.level.sigma,
         disturbance_rms=model.validation.disturbance if is_random else 0.0,
+        noise_by_unit=by_unit(model.validation.noise, log),
+        disturbance_by_unit={u: s if is_random else 0.0 for u, s in disturbed.items()},
         before=nominal.validation.gap,
         after=model.validation.gap,
         nominal=nominal.refit,

@@ -6,6 +6,7 @@ from identification.effects import joint_laws as laws
 from identification.effects.effect import Effect, Shape
 from identification.effects.joint_group import Group
 from identification.effects.waves import wave_sizes, waves
+from identification.quantities import per
 
 
 def force_effects(g: Group) -> list[Effect]:
@@ -23,7 +24,8 @@ def force_effects(g: Group) -> list[Effect]:
                         "of a spring that hardens, or softens"),),
                 "spring: grows with the cube of the way", "Duffing 1918"),
         g.force(laws.torque_saturation, "-c f_u³, f_u the drive's force",
-                (g.size("c", 0.5 / F**2, f"1/({g.f})^2", "relative loss per square of force", 1),),
+                (g.size("c", 0.5 / F**2, per("1", g.f, 2),
+                        "relative loss per square of force", 1),),
                 "motor: weaker at high current", "Krishnan 2010", where=g.plain),
     ]  # fmt: skip
     if (n := waves(g)) is not None:

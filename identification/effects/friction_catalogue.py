@@ -6,6 +6,7 @@ from identification.effects import joint_laws as laws
 from identification.effects.effect import Effect, Shape
 from identification.effects.joint_group import Group
 from identification.effects.waves import wave_sizes, waves
+from identification.quantities import per
 
 SPEEDS = (0.03, 0.06, 0.12, 0.25, 0.5)  # Stribeck velocities to try, of the top speed
 FEW_SPEEDS = (0.06, 0.25)  # where two sizes are tried with each
@@ -67,8 +68,8 @@ def _under_load(g: Group, v_s: Shape) -> list[Effect]:
         g.friction(laws.quadratic_load_friction,
                    "at most q_e f_g² more where the drive lifts, q_m f_u² where it lowers,"
                    " times exp(-|v/v_s|)",
-                   (g.size("q_e", 0.2 / g.F, f"1/({g.f})", "growth while lifting", 1),
-                    g.size("q_m", 0.2 / g.F, f"1/({g.f})", "growth while lowering", 1)),
+                   (g.size("q_e", 0.2 / g.F, per("1", g.f), "growth while lifting", 1),
+                    g.size("q_m", 0.2 / g.F, per("1", g.f), "growth while lowering", 1)),
                    "friction: grows with the square of the load", LOAD, (_peak(g, FEW_SPEEDS),),
                    where=g.loaded),
         g.friction(laws.load_stribeck_friction, "at most μ_s |f_u - f_g| exp(-|v/v_s|) more",

@@ -10,6 +10,7 @@ from identification.effects import state_laws as laws
 from identification.effects.effect import Effect, Shape, Size
 from identification.effects.joint_group import PROBE, Group
 from identification.native.element import Function
+from identification.quantities import per
 
 # Largest plausible sizes, as shares of half the travel: under the drive's full force a gear gives
 # by less (harmonic drives by a tenth of that), its gap is smaller (good gears have less than a
@@ -29,7 +30,7 @@ LINK = Shape("link", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
 def state_effects(g: Group) -> list[Effect]:
     """Effects with states on some joints; those without a place are left out by the caller."""
     zeta = Shape("zeta", "", (0.05,), 1e-3, 1.0, about="damping ratio of motor and spring")
-    give = f"{g.x}/({g.f})"
+    give = per(g.x, g.f)
     return [
         _effect(g, "series", laws.joint_elasticity, "τ = δ/c + 2 ζ √(J/c) dδ/dt, δ = θ - q",
                 Size("c", give, FLEXES * g.A / g.F, PROBE * FLEXES * g.A / g.F, 1, "compliance"),

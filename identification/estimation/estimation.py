@@ -2,9 +2,9 @@
 
     V(q) = Σ_k ‖C ε_k‖² + Σ_j ((q_j - q̄_j)/s_j)²,    ε_k = y_k - ŷ_k(q)            (thesis 3.2)
 
-There are two criteria. `trace`: C = I/σ. `det`: CᵀC = Λ⁻¹, where Λ is the covariance of the
-residual. Λ is estimated again from each fit until it no longer changes; this is maximum likelihood
-for Gaussian noise of unknown covariance.
+There are two criteria. `trace`: C = I/σ, where σ is the noise over all outputs of one unit. `det`:
+CᵀC = Λ⁻¹, where Λ is the covariance of the residual. Λ is estimated again from each fit until it no
+longer changes; this is maximum likelihood for Gaussian noise of unknown covariance.
 
 Over several seconds, the free run of a stiff robot depends on its parameters in a very nonlinear
 way; over a quarter of a second it is nearly linear. So the fit begins on a short horizon and
@@ -31,6 +31,7 @@ from identification.estimation.options import Options as Options
 from identification.estimation.options import Progress as Progress
 from identification.estimation.options import Status, prior_weight
 from identification.estimation.search import Search
+from identification.logs.by_unit import by_unit, of_outputs
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates, coordinates
@@ -101,7 +102,7 @@ def estimate(
         options: how to search.
         progress: is told one line per accepted step.
         whitener: C of the `trace` criterion, shape (ny, ny), in one over the outputs' units; when
-            None it is I/σ, where σ is the noise floor.
+            None it is I/σ, where σ is the noise floor over all outputs of an output's unit.
 
     Raises:
         InputError: a name is unknown or has no effect on the outputs, or a start is out of bounds.
@@ -120,7 +121,8 @@ def estimate(
     own = {**plant.parameters.values(), **(start or {})}
     first = np.array([own[name] for name in names])
     space = coordinates(plant.parameters, names, first)
-    sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
+    sigma = of_outputs(by_unit(noise_floor(log.outputs), log), log)
+    sigma = np.where(sigma > 0, sigma, 1.0)
     search = Search(
         Predictor(plant, log, tuple(names), dict(start or {})),
         space,

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.errors import DivergenceError
+from identification.estimation.beyond import beyond
 from identification.estimation.combination import Combination
 from identification.estimation.estimation import Estimate
 from identification.estimation.identifiability import Identifiability, identifiability
@@ -26,10 +26,9 @@ from identification.estimation.residuals import ResidualTests, residual_tests
 from identification.estimation.resolution import nothing_resolved, resolve
 from identification.estimation.robust import influence
 from identification.estimation.whiteness import correlation_time
+from identification.logs.by_unit import by_unit, rms_by_unit
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
-from identification.model.predictor import Predictor
-from identification.model.sensitivity import sensitivity
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +50,8 @@ class Fit:
         validation_rms: rms error on these data, over all outputs, or None.
         validation_expected: the rms error to expect on these data if the model is right, from the
             fitted residual and from the uncertainty of the parameters, or None.
+        validation_rms_by_unit: the same by the outputs' units, each in it, or None.
+        validation_expected_by_unit: likewise, or None.
         floor: std of the noise seen in the measurement alone, shape (ny,), in the outputs' units.
         tests: tests of the residual.
         information: Fisher information of the log at the estimate, for white noise.
@@ -67,6 +68,8 @@ class Fit:
     validation_fit_percent: np.ndarray | None
     validation_rms: float | None
     validation_expected: float | None
+    validation_rms_by_unit: dict[str, float] | None
+    validation_expected_by_unit: dict[str, float] | None
     floor: np.ndarray
     tests: ResidualTests
     information: Information
@@ -75,6 +78,16 @@ class Fit:
     def rms(self) -> float:
         """Rms of the residual over all outputs."""
         return float(np.sqrt(np.mean(self.residual**2)))
+
+    @property
+    def rms_by_unit(self) -> dict[str, float]:
+        """Rms of the residual by the outputs' units, each in it."""
+        return rms_by_unit(self.residual, self.estimate.predictor.log)
+
+    @property
+    def floor_by_unit(self) -> dict[str, float]:
+        """Rms of the noise by the outputs' units, each in it."""
+        return by_unit(self.floor, self.estimate.predictor.log)
 
     @property
     def loss(self) -> float:
@@ -120,8 +133,8 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
     covariance = _sandwich(S.reshape(*error.shape, -1), pull, share, error, known, prior)
     std_q = np.where(known.undetermined, np.inf, np.sqrt(np.diag(covariance)))
     scale = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
-    fit, unseen, spread = _beyond(estimate, validation, covariance)
-    expected = None if unseen is None else float(np.hypot(np.sqrt(np.mean(residual**2)), spread))
+    fit, unseen, spread = beyond(estimate, validation, covariance)
+    expected = np.hypot(rms(residual), spread)
     return Fit(
         estimate=estimate,
         std=std_q * space.slope(q),
@@ -132,12 +145,19 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
         residual=residual,
         fit_percent=fit_percent(log.outputs, predicted),
         validation_fit_percent=fit,
-        validation_rms=unseen,
-        validation_expected=expected,
+        validation_rms=None if unseen is None else _over_all(unseen),
+        validation_expected=None if unseen is None else _over_all(expected),
+        validation_rms_by_unit=None if unseen is None else by_unit(unseen, log),
+        validation_expected_by_unit=None if unseen is None else by_unit(expected, log),
         floor=noise_floor(log.outputs),
         tests=residual_tests(residual, log.inputs),
         information=information_of(resolved, space),
     )
+
+
+def _over_all(rms: np.ndarray) -> float:
+    """Rms over all outputs, of those of each, shape (ny,)."""
+    return float(np.sqrt(np.mean(rms**2)))
 
 
 def _bounded(correlation: np.ndarray) -> np.ndarray:
@@ -185,26 +205,3 @@ def combinations_of(
         std = np.inf if found.moved(powers[None])[0] else np.sqrt(powers @ covariance @ powers)
         out.append((combination, value, value * float(std)))
     return tuple(out)
-
-
-def _beyond(
-    estimate: Estimate, whole: Log | None, covariance: np.ndarray
-) -> tuple[np.ndarray | None, float | None, float]:
-    """Fit in %, rms error, and rms spread of the prediction by the covariance of q.
-
-    All three are of the samples after the fitted ones, in a free run from the start of the log.
-    """
-    n = len(estimate.predictor.log)
-    if whole is None or len(whole) <= n + 2:
-        return None, None, 0.0
-    p = estimate.predictor
-    longer = Predictor(p.plant, whole, p.names, p.fixed)
-    try:
-        predicted = longer.predict(estimate.space.decode(estimate.q))[0][n:]
-        J = sensitivity(longer, estimate.space, estimate.q)[n:]
-    except DivergenceError:
-        return np.full(whole.outputs.shape[1], -np.inf), np.inf, 0.0
-    measured = whole.outputs[n:]
-    spread = np.sqrt(np.mean(np.einsum("nip,pq,niq->ni", J, covariance, J)))
-    error = float(np.sqrt(np.mean(rms(measured - predicted) ** 2)))
-    return fit_percent(measured, predicted), error, float(spread)

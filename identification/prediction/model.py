@@ -20,6 +20,7 @@ from identification.prediction.records import Record
 from identification.prediction.step_shift import StepShift, step_shift
 from identification.prediction.told_std import told_std
 from identification.prediction.unseen import Unseen, predict
+from identification.windows.coarse import own_step
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,11 @@ class WindowModel:
     def finer(self) -> StepShift:
         """What a quarter of the model's step would do to the fit."""
         return step_shift(self.fit)
+
+    @property
+    def steps(self) -> tuple[float, float]:
+        """Time steps of the simulations and of the user's model [s]."""
+        return float(self.plant.model.opt.timestep), own_step(self.plant)
 
     @property
     def step_shift(self) -> dict[str, float]:

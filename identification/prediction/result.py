@@ -19,7 +19,6 @@ from identification.prediction.record_errors import RecordError
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction
-from identification.windows.coarse import own_step
 
 Verdict = Literal["named", "nothing missing", "unknown effect", "unlisted effect"]
 
@@ -128,8 +127,7 @@ class RecordsDiscovery:
     @property
     def steps(self) -> tuple[float, float]:
         """Time steps of the simulations of the nominal model and of the user's model [s]."""
-        plant = self.nominal.plant
-        return float(plant.model.opt.timestep), own_step(plant)
+        return self.nominal.steps
 
     @property
     def output_rms(self) -> np.ndarray:

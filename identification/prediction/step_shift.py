@@ -12,10 +12,12 @@ integrator of any order errs by about Δ, and so does the estimate. H, S_w, P_w 
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from identification.discovery.prediction_options import PredictionOptions
 from identification.effects.jointed import JointPlant
 from identification.errors import DivergenceError
 from identification.model.plant import ModelPlant
@@ -38,6 +40,33 @@ class StepShift:
 
     values: np.ndarray
     error: float
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the windows could be simulated with finer steps."""
+        return bool(np.isfinite(self.error) or np.isfinite(self.values).any())
+
+    def far(
+        self, names: Sequence[str], std: np.ndarray, options: PredictionOptions
+    ) -> dict[str, float]:
+        """The values that finer steps would move beyond what is told of them, the farthest first.
+
+        Args:
+            names: of the values, p of them.
+            std: shape (p,), in their units; NaN where it is not known.
+            options: how far is told.
+
+        Returns:
+            By name, how far [std].
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            moved = np.abs(self.values) / std
+        far = [int(k) for k in np.argsort(-moved) if moved[k] > options.told_step_shift]
+        return {names[k]: float(moved[k]) for k in far}
+
+    def is_lower(self, options: PredictionOptions) -> bool:
+        """Whether finer steps would lower the error by so much that it is told."""
+        return self.error < options.told_step_error
 
 
 def step_shift(found: WindowFit) -> StepShift:

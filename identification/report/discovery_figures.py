@@ -21,20 +21,21 @@ def gap_figure(
     time: np.ndarray,
     before: np.ndarray,
     after: np.ndarray | None,
-    band: float,
+    band: np.ndarray,
     names: Sequence[str],
-    unit: str,
+    units: Sequence[str],
 ) -> Figure:
     """Errors of the free run, one panel an output, over the band of the noise.
 
     Args:
         time: of the unseen samples, shape (N,) [s]; a gap in it is a gap in the lines.
-        before: measured minus predicted by the fitted nominal model, shape (N, ny) [unit].
+        before: measured minus predicted by the fitted nominal model, shape (N, ny), in the units.
         after: the same with the named effects; None when there are none.
-        band: half its width, two std of the noise [unit].
+        band: half its width, two std of the noise of each output, shape (ny,), in the units.
         names: of the outputs, ny of them.
-        unit: of the outputs.
+        units: of the outputs, ny of them; where they differ, each panel has an axis of its own.
     """
+    alike = len(set(units)) == 1
     columns = min(2, len(names))
     rows = -(-len(names) // columns)
     step = float(np.median(np.diff(time)))
@@ -42,13 +43,13 @@ def gap_figure(
     shown = np.insert(time, cuts, np.nan)
     with matplotlib.rc_context(STYLE):
         figure = Figure((7.0, 0.9 + 1.1 * rows), layout=ConstrainedLayoutEngine(wspace=0.05))
-        axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+        axes = figure.subplots(rows, columns, sharex=True, sharey=alike, squeeze=False)
         panels = [axes[row, column] for column in range(columns) for row in range(rows)]
         for k, ax in enumerate(panels):
             if k >= len(names):
                 ax.set_axis_off()
                 continue
-            ax.axhspan(-band, band, color=BAND, lw=0, label="noise, ± 2 std")
+            ax.axhspan(-band[k], band[k], color=BAND, lw=0, label="noise, ± 2 std")
             for e, colour, label in ((before, BEFORE, "nominal model, fitted"),
                                      (after, AFTER, "with what was missing")):  # fmt: skip
                 if e is not None:
@@ -56,8 +57,8 @@ def gap_figure(
                             label=label)  # fmt: skip
             ax.set_title(literal(names[k]), loc="left", color=INK)
             ax.set_xlim(time[0], time[-1])
-        for ax in axes[:, 0]:
-            ax.set_ylabel(literal(f"error [{unit}]") if unit else "error")
+            if k < rows or not alike:
+                ax.set_ylabel(literal(f"error [{units[k]}]") if units[k] else "error")
         for ax in axes[-1]:
             ax.set_xlabel("time [s]")
         figure.legend(

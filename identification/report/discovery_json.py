@@ -35,6 +35,8 @@ def discovery_to_json(found: Discovery | RecordsDiscovery) -> dict[str, Any]:
         "gap": {
             "noise_rms": found.noise_rms,
             "disturbance_rms": found.disturbance_rms,
+            "noise_rms_by_unit": dict(found.noise_by_unit),
+            "disturbance_rms_by_unit": dict(found.disturbance_by_unit),
             "before": _gap_to_json(found.before),
             "after": _gap_to_json(found.after),
         },
@@ -66,7 +68,10 @@ def discovery_to_json(found: Discovery | RecordsDiscovery) -> dict[str, Any]:
 
 
 def _gap_to_json(gap: Gap) -> dict[str, Any]:
-    return {"rms": gap.rms, "fit_percent": gap.fit_percent.tolist()}
+    return {
+        "rms": gap.rms, "fit_percent": gap.fit_percent.tolist(),
+        "rms_by_unit": dict(gap.rms_by_unit),
+    }  # fmt: skip
 
 
 def _named_to_json(named: NamedEffect) -> dict[str, Any]:

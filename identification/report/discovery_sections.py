@@ -8,16 +8,18 @@ import numpy as np
 
 from identification.discovery.result import Discovery
 from identification.discovery.scoring.scores import Score
+from identification.logs.by_unit import of_outputs
 from identification.logs.log import halves
-from identification.quantities import HELD, alike, held
+from identification.quantities import held
+from identification.report.discovery_errors import errors_of, floor, times_noise
 from identification.report.discovery_figures import (
     force_figure,
     gains_figure,
     gap_figure,
     rms_figure,
 )
-from identification.report.discovery_verdict import floor_rms
 from identification.report.effect_words import describe_effect, describe_rejected
+from identification.report.error_words import error_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.page import Section, Table
 
@@ -37,16 +39,17 @@ def unseen_rows(found: Discovery) -> np.ndarray:
 
 def gap_section(found: Discovery) -> Section:
     """The section on the gap on unseen samples, before and after."""
-    unit, rows = found.log.output_unit, unseen_rows(found)
-    log, before, after = found.log, *_errors(found)
+    rows, log = unseen_rows(found), found.log
+    before, after = _errors(found)
     figure = gap_figure(
         log.time[rows], before[rows], None if after is None else after[rows],
-        2 * floor_rms(found), log.output_names, unit,
+        2 * of_outputs(floor(found), log), log.output_names, _units(found),
     )  # fmt: skip
     gaps = [("nominal model, fitted", found.before)]
     if after is not None:
         gaps.append(("with what was missing", found.after))
-    rms = alike([gap.rms for _, gap in gaps], unit, HELD)
+    each = [errors_of(gap, found) for _, gap in gaps]
+    rms = error_words(each, "")
     fits = [g.fit_percent[np.isfinite(g.fit_percent)] for _, g in gaps]
     return Section(
         "The gap on unseen data",
@@ -58,7 +61,7 @@ def gap_section(found: Discovery) -> Section:
         table=Table(
             ("model", "rms", "times the noise", "mean fit [%]"),
             tuple(
-                (name, size, _ratio(gap.rms, floor_rms(found)),
+                (name, size, _ratio(times_noise(gap, found)),
                  float(fit.mean()) if len(fit) else None)
                 for (name, gap), size, fit in zip(gaps, rms, fits, strict=True)
             ),
@@ -68,12 +71,16 @@ def gap_section(found: Discovery) -> Section:
 
 def where_section(found: Discovery) -> Section:
     """The section on where the nominal model fails, and where the final one still does."""
-    rows, unit = unseen_rows(found), found.log.output_unit
+    rows = unseen_rows(found)
     before, after = _errors(found)
     title = "With what is named" if found.named else "What is left"
     left = [f"{title}: {'; '.join(map(describe_finding, found.findings))}."]
+    noise, unit = of_outputs(floor(found), found.log), found.log.output_unit
+    scale, level = np.ones(len(noise)), float(noise.max())
+    if len(set(_units(found))) > 1 and noise.min() > 0:  # bars of unlike outputs have no one axis
+        scale, level, unit = noise, 1.0, "times the noise"
     figure = rms_figure(
-        _rms(before[rows]), None if after is None else _rms(after[rows]), floor_rms(found),
+        _rms(before[rows]) / scale, None if after is None else _rms(after[rows]) / scale, level,
         found.log.output_names, unit,
     )  # fmt: skip
     forces = tuple(
@@ -144,5 +151,10 @@ def _rms(e: np.ndarray) -> np.ndarray:
     return np.asarray(np.sqrt(np.mean(e**2, axis=0)))
 
 
-def _ratio(rms: float, floor: float) -> str | None:
-    return held(rms / floor) if floor > 0 else None
+def _units(found: Discovery) -> list[str]:
+    """Of each output."""
+    return [found.log.units.get(name, "") for name in found.log.output_names]
+
+
+def _ratio(ratio: float) -> str | None:
+    return held(ratio) if np.isfinite(ratio) else None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isfinite
+
 from identification.discovery.effect_results import Detectable
 from identification.discovery.final_values import collect_final_values, collect_std
 from identification.discovery.result import Discovery
@@ -50,7 +52,8 @@ def parameters_section(found: Discovery) -> Section:
             held += [words[p.name]] if p.where not in ("effect", "start") else []
             continue
         told = (nominal.get(p.name, 0.0), values[p.name], 0.0 if p.where == "effect" else p.value)
-        like = max(map(abs, told))
+        stds = (s for s in (first.get(p.name), last.get(p.name)) if s is not None and isfinite(s))
+        like = max(*map(abs, told), *stds)
         row = (
             words[p.name],
             "–" if p.where == "effect" else quantity(p.value, unit=p.unit, like=like),

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isfinite
 
 from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import Finding
 from identification.discovery.result import Discovery
 from identification.prediction.result import RecordsDiscovery
-from identification.quantities import HELD, alike, held, quantity
+from identification.quantities import held, quantity
+from identification.report.discovery_errors import errors_of, times_noise
 from identification.report.discovery_limits import split_detectable
 from identification.report.discovery_tables import parameters_section
 from identification.report.discovery_verdict import (
     diff_line,
     discovery_verdict,
-    floor_rms,
 )
 from identification.report.effect_words import (
     describe_effect,
@@ -22,6 +23,7 @@ from identification.report.effect_words import (
     describe_rejected,
     phrase,
 )
+from identification.report.error_words import error_words
 from identification.report.finding_words import describe_finding
 from identification.report.fitted_values import shown_values, unknown_shares
 from identification.report.parameter_words import words_of
@@ -74,13 +76,12 @@ def _diff(found: Discovery) -> list[str]:
 
 
 def _gap(found: Discovery) -> list[str]:
-    unit, floor = found.log.output_unit, floor_rms(found)
-
-    before, after = alike([found.before.rms, found.after.rms], unit, HELD)
+    before, after = error_words([errors_of(gap, found) for gap in (found.before, found.after)])
 
     def line(what: str, size: str, gap: Gap) -> str:
-        times = f", {held(gap.rms / floor)} times the noise" if floor > 0 else ""
-        return f"  {what:<7}{size} rms{times}"
+        ratio = times_noise(gap, found)
+        times = f", {held(ratio)} times the noise" if isfinite(ratio) else ""
+        return f"  {what:<7}{size}{times}"
 
     out = ["error on unseen data:", line("before", before, found.before)]
     return [*out, line("after", after, found.after)] if found.named else out

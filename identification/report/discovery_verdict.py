@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import hypot, isfinite
+from math import isfinite
 
 from identification.discovery.effect_results import NamedEffect, RejectedEffect
 from identification.discovery.fitted_model import is_proven
 from identification.discovery.result import Discovery
-from identification.quantities import HELD, alike, held, quantity
+from identification.quantities import held, quantity
+from identification.report.discovery_errors import (
+    closed_share,
+    errors_of,
+    floor,
+    floor_rms,
+    off,
+    sensors,
+    times_noise,
+)
 from identification.report.discovery_limits import SHOWN, hiding, smallest, split_detectable
 from identification.report.effect_words import (
     describe_chance,
@@ -17,6 +26,7 @@ from identification.report.effect_words import (
     describe_sizes,
     phrase,
 )
+from identification.report.error_words import error_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.parameter_words import words_of
 
@@ -25,6 +35,21 @@ RETUNED = 0.05  # the explanation without an effect gets a sentence above this c
 
 def discovery_verdict(found: Discovery) -> list[str]:
     """The verdict first, then what supports it."""
+    return [*_verdict(found), *_unlike(found)]
+
+
+def _unlike(found: Discovery) -> list[str]:
+    """A sentence where outputs have several units."""
+    if len(units := errors_of(found.before, found)) < 2:
+        return []
+    return [
+        f"The outputs have several units ({', '.join(unit or 'none' for unit in units)}), and a"
+        " free run counts an error of 1 in each of them alike, with one noise for all: write a"
+        " horizon into the robot's file, over which each output counts in its own scale."
+    ]
+
+
+def _verdict(found: Discovery) -> list[str]:
     if found.verdict == "nothing missing":
         return [nothing(found)]
     if found.verdict == "unknown effect":
@@ -44,10 +69,11 @@ def discovery_verdict(found: Discovery) -> list[str]:
 def nothing(found: Discovery) -> str:
     """The paragraph that says that nothing is missing, as far as this log can tell."""
     seen, unseen = split_detectable(found.detectable)
-    left, noise = alike([found.before.rms, floor_rms(found)], found.log.output_unit, HELD)
+    left = error_words([errors_of(found.before, found), floor(found)])[0]
+    noise = error_words([errors_of(found.before, found), floor(found)], "")[1]
     said = (
         "Nothing is missing: what the fitted model leaves unexplained is noise,"
-        f" {left} rms on unseen data where the sensors and unlogged disturbances make {noise}."
+        f" {left} on unseen data where the sensors and unlogged disturbances make {noise}."
     )
     if floor_rms(found) > found.noise_rms:
         said += _unlogged(found)
@@ -64,10 +90,10 @@ def nothing(found: Discovery) -> str:
 def _unlogged(found: Discovery) -> str:
     """The errors of the inputs that are part of the noise, and on which the verdict rests."""
     level, log = found.final.level, found.log
-    sensors = alike([found.noise_rms], log.output_unit, HELD)[0]
+    (alone,) = error_words([sensors(found)], "")
     size = quantity(level.input_std, unit=log.units.get(log.input_names[0], ""))
     return (
-        f" The sensors alone make {sensors}; the rest is what inputs do that err by {size} rms"
+        f" The sensors alone make {alone}; the rest is what inputs do that err by {size} rms"
         f" beside what the log says, for {level.noise.time:.2g} s at a time. If they are surely"
         " known better, something is missing."
     )
@@ -76,11 +102,11 @@ def _unlogged(found: Discovery) -> str:
 def unknown(found: Discovery) -> str:
     """The paragraph that says that something is missing which no known effect explains."""
     tried = len({s.candidate.effect.name for s in found.scores})
-    ratio = found.before.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
+    ratio = times_noise(found.before, found)
     return " ".join(
         [
             f"Something is missing that none of the {tried} known effects surely explains: the"
-            f" fitted model is {_size(found, found.before.rms)} rms off on unseen data"
+            f" fitted model is {off(found.before, found)} on unseen data"
             + (f", {held(ratio)} times the sensors' noise." if isfinite(ratio) else "."),
             "It is not named here rather than named wrongly.",
             *(sentence(describe_finding(f)) for f in (*found.findings, *found.located)),
@@ -91,13 +117,13 @@ def unknown(found: Discovery) -> str:
 def unexplained(found: Discovery) -> str:
     """The paragraph on what is left after the named effects."""
     more = "what is named" if len(found.named) == 1 else "all that is named"
-    ratio = found.after.rms / floor_rms(found) if floor_rms(found) > 0 else float("inf")
+    ratio = times_noise(found.after, found)
     times = f", {held(ratio)} times the noise" if 1 < ratio < float("inf") else ""
     proven = [r for r in found.rejected if r.gain > 0 and is_proven(r.proof, found.options)]
     return " ".join(
         [
             f"Something is left beside {more} that no known effect surely explains: the model is"
-            f" still {_size(found, found.after.rms)} rms off on unseen data{times}.",
+            f" still {off(found.after, found)} on unseen data{times}.",
             *(sentence(describe_finding(f)) for f in found.findings),
             *map(_nearest, proven[:1]),
         ]
@@ -169,21 +195,20 @@ def _agreement(named: NamedEffect) -> str:
 
 
 def _proof(found: Discovery) -> str:
-    before, after, floor = found.before.rms, found.after.rms, floor_rms(found)
-    was, now, noise, own = alike(
-        [before, after, floor, found.noise_rms], found.log.output_unit, HELD
-    )
+    errors = [errors_of(gap, found) for gap in (found.before, found.after)]
+    told = [*errors, floor(found), sensors(found)]
+    was, now = error_words(told)[:2] if len(errors[0]) > 1 else error_words(told, "")[:2]
+    noise, own = error_words(told, "")[2:]
     whom = "it" if len(found.named) == 1 else "them"
     rest = f", of which sensors make {own} and unlogged errors of the inputs the rest"
-    made = rest if floor > found.noise_rms else ""
+    made = rest if floor_rms(found) > found.noise_rms else ""
+    rms = " rms" if len(errors[0]) == 1 else ""
     said = (
-        f"On data that the fit has not seen, the error falls from {was} to {now} rms"
+        f"On data that the fit has not seen, the error falls from {was} to {now}{rms}"
         f" with {whom} in the model; the noise is {noise}{made}."
     )
-    above = before**2 - floor**2
-    if above > 0:
-        share = min(1.0, max(0.0, (before**2 - after**2) / above))
-        nearly = share > 0.995 and after > floor
+    if (share := closed_share(found)) is not None:
+        nearly = share > 0.995 and times_noise(found.after, found) > 1
         percent = "more than 99" if nearly else f"{100 * share:.0f}"
         said += f" That is {percent} % of the power that was above the noise."
     return said
@@ -192,21 +217,6 @@ def _proof(found: Discovery) -> str:
 def diff_line(named: NamedEffect) -> str:
     """A named effect as a line of a diff of the model."""
     return f"+ {describe_effect(named.candidate)}: {describe_sizes(named)}"
-
-
-def floor_rms(found: Discovery) -> float:
-    """Rms of what sensors and unlogged input errors make of a free run of the true model.
-
-    Input errors count where they can be believed to be noise: where the model is believed, and
-    where they are no larger than `allowed_input_error`.
-    """
-    is_small = found.final.relative_input_error <= found.options.allowed_input_error
-    is_believed = found.verdict != "unknown effect" and is_small
-    return hypot(found.noise_rms, found.disturbance_rms if is_believed else 0.0)
-
-
-def _size(found: Discovery, rms: float) -> str:
-    return alike([rms], found.log.output_unit, HELD)[0]
 
 
 def _percent(chance: float) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -38,6 +38,9 @@ def fit_to_json(fit: Fit) -> dict[str, Any]:
         "loss": fit.loss,
         "rms": fit.rms,
         "validation_rms": finite_or_none(fit.validation_rms),
+        "rms_by_unit": fit.rms_by_unit,
+        "validation_rms_by_unit": _finite(fit.validation_rms_by_unit),
+        "noise_floor_by_unit": fit.floor_by_unit,
         "validation_expected": finite_or_none(fit.validation_expected),
         "noise_floor": float(np.sqrt(np.mean(fit.floor**2))),
         "iterations": e.jacobians,
@@ -46,6 +49,10 @@ def fit_to_json(fit: Fit) -> dict[str, Any]:
         "status": e.status,
         "verdict": fit_verdict(fit),
     }
+
+
+def _finite(values: Mapping[str, float] | None) -> dict[str, float | None] | None:
+    return None if values is None else {k: finite_or_none(v) for k, v in values.items()}
 
 
 def _list(values: Iterable[float] | None) -> list[float | None] | None:

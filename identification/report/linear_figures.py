@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from identification.linear.modes import modes
 from identification.linear.system import LinearSystem
+from identification.quantities import per
 from identification.report.style import GREY, INK, SERIES, STYLE, literal
 
 POINTS = 200  # of a frequency response
@@ -83,4 +84,4 @@ def _unit_of(pairs: Sequence[tuple[str, str, str]], units: Mapping[str, str]) ->
     over, under = told.pop() if len(told) == 1 else ("", "")
     if not (over and under):
         return "unit of the output / unit of the input"
-    return f"{over}/({under})" if " " in under else f"{over}/{under}"
+    return per(over, under)

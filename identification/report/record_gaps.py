@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from identification.discovery.result import Discovery
+from identification.logs.by_unit import relative, rms_by_unit
 from identification.logs.joined import JoinedLog, records_of, rows_of
-from identification.quantities import alike
+from identification.report.error_words import error_words
 
 
 def record_gaps(found: Discovery) -> list[dict[str, Any]]:
@@ -26,11 +27,14 @@ def record_gaps(found: Discovery) -> list[dict[str, Any]]:
     for record, unseen in zip(records, unseens, strict=True):
         rows = slice(begun, begun + len(record))
         begun += len(record)
-        before, after = (
-            float(np.sqrt(np.mean(e[rows][unseen] ** 2))) if unseen.any() else None for e in errors
-        )
+        each = [e[rows][unseen] for e in errors]
+        before, after = (float(np.sqrt(np.mean(e**2))) if unseen.any() else None for e in each)
+        before_of, after_of = (rms_by_unit(e, record) if unseen.any() else None for e in each)
         role = "confirm" if confirmed and unseen.any() else "fit"
-        out.append({"file": record.name, "role": role, "before": before, "after": after})
+        out.append(
+            {"file": record.name, "role": role, "before": before, "after": after,
+             "before_by_unit": before_of, "after_by_unit": after_of}
+        )  # fmt: skip
     return out
 
 
@@ -43,7 +47,9 @@ def record_lines(found: Discovery) -> list[str]:
         if gap["before"] is None:
             lines.append(f"  {gap['file']}: all of it was fitted")
             continue
-        before, after = alike([gap["before"], gap["after"]], found.log.output_unit)
-        worse = "; it is predicted worse" if gap["after"] > gap["before"] else ""
-        lines.append(f"  {gap['file']}: {before} -> {after} rms{worse}")
+        pair = gap["before_by_unit"], gap["after_by_unit"]
+        after = error_words(pair, digits=3)[1]
+        before = error_words(pair, "" if len(pair[0]) == 1 else "rms", digits=3)[0]
+        worse = "; it is predicted worse" if relative(*pair[::-1]) > 1 else ""
+        lines.append(f"  {gap['file']}: {before} -> {after}{worse}")
     return lines

@@ -7,9 +7,9 @@ import numpy as np
 from identification.estimation.identifiability import in_words
 from identification.prediction.records_fit import RecordsFit
 from identification.quantities import error, held
-from identification.report.fit_verdict import WEAK
 from identification.report.scale_words import describe_scale
 from identification.report.step_words import step_sentences
+from identification.report.untold_words import WEAK, cure, too_weak
 
 MUCH = 3.0  # times the noise floor, beyond which a fit is told to lack something
 
@@ -32,14 +32,12 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
     left = f"{error(rms, found.unit)} rms" + ("" if found.unit else " in the outputs' scale")
     each = "1 window" if windows == 1 else f"{windows} windows"
     said.append(f"{each} of {found.horizon:g} s leave {left}{ratio}.")
-    said += describe_scale(found.model, found.unit)
-    said += step_sentences(found.model)
     if floor > 0 and rms > MUCH * floor:
         said.append(
             "That is far more than the sensors make: the model lacks something, or a column is not"
             " what the model takes it for; discover looks for what is missing."
         )
-    return said
+    return [*said, *describe_scale(found.model, found.unit), *step_sentences(found.model)]
 
 
 def _blind(found: RecordsFit) -> list[str]:
@@ -69,10 +67,7 @@ def _weak(found: RecordsFit) -> list[str]:
     weak = [n for (n, v), std, positive in rows if positive and std > WEAK * abs(v)]
     if not weak:
         return []
-    return [
-        f"Too weakly for these windows: {', '.join(weak)}, their std exceeds half the value. Fix"
-        " one of them, or record a motion that tells more of them."
-    ]
+    return [f"{too_weak(weak, 'windows')} {cure(weak)}"]
 
 
 def _unknown_std(found: RecordsFit) -> list[str]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
 from identification.prediction.scores import WindowScore
-from identification.quantities import alike, quantity
+from identification.quantities import alike
 from identification.report.effect_words import describe_effect, phrase
 from identification.report.finding_words import (
     DOUBTS,
@@ -24,7 +24,6 @@ from identification.report.records_values import (
 )
 from identification.report.scale_words import describe_scale
 from identification.report.step_words import step_sentences
-from identification.windows.coarse import OUTPUT_ERROR
 
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
 SHOWN = 6  # candidates with the best scores that are listed
@@ -192,17 +191,8 @@ def _shifts(found: RecordsDiscovery) -> list[str]:
 
 
 def steps_taken(found: RecordsDiscovery) -> list[str]:
-    """What steps simulations took, where longer than the model's, and which values they move."""
-    taken, own = found.steps
-    said = step_sentences(found.final, value_words(found))
-    if taken <= own:
-        return said
-    return [
-        f"Simulations took steps of {quantity(taken, unit='s')} where the model has"
-        f" {quantity(own, unit='s')}: this changes what is predicted by less than"
-        f" {100 * OUTPUT_ERROR:.0f} % of its error.",
-        *said,
-    ]
+    """What steps simulations took, and what finer ones would change."""
+    return step_sentences(found.final, value_words(found), found.options, found.steps)
 
 
 def _proof(found: RecordsDiscovery) -> str:

@@ -37,7 +37,9 @@ def value_table(found: RecordsDiscovery) -> tuple[tuple[str, ...], list[tuple[st
     like: dict[str, float] = {}
     for model in models:
         for name, value in {**model.fit.values, **model.values}.items():
-            like[name] = max(like.get(name, 0.0), abs(value))
+            std = model.told_std.get(name, 0.0)
+            told = abs(value), std if np.isfinite(std) else 0.0
+            like[name] = max(like.get(name, 0.0), *told)
     columns = [_values(m, like, is_begun and m is found.nominal) for m in models]
     names = [*dict.fromkeys(name for column in columns for name in column)]
     without = "as begun, without effects" if is_begun else "fitted without effects"

@@ -1,4 +1,4 @@
-"""What the steps of a simulation do to estimates, in a sentence that says what to do."""
+"""Which steps simulations took, what a quarter of the model's step would change, and what to do."""
 
 from __future__ import annotations
 
@@ -6,41 +6,67 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from identification.discovery.options import DiscoveryOptions
 from identification.prediction.model import WindowModel
 from identification.prediction.step_shift import FINER
-from identification.quantities import held
-from identification.windows.coarse import own_step
+from identification.quantities import held, quantity
+from identification.windows.coarse import OUTPUT_ERROR
 
-MOVED = 1.0  # std: a value that moves by less is within what its std tells
-LOWER = 0.9  # of the error of the fitted windows: a fall below it with finer steps is told
 SHOWN = 3  # values that are told, those that move most first
 
 
-def step_sentences(model: WindowModel, words: Mapping[str, str] | None = None) -> list[str]:
-    """A sentence on what finer steps would change beyond what is told; none without such.
+def step_sentences(
+    model: WindowModel,
+    words: Mapping[str, str] | None = None,
+    options: DiscoveryOptions | None = None,
+    steps: tuple[float, float] | None = None,
+) -> list[str]:
+    """One paragraph on the steps; none where they are the model's own and finer ones change little.
 
     Args:
         model: fitted.
         words: what to call the values by name; their names when None.
+        options: what is told; the defaults when None.
+        steps: of the simulations and of the user's model [s]; those of `model` when None.
     """
-    words, std = words or {}, model.told_std
-    with np.errstate(divide="ignore", invalid="ignore"):
-        moved = {n: abs(shift) / np.float64(std[n]) for n, shift in model.step_shift.items()}
-    far = sorted((n for n, m in moved.items() if m > MOVED), key=lambda n: -moved[n])
-    said, error = [], model.finer.error
-    if far:
-        told = ", ".join(f"{words.get(n, n)} by {held(moved[n])} std" for n in far[:SHOWN])
+    options = options or DiscoveryOptions()
+    taken, own = steps or model.steps
+    changed = _changed(model, words or {}, options)
+    if taken <= own and not changed:
+        return []
+    model_step, finer = quantity(own, unit="s"), own / FINER
+    said = f"Simulations took steps of {model_step}, as the model says."
+    if taken > own:
+        said = (
+            f"Simulations took steps of {quantity(taken, unit='s')} where the model has"
+            f" {model_step}: this changes what is predicted by less than"
+            f" {100 * OUTPUT_ERROR:.0f} % of its error."
+        )
+    if not model.finer.is_known:
+        return [said]
+    said += (
+        f" The last fit was checked with a quarter of the model's step, {quantity(finer, unit='s')}"
+    )
+    if not changed:
+        return [f"{said}: no value would move by more than {held(options.told_step_shift)} std."]
+    return [
+        f"{said}: it would {', and would '.join(changed)}. Where this matters, write"
+        f' timestep="{finer:.6g}" into the <option> of the model, and do this once more.'
+    ]
+
+
+def _changed(model: WindowModel, words: Mapping[str, str], options: DiscoveryOptions) -> list[str]:
+    """What finer steps would do beyond what is told."""
+    finer, std, said = model.finer, model.told_std, []
+    names = model.fit.problem.names
+    if far := finer.far(names, np.array([std[n] for n in names]), options):
+        most = [*far][:SHOWN]
+        told = ", ".join(f"{words.get(n, n)} by {held(far[n])} std" for n in most)
         more = f" and {len(far) - SHOWN} more" if len(far) > SHOWN else ""
         said.append(f"move {told}{more}, of which the std tell nothing")
-    if error < LOWER:
+    if finer.is_lower(options):
         said.append(
-            f"lower the error of the fitted windows to {held(error)} of what it is: that part is of"
-            " the steps, and nothing that is missing"
+            f"lower the error of the fitted windows to {held(finer.error)} of what it is: that part"
+            " is of the steps, and nothing that is missing"
         )
-    if not said:
-        return []
-    finer = f"{own_step(model.plant) / FINER:.6g}"
-    return [
-        f"Simulations with steps of {finer} s would {', and would '.join(said)}. Where this"
-        f' matters, write timestep="{finer}" into the <option> of the model, and do this once more.'
-    ]
+    return said

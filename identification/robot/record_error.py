@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from identification.effects.jointed import JointPlant
+from identification.logs.by_unit import rms_by_unit
 from identification.logs.log import Log
 from identification.model.predictor import Plant, Predictor
 from identification.quantities import alike
+from identification.report.error_words import error_words, kind, listed
 from identification.robot.robot import Robot
 from identification.windows.window_error import window_error
 
@@ -27,6 +29,9 @@ class Confirmation:
         after: rms error of the second model.
         unit: unit of the errors; empty where the outputs have several.
         models: what the two models are, in words.
+        before_by_unit: error of the first model by the outputs' units, each in it; empty over a
+            horizon, where errors count in the scale of each output.
+        after_by_unit: likewise of the second model.
     """
 
     log: str
@@ -34,14 +39,24 @@ class Confirmation:
     after: float
     unit: str
     models: tuple[str, str]
+    before_by_unit: Mapping[str, float] = field(default_factory=dict)
+    after_by_unit: Mapping[str, float] = field(default_factory=dict)
 
     def __str__(self) -> str:
-        change = 100 * ((self.after / self.before) ** 2 - 1) if self.before else 0.0
-        before, after = alike([self.before, self.after], self.unit)
         first, second = self.models
-        return (
-            f"On {self.log}: {before} rms {first}, {after} {second}; mean square {change:+z.0f} %."
-        )
+        if len(self.before_by_unit) > 1:
+            return f"On {self.log}: {self._by_unit()}."
+        change = _change(self.before, self.after)
+        before, after = alike([self.before, self.after], self.unit)
+        return f"On {self.log}: {before} rms {first}, {after} {second}; mean square {change}."
+
+    def _by_unit(self) -> str:
+        """The errors of outputs of several units."""
+        first, second = self.models
+        pairs = {u: (b, self.after_by_unit[u]) for u, b in self.before_by_unit.items()}
+        before, after = error_words([self.before_by_unit, self.after_by_unit], digits=3)
+        each = listed([f"{_change(*pair)} ({kind(u)})" for u, pair in pairs.items()])
+        return f"{before} {first}, {after} {second}; mean square {each}"
 
 
 def compare_values(
@@ -64,8 +79,7 @@ def compare_values(
         InputError: the windows do not fit the record.
         DivergenceError: one of the models cannot be simulated.
     """
-    a, b = (_rms(robot, log, values) for values in (before, after))
-    return Confirmation(log.name, a, b, log.output_unit, models)
+    return _compared(log, [_errors(robot, log, values) for values in (before, after)], models)
 
 
 def compare_unseen(
@@ -88,20 +102,27 @@ def compare_unseen(
     log = robot.log
     part = log.part("validation")
     rows, own = np.isin(log.time, part.time), robot.values_of(log)
-    a, b = (
-        float(np.sqrt(np.mean(_free_run(robot, log, {**v, **own})[rows] ** 2)))
-        for v in (before, after)
-    )
-    return Confirmation(part.name, a, b, part.output_unit, models)
+    errors = [_free_run(robot, log, {**v, **own})[rows] for v in (before, after)]
+    return _compared(part, errors, models)
 
 
-def _rms(robot: Robot, log: Log, values: Mapping[str, float]) -> float:
+def _compared(log: Log, errors: Sequence[np.ndarray], models: tuple[str, str]) -> Confirmation:
+    """Two models by their errors (…, ny)."""
+    a, b = (float(np.sqrt(np.mean(e**2))) for e in errors)
+    each = [rms_by_unit(e, log) for e in errors]
+    return Confirmation(log.name, a, b, log.output_unit, models, *each)
+
+
+def _change(before: float, after: float) -> str:
+    """Change of the mean square."""
+    return f"{100 * ((after / before) ** 2 - 1) if before else 0.0:+z.0f} %"
+
+
+def _errors(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
     horizon, here = robot.file.horizon, {**values, **robot.values_of(log), **robot.started(log)}
     if horizon is None:
-        error = _free_run(robot, log, here)
-    else:
-        error = window_error(_plant(robot, log, here), log, horizon, here)
-    return float(np.sqrt(np.mean(error**2)))
+        return _free_run(robot, log, here)
+    return window_error(_plant(robot, log, here), log, horizon, here)
 
 
 def _plant(robot: Robot, log: Log, values: Mapping[str, float]) -> Plant:

@@ -17,10 +17,10 @@ from identification.report.fit_verdict import (
     HOLDS,
     coloured_outputs,
     fit_verdict,
-    identifiable_sentences,
     search_sentences,
     window_sentences,
 )
+from identification.report.untold_words import identifiable_sentences
 from identification.windows.window_estimate import WindowEstimate
 from inca_mj.twin.logs import POSE
 from inca_mj.workflows.identification import Identification

@@ -6,11 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from identification.estimation.identifiability import in_words
 from identification.estimation.information import Information, determinable
 from identification.quantities import finite_or_none
-from identification.report.fit_verdict import unresolved_words
 from identification.report.page import Section, Table
+from identification.report.untold_words import unresolved_words, untold
 from inca_mj.report.figures_information import std_figure
 from inca_mj.workflows.bench import Tried
 from inca_mj.workflows.excitation import Design
@@ -50,13 +49,10 @@ def lost_sentences(found: Information) -> list[str]:
     """Sentences on what cannot be determined, because it is not felt or not resolved."""
     inner, said = found.found, []
     if inner.symmetries:
-        scaled = [n for n in inner.names if any(n in s.powers for s in inner.symmetries)]
-        along = "; ".join(in_words(s.row(inner.names), inner.names) for s in inner.symmetries)
         known = ", ".join(map(str, found.combinations))
-        said.append(
-            f"{' and '.join(scaled)} trade off along ({along}) without any output feeling it"
-            + (f"; only {known} can be known." if known else ".")
-        )
+        lost = untold(inner.symmetries, inner.names, {})
+        lost = f"T{lost[1:]}" if lost.startswith("the data") else lost
+        said.append(lost + (f"; only {known} can be known." if known else "."))
     if k := len(inner.unresolved):
         count = f"{k}{' more' if said else ''} direction{'s are' if k > 1 else ' is'}"
         said.append(count + unresolved_words(inner))

@@ -122,7 +122,7 @@ def test_a_name_that_looks_like_a_formula_is_drawn_letter_by_letter():
     names, rng = ("$\\bad{$", "$5"), np.random.default_rng(0)
     e, time = rng.normal(size=(50, 2)), 0.01 * np.arange(50)
     for figure in (
-        gap_figure(time, e, 0.5 * e, 0.1, names, "$"),
+        gap_figure(time, e, 0.5 * e, 0.1 * np.ones(2), names, ("$", "$")),
         rms_figure(np.ones(2), 0.5 * np.ones(2), 0.1, names, "$"),
         compare_figure(time, e, 0.9 * e, np.array([90.0, 80.0]), names, "$"),
     ):

@@ -155,7 +155,7 @@ def test_a_gap_ends_at_the_sensors_where_input_errors_cannot_be_believed():
     nominal, model = end.nominal, end.model
     level = model.refit.level
     loud = replace(level, noise=level.noise.scaled(100.0))
-    more = replace(model.validation, disturbance=10 * nominal.validation.rms)
+    more = replace(model.validation, disturbances=np.full(1, 10 * nominal.validation.rms))
     calm = replace(model, validation=more)
     wild = replace(calm, refit=replace(model.refit, level=loud))
     evidence = StructuredInputError("output", "force", "N", 0.1, 0.2)

@@ -108,9 +108,12 @@ def test_a_value_at_its_bound_is_reported():
 )
 def test_what_unseen_data_say_depends_on_what_they_could(unseen, expected, said):
     fit = assess(estimate(slider(x0=0.0, **{**OFF, "gear": 5.0}), LOG, ALL[:3]))
+    rms = fit.rms_by_unit
     judged = replace(
-        fit, validation_rms=unseen * fit.rms, validation_expected=expected * fit.rms
-    )  # fmt: skip
+        fit,
+        validation_rms_by_unit={u: unseen * e for u, e in rms.items()},
+        validation_expected_by_unit={u: expected * e for u, e in rms.items()},
+    )
     assert said in fit_verdict(judged)[-1]
 
 

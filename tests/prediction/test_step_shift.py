@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from identification import Log, fit
+from identification.discovery.options import DiscoveryOptions
 from identification.prediction.step_shift import FINER, StepShift, step_shift
 from identification.report.step_words import step_sentences
 from identification.robot.file import read_robot_file
@@ -66,7 +67,10 @@ def test_the_error_that_finer_steps_leave_is_that_of_a_search_with_them(elbow):
 def test_it_is_said_where_it_exceeds_the_std(elbow):
     coarse = elbow[0].model
     (said,) = step_sentences(coarse, {"mass": "the forearm's mass"})
-    assert said.startswith("Simulations with steps of 0.00125 s would move the forearm's mass by 4")
+    assert said.startswith(
+        "Simulations took steps of 5 ms, as the model says. The last fit was checked with a quarter"
+        " of the model's step, 1.25 ms: it would move the forearm's mass by 4"
+    )
     assert said.endswith(
         'write timestep="0.00125" into the <option> of the model, and do this once more.'
     )
@@ -77,11 +81,42 @@ def test_it_is_said_where_it_exceeds_the_std(elbow):
         (0.9 * std, 0.43, "would lower the error of the fitted windows to 0.43 of what it is"),
         (2.3 * std, 0.43, "by 2.3 std, of which the std tell nothing, and would lower the error"),
     ):
-        other = replace(coarse)
-        other.__dict__["finer"] = StepShift(values, error)
-        sentences = step_sentences(other)
+        sentences = step_sentences(with_finer(coarse, values, error))
         assert bool(sentences) == bool(words)
         assert all(words in said for said in sentences)
+
+
+def with_finer(model, values, error):
+    other = replace(model)
+    other.__dict__["finer"] = StepShift(values, error)
+    return other
+
+
+def test_longer_steps_and_the_check_with_finer_ones_are_one_paragraph(elbow):
+    model = elbow[0].model
+    std, steps = np.array([*model.told_std.values()]), (0.01, 0.005)
+    taken = (
+        "Simulations took steps of 10 ms where the model has 5 ms: this changes what is predicted"
+        " by less than 5 % of its error."
+    )
+    checked = " The last fit was checked with a quarter of the model's step, 1.25 ms: "
+    for values, error, words in (
+        (0.9 * std, 0.95, f"{checked}no value would move by more than 1 std."),
+        (np.nan * std, np.nan, ""),
+        (0.9 * std, 0.43, f"{checked}it would lower the error of the fitted windows to 0.43 of"),
+    ):
+        (said,) = step_sentences(with_finer(model, values, error), steps=steps)
+        assert said.startswith(taken + words)
+        assert bool(words) or said == taken
+
+
+def test_the_options_say_what_is_told(elbow):
+    model = elbow[0].model
+    std = np.array([*model.told_std.values()])
+    other = with_finer(model, 2.3 * std, 0.8)
+    assert len(step_sentences(other)) == 1
+    bold = DiscoveryOptions(told_step_shift=3.0, told_step_error=0.5)
+    assert step_sentences(other, options=bold) == []
 
 
 def test_a_finer_step_moves_nothing_where_all_is_smooth(elbow):

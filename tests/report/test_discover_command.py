@@ -61,7 +61,7 @@ def test_json_is_the_contract(path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert record["model"] is None
     (effect,) = record["effects"]
     assert (effect["name"], effect["where"]) == ("stribeck_friction", "all drives")
-    assert set(record["gap"]["before"]) == {"rms", "fit_percent"}
+    assert set(record["gap"]["before"]) == {"rms", "fit_percent", "rms_by_unit"}
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,8 @@ def keys_of(value) -> set[str]:
         return set()
     found = set(value)
     for key, inner in value.items():
-        rows = inner.values() if key in BY_NAME and isinstance(inner, dict) else [inner]
+        is_by_name = key in BY_NAME or key.endswith("_by_unit")
+        rows = inner.values() if is_by_name and isinstance(inner, dict) else [inner]
         found |= set().union(*map(keys_of, rows))
     return found
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import identification
 import inca_mj
-from identification.quantities import HELD, alike, held, matched, probability, quantity
+from identification.quantities import HELD, alike, held, matched, per, probability, quantity
 from identification.report.page import Section, Table, write_report
 
 NAN, INF = float("nan"), float("inf")
@@ -108,3 +108,37 @@ def test_values_that_stand_side_by_side_have_one_prefix():
     assert quantity(9.5e-4, 4e-5, "N m") == "950 ± 40 µN m"
     assert quantity(0.98, 0.02, like=1.02) == "0.980 ± 0.020"
     assert quantity(0.0, 0.0, "rad", like=0.0) == "0 rad"
+
+
+@pytest.mark.parametrize(
+    ("value", "std", "unit", "said"),
+    [
+        (2e-11, 5e-10, "m/(N)", "0.02 ± 0.50 nm/N"),
+        (0.0, 5e-10, "m/N", "0.0 ± 0.5 nm/N"),
+        (2e-11, 5e-7, "rad/(N m)", "0 ± 500 nrad/(N m)"),
+        (0.002, 0.04, "rad/s", "2 ± 40 mrad/s"),
+        (1e-9, 0.5, "N m s/rad", "0.00 ± 0.50 N m s/rad"),
+        (0.04, 0.15, "N", "0.04 ± 0.15 N"),
+    ],
+)
+def test_a_value_about_zero_has_the_prefix_and_the_digits_of_its_std(
+    value: float, std: float, unit: str, said: str
+) -> None:
+    assert quantity(value, std, unit) == said
+    assert quantity(value, std, unit, like=abs(value)) == said
+
+
+@given(st.floats(1e-12, 1e6), st.floats(1e-12, 1e6), UNITS)
+def test_the_prefix_is_that_of_the_larger_of_value_and_std(
+    value: float, std: float, unit: str
+) -> None:
+    said = quantity(value, std, unit).split(" ")
+    assert said[3:] == quantity(max(value, std), std, unit).split(" ")[3:]
+
+
+def test_brackets_stand_only_around_products() -> None:
+    assert per("m", "N") == "m/N"
+    assert per("rad", "N m") == "rad/(N m)"
+    assert (per("1", "N", 2), per("1", "N m", 2)) == ("1/N^2", "1/(N m)^2")
+    assert alike([2e-9, 1e-9], "m/(N)") == ["2 nm/N", "1 nm/N"]
+    assert quantity(0.5, 0.1, "(N m)/(rad)") == "0.50 ± 0.10 (N m)/rad"

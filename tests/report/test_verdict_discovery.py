@@ -10,10 +10,11 @@ from fake_discovery import DRIVE_3, NOISE, REJECTED, SLOW, found
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise
 from identification.logs.joined import join_logs
+from identification.report.discovery_errors import floor_rms
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_tables import parameters_section
 from identification.report.discovery_text import discovery_text
-from identification.report.discovery_verdict import diff_line, discovery_verdict, floor_rms
+from identification.report.discovery_verdict import diff_line, discovery_verdict
 from identification.report.effect_words import describe_effect
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.record_gaps import record_gaps

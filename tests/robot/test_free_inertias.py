@@ -10,7 +10,7 @@ from records_cases import MJCF, pendulum, record
 
 from identification import fit, joint_plant, read_robot, write_log
 from identification.estimation.identifiability import identifiability
-from identification.report.fit_verdict import _weak
+from identification.report.untold_words import weak_sentences
 from identification.robot.free_inertias import impossible_sentence
 
 
@@ -38,10 +38,10 @@ def test_values_that_noise_drowns_are_named_with_what_they_trade_off_along():
     found = identifiability(S, ("m1", "m2", "b"), np.zeros((3, 3)), 1e-9)
     result = SimpleNamespace(found=found, values={"m1": 2.7, "m2": 1.3, "b": 1.0},
                              std=np.array([17.0, 17.0, 0.1]))  # fmt: skip
-    (said,) = _weak(result)
+    (said,) = weak_sentences(result)
     assert said.startswith("Too weakly for this noise: m1, m2, their std exceeds half the value.")
     assert "(m1 +0.71, m2 -0.71)" in said or "(m1 -0.71, m2 +0.71)" in said
-    assert _weak(SimpleNamespace(**{**vars(result), "std": np.full(3, 0.1)})) == []
+    assert weak_sentences(SimpleNamespace(**{**vars(result), "std": np.full(3, 0.1)})) == []
 
 
 def test_inertias_that_are_free_together_are_told_before_and_where_no_body_has_them(tmp_path):

@@ -25,7 +25,8 @@ from threadpoolctl import threadpool_limits
 from identification.discovery.findings.evidence import StructuredInputError
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.proof import Validation, flip_chance
+from identification.discovery.proof import flip_chance
+from identification.discovery.validation import Validation
 from identification.errors import DivergenceError
 from identification.kalman.noise_model import Whitener
 from identification.kalman.point import evaluate_sensitivities

@@ -19,6 +19,7 @@ from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.missing_forces import MissingForce
 from identification.discovery.options import DiscoveryOptions
 from identification.kalman.refit import Refit
+from identification.logs.noise import noise_floor
 
 TENTHS = 10  # intervals into which the fitted samples are divided
 STEEP = 3.0  # of the sign of a rate, smoothed by tanh, per std of the rate
@@ -46,14 +47,19 @@ def locate_error(
 def _worst_output(fit: Refit) -> WorstOutput:
     log, e = fit.point.log, fit.point.e
     rms = np.sqrt(np.mean(e**2, axis=0))
-    worst = int(rms.argmax())
+    scale, noise = np.ones(len(rms)), np.full(len(rms), fit.level.sigma)
+    if len({log.units.get(n, "") for n in log.output_names}) > 1:
+        # Errors of unlike outputs compare relative to the outputs' own motion.
+        scale, noise = np.std(log.outputs, axis=0), noise_floor(log.outputs)
+    share = (rms / np.where(scale > 0, scale, np.inf)) ** 2
+    worst = int(share.argmax())
     name = log.output_names[worst]
     return WorstOutput(
         output=name,
         unit=log.units.get(name, ""),
         rms=float(rms[worst]),
-        share=float(rms[worst] ** 2 / np.sum(rms**2)),
-        noise_ratio=float(rms[worst] / fit.level.sigma),
+        share=float(share[worst] / np.sum(share)),
+        noise_ratio=float(rms[worst] / noise[worst]),
     )
 
 

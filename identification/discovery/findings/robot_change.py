@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_limits
 from identification.discovery.findings.evidence import RobotChange
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
-from identification.discovery.proof import Validation
+from identification.discovery.validation import Validation
 from identification.errors import DivergenceError
 from identification.kalman.point import evaluate_sensitivities
 

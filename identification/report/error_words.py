@@ -1,0 +1,46 @@
+"""Errors of a model in words, by the unit of its outputs where they have several.
+
+1.2 mrad rms                       outputs of one unit
+1.2 mrad rms (angles) and 0.40 mm rms (slides)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from identification.quantities import HELD, alike
+
+KINDS = {"rad": "angles", "m": "slides", "rad/s": "angular speeds", "m/s": "speeds of slides"}
+
+
+def error_words(
+    each: Sequence[Mapping[str, float]], word: str = "rms", digits: int = HELD
+) -> list[str]:
+    """Errors in words, those of one unit with one prefix, so that they compare at a glance.
+
+    Args:
+        each: errors, by unit and in it; all have the same units.
+        word: that follows each size; "" for none.
+        digits: of each size.
+    """
+    units = [*each[0]]
+    columns = [alike([errors[unit] for errors in each], unit, digits) for unit in units]
+    after = f" {word}" if word else ""
+    if len(units) == 1:
+        return [f"{size}{after}" for size in columns[0]]
+    kinds = [kind(unit) for unit in units]
+    rows = zip(*columns, strict=True)
+    return [
+        listed([f"{size}{after} ({what})" for size, what in zip(row, kinds, strict=True)])
+        for row in rows
+    ]
+
+
+def kind(unit: str) -> str:
+    """What outputs of a unit are, in words."""
+    return KINDS.get(unit, f"outputs in {unit}" if unit else "outputs without unit")
+
+
+def listed(words: Sequence[str]) -> str:
+    """Words with commas and an "and"."""
+    return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))

@@ -1,0 +1,131 @@
+"""What a log does not tell of the parameters, in sentences that say what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from identification.estimation.combination import ScalingSymmetry
+from identification.estimation.identifiability import in_words
+from identification.quantities import matched
+from identification.report.parameter_words import parameter_words
+
+if TYPE_CHECKING:
+    from identification.estimation.fit import Fit
+    from identification.estimation.identifiability import Identifiability
+    from identification.windows.window_estimate import WindowEstimate
+
+WEAK = 0.5  # of its value: the std of a value that is not worth its digits
+ROUGH = 1e-4  # relative error of a sensitivity, which a smooth simulation stays far below
+
+
+def identifiable_sentences(fit: Fit) -> list[str]:
+    """Which parameters, or products of them, can be known from the log."""
+    found = fit.found
+    if not len(found.blind):
+        values = np.array(list(fit.estimate.values.values()))
+        relative = fit.std / np.where(fit.estimate.space.logarithmic, np.abs(values), np.inf)
+        weak = [n for n, r in zip(found.names, relative, strict=True) if r > WEAK]
+        said = f"All {len(found.names)} directions of the parameters are felt by the outputs."
+        return [f"{said} {too_weak(weak, 'noise')}" if weak else said]
+    felt = f"{found.rank} of {len(found.names)} directions are felt"
+    sentences = []
+    if found.symmetries:
+        words = parameter_words(fit.estimate.predictor.plant.parameters)
+        sentences.append(f"{felt}: {untold(found.symmetries, found.names, words)}.")
+    for combination, value, std in fit.combinations:
+        told, known = matched(value, std)
+        error = f" ± {known}" if np.isfinite(std) else " (its std is not known)"
+        sentences.append(
+            f"Of {' and '.join(combination.exponents)} only {combination} can be known from this"
+            f" log: {told}{error}; fix one of them."
+        )
+    if k := len(found.unresolved):
+        count = f"{k} more" if found.symmetries else f"{felt}; {k}"
+        sentences.append(f"{count} {'are' if k > 1 else 'is'}{unresolved_words(found)}")
+    return sentences
+
+
+def untold(
+    symmetries: Sequence[ScalingSymmetry], names: Sequence[str], words: Mapping[str, str]
+) -> str:
+    """What no output feels: single parameters, and those that trade off with others.
+
+    Args:
+        symmetries: one or more.
+        names: the parameters.
+        words: what to call single parameters, by name; their names where not given.
+    """
+    single = [s for s in symmetries if len(s.powers) == 1]
+    several = [s for s in symmetries if len(s.powers) > 1]
+    said = []
+    if alone := [n for n in names if any(n in s.powers for s in single)]:
+        said.append(f"the data do not tell {' and '.join(words.get(n, n) for n in alone)}")
+    if scaled := [n for n in names if any(n in s.powers for s in several)]:
+        along = "; ".join(in_words(s.row(names), names) for s in several)
+        said.append(
+            f"{' and '.join(scaled)} trade off along ({along}) without any output feeling it"
+        )
+    return "; ".join(said)
+
+
+def unresolved_words(found: Identifiability) -> str:
+    """What directions that differences cannot resolve lack, and which parameters that leaves."""
+    moved = found.moved_by_unresolved
+    names = [n for n, m in zip(found.names, moved, strict=True) if m]
+    share = np.where(moved, found.errors / np.where(found.norms > 0, found.norms, np.inf), 0.0)
+    worst = np.argsort(-share)[: min(3, len(names))]
+    errors = ", ".join(f"{_percent(share[i])} for {found.names[i]}" for i in worst)
+    listed = " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
+    said = (
+        f" lost in the errors of the sensitivities ({errors}), so that {listed}"
+        f" {'have' if len(names) > 1 else 'has'} no std."
+    )
+    if share.max() > ROUGH:
+        said += " The simulation is rough at these values; a smaller timestep may resolve more."
+    return said
+
+
+def weak_sentences(found: WindowEstimate) -> list[str]:
+    """Parameters of which the noise leaves too little, and what they trade off along."""
+    names, values = found.found.names, np.array(list(found.values.values()))
+    known = ~found.found.undetermined & np.isfinite(found.std)
+    weak = [n for n, v, s, k in zip(names, values, found.std, known, strict=True)
+            if k and s > WEAK * abs(v) and v > 0]  # fmt: skip
+    if not weak:
+        return []
+    felt = found.found.directions[: found.found.rank]
+    at = [names.index(n) for n in weak]
+    share = np.linalg.norm(felt[:, at], axis=1)  # of each direction that lies in the weak ones
+    direction = felt[np.argmax(share / found.found.strengths[: len(felt)])]
+    words, said = in_words(direction, names), too_weak(weak, "noise")
+    if "," in words and len(weak) > 1:
+        said += f" They trade off along ({words}): what does not change along it is known."
+    elif "," in words:
+        said += f" It trades off along ({words}): what does not change along it is known."
+    return [f"{said} {cure(weak)}"]
+
+
+def too_weak(names: Sequence[str], what: str) -> str:
+    """A sentence on parameters whose std is too large.
+
+    Args:
+        names: of one or more.
+        what: noise or windows, for which they are felt too weakly.
+    """
+    their = "its" if len(names) == 1 else "their"
+    this = "this" if what == "noise" else "these"
+    return f"Too weakly for {this} {what}: {', '.join(names)}, {their} std exceeds half the value."
+
+
+def cure(names: Sequence[str]) -> str:
+    """What to do about them."""
+    if len(names) == 1:
+        return "Fix it, or record a motion that tells more of it."
+    return "Fix one of them, or record a motion that tells more of them."
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %" if share > 0.1 else f"{100 * share:.2g} %"

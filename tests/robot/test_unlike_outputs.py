@@ -1,0 +1,156 @@
+"""An angle and a way have no common rms: a free run tells the error of each unit."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fake_discovery import found as found_by_hand
+from robot_cases import run
+
+from identification import Log, Parameter, Predictor, fit, joint_plant, read_robot, write_log
+from identification.logs.by_unit import relative
+from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_sections import gap_section, where_section
+from identification.report.discovery_text import discovery_text
+from identification.report.error_words import error_words
+from identification.report.fit_verdict import fit_verdict
+from identification.report.vector import svg
+
+STEP, NOISE = 0.01, {"turn": 1e-3, "way": 2e-5}  # [s], [rad] and [m]
+MODEL = """<mujoco>
+  <option timestep="0.005" gravity="0 0 0" integrator="RK4"/>
+  <worldbody>
+    <body name="arm"><inertial pos="0 0 0" mass="1" diaginertia="0.1 0.1 0.1"/>
+      <joint name="hinge" axis="0 1 0" stiffness="2" damping="0.2"/></body>
+    <body name="cart"><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>
+      <joint name="slide" type="slide" axis="1 0 0" stiffness="200" damping="4"/></body>
+  </worldbody>
+  <actuator><motor name="torque" joint="hinge"/><motor name="force" joint="slide"/></actuator>
+  <sensor><jointpos name="turn" joint="hinge"/><jointpos name="way" joint="slide"/></sensor>
+</mujoco>"""
+PAIR = r"[\d.]+ [mµ]*rad{0} \(angles\) and [\d.]+ [mµ]*m{0} \(slides\)"
+TRUE = {"d": 0.2, "b": 4.0}
+PARAMETERS = [
+    Parameter(name=name, value=value, unit=unit, where=f"joint/{where}.damping", lower=0.0)
+    for (name, value), unit, where in zip(
+        TRUE.items(), ("N m s/rad", "N s/m"), ("hinge", "slide"), strict=True
+    )
+]
+TOML = """model = "robot.xml"
+free = ["d", "b"]
+[parameters.d]
+path = "joint/hinge.damping"
+unit = "N m s/rad"
+value = 0.3
+[parameters.b]
+path = "joint/slide.damping"
+unit = "N s/m"
+value = 3.0
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    path = tmp_path_factory.mktemp("unlike")
+    (path / "robot.xml").write_text(MODEL)
+    (path / "robot.toml").write_text(TOML)
+    rng = np.random.default_rng(3)
+    for name in ("first", "second"):
+        u = np.repeat(rng.choice([-1.0, 1.0], (25, 2)), 20, axis=0) * (0.5, 2.0)
+        log = Log(
+            time=STEP * np.arange(len(u)), inputs=u, outputs=0.01 * u, name=name,
+            input_names=("torque", "force"), output_names=("turn", "way"),
+        )  # fmt: skip
+        plant = joint_plant(MODEL, PARAMETERS, log)
+        y = Predictor(plant, log, (), TRUE).predict(np.empty((1, 0)))[0]
+        y = y + np.array([*NOISE.values()]) * rng.standard_normal(y.shape)
+        write_log(replace(log, outputs=y), path / f"{name}.csv")
+    return path
+
+
+def test_sentences_tell_each_unit_by_itself(folder, capsys):
+    logs = folder / "robot.toml", folder / "first.csv", "--confirm", folder / "second.csv"
+    said = run(capsys, "fit", *logs)
+    text = " ".join(said["verdict"])
+    errors, sizes = PAIR.format(" rms"), PAIR.format("")
+    for words in (
+        rf"The residual is {errors}, [\d.]+ times the noise floor of {sizes}\.",
+        rf"On unseen data the residual is {errors}, [\d.]+ times what the fit",
+        rf"On second: {errors} with the values of the robot's file, {errors} with those that were"
+        r" fitted; mean square -\d+ % \(angles\) and -\d+ % \(slides\)\.",
+    ):
+        assert re.search(words, text), words
+    for key in ("rms_by_unit", "validation_rms_by_unit", "noise_floor_by_unit"):
+        told = said[key]
+        assert told == {"rad": pytest.approx(1e-3, rel=0.1), "m": pytest.approx(2e-5, rel=0.1)}, key
+    # What had a meaning keeps it: over all outputs, in SI units.
+    assert said["rms"] == pytest.approx(
+        np.sqrt(sum(e**2 for e in said["rms_by_unit"].values()) / 2)
+    )
+    (there,) = said["confirm"]
+    assert there["unit"] == ""
+    assert set(there["before_by_unit"]) == set(there["after_by_unit"]) == {"rad", "m"}
+
+
+def test_each_unit_has_the_weight_of_its_noise(folder):
+    found = fit(read_robot(folder / "robot.toml", folder / "first.csv")).found
+    weight = np.diag(found.estimate.whitener)
+    assert weight == pytest.approx([1 / e for e in NOISE.values()], rel=0.1)
+    assert np.sqrt(np.mean((found.residual * weight) ** 2, axis=0)) == pytest.approx(1, rel=0.1)
+    for name, value in TRUE.items():
+        k = found.found.names.index(name)
+        assert abs(found.estimate.values[name] - value) < 4 * found.std[k]
+
+
+def test_an_error_of_one_unit_is_not_hidden_by_the_other(folder):
+    """What lacks of the slide is many times its noise, and small beside an angle in SI units."""
+    path = folder / "soft.toml"
+    (folder / "soft.xml").write_text(MODEL.replace('stiffness="200"', 'stiffness="197"'))
+    path.write_text(TOML.replace("robot.xml", "soft.xml"))
+    found = fit(read_robot(path, folder / "first.csv")).found
+    assert found.rms < 1.2 * np.sqrt(np.mean(found.floor**2))
+    assert "That is more than noise" in " ".join(fit_verdict(found))
+
+
+def test_a_discovery_tells_each_unit_and_what_would_be_better():
+    units = {f"angle_{k}": "rad" if k < 5 else "m" for k in range(1, 9)}
+    fake = found_by_hand()
+    log = replace(fake.log, units={**fake.log.units, **units})
+    by = {"before": {"rad": 2e-3, "m": 5e-5}, "after": {"rad": 1e-3, "m": 2e-5}}
+    answer = replace(
+        fake, log=log, noise_by_unit={"rad": 9e-4, "m": 2e-5},
+        disturbance_by_unit={"rad": 0.0, "m": 0.0},
+        **{k: replace(getattr(fake, k), rms_by_unit=v) for k, v in by.items()},
+    )  # fmt: skip
+    text = discovery_text(answer)
+    assert (
+        "the error falls from 2 mrad rms (angles) and 50 µm rms (slides) to 1 mrad rms (angles) and"
+        " 20 µm rms (slides) with it in the model; the noise is 0.90 mrad (angles) and 20 µm"
+        " (slides)." in text
+    )
+    assert "The outputs have several units (rad, m), and a free run counts" in text
+    assert "several units" not in discovery_text(fake)
+    for section in (gap_section(answer), where_section(answer)):
+        assert all("svg" in svg(figure) for _, figure in section.figures)
+    gap = discovery_to_json(answer)["gap"]
+    assert gap["after"]["rms_by_unit"] == by["after"]
+    assert gap["noise_rms_by_unit"] == {"rad": 9e-4, "m": 2e-5}
+
+
+def test_errors_in_words():
+    one, two = {"rad": 1.234e-3}, {"rad": 1e-3, "V": 0.2, "": 3.0}
+    assert error_words([one]) == ["1.2 mrad rms"]
+    assert error_words([one], "") == ["1.2 mrad"]
+    assert error_words([two]) == [
+        "1 mrad rms (angles), 200 mV rms (outputs in V) and 3 rms (outputs without unit)"
+    ]
+
+
+def test_relative_errors_are_the_same_in_every_unit():
+    errors, of = {"rad": 3.0, "m": 4.0}, {"rad": 1.5, "m": 1.0}
+    assert relative(errors, of) == pytest.approx(np.sqrt(10))
+    in_mm = {"rad": 3.0, "m": 4e3}, {"rad": 1.5, "m": 1e3}
+    assert relative(*in_mm) == pytest.approx(relative(errors, of))
+    assert relative(errors, {"rad": 0.0, "m": 1.0}) == np.inf
+    assert relative({"rad": 3.0}, {"rad": 1.5}) == 2.0
