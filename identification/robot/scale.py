@@ -26,7 +26,7 @@ from identification.logs.log import Log
 from identification.logs.readings import EXPLAINED, NEARER, Reading, unit_readings
 from identification.quantities import held
 from identification.robot.balance import Freedom, unbalanced_share
-from identification.robot.parameters import UNITS
+from identification.robot.model_units import UNITS
 
 FREEDOM = Freedom(has_springs=True)
 WIDER = (1, 2, 4)  # times ψ; a fourfold one has 32 times less noise in its accelerations
