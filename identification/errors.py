@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from difflib import get_close_matches
 
 _LONGEST = 60  # of an argument in a message
@@ -29,6 +30,22 @@ class DivergenceError(InputError):
 
 class GraphicsError(InputError):
     """No OpenGL context could be made; everything that does not draw still works."""
+
+
+@contextmanager
+def told_of(where: str) -> Iterator[None]:
+    """Bad input that is found inside is told with the place where a user wrote it.
+
+    Args:
+        where: the key and the file, such as "free in robot.toml".
+
+    Raises:
+        InputError: of the same kind as inside, with the place before its message.
+    """
+    try:
+        yield
+    except InputError as error:
+        raise type(error)(f"{where}: {error}") from error
 
 
 def _one_line(text: str) -> str:

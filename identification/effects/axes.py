@@ -18,6 +18,7 @@ import numpy as np
 
 from identification.engine import quiet
 from identification.errors import InputError
+from identification.logs.conversion import HUGE
 from identification.logs.frozen import refuse_frozen
 from identification.logs.log import Log
 from identification.logs.names import listed
@@ -26,7 +27,6 @@ from identification.model.predictor import output_columns
 from identification.model.rollout import UNLOGGED, logged_inputs
 
 Kind = Literal["hinge", "slide"]
-HUGE = 1e50  # of any unit
 OVERRULE = ', or write trust = ["sensors"] into the robot\'s file'
 MAGNITUDES = ("force", "speed", "travel")
 POSES = 5  # random ones, to see on which joints gravity acts

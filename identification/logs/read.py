@@ -12,8 +12,9 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.files import read_bytes
+from identification.logs.conversion import conversions, converted
 from identification.logs.log import Log
-from identification.logs.names import check_column_names, check_keys, lookup
+from identification.logs.names import check_column_names, check_keys
 from identification.logs.plausible import check_plausible
 from identification.logs.read_csv import parse_csv
 from identification.logs.read_mat import parse_mat
@@ -21,7 +22,7 @@ from identification.logs.resampling import even_out
 from identification.logs.sampling import FloatArray, check_time, grid
 from identification.logs.sidecar import Sidecar, read_sidecar
 from identification.logs.table import Table, check_columns, check_finite, check_stamps, renamed
-from identification.logs.units import check_si, to_si
+from identification.logs.units import check_si
 
 
 def read_log(
@@ -76,20 +77,19 @@ def read_log(
     sidecar = read_sidecar(path.with_suffix(".toml"), said, named_in)
     if sidecar.values and not lenient:
         raise InputError(
-            f"{sidecar.path} gives values of a robot under [values], which only the robots of"
-            " read_robot have; leave them out"
+            f"{sidecar.file_of('values')} gives values of a robot under [values], which only the"
+            " robots of read_robot have; leave them out"
         )
     table = _read_table(raw, path, inputs, outputs, optional, sidecar, lenient)
-    check_keys(f"column under 'units' in {sidecar.path}:", sidecar.units, ("time", *columns))
-    check_keys(f"column under 'factors' in {sidecar.path}:", sidecar.factors, columns)
+    for key, named in (("units", ("time", *columns)), ("factors", columns)):
+        check_keys(f"column under {key!r} in {sidecar.file_of(key)}:", getattr(sidecar, key), named)
     table = renamed(table, sidecar)
     if "time" not in table.names and sidecar.sampling_time:
         table = _with_time(table, sidecar.sampling_time)
     check_columns(table, ("time", *inputs, *outputs), optional, sidecar, named_in)
 
-    si, factors = _conversions(table, sidecar, {**units, "time": "s"})
-    with np.errstate(over="ignore"):  # a number that overflows is refused later
-        table = replace(table, data=table.data * [factors[name] for name in table.names])
+    si, factors = conversions(table, sidecar, {**units, "time": "s"})
+    table = converted(table, sidecar, factors)
     remarks: tuple[str, ...] = ()
     if lenient and not _is_even(table, sidecar):
         table, remark = _evened(table, inputs, sidecar)
@@ -99,7 +99,7 @@ def read_log(
     check_time(time, table.place, sidecar.sampling_time)
     if sidecar.sampling_time:  # the grid is better than coarse stamps
         time = grid(time[0], sidecar.sampling_time, len(time))
-    check_plausible(table, factors, si, limits, rates, sidecar.path)
+    check_plausible(table, factors, si, limits, rates, sidecar.file_of("units"))
     return Log(
         time=time,
         inputs=_stacked(table, inputs),
@@ -164,26 +164,6 @@ def _read_table(
 def _with_time(table: Table, step: float) -> Table:
     time = grid(0.0, step, len(table.data))
     return replace(table, names=("time", *table.names), data=np.column_stack([time, table.data]))
-
-
-def _conversions(
-    table: Table, sidecar: Sidecar, units: Mapping[str, str]
-) -> tuple[dict[str, str], dict[str, float]]:
-    """The SI unit of each column, where known, and the factor from the file's number to SI."""
-    si: dict[str, str] = {}
-    factors: dict[str, float] = {}
-    for name in table.names:
-        expected, given = lookup(units, name), lookup(sidecar.units, name)
-        unit, factors[name] = to_si(given) if given is not None else (expected, 1.0)
-        if expected and unit != expected:
-            raise InputError(
-                f"{sidecar.path} gives {name} in {given}, which measures {unit} and not "
-                f"{expected}; correct it there"
-            )
-        if unit:
-            si[name] = unit
-        factors[name] *= lookup(sidecar.factors, name) or 1.0
-    return si, factors
 
 
 def _stacked(table: Table, names: Sequence[str]) -> FloatArray:

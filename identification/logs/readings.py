@@ -11,14 +11,13 @@ of a log.
 
 from __future__ import annotations
 
-import json
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, product
 
 import numpy as np
 
+from identification.logs.cures import how_to_exchange, how_to_turn, unit_lines
 from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.logs.units import UNITS
@@ -39,14 +38,14 @@ class Reading:
         columns: outputs that change, with it or with what an input does to them.
         said: what it would be, in words.
         cure: what to do, were it so.
-        kind: "units" or "wiring", which a user may trust.
+        kinds: "units", "wiring" or both, which a user may trust.
     """
 
     log: Log
     columns: Sequence[int]
     said: str
     cure: str
-    kind: str = "wiring"
+    kinds: tuple[str, ...] = ("wiring",)
 
 
 def misread(
@@ -93,6 +92,7 @@ def unit_readings(
     bad: np.ndarray,
     column: Mapping[str, str],
     wanted: Mapping[str, str] | None = None,
+    alone: bool = True,
 ) -> Iterator[Reading]:
     """Other units of the outputs that are not explained, and of inputs that are wanted positions.
 
@@ -101,12 +101,13 @@ def unit_readings(
         bad: true where an output is not explained, shape (ny,).
         column: what an output or input is called in the log's file.
         wanted: SI unit by name of the inputs that a drive compares with its joint's own motion.
+        alone: whether one column of several of a kind may be in another unit.
     """
     wanted, ny = wanted or {}, log.outputs.shape[1]
     names = [*log.output_names, *(n for n in log.input_names if n in wanted)]
     kinds = [(log.units.get(n, ""), False) for n in names[:ny]]
     kinds += [(wanted[n], True) for n in names[ny:]]
-    for words in _units(kinds):
+    for words in _units(kinds, alone):
         changed = [k for k, word in enumerate(words) if word]
         if not all(bad[k] for k in changed if k < ny):
             continue
@@ -117,13 +118,22 @@ def unit_readings(
             outputs=log.outputs * [scale.get(n, 1.0) for n in log.output_names],
             inputs=log.inputs * [scale.get(n, 1.0) for n in log.input_names],
         )
-        told = ", ".join(f'{column[names[k]]} = "{words[k]}"' for k in changed)
+        told = unit_lines({column[names[k]]: words[k] for k in changed})
         said = f"were it in {' and '.join(dict.fromkeys(words[k] for k in changed))}"
-        yield Reading(other, felt, said, f"write {told} under [units] of the log's TOML", "units")
+        yield Reading(other, felt, said, told, ("units",))
 
 
 def output_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
     """Other signs and places of the outputs that are not explained; see `unit_readings`."""
+    yield from output_turns(log, bad, column)
+    y, out = log.outputs, [column[n] for n in log.output_names]
+    for i, j in combinations(np.flatnonzero(bad).tolist(), 2):
+        yield Reading(replace(log, outputs=_exchanged(y, i, j)), [i, j], "were they exchanged",
+                      how_to_exchange(out[i], out[j]))  # fmt: skip
+
+
+def output_turns(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
+    """The other sign of each output that is not explained, and of all; see `unit_readings`."""
     y, wrong = log.outputs, np.flatnonzero(bad).tolist()
     out, into = ([column[n] for n in names] for names in (log.output_names, log.input_names))
     for k in [*([k] for k in wrong), *([wrong] if len(wrong) > 1 else [])]:
@@ -131,31 +141,25 @@ def output_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Ite
         yield Reading(replace(log, outputs=turned(y, k)), k, "with the other sign",
                       f"turn the sign of {listed(out[i] for i in k)}{mirror}"
                       f"{how_to_turn([out[i] for i in k])}")  # fmt: skip
-    for i, j in combinations(range(y.shape[1]), 2):
-        if bad[i] and bad[j]:
-            yield Reading(replace(log, outputs=_exchanged(y, i, j)), [i, j], "were they exchanged",
-                          f"exchange {out[i]} and {out[j]} under [columns]")  # fmt: skip
 
 
 def input_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
     """Other signs and places of the inputs; see `unit_readings`."""
+    yield from input_turns(log, bad, column)
     u, wrong = log.inputs, np.flatnonzero(bad).tolist()
     into = [column[n] for n in log.input_names]
-    for k in range(u.shape[1]):
-        yield Reading(replace(log, inputs=turned(u, [k])), wrong,
-                      "with the other sign of an input",
-                      f"turn the sign of {into[k]}{how_to_turn([into[k]])}")  # fmt: skip
     for i, j in combinations(range(u.shape[1]), 2):
         yield Reading(replace(log, inputs=_exchanged(u, i, j)), wrong, "were inputs exchanged",
-                      f"exchange {into[i]} and {into[j]} under [columns]")  # fmt: skip
+                      how_to_exchange(into[i], into[j]))  # fmt: skip
 
 
-def how_to_turn(columns: Sequence[str]) -> str:
-    """What a user writes to turn the sign of some columns of a log, for a message."""
-    keys = (n if re.fullmatch(r"[A-Za-z0-9_-]+", n) else json.dumps(n) for n in columns)
-    told = " and ".join(f"{key} = -1" for key in keys)
-    lines = ", a line each," if len(columns) > 1 else ""
-    return f": write {told}{lines} under [factors] of the log's TOML, or turn the sign that it has"
+def input_turns(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
+    """The other sign of each input; see `unit_readings`."""
+    u, wrong = log.inputs, np.flatnonzero(bad).tolist()
+    for k, name in enumerate(column[n] for n in log.input_names):
+        yield Reading(replace(log, inputs=turned(u, [k])), wrong,
+                      "with the other sign of an input",
+                      f"turn the sign of {name}{how_to_turn([name])}")  # fmt: skip
 
 
 def turned(signals: np.ndarray, columns: Sequence[int]) -> np.ndarray:
@@ -176,7 +180,7 @@ def unexplained_share(y: np.ndarray, error: np.ndarray) -> np.ndarray:
     return np.where(moved > 0, ratio, 0.0)
 
 
-def _units(columns: Sequence[tuple[str, bool]]) -> Iterator[tuple[str, ...]]:
+def _units(columns: Sequence[tuple[str, bool]], alone: bool) -> Iterator[tuple[str, ...]]:
     """Other units of columns of a kind, "" for as it is: of all of a kind, and of one alone."""
     kinds = [*dict.fromkeys(columns)]
     words = {k: ["", *(w for w, (of, _) in UNITS.items() if of == k[0] != w)] for k in kinds}
@@ -184,7 +188,7 @@ def _units(columns: Sequence[tuple[str, bool]]) -> Iterator[tuple[str, ...]]:
         if any(chosen):
             yield tuple(chosen[kinds.index(kind)] for kind in columns)
     for k, kind in enumerate(columns):
-        if columns.count(kind) > 1:
+        if alone and columns.count(kind) > 1:
             yield from (tuple(w * (i == k) for i in range(len(columns))) for w in words[kind][1:])
 
 

@@ -32,7 +32,10 @@ from identification.logs.log_checks import HOLDS
 
 @dataclass(frozen=True, kw_only=True)
 class Sidecar:
-    """The content of a sidecar; every key may be left out, and the file too."""
+    """The content of a sidecar; every key may be left out, and the file too.
+
+    `elsewhere` are the keys that another file gives, with its path.
+    """
 
     path: Path
     sampling_time: float | None = None
@@ -45,6 +48,11 @@ class Sidecar:
     factors: Mapping[str, float] = field(default_factory=dict)
     splits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     values: Mapping[str, float] = field(default_factory=dict)
+    elsewhere: Mapping[str, Path] = field(default_factory=dict)
+
+    def file_of(self, key: str) -> Path:
+        """The file that gives a key: another one, such as a robot's, or that beside the log."""
+        return self.elsewhere.get(key, self.path)
 
 
 def read_sidecar(
@@ -63,13 +71,16 @@ def read_sidecar(
         InputError: it is not TOML, a key is unknown, or a value is of the wrong kind.
     """
     values = _values(given or {}, given_in or path)
+    elsewhere = dict.fromkeys(given or {}, given_in or path)
     if path.exists():
         content = read_toml(path)
         inner = content.pop("log", {})
         if not isinstance(inner, dict):
             raise InputError(f"log in {path} must be a table; correct it there")
-        values |= _values({**inner, **content}, path)
-    return Sidecar(path=path, **values)
+        own = {**inner, **content}
+        values |= _values(own, path)
+        elsewhere = {key: file for key, file in elsewhere.items() if key not in own}
+    return Sidecar(path=path, elsewhere=elsewhere, **values)
 
 
 def _values(content: Mapping[str, Any], path: Path) -> dict[str, Any]:

@@ -47,7 +47,7 @@ def renamed(table: Table, sidecar: Sidecar) -> Table:
         for name in wanted:
             if name not in table.all_names:
                 raise unknown_name(
-                    f"column under {what!r} in {sidecar.path}:",
+                    f"column under {what!r} in {sidecar.file_of(what)}:",
                     name,
                     map(quoted, table.all_names),
                 )

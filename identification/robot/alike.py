@@ -14,13 +14,13 @@ others in proportion, and a relative deviation of each place, `damping@shoulder`
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import mujoco
 
-from identification.errors import InputError, repeated
+from identification.errors import InputError, repeated, told_of
 from identification.model.parameter import DEVIATION, Parameter
 from identification.model.paths import read, resolve
 from identification.model.plant import start_place
@@ -46,6 +46,7 @@ class Alike:
         std: of each place's deviation, relative.
         known: std of the common value, relative.
         deviates: whether the places deviate at all.
+        where: it is told, key and file, for messages.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Alike:
     std: float
     known: float = KNOWN
     deviates: bool = True
+    where: str = field(default="", compare=False)
 
     @property
     def deviations(self) -> dict[str, str]:
@@ -77,7 +79,8 @@ class Alike:
         Raises:
             InputError: a path names nothing, or a value is not above zero.
         """
-        nominal = [self._nominal(path, model) for path in self.of]
+        with told_of(self.where or f"spread.{self.name}"):
+            nominal = [self._nominal(path, model) for path in self.of]
         ties = tuple((path, x / nominal[0]) for path, x in zip(self.of, nominal, strict=True))[1:]
         common = Parameter(
             name=self.name, value=nominal[0], unit=unit, where=self.of[0], lower=0.0, ties=ties,
@@ -97,15 +100,15 @@ class Alike:
     def _nominal(self, path: str, model: mujoco.MjModel) -> float:
         if start_place(path, model) is not None or spread_place(path, model) is not None:
             raise InputError(
-                f"spread.{self.name} names {path!r}; give paths to numbers of the model, such as"
+                f"{path!r} is an entry of the state; give paths to numbers of the model, such as"
                 ' "joint/elbow.damping"'
             )
         value = read(model, resolve(model, path))
         if value > 0:
             return value
         raise InputError(
-            f"{path} is {value:g} in the model, and spread.{self.name} tells relative deviations;"
-            " give it a value above zero there, or leave it out of the table"
+            f"{path} is {value:g} in the model, and a spread tells relative deviations; give it"
+            " a value above zero there, or leave it out of the table"
         )
 
 
@@ -143,7 +146,8 @@ def _alike(name: str, table: Any, path: Path) -> Alike:
         raise InputError(f"{where} names {len(of)} places under `of`; give two or more")
     if "std" not in table:
         raise InputError(f"{where} does not say `std`; give the relative deviation, such as 0.1")
-    return Alike(name, of, float(table["std"]), float(table.get("known", KNOWN)))
+    std, known = float(table["std"]), float(table.get("known", KNOWN))
+    return Alike(name, of, std, known, where=where)
 
 
 def _thing(path: str) -> str:

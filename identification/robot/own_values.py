@@ -13,7 +13,7 @@ import mujoco
 from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
 from identification.effects.joint_plant import JointPlant
-from identification.errors import InputError
+from identification.errors import InputError, told_of
 from identification.logs.log import Log
 from identification.model.parameter import Parameter
 from identification.model.plant import start_place
@@ -54,10 +54,8 @@ def value_parameters(
                 )
             if name in numbers or name in found:
                 continue
-            try:
+            with told_of(f"{where}, in its TOML or under log.values in {file.path}"):
                 found[name] = free_parameter(file, name, model, effects, log).parameter
-            except InputError as error:
-                raise InputError(f"{where}: {error}") from error
     return [*found.values()]
 
 
@@ -68,7 +66,5 @@ def refuse_impossible(plant: JointPlant, logs: Sequence[Log]) -> None:
         InputError: there is one.
     """
     for log in logs:
-        try:
+        with told_of(f"values of log {log.name!r}"):
             plant.parameters.with_values(log.values)
-        except InputError as error:
-            raise InputError(f"values of log {log.name!r}: {error}") from error

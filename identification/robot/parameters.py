@@ -6,9 +6,9 @@ it is the first measured sample.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
-from fnmatch import fnmatchcase
 from typing import Any
 
 import mujoco
@@ -17,8 +17,8 @@ import numpy as np
 from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
 from identification.effects.named import means_effect, unknown_number
-from identification.errors import InputError
-from identification.logs.dimension import refuse_not_si, refuse_other_unit
+from identification.errors import InputError, told_of
+from identification.logs.dimension import refuse_other_unit
 from identification.logs.log import Log
 from identification.model.parameter import Parameter
 from identification.model.paths import Slot, read, resolve
@@ -27,16 +27,12 @@ from identification.model.predictor import output_columns
 from identification.model.spread import spread_place, spreads
 from identification.robot.alike import Alike
 from identification.robot.file import RobotFile
+from identification.robot.model_units import refuse_unit, unit_of
 from identification.robot.start import CLEAR, measured_begin
 
 KNOWN = 0.3  # std of the prior unless given: relative if positive, else of the plausible size
 SURE = 0.01  # of a joint's motion in the log: std of the prior of a start that was measured
 POSITIVE = ("mass", "inertia", "spread", "damping", "armature", "stiffness", "frictionloss")
-UNITS = {  # unit for a slide, unit for a hinge
-    "damping": ("N s/m", "N m s/rad"), "armature": ("kg", "kg m^2"),
-    "stiffness": ("N/m", "N m/rad"), "frictionloss": ("N", "N m"),
-    "qpos": ("m", "rad"), "qvel": ("m/s", "rad/s"),
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -86,17 +82,30 @@ def free_parameter(
     for alike in file.spread:
         if name in alike.names:
             return _alike(file, alike, name, model)
+    # What only a log's TOML names is told of by who reads that.
+    with told_of(_where(file, name)) if name in file.free else nullcontext():
+        return _free(file, name, model, effects, log)
+
+
+def _where(file: RobotFile, name: str) -> str:
+    """The key of a free parameter, and the file."""
+    return f"parameters.{name} in {file.path}" if name in file.records else f"free in {file.path}"
+
+
+def _free(
+    file: RobotFile, name: str, model: mujoco.MjModel, effects: Sequence[Effect], log: Log
+) -> Free:
+    """A parameter that is free by itself, or that a log gives a value."""
     said = file.records.get(name, {})
     given: dict[str, Any] = {k: said[k] for k in ("unit", "about") if k in said}
     given |= {k: float(said[k]) for k in ("value", "lower", "upper", "scale") if k in said}
-    whose = f"parameters.{name} in {file.path}"
     sizes = effect_sizes(effects)
     if name in sizes:
         own, largest = sizes[name]
-        refuse_other_unit(said.get("unit", own.unit), own.unit, whose)
+        refuse_other_unit(said.get("unit", own.unit), own.unit, "it")
         if "value" not in given:
             raise InputError(
-                f"{file.path} frees {name}, which is zero in the model: give it a value under"
+                f"{name} is zero in the model: give it a value under"
                 f' [parameters."{name}"], or leave it to the candidates'
             )
         record, guess = replace(own, **given), KNOWN * largest
@@ -104,21 +113,21 @@ def free_parameter(
         path = said.get("path", name)
         if any(path == f"{e.name}.{s.name}" for e in effects for s in e.shapes):
             raise InputError(
-                f"{file.path} frees {path}, which says how an effect looks and not how large it is:"
-                " give its value under [fixed]"
+                f"{path} says how an effect looks and not how large it is: give its value under"
+                " [fixed]"
             )
         if means_effect(path, effects):
             raise unknown_number(path, effects)
         body = path.partition(".inertia")[0]
         every = (str(file.records.get(n, {}).get("path", n)) for n in file.free)
         alone = sum(p.startswith(f"{body}.inertia") for p in every) == 1
-        _refuse_unit(said, unit_of(model, path), whose)
+        refuse_unit(said, unit_of(model, path), "it")
         record, guess = _in_model(path, name, model, log, given, alone)
     mean = float(said.get("prior", record.value))
     if not record.lower <= mean <= record.upper:
         raise InputError(
-            f"the prior of {name} in {file.path} is {mean:g}, outside its range [{record.lower:g},"
-            f" {record.upper:g}]; correct it, or leave it out"
+            f"its prior is {mean:g}, outside its range [{record.lower:g}, {record.upper:g}];"
+            " correct it, or leave it out"
         )
     if _is_positive(record, mean):
         return Free(record, mean, float(said.get("known", KNOWN)))
@@ -127,20 +136,14 @@ def free_parameter(
 
 def _alike(file: RobotFile, alike: Alike, name: str, model: mujoco.MjModel) -> Free:
     """The common value of a spread, or a deviation from it."""
-    record, std = alike.parameters(model, unit_of(model, alike.of[0]))[name]
+    with told_of(alike.where):
+        unit = unit_of(model, alike.of[0])
+    record, std = alike.parameters(model, unit)[name]
     said = file.records.get(name, {})
-    _refuse_unit(said, record.unit, f"parameters.{name} in {file.path}")
+    refuse_unit(said, record.unit, f"parameters.{name} in {file.path}")
     mean = float(said.get("prior", record.value))
     std = float(said.get("known", std))
     return Free(replace(record, value=float(said.get("value", record.value))), mean, std)
-
-
-def _refuse_unit(said: Mapping[str, Any], own: str, whose: str) -> None:
-    """Refuse a unit in which the model does not read numbers; `own` is "" where none is known."""
-    unit = said.get("unit", own)
-    if own:
-        refuse_other_unit(unit, own, whose)
-    refuse_not_si(unit, whose)
 
 
 def measured_start(model: mujoco.MjModel, path: str, log: Log, own: float) -> float:
@@ -190,26 +193,6 @@ def _possible(model: mujoco.MjModel, slot: Slot, alone: bool) -> dict[str, float
     # A bound must not be the value itself, as that of a flat body is.
     low, high = min(float(abs(a - b)), own * (1 - 1e-6)), max(float(a + b), own * (1 + 1e-6))
     return {"lower": low, "upper": high}
-
-
-def unit_of(model: mujoco.MjModel, path: str) -> str:
-    """Unit of a body's mass, a joint's number or an entry of the start; "" of anything else."""
-    place = start_place(path, model)
-    thing, _, attribute = path.partition("[")[0].rpartition(".")
-    kind, _, name = thing.partition("/")
-    joints: list[int] = []
-    if place is not None:
-        attribute = place[0]
-        at = model.jnt_qposadr if attribute == "qpos" else model.jnt_dofadr
-        joints = np.flatnonzero(at <= place[1])[-1:].tolist()
-    elif kind == "joint":
-        joints = [j for j in range(model.njnt) if fnmatchcase(model.joint(j).name, name)]
-    if not joints or attribute not in UNITS:
-        units = {"mass": "kg", "inertia": "kg m^2", "spread": "kg m^2"}
-        return units.get(attribute, "") if kind == "body" else ""
-    types = (int(mujoco.mjtJoint.mjJNT_SLIDE), int(mujoco.mjtJoint.mjJNT_HINGE))
-    found = int(model.jnt_type[joints[0]])
-    return UNITS[attribute][types.index(found)] if found in types else ""
 
 
 def _moved(model: mujoco.MjModel, place: tuple[str, int], log: Log) -> float:

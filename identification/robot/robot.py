@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -15,8 +16,7 @@ from identification.effects.catalogue import all_effects
 from identification.effects.effect import Effect
 from identification.effects.joint_catalogue import TURNS
 from identification.effects.joint_plant import JointPlant, candidates, joint_plant
-from identification.effects.named import means_effect, unknown_number
-from identification.errors import InputError, unknown_name
+from identification.errors import InputError, told_of, unknown_name
 from identification.logs.decimation import decimate
 from identification.logs.log import Log
 from identification.logs.read import read_log
@@ -29,10 +29,12 @@ from identification.robot.checks import (
     refuse_unnamed,
 )
 from identification.robot.file import RobotFile
+from identification.robot.fixed import with_fixed
 from identification.robot.model_file import robot_spec, with_step
+from identification.robot.model_units import unit_of
 from identification.robot.own_values import refuse_impossible, value_parameters
-from identification.robot.parameters import free_parameter, measured_start, unit_of
-from identification.robot.start import start_of
+from identification.robot.parameters import free_parameter, measured_start
+from identification.robot.start import refuse_start, start_of
 
 
 @dataclass(frozen=True)
@@ -127,7 +129,8 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
             f"{file.model} has {len(inputs)} actuators and {len(sensors)} sensors; it needs an"
             " actuator for every input and a jointpos or jointvel sensor for every output"
         )
-    places = output_columns(model, outputs)
+    with told_of(f"outputs in {file.path}") if file.outputs else nullcontext():
+        places = output_columns(model, outputs)
     units = {
         n: unit_of(model, f"{field}[{i}]") for n, (field, i) in zip(outputs, places, strict=True)
     }
@@ -159,33 +162,31 @@ def robot_of(
     spec, said = robot_spec(file)
     said += with_step(spec, [log, *others, *records])
     model = spec.copy().compile()
+    refuse_start(file, model)
     known = reach([axes(model, each, file.trust) for each in (log, *others)])
     for joint in file.joints:
         if joint not in {a.joint for a in known}:
-            raise unknown_name("measured joint", joint, (a.joint for a in known))
+            where = f"measured joint under effects.joints in {file.path}:"
+            raise unknown_name(where, joint, (a.joint for a in known))
     known = tuple(a for a in known if not file.joints or a.joint in file.joints)
     effects = all_effects(spec, known, log, file.turns or TURNS)
     for name in file.only:
         if name not in {e.name for e in effects}:
-            raise unknown_name("effect", name, (e.name for e in effects))
+            where = f"effect under effects.only in {file.path}:"
+            raise unknown_name(where, name, (e.name for e in effects))
     priors = [free_parameter(file, name, model, effects, log) for name in file.free]
     logs = (log, *others, *records)
     valued = value_parameters(file, model, effects, logs)
-    plant = joint_plant(
-        spec, [*(p.parameter for p in priors), *valued], log, joints=known, effects=effects,
-        start=start_of(file, model, log),
-    )  # fmt: skip
-    for name in file.fixed:
-        if name not in plant.parameters.values():
-            if means_effect(name, effects):
-                raise unknown_number(name, effects)
-            raise InputError(
-                f"{name!r} under fixed in {file.path} is no number of an effect; write its value"
-                f" into {file.model}, or name it under free"
-            )
+    start = start_of(file, model, log)
+    with told_of(f"free in {file.path}"):
+        plant = joint_plant(
+            spec, [*(p.parameter for p in priors), *valued], log, joints=known, effects=effects,
+            start=start,
+        )  # fmt: skip
+    fixed = with_fixed(file, plant, effects)
     refuse_impossible(plant, logs)
     std = np.array([p.std for p in priors])
     mean = dict(zip(file.free, (p.mean for p in priors), strict=True))
     return Robot(
-        file, log, plant.with_values(file.fixed), std, tuple(records), tuple(others), said, mean
+        file, log, fixed, std, tuple(records), tuple(others), said, mean
     )  # fmt: skip

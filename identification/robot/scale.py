@@ -16,15 +16,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import chain
 
 import mujoco
 import numpy as np
 
+from identification.logs.double_readings import double_readings
 from identification.logs.log import Log
 from identification.logs.readings import EXPLAINED, NEARER, Reading, unit_readings
 from identification.quantities import held
 from identification.robot.balance import Freedom, unbalanced_share
-from identification.robot.parameters import UNITS
+from identification.robot.model_units import UNITS
 
 FREEDOM = Freedom(has_springs=True)
 WIDER = (1, 2, 4)  # times ψ; a fourfold one has 32 times less noise in its accelerations
@@ -32,14 +34,17 @@ NEEDED = 1.0  # η of a motion that the drives cannot have made
 
 
 def rescaled(
-    model: mujoco.MjModel, log: Log, column: Mapping[str, str]
+    model: mujoco.MjModel, log: Log, column: Mapping[str, str], signs: bool = True
 ) -> tuple[Reading, str] | None:
     """The unit in which the forces of the drives explain a motion that they else cannot.
+
+    A unit with a sign that is turned counts where it leaves less than a fifth of the unit alone.
 
     Args:
         model: with the log's actuators and sensors.
         log: as it is read.
         column: what an output or input is called in the log's file.
+        signs: whether a sign may be turned besides.
 
     Returns:
         Of the units that explain it the one that changes least, if none leaves a fifth of it, and
@@ -50,7 +55,8 @@ def rescaled(
         return None
     found: list[tuple[Reading, np.ndarray]] = []
     every = np.ones(len(own), bool)
-    for reading in unit_readings(log, every, column):
+    both = double_readings(log, every, column) if signs else ()
+    for reading in chain(unit_readings(log, every, column), both):
         left = unbalanced_share(model, reading.log, FREEDOM)
         if left is None or left.max() > EXPLAINED or left.sum() > NEARER * own.sum():
             continue

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from identification.errors import InputError, told_of
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.plant import own_start, start_place
@@ -64,6 +65,26 @@ def measured_begin(model: mujoco.MjModel, log: Log) -> dict[Place, Begin]:
             joint = int(np.flatnonzero(model.jnt_qposadr == i)[0])
             found["qvel", int(model.jnt_dofadr[joint])] = Begin(name, rate, std[1])
     return found
+
+
+def refuse_start(file: RobotFile, model: mujoco.MjModel) -> None:
+    """Refuse a path under [start] that names nothing in the state.
+
+    Raises:
+        InputError: there is one.
+    """
+    with told_of(f"start in {file.path}"):
+        for path in file.start:
+            if start_place(path, model) is None:
+                raise InputError(
+                    f"{path!r} is no entry of the state; write one such as"
+                    f" {' or '.join(f'{f}[0]' for f in _sizes(model))}"
+                )
+
+
+def _sizes(model: mujoco.MjModel) -> list[str]:
+    """The parts of the state that a model has."""
+    return [f for f, n in (("qpos", model.nq), ("qvel", model.nv), ("act", model.na)) if n]
 
 
 def start_of(file: RobotFile, model: mujoco.MjModel, log: Log) -> State:

@@ -6,7 +6,9 @@ times too small, explains a right log badly too, and may explain a wrong reading
 one that makes the motion larger makes every error of the model smaller beside it. So a log is
 refused only where the balance of forces says the same (`identification.robot.balance`): no payload,
 gravity, friction or mass lets the log be explained as it is read nearly as well as otherwise. Where
-that balance cannot be had, the other reading must explain nearly all. A motion that is too
+that balance cannot be had, the other reading must explain nearly all. Two mistakes in one log, a
+unit and a sign, are looked for where no reading with one of them is far better, and only where the
+balance does not explain the log as it is read. A motion that is too
 large for the forces of the drives is refused without any simulation (`identification.robot.scale`).
 """
 
@@ -22,6 +24,7 @@ import numpy as np
 
 from identification.effects.joint_plant import JointPlant
 from identification.errors import DivergenceError, InputError
+from identification.logs.double_readings import double_readings
 from identification.logs.log import Log
 from identification.logs.readings import (
     NEARER,
@@ -77,21 +80,26 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
             continue
         bad = own > UNEXPLAINED
         readings = chain(*(r(log, bad, column) for r in read))
-        found = misread(log, own, readings, partial(_unexplained, plant, length), balance.confirms)
+        explain = partial(_unexplained, plant, length)
+        found = misread(log, own, readings, explain, balance.confirms)
+        if found is None and not {*kinds} & {*file.trust} and balance.contradicts:
+            both = double_readings(log, bad, column, wanted)
+            found = misread(log, own, both, explain, balance.confirms)
         if found is not None:
             raise _refusal(robot, log, *found)
     # The gain of a drive that wants a position is a guess, and its force with it.
     if not (is_explained or wanted or "units" in file.trust):
-        found = rescaled(plant.model, log, column)
+        found = rescaled(plant.model, log, column, "wiring" not in file.trust)
         if found is not None:
             raise _refusal(robot, log, *found)
 
 
 def _refusal(robot: Robot, log: Log, reading: Reading, said: str) -> InputError:
     file = robot.file
+    words = ", ".join(f'"{kind}"' for kind in reading.kinds)
     return InputError(
         f"log {log.name!r}: the model of {file.model} {said}, or give values nearer to the"
-        f' robot\'s, or write trust = ["{reading.kind}"] into {file.path}'
+        f" robot's, or write trust = [{words}] into {file.path}"
     )
 
 
@@ -106,6 +114,11 @@ class _Balance:
     def own(self) -> np.ndarray | None:
         """η of each output, shape (ny,)."""
         return unbalanced_share(self.model, self.log)
+
+    @property
+    def contradicts(self) -> bool:
+        """Whether forces do not explain the log as it is read, or say nothing of it."""
+        return self.own is None or bool((self.own > UNEXPLAINED).any())
 
     def confirms(self, reading: Reading, left: np.ndarray) -> bool:
         """Whether forces speak for a reading that leaves ε (ny,)."""

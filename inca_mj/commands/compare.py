@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -9,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from identification.commands.common import Output, conclude, note, output_field, table
-from inca_mj.commands.common import SavedRobot, do_not_draw, saved_robot_field
+from identification.commands.common import Output, conclude, flat, note, output_field, table
+from inca_mj.commands.common import SavedRobot, Trust, do_not_draw, saved_robot_field
 
 if TYPE_CHECKING:
     from identification import Log
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 class Compare:
     """Lay a measured log over the twin's prediction from the same currents.
 
+    A log in other units, or whose encoders are exchanged, turned or dead, is refused; --trust shows
+    it all the same.
+
     Examples:
         inca compare examples/log.csv --out out/compare
         inca compare examples/log.csv --model out/discover --json
@@ -28,6 +32,8 @@ class Compare:
 
     log: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="LOG")]
     """Log to explain: CSV (with a TOML beside it) or MATLAB .mat with u, y, Ts."""
+    trust: Trust = ()
+    """Checks of the log that you overrule: sensors, units, wiring."""
     robot: Annotated[SavedRobot, tyro.conf.OmitArgPrefixes] = saved_robot_field
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
@@ -36,26 +42,33 @@ class Compare:
         do_not_draw()
         from inca_mj.twin.logs import read_inca_log
 
-        result = compare_with(self.robot, read_inca_log(self.log))
+        result = compare_with(self.robot, read_inca_log(self.log), flat(self.trust))
         conclude(self, result.to_json(), summary(result), partial(keep, result))
         if self.output.out is not None:
             note(f"figure, report, model and result.json are in {self.output.out}")
         return 0
 
 
-def compare_with(robot: SavedRobot, log: Log) -> Comparison:
+def compare_with(robot: SavedRobot, log: Log, trust: Sequence[str]) -> Comparison:
     """Compare a log with the robot that the options describe, or with the saved one.
 
+    Args:
+        robot: the options.
+        log: what was measured.
+        trust: checks of the log that are overruled, words of `inca_mj.twin.wiring.JUDGED`.
+
     Raises:
-        InputError: the options describe no robot, or the robot has no pretension.
+        InputError: the options describe no robot, the robot has no pretension, or the log is not
+            wired as the robot is.
         DivergenceError: the simulation left the finite numbers.
     """
     from inca_mj.workflows.comparison import compare, compare_twin
 
     saved = robot.saved()
     if saved is not None:
-        return compare_twin(log, saved, timestep=robot.step)
-    return compare(log, robot.parameters(), robot.place(), timestep=robot.step)
+        return compare_twin(log, saved, timestep=robot.step, trust=trust)
+    place, step = robot.place(), robot.step
+    return compare(log, robot.parameters(), place, timestep=step, trust=trust)
 
 
 def summary(result: Comparison) -> str:

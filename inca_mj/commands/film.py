@@ -153,6 +153,7 @@ class Film:
         from inca_mj.commands.compare import compare_with
         from inca_mj.rendering.scene import make_scene
         from inca_mj.twin.logs import read_inca_log
+        from inca_mj.twin.wiring import UNJUDGED
 
         if source.suffix == ".npz":
             return make_scene(source, self.seconds)
@@ -160,4 +161,4 @@ class Film:
         if self.seconds is not None and 0 < self.seconds < log.duration:
             log = log.between(float("-inf"), float(log.time[0]) + self.seconds)
         self.output.tell(f"simulating {log.duration:g} s of {source}")
-        return make_scene(compare_with(self.robot, log), self.seconds)
+        return make_scene(compare_with(self.robot, log, UNJUDGED), self.seconds)

@@ -193,11 +193,13 @@ def keep(result: Identification, profiles: Sequence[Profile], out: Path, robot: 
     from inca_mj.report.sections import compare_section, model_section
     from inca_mj.report.sections_fit import fit_section, profile_section
     from inca_mj.report.sections_information import information_section
+    from inca_mj.twin.wiring import UNJUDGED
     from inca_mj.workflows.comparison import compare
 
     plant = result.fit.estimate.predictor.plant
     final = plant.parameters.with_values(result.values, "fitted to the log")
-    shown = compare(result.log, final, robot.place(), timestep=robot.step)
+    place, step = robot.place(), robot.step
+    shown = compare(result.log, final, place, timestep=step, trust=UNJUDGED)  # judged before it
     about = (
         f"What {result.log.name} says of the parameters at their estimate, for white noise of the"
         " size of the noise floor."

@@ -12,6 +12,7 @@ from identification.logs.log import Log
 from inca_mj.rendering.checks import refuse_seconds
 from inca_mj.twin.logs import pose_of, read_inca_log
 from inca_mj.twin.run import Run, load_run, rows_of
+from inca_mj.twin.wiring import UNJUDGED
 from inca_mj.workflows.comparison import Comparison, compare
 
 
@@ -86,7 +87,7 @@ def make_scene(source: Source, seconds: float | None = None) -> Scene:
     if isinstance(source, Log):
         if seconds is not None and seconds < source.duration:
             source = source.between(float("-inf"), float(source.time[0]) + seconds)
-        source = compare(source)
+        source = compare(source, trust=UNJUDGED)  # a picture shows a log as it is
     if isinstance(source, Comparison):
         source = Scene(source.run, source.log.outputs, pose_of(source.log))
     elif isinstance(source, Run):

@@ -12,18 +12,20 @@ as near to the twin as those of a right log.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from itertools import chain
 
 import numpy as np
 
 from identification import Log, Predictor
 from identification.errors import DivergenceError, InputError
+from identification.logs.cures import unit_lines
 from identification.logs.frozen import refuse_frozen
 from identification.logs.names import listed
-from identification.logs.readings import Reading, how_to_turn, misread, output_readings, turned
+from identification.logs.units import UNITS
+from identification.robot.same_units import NEAR
 from identification.robot.trust import TRUST, trusted
+from inca_mj.twin.other_wiring import other_wiring
 from inca_mj.twin.twin import Twin
 
 LONGEST = 10.0  # [s] in which motion must begin
@@ -31,9 +33,9 @@ MOTION = 0.05  # [rad] of the twin; a hundred times an encoder's noise
 BEGINNING = 2.0  # [s] from there; later even a good model has drifted
 DEAD = 1e-3  # of the twin's motion
 UNIT = (0.2, 10.0)  # of the twin's motion; revolutions are at 0.12 to 0.19, degrees at 44 to 69
-RIGHT = 0.2  # ε of a right log; 61 of 65 worlds as built (20000 to 20124) are below, all below 0.4
-ADVICE = "; `inca compare` shows the log beside the twin"
+ADVICE = ", with which `inca compare` shows the log beside the twin"
 JUDGED = {word: TRUST[word] for word in ("sensors", "units", "wiring")}  # a user may overrule
+UNJUDGED = (*JUDGED,)  # for who draws a log as it is
 
 
 def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
@@ -62,29 +64,56 @@ def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
     if not moves.any():
         return
     part, predicted = _with_outputs(part, moves), predicted[:, moves]
+    wiring = None if "wiring" in overruled else other_wiring(part, predicted)
+    read = part if wiring is None else wiring[0].log
+    unit = None if "units" in overruled else _other_unit(read, predicted)
+    wrong = {"wiring": f"the twin {wiring[1]}" if wiring is not None else None, "units": unit}
+    said = {word: sentence for word, sentence in wrong.items() if sentence is not None}
+    if said:
+        both = "; so read, " if len(said) > 1 else ""
+        raise InputError(f"log {log.name!r}: {both.join(said.values())}{_overrule(*said)}{ADVICE}")
+
+
+def _other_unit(part: Log, predicted: np.ndarray) -> str | None:
+    """What tells that angles are in another unit than radians, and the cure; None if nothing does.
+
+    Args:
+        part: the first motion, n samples of angles that all move.
+        predicted: the twin's angles, shape (n, angles) [rad].
+    """
     y = part.outputs - part.outputs[0]
-    if "wiring" not in overruled and (other := _other_wiring(part, predicted)) is not None:
-        raise InputError(f"log {log.name!r}: the twin {other}{ADVICE}{_overrule('wiring')}")
     scales = np.abs((y * predicted).sum(0) / (predicted**2).sum(0))
     scale, far = float(np.exp(np.mean(np.log(scales)))), np.flatnonzero(scales > UNIT[1])
-    if "units" not in overruled and UNIT[0] < scale < UNIT[1] and len(far):
-        names = listed(part.output_names[k] for k in far)
-        raise InputError(
-            f"log {log.name!r}: {names}: moves {scales[far].max():.2g} times as far as the twin's"
+    if UNIT[0] < scale < UNIT[1] and len(far):
+        names, most = [part.output_names[k] for k in far], float(scales[far].max())
+        return (
+            f"{listed(names)}: moves {most:.2g} times as far as the twin's"
             " under these currents, and the other angles do not; all must be in radians (a degree"
-            f" is 0.0175){ADVICE}{_overrule('units')}"
+            f" is 0.0175){_how_to_convert(names, most)}"
         )
-    if "units" not in overruled and not UNIT[0] < scale < UNIT[1]:
-        raise InputError(
-            f"log {log.name!r}: the angles move {scale:.2g} times as far as the twin's under these"
+    if not UNIT[0] < scale < UNIT[1]:
+        return (
+            f"the angles move {scale:.2g} times as far as the twin's under these"
             " currents; they must be in radians (a revolution is 6.28, a degree 0.0175) and"
-            f" currents in ampere, each with its sign{ADVICE}{_overrule('units')}"
+            f" currents in ampere, each with its sign{_how_to_convert(['angle'], scale)}"
         )
+    return None
 
 
-def _overrule(word: str) -> str:
-    """How the user overrules a judgement, for the end of its message."""
-    return f"; if you know that {JUDGED[word]}, write --trust {word}"
+def _how_to_convert(columns: Sequence[str], scale: float) -> str:
+    """What the TOML must say of angles that move so many times as far as the twin's."""
+    fitting = (word for word, (si, factor) in UNITS.items()
+               if si == "rad" and 1 / NEAR < scale * factor < NEAR)  # fmt: skip
+    word = next(fitting, None)
+    if word is None:
+        return ""
+    return f": {unit_lines(dict.fromkeys(columns, word))}, or correct the unit that it has"
+
+
+def _overrule(*words: str) -> str:
+    """How the user overrules judgements, for the end of their message."""
+    known = " and that ".join(JUDGED[word] for word in words)
+    return f"; if you know that {known}, write --trust {' '.join(words)}"
 
 
 def _moving(part: Log, predicted: np.ndarray) -> np.ndarray:
@@ -105,60 +134,6 @@ def _with_outputs(part: Log, kept: np.ndarray) -> Log:
     """A log with some of its outputs, by a mask: what stands still has no sign and no scale."""
     names = tuple(n for n, keep in zip(part.output_names, kept, strict=True) if keep)
     return replace(part, outputs=part.outputs[:, kept], output_names=names, units={}, extras={})
-
-
-def _other_wiring(part: Log, predicted: np.ndarray) -> str | None:
-    """Another wiring of the first motion that explains it as a right log's, in words."""
-
-    def unexplained(other: Log) -> np.ndarray:
-        return 1 - np.diag(_alike(other.outputs - other.outputs[0], predicted))
-
-    def as_right(reading: Reading, left: np.ndarray) -> bool:
-        return bool((left <= RIGHT).all())
-
-    y = part.outputs - part.outputs[0]
-    column = {n: n for n in (*part.output_names, *part.input_names)}
-    every = np.ones(y.shape[1], bool)
-    readings = chain(output_readings(part, every, column), _several(part, y, predicted))
-    found = misread(part, unexplained(part), readings, unexplained, as_right)
-    return None if found is None else found[1]
-
-
-def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Reading]:
-    """What is wrong with several encoders at once: signs, and an exchange of more than two."""
-    names, back = part.output_names, np.flatnonzero((y * predicted).sum(axis=0) < 0).tolist()
-    if 1 < len(back) < y.shape[1]:
-        outputs = turned(part.outputs, back)
-        yield Reading(replace(part, outputs=outputs), back, "with the other sign",
-                      f"turn the sign of {listed(names[k] for k in back)}"
-                      f"{how_to_turn([names[k] for k in back])}")  # fmt: skip
-    from scipy.optimize import linear_sum_assignment  # slow to import
-
-    every = np.arange(y.shape[1])
-    cosine = _alike(y, predicted)
-    for likeness in (cosine, np.abs(cosine)):  # whatever the signs, in the second
-        _, at = linear_sum_assignment(1 - likeness)
-        moved = np.flatnonzero(at != every).tolist()
-        back = np.flatnonzero(cosine[every, at] < 0).tolist() if likeness is not cosine else []
-        if len(moved) > 2 or (moved and back):
-            outputs = part.outputs.copy()
-            outputs[:, at] = turned(part.outputs, back)
-            pairs = listed(f"{names[i]} to {names[at[i]]}" for i in moved)
-            new = [names[at[i]] for i in back]
-            turn = f", and turn the sign of the new {listed(new)}{how_to_turn(new)}" if back else ""
-            changed = [k for k in every.tolist() if k in (*at[moved], *at[back])]
-            wrong = [k for k in changed if 1 - cosine[k, k] > RIGHT]  # others are right by a mirror
-            if not wrong:
-                continue
-            how = " and turned" if back else ""
-            yield Reading(replace(part, outputs=outputs), wrong, f"were they exchanged{how}",
-                          f"rename {pairs} under [columns]{turn}")  # fmt: skip
-
-
-def _alike(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:
-    """Cosines between measured and predicted angles, each (N, n): entry i, j of y_i and ŷ_j."""
-    sizes = np.linalg.norm(y, axis=0)[:, None] * np.linalg.norm(predicted, axis=0)
-    return np.asarray(y.T @ predicted / sizes)
 
 
 def _first_motion(log: Log, plant: Twin) -> tuple[Log, np.ndarray] | None:

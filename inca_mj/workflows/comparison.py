@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
 from typing import Any
@@ -17,6 +18,7 @@ from inca_mj.robot.step import TIMESTEP, refuse_step
 from inca_mj.twin.logs import POSE, pose_of
 from inca_mj.twin.run import Run, simulate
 from inca_mj.twin.twin import Twin, build_twin, rebuild
+from inca_mj.twin.wiring import UNJUDGED, refuse_miswired
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,7 @@ def compare(
     geometry: Geometry = INCA,
     *,
     timestep: float = TIMESTEP,
+    trust: Sequence[str] = (),
 ) -> Comparison:
     """Predict a log's angles from its currents alone, from its measured pose or the twin's start.
 
@@ -59,31 +62,38 @@ def compare(
         parameters: the twin's values; the thesis' Table 3.2 when None.
         geometry: anchors of the cables.
         timestep: largest step of the integrator [s].
+        trust: checks of the log that you overrule, words of `inca_mj.twin.wiring.JUDGED`.
 
     Raises:
-        InputError: the start has no pretension.
+        InputError: the start has no pretension, or the log is not wired as the robot is.
         DivergenceError: the simulation left the finite numbers.
     """
     parameters = start_of(log, parameters or parameter_set())
     step = timestep_for(log.sampling_time, timestep)
-    return compare_twin(log, build_twin(parameters, geometry, timestep=step), timestep=timestep)
+    robot = build_twin(parameters, geometry, timestep=step)
+    return compare_twin(log, robot, timestep=timestep, trust=trust)
 
 
-def compare_twin(log: Log, robot: Twin, *, timestep: float = TIMESTEP) -> Comparison:
+def compare_twin(
+    log: Log, robot: Twin, *, timestep: float = TIMESTEP, trust: Sequence[str] = ()
+) -> Comparison:
     """Predict a log's angles from its currents alone with a twin, from the twin's own start.
 
     Args:
         log: what was measured.
         robot: the twin, such as `load_twin` reads one.
         timestep: largest step of the integrator [s].
+        trust: checks of the log that you overrule, words of `inca_mj.twin.wiring.JUDGED`.
 
     Raises:
-        InputError: `timestep` is not between 1e-6 and 0.1 s.
+        InputError: `timestep` is not between 1e-6 and 0.1 s, or the log is not wired as the robot.
         DivergenceError: the simulation left the finite numbers.
     """
     step = timestep_for(log.sampling_time, timestep)
     if step != robot.model.opt.timestep:
         robot = rebuild(robot, timestep=step)
+    if {*UNJUDGED} - {*trust}:
+        refuse_miswired(log, robot, trust)
     run = simulate(robot, log.inputs, log.sampling_time, hold_kind=log.hold)
     predicted = run.motor_angle
     return Comparison(

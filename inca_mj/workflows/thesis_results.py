@@ -23,6 +23,7 @@ from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.logs import run_to_log
 from inca_mj.twin.run import Run, simulate
 from inca_mj.twin.twin import Twin, build_twin
+from inca_mj.twin.wiring import UNJUDGED
 from inca_mj.workflows.comparison import Comparison, compare_twin
 from inca_mj.workflows.identification import Identification
 from inca_mj.workflows.procedure import identify_as_thesis
@@ -57,7 +58,8 @@ class ThesisResults:
         plant = fit.estimate.predictor.plant
         if not isinstance(plant, Twin):
             raise TypeError("the procedure was not made with a twin")
-        return compare_twin(self.stand_in, plant.with_values(fit.estimate.values))
+        fitted = plant.with_values(fit.estimate.values)
+        return compare_twin(self.stand_in, fitted, trust=UNJUDGED)  # the fit has judged it
 
 
 def stand_in_log(seed: int = 0) -> Log:

@@ -168,7 +168,10 @@ def test_an_output_that_never_moves_has_no_fit_and_no_nan(
     stuck = tmp_path / "stuck.csv"
     stuck.write_text("\n".join(",".join([*r[:at], r[at] if k == 0 else "0", *r[at + 1 :]])
                                for k, r in enumerate(rows)))  # fmt: skip
-    assert main(["compare", str(stuck), "--out", str(tmp_path / "out")]) == 0
+    assert main(["compare", str(stuck)]) == 2
+    assert "write --trust sensors" in capsys.readouterr().err
+    trust = ["--trust", "sensors"]
+    assert main(["compare", str(stuck), *trust, "--out", str(tmp_path / "out")]) == 0
     said = capsys.readouterr().out
     assert "nan" not in said
     assert "1 outputs never move" in said

@@ -17,7 +17,7 @@ from scipy.io import savemat
 
 from identification import InputError, Log, write_log
 from identification.files import MAX_BYTES
-from identification.logs.readings import how_to_turn
+from identification.logs.cures import how_to_turn
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 from example_logs import HEADER, UNITS, lines, read, wave
@@ -41,3 +43,30 @@ def test_a_size_that_no_unit_explains_is_a_bad_row(csv, refusal):
     text = refusal(read, csv(lines((7, "0.05,1,1e9,3,5\n"))), units=UNITS, limits={"current": 20})
     assert "line 7" in text
     assert "repair" in text
+
+
+@pytest.mark.parametrize("factor", [1e308, -1e308, 1e60])
+@pytest.mark.parametrize("lenient", [False, True])
+def test_a_factor_that_leaves_the_numbers_is_refused(csv, refusal, factor, lenient):
+    path = csv(lines())
+    path.with_suffix(".toml").write_text(f"[factors]\nangle_2 = {factor}\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        said = refusal(read, path, lenient=lenient)
+    where = f"under 'factors' in {path.with_suffix('.toml')}"
+    assert f"the factor {factor:g} of angle_2 {where} makes numbers beyond 1e+50" in said
+    assert "such as -1" in said
+
+
+def test_a_factor_that_overflows_with_its_unit_is_refused_also_of_zeros(csv, refusal):
+    path = csv(lines().replace(",3,", ",0,"))
+    path.with_suffix(".toml").write_text("[units]\nangle = 'rev'\n[factors]\nangle_1 = 1e308\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert "the factor 1e+308 of angle_1" in refusal(read, path, units=UNITS)
+
+
+def test_a_factor_of_a_group_that_makes_finite_numbers_is_taken(csv):
+    path = csv(lines())
+    path.with_suffix(".toml").write_text("[factors]\nangle = -1e-300\n")
+    assert (read(path).outputs <= 0).all()

@@ -1,5 +1,6 @@
 """Whatever a film is made of, it shows the same."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +28,14 @@ def test_a_log_its_file_and_its_comparison_are_one_scene():
     same(make_scene(log, 0.3), make_scene(LOG, 0.3))
     same(make_scene(log, 0.3), from_log.until(float(from_log.run.time[29])))
     assert make_scene(from_log) is from_log
+
+
+def test_a_log_that_is_wired_in_another_way_is_drawn_as_it_is():
+    log = read_inca_log(LOG).between(0.0, 4.0)
+    wrong = replace(log, outputs=-log.outputs)
+    with pytest.raises(InputError, match="turn the sign"):
+        compare(wrong)
+    np.testing.assert_array_equal(make_scene(wrong).angles, wrong.outputs)
 
 
 def test_a_saved_run_is_the_run_that_was_saved(short_run, tmp_path):

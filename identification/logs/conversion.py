@@ -1,0 +1,78 @@
+"""From the numbers of a log's file to SI: their units, and the factors that its TOML gives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import inf, isfinite
+
+import numpy as np
+
+from identification.errors import InputError, told_of
+from identification.logs.names import lookup
+from identification.logs.sidecar import Sidecar
+from identification.logs.table import Table
+from identification.logs.units import to_si
+
+HUGE = 1e50  # of any unit: squares and cubes of it are numbers too
+
+
+def conversions(
+    table: Table, sidecar: Sidecar, units: Mapping[str, str]
+) -> tuple[dict[str, str], dict[str, float]]:
+    """The SI unit of each column, where known, and the factor from the file's number to SI.
+
+    Args:
+        table: as it stands in the file, with the names that its columns should have.
+        sidecar: what the TOML says.
+        units: SI unit by column or group.
+
+    Raises:
+        InputError: a unit is unknown, or measures another quantity.
+    """
+    si: dict[str, str] = {}
+    factors: dict[str, float] = {}
+    for name in table.names:
+        expected, given = lookup(units, name), lookup(sidecar.units, name)
+        with told_of(f"units of {name} in {sidecar.file_of('units')}"):
+            unit, factors[name] = to_si(given) if given is not None else (expected, 1.0)
+        if expected and unit != expected:
+            raise InputError(
+                f"{sidecar.file_of('units')} gives {name} in {given}, which measures {unit} and"
+                f" not {expected}; correct it there"
+            )
+        if unit:
+            si[name] = unit
+        factors[name] *= lookup(sidecar.factors, name) or 1.0
+    return si, factors
+
+
+def converted(table: Table, sidecar: Sidecar, factors: Mapping[str, float]) -> Table:
+    """The table in SI units.
+
+    Args:
+        table: as it stands in the file.
+        sidecar: what the TOML says.
+        factors: by column, from the file's numbers to SI.
+
+    Raises:
+        InputError: a factor of the TOML makes numbers that no robot has.
+    """
+    # What overflows without a factor is refused with its row.
+    with np.errstate(over="ignore", invalid="ignore"):
+        data = table.data * [factors[name] for name in table.names]
+    for k, name in enumerate(table.names):
+        given = lookup(sidecar.factors, name)
+        largest = _largest(data[:, k]) if isfinite(factors[name]) else inf
+        if given is not None and _largest(table.data[:, k]) <= HUGE < largest:
+            raise InputError(
+                f"the factor {given:g} of {name} under 'factors' in {sidecar.file_of('factors')}"
+                f" makes numbers beyond {HUGE:g}, which no robot has; write what turns its numbers"
+                " into those of the right sign and unit, such as -1"
+            )
+    return replace(table, data=data)
+
+
+def _largest(column: np.ndarray) -> float:
+    """The largest size of the numbers of a column, shape (n,), whose empty cells are NaN."""
+    return float(np.abs(column).max(initial=0.0, where=~np.isnan(column)))

@@ -1,0 +1,35 @@
+"""Values of effects' parameters that a robot's TOML gives under `fixed`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from identification.effects.effect import Effect
+from identification.effects.joint_plant import JointPlant
+from identification.effects.named import means_effect, unknown_number
+from identification.errors import InputError, told_of
+from identification.robot.file import RobotFile
+
+
+def with_fixed(file: RobotFile, plant: JointPlant, effects: Sequence[Effect]) -> JointPlant:
+    """The plant with the values of effects' parameters that are not free.
+
+    Args:
+        file: the robot's.
+        plant: with the effects.
+        effects: those that are compiled in.
+
+    Raises:
+        InputError: a name is no number of an effect, or a value is outside its range.
+    """
+    with told_of(f"fixed in {file.path}"):
+        for name in file.fixed:
+            if name in plant.parameters.values():
+                continue
+            if means_effect(name, effects):
+                raise unknown_number(name, effects)
+            raise InputError(
+                f"{name!r} is no number of an effect; write its value into {file.model}, or name"
+                " it under free"
+            )
+        return plant.with_values(file.fixed)

@@ -1,0 +1,75 @@
+"""Other wirings of a log's first motion: signs and places of its angles that the twin explains."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import chain
+
+import numpy as np
+
+from identification import Log
+from identification.logs.cures import how_to_rename, how_to_turn
+from identification.logs.names import listed
+from identification.logs.readings import Reading, misread, output_readings, turned
+
+RIGHT = 0.2  # ε of a right log; 61 of 65 worlds as built (20000 to 20124) are below, all below 0.4
+
+
+def other_wiring(part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None:
+    """Another wiring of the first motion that explains it as a right log's, and that in words.
+
+    Args:
+        part: the first motion, n samples of angles that all move.
+        predicted: the twin's angles, shape (n, angles) [rad].
+    """
+
+    def unexplained(other: Log) -> np.ndarray:
+        return 1 - np.diag(_alike(other.outputs - other.outputs[0], predicted))
+
+    def as_right(reading: Reading, left: np.ndarray) -> bool:
+        return bool((left <= RIGHT).all())
+
+    y = part.outputs - part.outputs[0]
+    column = {n: n for n in (*part.output_names, *part.input_names)}
+    every = np.ones(y.shape[1], bool)
+    readings = chain(output_readings(part, every, column), _several(part, y, predicted))
+    return misread(part, unexplained(part), readings, unexplained, as_right)
+
+
+def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Reading]:
+    """What is wrong with several encoders at once: signs, and an exchange of more than two."""
+    names, back = part.output_names, np.flatnonzero((y * predicted).sum(axis=0) < 0).tolist()
+    if 1 < len(back) < y.shape[1]:
+        outputs = turned(part.outputs, back)
+        yield Reading(replace(part, outputs=outputs), back, "with the other sign",
+                      f"turn the sign of {listed(names[k] for k in back)}"
+                      f"{how_to_turn([names[k] for k in back])}")  # fmt: skip
+    from scipy.optimize import linear_sum_assignment  # slow to import
+
+    every = np.arange(y.shape[1])
+    cosine = _alike(y, predicted)
+    for likeness in (cosine, np.abs(cosine)):  # whatever the signs, in the second
+        _, at = linear_sum_assignment(1 - likeness)
+        moved = np.flatnonzero(at != every).tolist()
+        back = np.flatnonzero(cosine[every, at] < 0).tolist() if likeness is not cosine else []
+        if len(moved) > 2 or (moved and back):
+            outputs = part.outputs.copy()
+            outputs[:, at] = turned(part.outputs, back)
+            new_names = {names[i]: names[at[i]] for i in moved}
+            pairs = listed(f"{old} to {new}" for old, new in new_names.items())
+            new = [names[at[i]] for i in back]
+            turn = f", and turn the sign of the new {listed(new)}{how_to_turn(new)}" if back else ""
+            changed = [k for k in every.tolist() if k in (*at[moved], *at[back])]
+            wrong = [k for k in changed if 1 - cosine[k, k] > RIGHT]  # others are right by a mirror
+            if not wrong:
+                continue
+            how = " and turned" if back else ""
+            yield Reading(replace(part, outputs=outputs), wrong, f"were they exchanged{how}",
+                          f"rename {pairs}{how_to_rename(new_names)}{turn}")  # fmt: skip
+
+
+def _alike(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:
+    """Cosines between measured and predicted angles, each (N, n): entry i, j of y_i and ŷ_j."""
+    sizes = np.linalg.norm(y, axis=0)[:, None] * np.linalg.norm(predicted, axis=0)
+    return np.asarray(y.T @ predicted / sizes)

@@ -1,0 +1,74 @@
+"""A log in another unit and with a sign turned is refused, and what is told mends it."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+from advice import advised
+from test_right_logs import ARM, MOTION, PENDULUM, heavy, no_gravity, payload, robot, tracked
+
+from identification import InputError, write_log
+from identification.logs.units import UNITS
+from identification.robot.robot import read_robot_log
+from identification.robot.wiring import refuse_miswired
+
+ANGLES = [w for w, (si, factor) in UNITS.items() if si == "rad" != w]
+CASES = [(PENDULUM, [-1]), (ARM, [-1, 1]), (ARM, [1, -1])]
+
+
+def mistaken(xml, word, signs, world=lambda model: None):
+    """A log of a robot that is written in another unit and with other signs."""
+    truth = mujoco.MjModel.from_xml_string(xml)
+    world(truth)
+    log = tracked(truth, MOTION[xml])
+    return replace(log, outputs=log.outputs * signs / UNITS[word][1])
+
+
+@pytest.mark.parametrize("horizon", ["", "horizon = 0.2"])
+@pytest.mark.parametrize("word", ANGLES)
+@pytest.mark.parametrize(("xml", "signs"), CASES)
+def test_both_are_told_and_what_is_told_mends_the_log(tmp_path, xml, signs, word, horizon):
+    own, read = robot(tmp_path, xml, mistaken(xml, word, signs), horizon)
+    with pytest.raises(InputError) as refused:
+        refuse_miswired(own, read)
+    said = str(refused.value)
+    assert f"were it in {word} and with the other sign" in said
+    assert f'write trust = ["units", "wiring"] into {own.file.path}' in said
+    (tmp_path / "log.toml").write_text(advised(said))
+    mended = read_robot_log(own.file, tmp_path / "log.csv")
+    np.testing.assert_allclose(
+        mended.outputs, read.outputs * signs * UNITS[word][1], rtol=1e-12, atol=0
+    )
+    refuse_miswired(own, mended)
+
+
+@pytest.mark.parametrize("world", [payload, heavy])
+def test_both_are_told_of_a_model_that_is_not_quite_the_robot(tmp_path, world):
+    own, read = robot(tmp_path, ARM, mistaken(ARM, "deg", [1, -1], world), "horizon = 0.2")
+    with pytest.raises(InputError, match=r"turn the sign of q2") as refused:
+        refuse_miswired(own, read)
+    assert 'q1 = "deg", q2 = "deg"' in str(refused.value)
+
+
+def test_who_knows_better_overrules_both(tmp_path):
+    own, read = robot(tmp_path, ARM, mistaken(ARM, "rev", [-1, 1]), "")
+    refuse_miswired(replace(own, file=replace(own.file, trust=("units", "wiring"))), read)
+
+
+def test_a_motor_whose_sign_is_turned_is_told_beside_degrees(tmp_path):
+    log = mistaken(ARM, "deg", [1, 1])
+    own, read = robot(tmp_path, ARM, replace(log, inputs=log.inputs * [1, -1]), "")
+    with pytest.raises(InputError, match=r"turn the sign of u2: write u2 = -1 under \[factors\]"):
+        refuse_miswired(own, read)
+
+
+@pytest.mark.parametrize("lacking", [no_gravity, payload])
+def test_what_a_model_lacks_is_no_unit_and_no_sign(tmp_path, lacking):
+    """Forces decide: where a payload or gravity explains them, no two mistakes are looked for."""
+    truth = mujoco.MjModel.from_xml_string(ARM)
+    lacking(truth)
+    log = tracked(truth, MOTION[ARM], seed=3)
+    write_log(log, tmp_path / "log.csv")
+    for horizon in ("", "horizon = 0.2"):
+        refuse_miswired(*robot(tmp_path, ARM, log, horizon))
