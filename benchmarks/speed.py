@@ -30,6 +30,7 @@ import fit_ratios
 import mujoco
 import step_ratios
 from mujoco.batch import Batch
+from speed_page import write_page
 
 from identification.engine import untimed
 from identification.estimation.estimation import estimate
@@ -250,6 +251,7 @@ def main() -> None:
         }  # fmt: skip
         with options.out.open("a") as file:
             file.write(json.dumps(row, ensure_ascii=False) + "\n")
+        write_page()
 
 
 if __name__ == "__main__":

@@ -1,0 +1,92 @@
+"""How near the limit the project runs, as a page, from the rows of `benchmarks/speed.py`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).parent
+ROWS = HERE / "results" / "speed.jsonl"
+PAGE = HERE.parent / "docs" / "speed.md"
+
+HEAD = """# How near the limit it runs
+
+Nearly all are ratios of two times that were measured by turns in one run, because seconds tell more
+of the machine than of the program. *Bare* is MuJoCo in a loop that does nothing else. This page is
+made by `python benchmarks/speed.py --out benchmarks/results/speed.jsonl` from the rows there; it is
+not written by hand. Columns are commits; what an older program did not measure is empty.
+
+Steps of commits before 7d711b2 were those of the model that can be drawn, with its sensors and with
+MuJoCo's clock; later ones are as fits take them, without the three. They are a quarter shorter, and
+so the same law is a larger share of them.
+"""
+WORDS = {
+    "step_with_law_over_without": "step with the law over one without it",
+    "step_with_law_over_without_drawn": "the same of the model with shapes and sensors",
+    "step_with_clock_over_without": "step with MuJoCo's clock over one without it",
+    "python_callback_over_native": "step with the law in Python over one with the compiled law",
+    "batch_on_2_threads_over_loop_on_1": "throughput of two threads over one",
+    "reference_adaptive_over_twin": "time of the reference ODE over the twin's",
+    "step_microseconds": "step [µs]",
+    "evaluation_microseconds": "evaluation of the accelerations [µs]",
+    "shared_evaluation_microseconds": "the same where positions are there [µs]",
+    "fit_share_of_bare_steps": "bare steps as a share of a fit's processor time",
+    "sysid_over_fit": "time of `mujoco.sysid` over that of a fit, same data and optimum",
+    "solve_ivp_over_fit": "time of scipy with solve_ivp over that of a fit",
+    "fit_processors_used": "processors that a fit uses, of two",
+    "discovery_share_of_bare_steps": "bare steps and evaluations as a share of a discovery's time",
+    "help_first_seconds": "`--help`, first start [s]",
+    "help_second_seconds": "`--help`, second start [s]",
+    "simulate_first_seconds": "`simulate`, first start [s]",
+    "simulate_second_seconds": "`simulate`, second start [s]",
+    "compare_first_seconds": "`compare`, first start [s]",
+    "compare_second_seconds": "`compare`, second start [s]",
+    "sensitivity_first_seconds": "`sensitivity`, first start [s]",
+    "sensitivity_second_seconds": "`sensitivity`, second start [s]",
+    "discover_seconds": "`discover` of the shipped log, drives known to be alike [s]",
+    "discover_peak_megabytes": "its peak memory [MB]",
+    "film_seconds_per_second": "film, seconds for each second",
+}
+AT_MOST = {"step_with_law_over_without", "help_second_seconds"}  # their goals are upper limits
+LAST = 3  # rows that are shown
+
+
+def page(rows: Sequence[dict[str, Any]]) -> str:
+    """The page of the last rows."""
+    rows = rows[-LAST:]
+    lines = [HEAD, f"| | goal | {' | '.join(row['commit'] for row in rows)} |"]
+    lines.append("| --- " * (2 + len(rows)) + "|")
+    for name, words in WORDS.items():
+        seen = [row.get(name, {}) for row in rows]
+        seen = [each if isinstance(each, dict) else {"value": each} for each in seen]
+        goal = next((each["goal"] for each in reversed(seen) if each.get("goal") is not None), None)
+        side = "≤" if name in AT_MOST else "≥"
+        told = "" if goal is None else f"{side} {goal:g}"
+        lines.append(f"| {words} | {told} | {' | '.join(_value(e) for e in seen)} |")
+    return "\n".join([*lines, *_notes(rows)]) + "\n"
+
+
+def _value(entry: dict[str, Any]) -> str:
+    return "" if entry.get("value") is None else f"{entry['value']:.4g}"
+
+
+def _notes(rows: Sequence[dict[str, Any]]) -> list[str]:
+    """How the values of the newest row came about."""
+    notes = [
+        f"- {WORDS[name]}: {entry['how']}"
+        for name, entry in rows[-1].items()
+        if name in WORDS and isinstance(entry, dict) and entry.get("how")
+    ]
+    return ["", f"Of {rows[-1]['commit']}:", "", *notes] if notes else []
+
+
+def write_page() -> None:
+    """Write the page of all rows."""
+    rows = [json.loads(line) for line in ROWS.read_text(encoding="utf-8").splitlines()]
+    PAGE.write_text(page(rows), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write_page()
