@@ -9,10 +9,12 @@ thirty times a step: of a step of the INCA 6D it takes a seventh. Only the libra
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from threading import Lock
+from typing import Any
 
 import mujoco
 
@@ -42,25 +44,48 @@ def _ignore(message: bytes) -> None:
     """Ignore a warning."""
 
 
+class _Switch:
+    """What is set when the first of several users begins, and set back when the last one ends."""
+
+    def __init__(self, read: Callable[[], Any], write: Callable[[Any], object], off: Any) -> None:
+        self._read, self._write, self._off = read, write, off
+        self._lock, self._users, self._before = Lock(), 0, None
+
+    @contextmanager
+    def turned_off(self) -> Iterator[None]:
+        with self._lock:
+            if not self._users:
+                self._before = self._read()
+                self._write(self._off)
+            self._users += 1
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._users -= 1
+                if not self._users:
+                    self._write(self._before)
+
+
+_WARNINGS = _Switch(
+    lambda: mujoco.get_mju_user_warning(), lambda to: mujoco.set_mju_user_warning(to), _ignore
+)
+_CLOCK = _Switch(lambda: _clock().value, lambda to: setattr(_clock(), "value", to), None)
+
+
+def _clock() -> ctypes.c_void_p:
+    return ctypes.c_void_p.in_dll(library(), "mjcb_time")
+
+
 @contextmanager
 def quiet() -> Iterator[None]:
     """Ignore the warnings of MuJoCo's engine; also a decorator, `@quiet()`."""
-    before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(_ignore)
-    try:
+    with _WARNINGS.turned_off():
         yield
-    finally:
-        mujoco.set_mju_user_warning(before)
 
 
 @contextmanager
 def untimed() -> Iterator[None]:
     """Let MuJoCo's engine take no times; `mjData.timer` stays as it is."""
-    clock = ctypes.c_void_p.in_dll(library(), "mjcb_time")
-    before = clock.value
-    clock.value = None
-    try:
+    with _CLOCK.turned_off():
         yield
-    finally:
-        if before:  # else another thread has turned it off, and puts it back
-            clock.value = before

@@ -35,6 +35,11 @@ def transitions(F: np.ndarray, duration: np.ndarray) -> tuple[np.ndarray, np.nda
     Returns:
         A and Γ, both of shape (n, nx, nx).
     """
+    with np.errstate(over="ignore", invalid="ignore"):  # what grows beyond all numbers is inf
+        return _transitions(F, duration)
+
+
+def _transitions(F: np.ndarray, duration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     X = F * duration[:, None, None]
     D = _balance(X)
     X *= D / D[:, None]

@@ -11,7 +11,7 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
 
 def how_to_turn(columns: Sequence[str]) -> str:
     """How to turn the sign of some columns of a log."""
-    told = _lines([f"{toml_key(name)} = -1" for name in columns])
+    told = lines_of([f"{toml_key(name)} = -1" for name in columns])
     return f": write {told} under [factors] of the log's TOML, or turn the sign that it has"
 
 
@@ -20,7 +20,7 @@ def how_to_rename(names: Mapping[str, str]) -> str:
 
     A file that already gives names there has other columns; so the names may also be changed there.
     """
-    told = _lines([f"{toml_key(old)} = {json.dumps(new)}" for old, new in names.items()])
+    told = lines_of([f"{toml_key(old)} = {json.dumps(new)}" for old, new in names.items()])
     return f" under [columns] of the log's TOML: write {told}, or change the names that it has"
 
 
@@ -40,5 +40,6 @@ def toml_key(name: str) -> str:
     return name if _BARE.fullmatch(name) else json.dumps(name)
 
 
-def _lines(told: Sequence[str]) -> str:
-    return " and ".join(told) + (", a line each," if len(told) > 1 else "")
+def lines_of(told: Sequence[str]) -> str:
+    """Lines of TOML in a sentence."""
+    return " and ".join(told) + (" (a line each)" if len(told) > 1 else "")

@@ -13,9 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from identification.errors import InputError
+from identification.logs.cures import lines_of, toml_key
 from identification.logs.names import group, lookup
 from identification.logs.table import Table
-from identification.logs.units import units_that_fit
+from identification.logs.units import to_si, units_that_fit
 
 TURN = 0.1  # of a turn: a jump of a wrapped angle differs from a whole turn by less
 
@@ -50,19 +51,20 @@ def check_plausible(
                 raise InputError(
                     f"{table.place(row)}: {name} is {column[row]:.4g} {unit}".rstrip()
                     + f", beyond the plausible {size:g} {unit}".rstrip()
-                    + _cure(name, unit, column[row] / factors[name], size, sidecar)
+                    + _cure(table, name, factors, unit, column[row] / factors[name], size, sidecar)
                 )
         if rate is not None:
             with np.errstate(over="ignore"):
                 speed = np.abs(np.diff(column) / np.diff(table["time"]))
             row = int(np.argmax(speed))
             if speed[row] > rate:
+                moved = speed[row] / factors[name]
                 raise InputError(
                     f"{table.place(row + 1)}: {name} changes by {speed[row]:.4g} {unit}/s, "
                     f"more than the plausible {rate:g} {unit}/s"
                     + (
                         _wrapped(unit, column[row + 1] - column[row])
-                        or _cure(name, unit, speed[row] / factors[name], rate, sidecar)
+                        or _cure(table, name, factors, unit, moved, rate, sidecar)
                     )
                 )
 
@@ -74,11 +76,23 @@ def _wrapped(unit: str, jump: float) -> str:
     return ", a jump of a whole turn: the angle is wrapped; unwrap it (numpy.unwrap)"
 
 
-def _cure(name: str, unit: str, raw: float, limit: float, sidecar: Path) -> str:
+def _cure(
+    table: Table, name: str, factors: Mapping[str, float], unit: str, raw: float, limit: float,
+    sidecar: Path,
+) -> str:  # fmt: skip
+    """What to write where a column is too large: of its group, or of those that are so large."""
     fitting = units_that_fit(unit, raw, limit)
     if not fitting:
         return "; repair or cut the log there"
+    ratio = 1 / to_si(fitting[0])[1]
+    like = [n for n in table.names if group(n) == group(name) and factors[n] == factors[name]]
+    size = {n: float(np.abs(table[n]).max()) for n in like}
+    # Halfway, as factors go, between a column in the same unit and one in the SI unit.
+    large = [n for n in like if size[n] * np.sqrt(ratio) > size[name]]
+    whole = len(large) == len(like)
+    lines = [f'{toml_key(n)} = "{fitting[0]}"' for n in ([group(name)] if whole else large)]
+    what = "the file is" if whole else f"{' and '.join(large)} {'are' if large[1:] else 'is'}"
     return (
-        f"; if the file is in {' or '.join(fitting)}, write units.{group(name)} = "
-        f'"{fitting[0]}" in {sidecar}, else repair that row'
+        f"; if {what} in {' or '.join(fitting)}, write"
+        f" {lines_of(lines)} under [units] in {sidecar}, else repair that row"
     )

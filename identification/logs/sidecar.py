@@ -70,34 +70,54 @@ def read_sidecar(
     Raises:
         InputError: it is not TOML, a key is unknown, or a value is of the wrong kind.
     """
-    values = _values(given or {}, given_in or path)
+    values = _values(given or {}, f"[log] of {given_in or path}")
     elsewhere = dict.fromkeys(given or {}, given_in or path)
     if path.exists():
         content = read_toml(path)
         inner = content.pop("log", {})
         if not isinstance(inner, dict):
             raise InputError(f"log in {path} must be a table; correct it there")
+        values |= _values(inner, f"[log] of {path}") | _values(content, str(path))
         own = {**inner, **content}
-        values |= _values(own, path)
         elsewhere = {key: file for key, file in elsewhere.items() if key not in own}
     return Sidecar(path=path, elsewhere=elsewhere, **values)
 
 
-def _values(content: Mapping[str, Any], path: Path) -> dict[str, Any]:
-    """The values of the keys of a file, checked; a list of columns is a header."""
+def _values(content: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """The values of the keys of a file, checked; a list of columns is a header.
+
+    Args:
+        content: the keys.
+        where: they stand, for messages.
+    """
     values = {}
     for key, value in content.items():
-        if key not in _KEYS:
-            raise unknown_name(f"key in {path}:", key, _KEYS)
-        kind, convert = _KEYS[key]
-        try:
-            if key == "columns" and isinstance(value, list):
-                values["header"] = _names(value)
-            else:
-                values[key] = convert(value)
-        except (TypeError, OverflowError) as error:
-            raise InputError(f"{key} in {path} must be {kind}; correct it there") from error
+        if key in _TABLES and not (key == "columns" and isinstance(value, list)):
+            values[key] = _table(key, value, where)
+        elif key in _KEYS or key in _TABLES:
+            name, (kind, convert) = ("header", _HEADER) if key in _TABLES else (key, _KEYS[key])
+            values[name] = _converted(value, convert, f"{key} in {where}", kind)
+        else:
+            raise unknown_name(f"key in {where}:", key, (*_KEYS, *_TABLES))
     return values
+
+
+def _table(key: str, value: object, where: str) -> dict[str, Any]:
+    """A table, each of whose entries is converted."""
+    example, kind, convert = _TABLES[key]
+    if not isinstance(value, dict):
+        raise InputError(f"{key} in {where} must be {example}; correct it there")
+    return {
+        name: _converted(entry, convert, f"{name} under {key} in {where}", kind)
+        for name, entry in value.items()
+    }
+
+
+def _converted(value: object, convert: Callable[[object], Any], what: str, kind: str) -> Any:
+    try:
+        return convert(value)
+    except (TypeError, OverflowError) as error:
+        raise InputError(f"{what} must be {kind}; correct it there") from error
 
 
 def _text(value: object) -> str:
@@ -131,37 +151,23 @@ def _names(value: object) -> tuple[str, ...]:
     return tuple(_text(v) for v in value)
 
 
-def _texts(value: object) -> dict[str, str]:
-    if not isinstance(value, dict):
+def _finite(value: object) -> float:
+    number = _number(value)
+    if not isfinite(number):
         raise TypeError
-    return {name: _text(v) for name, v in value.items()}
+    return number
 
 
-def _numbers(value: object) -> dict[str, float]:
-    if not isinstance(value, dict):
+def _factor(value: object) -> float:
+    if not (factor := _finite(value)):
         raise TypeError
-    numbers = {name: _number(v) for name, v in value.items()}
-    if not all(map(isfinite, numbers.values())):
+    return factor
+
+
+def _pair(value: object) -> tuple[float, float]:
+    if not (isinstance(value, list) and len(value) == 2):
         raise TypeError
-    return numbers
-
-
-def _factors(value: object) -> dict[str, float]:
-    numbers = _numbers(value)
-    if not all(numbers.values()):
-        raise TypeError
-    return numbers
-
-
-def _splits(value: object) -> dict[str, tuple[float, float]]:
-    if not isinstance(value, dict):
-        raise TypeError
-    pairs = {}
-    for name, pair in value.items():
-        if not (isinstance(pair, list) and len(pair) == 2):
-            raise TypeError
-        pairs[name] = (_number(pair[0]), _number(pair[1]))
-    return pairs
+    return _number(value[0]), _number(value[1])
 
 
 _KEYS: dict[str, tuple[str, Callable[[object], Any]]] = {
@@ -169,9 +175,18 @@ _KEYS: dict[str, tuple[str, Callable[[object], Any]]] = {
     "hold": (" or ".join(f'"{h}"' for h in HOLDS), _hold),
     "notes": ("text in quotes", _text),
     "ignore": ('a list of columns, such as ["temperature"]', _names),
-    "units": ('a table of units, such as current = "mA"', _texts),
-    "columns": ('a table of names, such as q1 = "angle_1", or a list of them', _texts),
-    "factors": ("a table of numbers other than zero, such as angle_2 = -1", _factors),
-    "splits": ("a table of parts in seconds, such as estimation = [0, 10]", _splits),
-    "values": ('a table of numbers, such as "body/weight.mass" = 1.0', _numbers),
 }
+_COLUMNS = 'a table of names, such as q1 = "angle_1", or a list of them'
+_HEADER = (_COLUMNS, _names)
+_TABLES: dict[str, tuple[str, str, Callable[[object], Any]]] = {  # with what an entry must be
+    "units": ('a table of units, such as current = "mA"', 'a unit in quotes, such as "mA"', _text),
+    "columns": (_COLUMNS, "a name in quotes", _text),
+    "factors": ("a table of numbers", "a number other than zero, such as -1", _factor),
+    "splits": (
+        "a table of parts in seconds, such as estimation = [0, 10]", "two times, such as [0, 10]",
+        _pair,
+    ),
+    "values": (
+        'a table of numbers, such as "body/weight.mass" = 1.0', "a finite number", _finite
+    ),
+}  # fmt: skip

@@ -66,7 +66,7 @@ def evaluate(
         Shape (n, points, r).
     """
     run, points = _compiled(), len(base.states)
-    parts = min(threads, points)
+    parts = max(1, min(threads, points))
     data = [mujoco.MjData(base.model) for _ in range(parts)]
     table = [(structs.word("mjData", f), np.size(getattr(data[0], f))) for f in results]
     structs.require(results)

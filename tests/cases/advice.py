@@ -13,7 +13,7 @@ def advised(message: str) -> str:
     found = [
         (table, lines)
         for lines, table in re.findall(
-            rf"{_LINES}(?:, a line each,)? under \[(units|factors)\]", message
+            rf"{_LINES}(?: \(a line each\))? under \[(units|factors)\]", message
         )
     ]
     found += [

@@ -1,7 +1,6 @@
 """Transitions from the series are those of the matrix exponential."""
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
@@ -53,7 +52,6 @@ def test_an_integrator_counts_the_time():
     np.testing.assert_array_equal(Γ[0], 0.3 * np.eye(2))
 
 
-@pytest.mark.filterwarnings("ignore:invalid value")
 def test_what_is_not_finite_stays_so():
     A, _ = transitions(np.full((1, 2, 2), np.inf), np.ones(1))
     assert not np.isfinite(A).any()

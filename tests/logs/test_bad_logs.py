@@ -103,11 +103,13 @@ def test_jitter_below_what_matters_passes(csv, refusal):
         ("units.curent = 'mA'", ["'curent'", "did you mean 'current'"]),
         ("units.current = 'mAh'", ["mAh", "mA"]),
         ("units.current = 'deg'", ["current_1 in deg", "rad", "A"]),
-        ("units.current = 3", ["units", "must be a table"]),
+        ("units.current = 3", ["current under units in", "must be a unit in quotes"]),
         ("units = 'mA'", ["units", "must be a table"]),
         ("factors.curent = -1", ["'curent'", "did you mean 'current'"]),
         ("factors.current = 0", ["factors", "other than zero"]),
-        ("factors.current = '-1'", ["factors", "must be a table of numbers"]),
+        ("factors.current = '-1'", ["current under factors in", "must be a number other than"]),
+        ("log.factors.current = inf", ["current under factors in [log] of", "must be a number"]),
+        ("log.colums = ['q']", ["key in [log] of", "'colums'", "did you mean 'columns'"]),
         ("sampling_time = 0", ["sampling_time", "positive"]),
         ("sampling_time = true", ["sampling_time", "positive"]),
         ("sampling_time = nan", ["sampling_time", "positive"]),
@@ -120,8 +122,8 @@ def test_jitter_below_what_matters_passes(csv, refusal):
         ("columns.q1 = 'angle_1'", ["'q1'", "angle_1"]),
         ("columns.angle_1 = 'angle_2'", ["angle_2", "more than once"]),
         ("splits = [0, 1]", ["splits", "table"]),
-        ("splits.a = [0, 1, 2]", ["splits", "table"]),
-        ("splits.a = [0, 'end']", ["splits", "table"]),
+        ("splits.a = [0, 1, 2]", ["a under splits in", "two times"]),
+        ("splits.a = [0, 'end']", ["a under splits in", "two times"]),
         ("splits.late = [50, 60]", ["late", "[50, 60)", "[0, 0.19]"]),
     ],
 )
@@ -266,6 +268,6 @@ def test_a_gap_in_an_even_log_is_found_where_it_is(refusal):
 @pytest.mark.parametrize("columns", [["angle_2"], ["angle_2", "q.1", "elbow angle"]])
 def test_the_advice_to_turn_signs_is_toml(columns):
     told = how_to_turn(columns).partition(": write ")[2].partition(" under [factors]")[0]
-    lines = told.removesuffix(", a line each,").split(" and ")
+    lines = told.removesuffix(" (a line each)").split(" and ")
     said = tomllib.loads("\n".join(["[factors]", *lines]))
     assert said == {"factors": dict.fromkeys(columns, -1)}

@@ -11,7 +11,13 @@ from example_logs import HEADER, UNITS, lines, read, wave
 
 def test_milliamperes_taken_for_amperes(csv, refusal):
     text = refusal(read, csv(lines((7, "0.05,1,1000,3,5\n"))), units=UNITS, limits={"current": 20})
-    for word in ("line 7", "current_2 is 1000 A", "20 A", 'units.current = "mA"', "log.toml"):
+    for word in (
+        "line 7",
+        "current_2 is 1000 A",
+        "20 A",
+        'current_2 = "mA" under [units]',
+        "log.toml",
+    ):
         assert word in text
 
 
@@ -22,9 +28,22 @@ def test_degrees_taken_for_radians_move_too_fast(tmp_path, refusal):
     np.savetxt(path, content, delimiter=",", header=HEADER.strip(), comments="")
     options = {"units": UNITS, "limits": {"angle": 400}, "rates": {"angle": 5}}
     text = refusal(read, path, **options)
-    for word in ("angle_1 changes by", "plausible 5 rad/s", 'units.angle = "deg"'):
+    for word in ("angle_1 changes by", "plausible 5 rad/s", 'angle = "deg" under [units]'):
         assert word in text
     path.with_suffix(".toml").write_text('units.angle = "deg"')
+    assert read(path, **options).outputs == pytest.approx(log.outputs)
+
+
+def test_one_column_in_degrees_is_told_by_its_name(tmp_path, refusal):
+    log, path = wave(n=300), tmp_path / "log.csv"
+    outputs = log.outputs * np.where(np.array(log.output_names) == "angle_2", 180 / np.pi, 1.0)
+    content = np.column_stack([log.time, log.inputs, outputs])
+    np.savetxt(path, content, delimiter=",", header=HEADER.strip(), comments="")
+    options = {"units": UNITS, "limits": {"angle": 400}, "rates": {"angle": 5}}
+    text = refusal(read, path, **options)
+    assert "if angle_2 is in deg" in text
+    assert 'write angle_2 = "deg" under [units]' in text
+    path.with_suffix(".toml").write_text('[units]\nangle_2 = "deg"')
     assert read(path, **options).outputs == pytest.approx(log.outputs)
 
 
