@@ -44,8 +44,8 @@ def _unlike(found: Discovery) -> list[str]:
         return []
     return [
         f"The outputs have several units ({', '.join(unit or 'none' for unit in units)}), and a"
-        " free run counts an error of 1 in each of them alike, with one noise for all: write a"
-        " horizon into the robot's file, over which each output counts in its own scale."
+        " free run counts an error of 1 in each of them alike, with one noise for all: give the"
+        " nominal model a horizon, over which each output counts in its own scale."
     ]
 
 

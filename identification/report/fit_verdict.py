@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from identification.logs.by_unit import relative
@@ -76,10 +77,16 @@ def _above(fit: Fit) -> float:
     return relative(fit.rms_by_unit, fit.floor_by_unit)
 
 
+def _times(errors: Mapping[str, float], of: Mapping[str, float]) -> str:
+    """Errors by unit as multiples of others, one for each unit."""
+    return " and ".join(held(e / of[u]) if of[u] > 0 else "∞" for u, e in errors.items())
+
+
 def _enough(fit: Fit) -> list[str]:
     ratio, (floor,) = _above(fit), error_words([fit.floor_by_unit], "")
     (left,) = error_words([fit.rms_by_unit])
-    sentences = [f"The residual is {left}, {held(ratio)} times the noise floor of {floor}."]
+    times = _times(fit.rms_by_unit, fit.floor_by_unit)
+    sentences = [f"The residual is {left}, {times} times the noise floor of {floor}."]
     dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
     coloured = coloured_outputs(fit)
     if ratio > ABOVE:
@@ -121,6 +128,6 @@ def _unseen(fit: Fit) -> list[str]:
             " a horizon."
         ]
     return [
-        f"On unseen data the residual is {unseen}, {held(ratio)} times what the fit leads one to"
-        f" expect: {said}."
+        f"On unseen data the residual is {unseen}, {_times(there, expected)} times what the fit"
+        f" leads one to expect: {said}."
     ]

@@ -14,7 +14,7 @@ from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.prediction.discovery import discover_records
 from identification.prediction.result import RecordsDiscovery
-from identification.robot.checks import refuse_horizon
+from identification.robot.checks import refuse_horizon, refuse_unlike
 from identification.robot.robot import Robot
 
 
@@ -57,8 +57,8 @@ def discover(
 
     Raises:
         InputError: log and effects are given with a robot, or are missing with a nominal model;
-            the log is too short, the horizon does not fit into the unseen part, or a free
-            parameter has no effect.
+            a robot without a horizon has outputs of several units; the log is too short, the
+            horizon does not fit into the unseen part, or a free parameter has no effect.
         DivergenceError: the nominal model cannot be simulated.
     """
     if not isinstance(model, Robot):
@@ -67,6 +67,7 @@ def discover(
         if log is not None or effects is not None:
             raise InputError("a robot has its own log and candidates; leave log and effects out")
         if model.file.horizon is None and not model.others:
+            refuse_unlike(model.file, model.log)
             return search.discover(
                 model.nominal_model, model.log, without_states(model.candidates), progress, options
             )

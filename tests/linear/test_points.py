@@ -1,5 +1,6 @@
 """Points, evaluated together, are exactly what `mj_forward` says one by one."""
 
+import ctypes
 from unittest import mock
 
 import mujoco
@@ -8,7 +9,7 @@ import pytest
 from effect_cases import full
 from linear_cases import PENDULUM, compiled
 
-from identification.engine import untimed
+from identification.engine import library, quiet, untimed
 from identification.errors import DivergenceError
 from identification.linear import points as of_points
 from identification.linear.operating_points import OperatingPoints
@@ -21,6 +22,14 @@ LIMITED = """<mujoco><option timestep="0.001"/><worldbody><body>
   <geom type="capsule" size="0.02" fromto="0 0 0 0 0 -0.5" mass="1"/></body></worldbody>
   <actuator><motor name="torque" joint="hinge"/></actuator></mujoco>"""
 FIELDS = {"qpos": "qpos", "qvel": "qvel", "act": "act", "ctrl": "inputs"}
+
+
+def clock():
+    return ctypes.c_void_p.in_dll(library(), "mjcb_time").value
+
+
+def warner():
+    return mujoco.get_mju_user_warning()
 
 
 def drawn(model, qpos, act, count=7, seed=0):
@@ -116,3 +125,21 @@ def test_the_engine_takes_no_times_inside_and_takes_them_again_after():
     assert timer.duration == 0.0
     mujoco.mj_forward(model, data)
     assert timer.duration > 0.0
+
+
+def test_no_points_have_no_rates():
+    at = drawn(compiled(PENDULUM), [0.1], [], count=0)
+    assert Points(at).rates().shape == (0, 1)
+
+
+@pytest.mark.parametrize(("switch", "read"), [(untimed, clock), (quiet, warner)])
+def test_switches_that_overlap_are_off_until_the_last_one_ends(switch, read):
+    before, first, second = read(), switch(), switch()
+    first.__enter__()
+    off = read()
+    assert off != before
+    second.__enter__()
+    first.__exit__(None, None, None)
+    assert read() == off
+    second.__exit__(None, None, None)
+    assert read() == before

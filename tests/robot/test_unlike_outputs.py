@@ -8,7 +8,17 @@ import pytest
 from fake_discovery import found as found_by_hand
 from robot_cases import run
 
-from identification import Log, Parameter, Predictor, fit, joint_plant, read_robot, write_log
+from identification import (
+    InputError,
+    Log,
+    Parameter,
+    Predictor,
+    discover,
+    fit,
+    joint_plant,
+    read_robot,
+    write_log,
+)  # fmt: skip
 from identification.logs.by_unit import relative
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_sections import gap_section, where_section
@@ -75,8 +85,8 @@ def test_sentences_tell_each_unit_by_itself(folder, capsys):
     text = " ".join(said["verdict"])
     errors, sizes = PAIR.format(" rms"), PAIR.format("")
     for words in (
-        rf"The residual is {errors}, [\d.]+ times the noise floor of {sizes}\.",
-        rf"On unseen data the residual is {errors}, [\d.]+ times what the fit",
+        rf"The residual is {errors}, [\d.]+ and [\d.]+ times the noise floor of {sizes}\.",
+        rf"On unseen data the residual is {errors}, [\d.]+ and [\d.]+ times what the fit",
         rf"On second: {errors} with the values of the robot's file, {errors} with those that were"
         r" fitted; mean square -\d+ % \(angles\) and -\d+ % \(slides\)\.",
     ):
@@ -136,6 +146,12 @@ def test_a_discovery_tells_each_unit_and_what_would_be_better():
     gap = discovery_to_json(answer)["gap"]
     assert gap["after"]["rms_by_unit"] == by["after"]
     assert gap["noise_rms_by_unit"] == {"rad": 9e-4, "m": 2e-5}
+
+
+def test_a_search_along_a_free_run_is_refused(folder):
+    robot = read_robot(folder / "robot.toml", folder / "first.csv")
+    with pytest.raises(InputError, match=r"several units \(m, rad\).*horizon = 0.2"):
+        discover(robot)
 
 
 def test_errors_in_words():
