@@ -12,7 +12,7 @@ from identification.prediction.result import RecordsDiscovery
 from identification.quantities import quantity
 from identification.report.parameter_words import parameter_words
 
-NOT_TOLD = "± unknown"  # too few windows tell of a value for its std to be known
+NOT_TOLD = "(std not known)"  # too few windows tell of it
 
 
 def value_with_std(value: float, std: float, unit: str, like: float = 0.0) -> str:
