@@ -58,7 +58,8 @@ def _draw(ax: Axes, of: RecoveredForce, factor: float) -> None:
         ax.plot(x, factor * f, color=SERIES[1], lw=1.2, ls=dash, label=label)
     x, f, std = _drawn(of.law, of)
     low, high = factor * (f - SURE * std), factor * (f + SURE * std)
-    ax.fill_between(x, low, high, color=MEASURED, alpha=0.3, lw=0, label="95 % band of the named law")
+    label = "95 % band of the named law"
+    ax.fill_between(x, low, high, color=MEASURED, alpha=0.3, lw=0, label=label)
     ax.plot(x, factor * f, color=MEASURED, lw=1.5, label="the law that is named")
     p = of.points
     ax.errorbar(
