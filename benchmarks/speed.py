@@ -153,7 +153,7 @@ def measure_steps(robot: Twin) -> tuple[dict[str, dict], Bare]:
 
 def measure_fit(bare: Bare) -> dict[str, dict]:
     """A fit of seventeen parameters, beside `mujoco.sysid` and what an engineer writes first."""
-    robot, log = build_twin(parameter_set("trial")), fit_ratios.practice()
+    robot, log = build_twin(parameter_set("trial"), visual=False), fit_ratios.practice()
     with counted() as asked, fit_ratios.watched() as work:
         found = estimate(robot, log, fit_ratios.FREE)
     other, why = fit_ratios.sysid_seconds(robot, log, found.seconds)
