@@ -2,8 +2,9 @@
 
 A divergence raises an error here, so the warnings are left out, and no MUJOCO_LOG.TXT is written.
 The package `mujoco` installs a clock, with which the engine fills `mjData.timer`. It is asked some
-thirty times a step: of a step of the INCA 6D it takes a seventh. Only the library's variable
-`mjcb_time` turns it off; `mujoco.set_mjcb_time(None)` puts the same clock back.
+thirty times a step: of a step of the INCA 6D as fits take it, a sixth is the clock's
+(`benchmarks/speed.py`). Only the library's variable `mjcb_time` turns it off;
+`mujoco.set_mjcb_time(None)` puts the same clock back.
 """
 
 from __future__ import annotations

@@ -19,7 +19,8 @@ from identification.model.rollout import threads
 from identification.native.forward import STATE, Case, evaluate
 
 RATES = ("qacc", "act_dot")
-TOGETHER = 32  # changes that share the positions of a point; more would only take more memory
+TOGETHER = 32  # changes that share the positions of a point; more would save little more
+MEMORY = 2**28  # bytes of their models at most: one with meshes has tens of millions
 
 
 class AtPoints(Protocol):
@@ -99,7 +100,8 @@ class Points:
             DivergenceError: they are not finite.
         """
         changes = iter(changes)
-        while some := list(islice(changes, TOGETHER)):
+        together = max(1, min(TOGETHER, MEMORY // int(self._base.model.nbuffer)))
+        while some := list(islice(changes, together)):
             yield from self._together(some)
 
     def _together(self, changes: Sequence[Change]) -> list[np.ndarray]:

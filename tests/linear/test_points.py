@@ -16,6 +16,7 @@ from identification.linear.operating_points import OperatingPoints
 from identification.linear.points import Change, Points
 from identification.model.numbers import each_with_numbers, with_numbers
 from identification.model.rollout import without_sensors
+from identification.native.forward import evaluate
 
 LIMITED = """<mujoco><option timestep="0.001"/><worldbody><body>
   <joint name="hinge" axis="0 1 0" range="-0.5 0.5" limited="true" frictionloss="0.05"/>
@@ -93,6 +94,25 @@ def test_other_models_and_more_changes_than_are_taken_together(xml):
     changes = [Change({"qvel": at.qvel + 0.1 * k, "ctrl": at.inputs - k}) for k in range(count)]
     for change, rates in zip(changes, Points(at).each(iter(changes)), strict=True):
         np.testing.assert_array_equal(rates, one_by_one(at, change))
+
+
+def test_large_models_are_taken_a_few_at_a_time():
+    model = compiled(PENDULUM)
+    at, seen = drawn(model, [0.1], []), []
+
+    def evaluated(base, cases, *rest, **more):
+        seen.append(len(cases))
+        return evaluate(base, cases, *rest, **more)
+
+    changes = [Change({"ctrl": at.inputs + k}) for k in range(7)]
+    want = list(Points(at).each(changes))
+    with (
+        mock.patch.object(of_points, "MEMORY", 3 * model.nbuffer),
+        mock.patch.object(of_points, "evaluate", evaluated),
+    ):
+        few = list(Points(at).each(changes))
+    assert seen == [3, 3, 1]
+    np.testing.assert_array_equal(few, want)
 
 
 def test_copies_have_the_numbers_of_their_value_set():
