@@ -23,15 +23,20 @@ from inca_mj.twin.twin import Twin
 BURST = 50  # steps from the same moving state, so that both sides turn the same quaternions
 
 
-def least(functions: list[Callable[[], None]], rounds: int) -> list[float]:
-    """Least time of each of several functions that take turns [s]."""
-    best = [float("inf")] * len(functions)
+def times(functions: list[Callable[[], None]], rounds: int) -> list[list[float]]:
+    """Times of each of several functions that take turns [s]."""
+    taken: list[list[float]] = [[] for _ in functions]
     for _ in range(rounds):
-        for k, function in enumerate(functions):
+        for function, own in zip(functions, taken, strict=True):
             begin = time.perf_counter()
             function()
-            best[k] = min(best[k], time.perf_counter() - begin)
-    return best
+            own.append(time.perf_counter() - begin)
+    return taken
+
+
+def least(functions: list[Callable[[], None]], rounds: int) -> list[float]:
+    """Least time of each of several functions that take turns [s]."""
+    return [min(taken) for taken in times(functions, rounds)]
 
 
 def stepper(robot: Twin, steps: int = BURST) -> Callable[[], None]:
