@@ -1,4 +1,4 @@
-"""The worlds that the simulators of `benchmarks/gpu.py` share.
+"""The worlds that the simulators of `benchmarks/gpu_speed.py` share.
 
 A world is a start of the twin and numbers of its model. Those of a timing are drawn at random.
 Those of the accuracy are what a fit simulates: the nominal values, and each parameter moved by the

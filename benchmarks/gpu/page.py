@@ -1,4 +1,4 @@
-"""Would a GPU make fits of this robot faster: the page from the rows of `benchmarks/gpu.py`."""
+"""Would a GPU make fits faster: the page from the rows of `benchmarks/gpu_speed.py`."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from gpu_words import ACCURACY, ANSWER, SHORT, TAKES
 
-HERE = Path(__file__).resolve().parent
+from gpu.words import ACCURACY, ANSWER, SHORT, TAKES
+
+HERE = Path(__file__).resolve().parents[1]
 ROWS = HERE / "results" / "gpu.jsonl"
 PAGE = HERE.parent / "docs" / "gpu.md"
 
@@ -179,7 +180,3 @@ def write_page() -> None:
     """Write the page of all rows."""
     rows = [json.loads(line) for line in ROWS.read_text(encoding="utf-8").splitlines()]
     PAGE.write_text(page(rows), encoding="utf-8")
-
-
-if __name__ == "__main__":
-    write_page()

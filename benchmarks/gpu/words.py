@@ -1,12 +1,12 @@
-"""The words of the page that `gpu_page.py` makes; numbers in braces come from the rows."""
+"""The words of the page that `gpu/page.py` makes; numbers in braces come from the rows."""
 
 ANSWER = """# Would a GPU make fits faster?
 
 {answer}
 
-The page is made by `python benchmarks/gpu.py --out benchmarks/results/gpu.jsonl` from the rows
-there; it is not written by hand. Measured on {date} on one {device} and on {cores} cores of its
-host ({host}), with {versions}.
+This page is made by `python benchmarks/gpu_speed.py --out benchmarks/results/gpu.jsonl` from the
+rows there; it is not written by hand. Measured on {date} on one {device} and on
+{cores} cores of its host ({host}), with {versions}.
 
 ## Times
 
@@ -26,15 +26,15 @@ TAKES = """
 
 - **MJX** has no callbacks and refuses actuators of the type "user". What is there: a Runge-Kutta
   step of one's own around `fwd_position`, `fwd_velocity`, `fwd_actuation` and `fwd_acceleration`,
-  with the forces in `qfrc_applied` (`benchmarks/gpu_mjx.py`). It agrees with the twin to rounding
+  with the forces in `qfrc_applied` (`benchmarks/gpu/mjx.py`). It agrees with the twin to rounding
   in float64. The tendons' Jacobian and rates that it reads are private to MJX. All candidate
   effects would have to be written a second time, in JAX, and users' own effects too.
 - **MuJoCo Warp** does have callbacks: `Model.callback.passive`, `.act_dyn`, `.act_bias` and
   others are Python functions that launch kernels, and a CUDA graph keeps these
-  (`benchmarks/gpu_warp.py`). Its arrays are float32. It refuses the flag that switches MuJoCo's
+  (`benchmarks/gpu/warp.py`). Its arrays are float32. It refuses the flag that switches MuJoCo's
   automatic reset off, and it does not integrate activations of the type "user"; those of the type
   "integrator", with the rate written by the callback, it does.
-- **A kernel of the project's own** is what could pay (`benchmarks/gpu_kernel.py`): platform,
+- **A kernel of the project's own** is what could pay (`benchmarks/gpu/kernel.py`): platform,
   cables and drums as one function of 100 lines, one thread a world, all steps in one launch, in
   float64. The law is compiled from the same source as the twin's, by numba, and effects are
   compiled functions already, so that they could be composed into it in the same way. It is the
@@ -55,21 +55,22 @@ TAKES = """
 ## To measure it
 
     pip install "jax[cuda13]" mujoco-mjx==3.17.0 mujoco-warp==3.17.0 "numba-cuda[cu13]" "numpy<2.5"
-    python benchmarks/gpu.py --out benchmarks/results/gpu.jsonl
+    python benchmarks/gpu_speed.py --out benchmarks/results/gpu.jsonl
 
 The project does not depend on these packages. numba-cuda 0.30.4 asks numpy for a name that numpy
 2.5 no longer has; for the rows here, with numpy 2.5.2, `numpy.row_stack` was put back by hand.
 """
-SHORT = """**Not as things are, and hardly with a general simulator.** For a step of 256 worlds
-with the law MJX in float64 needs {mjx_256:.0f} µs, where MuJoCo needs {two_256:.0f} µs on two cores
-and {all_256:.0f} µs on {cores}. For 32 worlds it needs {mjx_32:.0f} µs, and two cores need
-{two_32:.0f} µs. It is faster than two cores from {from_two} worlds on, and faster than {cores} from
-{from_all}. A fit simulates 20 to 600, a sweep more. float32, which is all that MuJoCo Warp has, is
-of no use to a fit: with the steps of differences that fits use, the best column of the Jacobian is
-wrong by {wrong:.0f} %. What could pay is a kernel of the INCA's own. The robot and its law as one
-function in float64 take {kernel_32:.0f} µs for 32 worlds, {kernel_256:.0f} µs for 256 and
-{kernel_widest:.0f} µs for {widest}, there {times:.0f} times as fast as {cores} cores. It is a
-benchmark and no part of the program: it knows no other robot and no candidate effects."""
+SHORT = """**A GPU hardly helps the fits of this program today.** MJX can compute the robot with its law
+in float64. A step of 32 worlds then takes {mjx_32:.0f} µs, where MuJoCo takes {two_32:.0f} µs on
+two cores; a step of 256 worlds takes {mjx_256:.0f} µs, where MuJoCo takes {two_256:.0f} µs on
+two cores and {all_256:.0f} µs on {cores}. MJX is faster than two cores from {from_two} worlds
+on, and faster than {cores} from {from_all}. A fit simulates 20 to 600 worlds side by side, a
+sweep more. MuJoCo Warp computes in float32 only, which is of no use to a fit: with the
+differences that fits use, the best column of the Jacobian is wrong by {wrong:.0f} %. A kernel
+that is written for the INCA alone would pay. The robot and its law as one function in float64
+take {kernel_32:.0f} µs for 32 worlds, {kernel_256:.0f} µs for 256 and {kernel_widest:.0f} µs
+for {widest}, which is {times:.0f} times as fast as {cores} cores. That kernel is a benchmark
+and no part of the program: it knows no other robot and no candidate effects."""
 ACCURACY = """
 ## Accuracy
 

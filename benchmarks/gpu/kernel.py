@@ -20,9 +20,9 @@ from math import cos, sin, sqrt
 from typing import Any
 
 import numpy as np
-from gpu_worlds import Worlds
 from numba import njit
 
+from gpu.worlds import Worlds
 from inca_mj.robot import law
 
 # a state: p 0:3, attitude 3:7, v 7:10, ω 10:13, φ 13:21, ω_m 21:29, d₀ 29:37

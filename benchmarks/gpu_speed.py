@@ -1,14 +1,14 @@
 """What a GPU does to the steps of the twin: times beside a processor's, and accuracy.
 
-    python benchmarks/gpu.py [--out benchmarks/results/gpu.jsonl] [--seconds 400]
-        [--parts processor kernel mjx mjx_bare warp warp_bare] [--widths 1 32 256 2048 16384]
+    python benchmarks/gpu_speed.py [--out benchmarks/results/gpu.jsonl] [--seconds 400] [--parts …]
+    python benchmarks/gpu_speed.py --only-page            the page anew, from its rows
 
 Each measurement is a row that is printed and, with `--out`, appended when it is there:
 
 - `processor`: MuJoCo's batch on 1, 2 and all threads, with the law of the drives and without it;
-- `kernel`: the robot with its law as one CUDA kernel in float64, see `gpu_kernel.py`;
-- `mjx`, `mjx_bare`: MJX in float64 and float32, see `gpu_mjx.py`;
-- `warp`, `warp_bare`: MuJoCo Warp in float32, see `gpu_warp.py`.
+- `kernel`: the robot with its law as one CUDA kernel in float64, see `gpu/kernel.py`;
+- `mjx`, `mjx_bare`: MJX in float64 and float32, see `gpu/mjx.py`;
+- `warp`, `warp_bare`: MuJoCo Warp in float32, see `gpu/warp.py`.
 
 A row of 32 worlds has the accuracy too: worlds of a fit, nominal and with each parameter moved,
 simulated for two seconds of PRBS, beside the twin on the processor. The project does not depend on
@@ -33,10 +33,10 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-import gpu_processor
-import gpu_worlds
 import numpy as np
-from gpu_page import ROWS, write_page
+from gpu.page import ROWS, write_page
+from gpu.processor import Processor, accuracy, seconds
+from gpu.worlds import Worlds, drawn, moved
 
 NEEDS = {"processor": "mujoco", "kernel": "numba-cuda", "mjx": "mujoco-mjx", "warp": "mujoco-warp"}
 PACKAGES = ("mujoco", "jax", "mujoco-mjx", "mujoco-warp", "warp-lang", "numba", "numba-cuda")
@@ -77,12 +77,12 @@ def host() -> str:
     return next((x.split(":")[1].strip() for x in lines if x.startswith("model name")), "")
 
 
-def worlds_of(width: int, steps: int) -> gpu_worlds.Worlds:
+def worlds_of(width: int, steps: int) -> Worlds:
     """So many worlds; those whose accuracy is measured run for their own number of steps."""
     if width == WATCHED:
-        watched = gpu_worlds.moved(SECONDS)
+        watched = moved(SECONDS)
         return watched.widened(width, len(watched.currents))
-    return gpu_worlds.drawn().widened(width, steps)
+    return drawn().widened(width, steps)
 
 
 def processor(widths: Sequence[int]) -> Iterator[Row]:
@@ -91,20 +91,20 @@ def processor(widths: Sequence[int]) -> Iterator[Row]:
         for law in (True, False):
             for width in widths:
                 worlds = worlds_of(width, int(np.clip(20000 // width, 5, 1000)))
-                took = gpu_processor.seconds(gpu_processor.Processor(worlds, threads, law).run)
+                took = seconds(Processor(worlds, threads, law).run)
                 yield {"threads": threads, "bits": 64, **timed(worlds, took, law)}
 
 
 def kernel(widths: Sequence[int]) -> Iterator[Row]:
     """Rows of the robot as one kernel."""
-    from gpu_kernel import Simulator
+    from gpu.kernel import Simulator
 
     yield from simulated(widths, 1000, True, 64, Simulator)
 
 
 def mjx(widths: Sequence[int], law: bool = True) -> Iterator[Row]:
     """Rows of MJX."""
-    from gpu_mjx import Simulator
+    from gpu.mjx import Simulator
 
     for bits in (64, 32):
 
@@ -116,7 +116,7 @@ def mjx(widths: Sequence[int], law: bool = True) -> Iterator[Row]:
 
 def warp(widths: Sequence[int], law: bool = True) -> Iterator[Row]:
     """Rows of MuJoCo Warp."""
-    from gpu_warp import Simulator
+    from gpu.warp import Simulator
 
     yield from simulated(widths, 200, law, 32, lambda worlds: Simulator(worlds, law))
 
@@ -130,13 +130,13 @@ def simulated(
         simulator = make(worlds)
         compiled = time.perf_counter() - begin
         row = {"bits": bits, "compile_seconds": round(compiled, 2)}
-        row |= timed(worlds, gpu_processor.seconds(simulator.run), law)
+        row |= timed(worlds, seconds(simulator.run), law)
         if law and width == WATCHED:
-            row |= gpu_processor.accuracy(worlds, simulator())
+            row |= accuracy(worlds, simulator())
         yield row
 
 
-def timed(worlds: gpu_worlds.Worlds, took: float, law: bool) -> Row:
+def timed(worlds: Worlds, took: float, law: bool) -> Row:
     """The times of a row."""
     steps = len(worlds.currents)
     return {
@@ -166,7 +166,11 @@ def main() -> int:
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=tuple(PARTS))
     parser.add_argument("--widths", nargs="+", type=int, default=WIDTHS)
     parser.add_argument("--anyway", action="store_true", help="without a GPU, to try the program")
+    parser.add_argument("--only-page", action="store_true", help="docs/gpu.md from the rows")
     options = parser.parse_args()
+    if options.only_page:
+        write_page()
+        return 0
     name = device()
     if name is None and not options.anyway:
         print("No NVIDIA GPU was found (nvidia-smi names none), so nothing was measured.")

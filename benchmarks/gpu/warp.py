@@ -15,7 +15,8 @@ import mujoco
 import mujoco_warp as mjw
 import numpy as np
 import warp as wp
-from gpu_worlds import Worlds, motors
+
+from gpu.worlds import Worlds, motors
 
 wp.config.quiet = True
 _INTEGRATOR = int(mujoco.mjtDyn.mjDYN_INTEGRATOR)  # activations of the type "user" do not move

@@ -1,4 +1,4 @@
-"""Steps of the twin on the processor, beside which `benchmarks/gpu.py` puts the others."""
+"""Steps of the twin on the processor, beside which `benchmarks/gpu_speed.py` puts the others."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from gpu_worlds import FREE, Worlds, columns, motors
 from mujoco.batch import Batch
 
+from gpu.worlds import FREE, Worlds, columns, motors
 from identification.engine import quiet, untimed
 from identification.model import rollout
 from inca_mj.robot.step import TIMESTEP
@@ -85,7 +85,7 @@ def accuracy(worlds: Worlds, angles: np.ndarray) -> dict[str, Any]:
     """How far angles of the worlds of a fit, and their columns, are from the twin's.
 
     Args:
-        worlds: those of `gpu_worlds.moved`, or more.
+        worlds: those of `gpu.worlds.moved`, or more.
         angles: after each step, shape (n, steps, 8) [rad].
     """
     truth = on_processor(worlds, os.cpu_count() or 1)

@@ -18,11 +18,11 @@ os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")
 
 import jax
 import numpy as np
-from gpu_worlds import FIELDS, Worlds, motors
 from jax import numpy as jnp
 from mujoco import mjx
 from mujoco.mjx._src.math import quat_integrate
 
+from gpu.worlds import FIELDS, Worlds, motors
 from inca_mj.robot import law as columns
 
 IN_MODEL = tuple(name for name in FIELDS if not name.endswith("_user"))
