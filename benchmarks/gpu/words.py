@@ -61,8 +61,8 @@ The project does not depend on these packages. numba-cuda 0.30.4 asks numpy for 
 2.5 no longer has; for the rows here, with numpy 2.5.2, `numpy.row_stack` was put back by hand.
 """
 SHORT = """**A GPU hardly helps the fits of this program today.** MJX can compute the robot with its
-law in float64. A step of 32 worlds then takes {mjx_32:.0f} µs, where MuJoCo takes {two_32:.0f} µs on
-two cores; a step of 256 worlds takes {mjx_256:.0f} µs, where MuJoCo takes {two_256:.0f} µs on
+law in float64. A step of 32 worlds then takes {mjx_32:.0f} µs, where MuJoCo takes {two_32:.0f} µs
+on two cores; a step of 256 worlds takes {mjx_256:.0f} µs, where MuJoCo takes {two_256:.0f} µs on
 two cores and {all_256:.0f} µs on {cores}. MJX is faster than two cores from {from_two} worlds
 on, and faster than {cores} from {from_all}. A fit simulates 20 to 600 worlds side by side, a
 sweep more. MuJoCo Warp computes in float32 only, which is of no use to a fit: with the
