@@ -26,7 +26,7 @@ from identification.report.effect_words import (
     describe_sizes,
     phrase,
 )
-from identification.report.error_words import error_words
+from identification.report.error_words import change_words, error_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.parameter_words import words_of
 
@@ -195,16 +195,13 @@ def _agreement(named: NamedEffect) -> str:
 
 
 def _proof(found: Discovery) -> str:
-    errors = [errors_of(gap, found) for gap in (found.before, found.after)]
-    told = [*errors, floor(found), sensors(found)]
-    was, now = error_words(told)[:2] if len(errors[0]) > 1 else error_words(told, "")[:2]
-    noise, own = error_words(told, "")[2:]
+    errors = errors_of(found.before, found), errors_of(found.after, found)
+    change, (noise, own) = change_words(*errors, [floor(found), sensors(found)])
     whom = "it" if len(found.named) == 1 else "them"
     rest = f", of which sensors make {own} and unlogged errors of the inputs the rest"
     made = rest if floor_rms(found) > found.noise_rms else ""
-    rms = " rms" if len(errors[0]) == 1 else ""
     said = (
-        f"On data that the fit has not seen, the error falls from {was} to {now}{rms}"
+        f"On data that the fit has not seen, the error falls {change}"
         f" with {whom} in the model; the noise is {noise}{made}."
     )
     if (share := closed_share(found)) is not None:

@@ -8,8 +8,8 @@ import numpy as np
 
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
 from identification.prediction.scores import WindowScore
-from identification.quantities import alike
 from identification.report.effect_words import describe_effect, phrase
+from identification.report.error_words import change_words, error_words
 from identification.report.finding_words import (
     DOUBTS,
     describe_finding,
@@ -27,19 +27,20 @@ from identification.report.step_words import step_sentences
 
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
 SHOWN = 6  # candidates with the best scores that are listed
+DIGITS = 3  # of errors over a horizon
 
 
 def records_verdict(found: RecordsDiscovery) -> list[str]:
     """The verdict first, then what supports it."""
-    return [*_verdict(found), *describe_scale(found.nominal, found.unit)]
+    return [*_verdict(found), *describe_scale(found.nominal)]
 
 
 def _verdict(found: RecordsDiscovery) -> list[str]:
     if found.verdict == "nothing missing":
-        before, noise = alike([found.before.rms, found.noise_rms], found.unit)
+        before, noise = _left(found)
         return [
             "Nothing is missing, as far as these records can tell: no candidate lowers the error of"
-            f" prediction on unseen data beyond chance. It is {before} rms over"
+            f" prediction on unseen data beyond chance. It is {before} over"
             f" {found.horizon:g} s, where the sensors make {noise}." + _rest(found),
             *(sentence(describe_finding(finding)) for finding in found.findings),
         ]
@@ -196,31 +197,38 @@ def steps_taken(found: RecordsDiscovery) -> list[str]:
 
 
 def _proof(found: RecordsDiscovery) -> str:
-    was, now, noise = alike([found.before.rms, found.after.rms, found.noise_rms], found.unit)
+    errors = found.before.rms_by_unit, found.after.rms_by_unit
+    change, (noise,) = change_words(*errors, [found.noise_by_unit], DIGITS)
     fall = 1 - (found.after.rms / found.before.rms) ** 2
     return (
         f"On records that no fit has seen, the error of prediction over {found.horizon:g} s falls"
-        f" from {was} to {now} rms (mean square {-100 * fall:+z.0f} %); the sensors make {noise}."
+        f" {change} (mean square {-100 * fall:+z.0f} %); the sensors make {noise}."
         f" That is {100 * found.share:z.0f} % of the power above the sensors' noise."
     )
 
 
 def _unknown(found: RecordsDiscovery) -> str:
-    before, noise = alike([found.before.rms, found.noise_rms], found.unit)
+    before, noise = _left(found)
     percent = f"{100 * found.input_error:.2g}"
     needed = f"; inputs would have to err by {percent} % of their rms to make that"
     needed = needed if found.input_error > 0 else ""  # the fitted windows leave no more than noise
     return (
         "Something is missing that none of the known effects surely explains: the fitted model is"
-        f" {before} rms off over {found.horizon:g} s on unseen data, where the sensors make"
+        f" {before} off over {found.horizon:g} s on unseen data, where the sensors make"
         f" {noise}{needed}. It is not named here rather than named wrongly."
         + "".join(f" {sentence(describe_finding(finding))}" for finding in found.findings)
     )
 
 
+def _left(found: RecordsDiscovery) -> tuple[str, str]:
+    """What the nominal model leaves on unseen data, and what the sensors make of it."""
+    errors = found.before.rms_by_unit, found.noise_by_unit
+    return error_words(errors, digits=DIGITS)[0], error_words(errors, "", DIGITS)[1]
+
+
 def _records(found: RecordsDiscovery) -> list[str]:
     lines = [f"error of prediction over {found.horizon:g} s, without and with what is named:"]
     for e in found.errors:
-        before, after = alike([e.before, e.after], found.unit)
+        before, after = error_words([e.before_by_unit, e.after_by_unit], "", DIGITS)
         lines.append(f"  {e.name} ({e.role}): {before}" + (f" -> {after}" if found.named else ""))
     return lines
