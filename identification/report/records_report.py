@@ -83,7 +83,7 @@ def _values(found: RecordsDiscovery) -> Section:
         "Parameters",
         "Std by blocks of windows, whose errors need not be white; unknown where too few windows"
         " tell of a value.",
-        table=Table(head, tuple(rows)),
+        table=Table(head, tuple(rows)).last_first,
     )
 
 
