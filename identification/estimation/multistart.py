@@ -34,8 +34,8 @@ class Starts:
 
     Attributes:
         best: the search that explains the log best.
-        cost: the criterion V at which each search ended, in the order of the starts, shape (n,);
-            infinite where the search diverged. The best has the smallest.
+        cost: the criterion V at which each search ended, in the order of the starts, shape (n,),
+            without unit; infinite where the search diverged. The best has the smallest.
         rms: rms of the residual of each search over all outputs, shape (n,), in their unit;
             infinite where the search diverged. Where outputs have several units it says little.
         values: starting values, shape (n, p), in their units.

@@ -17,6 +17,7 @@ from identification.report.discovery_limits import is_plausible, largest
 from identification.report.effect_words import describe_effect
 
 LISTED = 8  # effects that have a line; the others are counted
+FEW = 4  # that are told in a paragraph, above the table of all
 NEVER = "what this log would not have shown, at no plausible size"
 WHERE = (
     "An effect is judged on all places alike or, where it acts on one at a time, at the place where"
@@ -76,8 +77,8 @@ def shown_sentences(detectable: Sequence[Detectable]) -> str:
     seen = [s for s in shown if s.is_seen]
     said = [f"{NEVER.capitalize()}: {'; '.join(never)}."] if never else []
     if seen:
-        hard = "; ".join(f"{describe_effect(s.candidate)}, {_from(s)}" for s in seen[:LISTED])
-        said.append(f"Hardest to see of the others: {hard}.")
+        hard = "; ".join(f"{describe_effect(s.candidate)}, {_from(s)}" for s in seen[:FEW])
+        said.append(f"Hardest to see{' of the others' if never else ''}: {hard}.")
     return " ".join([*said, WHERE]) if said else ""
 
 

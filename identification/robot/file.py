@@ -32,7 +32,7 @@ std = 0.1
 [effects]
 joints = ["slide"]                   # where they may act; the measured joints if not given
 turns = [1, 7, 14]                   # periods of a turn to try, where a motor's are known
-only = ["stribeck_friction"]         # candidates; all if not given
+only = ["stribeck_friction"]         # candidates; all if not given; slide_… where hinges are too
 
 A free name is a key under `parameters`, a path into the model or its start, or a size of an effect.
 """

@@ -6,6 +6,7 @@ import pytest
 from identification.discovery.effect_results import Detectable
 from identification.effects.effect import Candidate, Effect, Size
 from identification.report.shown_words import (
+    FEW,
     LISTED,
     shown_effects,
     shown_lines,
@@ -50,7 +51,9 @@ def test_the_table_has_every_effect_and_the_paragraph_what_matters() -> None:
     assert rows[2] == ("law 59, joint hip", "0.600 N", "2 N")
     said = shown_sentences([*MANY, *BLIND])
     assert "creep, joint hip; backlash, joint hip." in said
-    assert said.count("law ") == LISTED
+    assert said.count("law ") == FEW
+    assert "Hardest to see of the others: law 59" in said
+    assert shown_sentences(MANY).startswith("Hardest to see: law 59")
 
 
 def test_an_effect_of_two_sizes_has_one_line() -> None:
