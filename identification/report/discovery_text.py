@@ -12,18 +12,12 @@ from identification.prediction.result import RecordsDiscovery
 from identification.quantities import held
 from identification.report.discovery_errors import errors_of, times_noise
 from identification.report.discovery_tables import parameters_section
-from identification.report.discovery_verdict import (
-    diff_line,
-    discovery_verdict,
-)
-from identification.report.effect_words import (
-    describe_effect,
-    describe_gains,
-    describe_rejected,
-)
+from identification.report.discovery_verdict import discovery_verdict
+from identification.report.effect_words import describe_effect, describe_gains, describe_rejected
 from identification.report.error_words import error_words
 from identification.report.finding_words import describe_finding
 from identification.report.fitted_values import shown_values, unknown_shares
+from identification.report.named_words import diff_line
 from identification.report.parameter_words import words_of
 from identification.report.record_gaps import record_lines
 from identification.report.records_text import records_text, search_time

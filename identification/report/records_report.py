@@ -10,17 +10,12 @@ from identification.prediction.result import RecordsDiscovery
 from identification.report.discovery_figures import gains_figure
 from identification.report.effect_words import describe_effect
 from identification.report.error_words import error_words
-from identification.report.finding_words import describe_shift
 from identification.report.law_section import law_sections
 from identification.report.page import Section, Table, save_figures, write_report
-from identification.report.records_text import (
-    DIGITS,
-    best_scores,
-    records_verdict,
-    rejected_lines,
-    steps_taken,
-)
+from identification.report.records_finding_words import describe_shift
+from identification.report.records_text import best_scores, rejected_lines, steps_taken
 from identification.report.records_values import value_table
+from identification.report.records_verdict import DIGITS, records_verdict
 
 BEST = 10  # candidates shown
 
