@@ -43,10 +43,10 @@ class Gap:
     """Error on the samples that no fit has seen.
 
     Attributes:
-        rms: over all outputs, in their unit.
+        rms: over all outputs, in their unit; over a horizon, where they have several, each counts
+            in its own scale.
         fit_percent: of each output, shape (ny,) [%].
-        rms_by_unit: rms by the outputs' units, each in it; empty over a horizon, where errors count
-            in the scale of each output.
+        rms_by_unit: rms by the outputs' units, each in it.
     """
 
     rms: float

@@ -20,8 +20,9 @@ def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple
     """All candidates of some joints.
 
     Hinges and slides have units of their own; where a robot has both, the names of the slides'
-    effects begin with `slide_`. Friction under load needs drives whose force is gain·u + bias;
-    what changes with time needs the duration of the records. Names of curves begin with `curve`.
+    effects begin with `slide_` (see `kinds`). Friction under load needs drives whose force is
+    gain·u + bias; what changes with time needs the duration of the records. Names of curves begin
+    with `curve`.
 
     Args:
         axes: the joints.
@@ -35,9 +36,7 @@ def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple
         effect
         for kind, group in groups
         if group
-        for effect in _listed(
-            Group(kind, group, turns, "slide_" if both and kind == "slide" else "")
-        )
+        for effect in _listed(Group(kind, group, turns, both))
         if effect.places
     )
 

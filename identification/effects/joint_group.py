@@ -14,6 +14,7 @@ from functools import cached_property
 
 from identification.effects.axes import Axis, Kind
 from identification.effects.effect import Effect, Shape, Sign, Size
+from identification.effects.kinds import prefix_of, with_kind
 from identification.effects.places import places
 from identification.native.element import Function
 
@@ -28,13 +29,22 @@ class Group:
         kind: of all of them.
         axes: the joints, one or more.
         turns: periods in a turn of a hinge that are tried.
-        prefix: of the effects' names, where a robot has joints of both kinds.
+        both: whether the robot has joints of the other kind too.
     """
 
     kind: Kind
     axes: tuple[Axis, ...]
     turns: Sequence[float]
-    prefix: str = ""
+    both: bool = False
+
+    @property
+    def prefix(self) -> str:
+        """Of the effects' names."""
+        return prefix_of(self.kind, self.both)
+
+    def told(self, phrase: str) -> str:
+        """Words of an effect of these joints."""
+        return with_kind(phrase, self.kind, self.both)
 
     @property
     def F(self) -> float:
@@ -121,6 +131,7 @@ class Group:
         reference: str, shapes: tuple[Shape, ...], where: Mapping[str, str] | None,
     ) -> Effect:  # fmt: skip
         return Effect(
-            self.prefix + law.__name__, said, sizes, shapes, phrase=phrase, reference=reference,
+            self.prefix + law.__name__, said, sizes, shapes, phrase=self.told(phrase),
+            reference=reference,
             places=self.at if where is None else where, hooks={hook: law},
         )  # fmt: skip

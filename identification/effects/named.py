@@ -7,6 +7,7 @@ from difflib import get_close_matches
 
 from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
+from identification.effects.kinds import about_names
 from identification.errors import InputError, unknown_name
 
 
@@ -16,13 +17,21 @@ def means_effect(name: str, effects: Sequence[Effect]) -> bool:
     return "/" not in name and ("@" in name or bool(near))
 
 
+def unknown_effect(what: str, name: str, effects: Sequence[Effect]) -> InputError:
+    """An unknown name of an effect, the good ones, and when they begin with `slide_`."""
+    names = [e.name for e in effects]
+    note = about_names(name, names)
+    said = str(unknown_name(what, name, names))
+    return InputError(f"{said}.{note}" if note else said)
+
+
 def unknown_number(name: str, effects: Sequence[Effect]) -> InputError:
     """What is wrong with a name that is no number of an effect."""
     head, _, rest = name.partition(".")
     size, at, place = rest.partition("@")
     own = next((e for e in effects if e.name == head), None)
     if own is None:
-        return unknown_name(f"effect in {name!r}:", head, (e.name for e in effects))
+        return unknown_effect(f"effect in {name!r}:", head, effects)
     numbers = [p.name for p in effect_parameters(own)]
     # of a robot with slides and hinges each kind has effects of its own
     there = [p.name for e in effects for p in effect_parameters(e)

@@ -14,6 +14,7 @@ import mujoco
 from identification.effects import sensor_laws as laws
 from identification.effects.axes import Axis, Kind
 from identification.effects.effect import Effect, Shape, Size
+from identification.effects.kinds import prefix_of, with_kind
 from identification.effects.places import places
 from identification.native.element import Function
 
@@ -42,16 +43,19 @@ def sensor_effects(
     known = {a.joint: a for a in axes}
     joints = {n: known[j] for n in outputs if (j := measured_joint(model, n)) in known}
     positions = {n: a for n, a in joints.items() if _is_position(model, n)}
-    out = [_effect("", laws.encoder_scale, "(1 + s) y", (_size("s", "", SCALE, "relative"),),
+    out = [_effect(laws.encoder_scale, "(1 + s) y", (_size("s", "", SCALE, "relative"),),
                    (*joints,), "sensor: scale")]  # fmt: skip
     kinds: list[Kind] = ["hinge", "slide"]
     both = {a.kind for a in positions.values()} == {*kinds}
     for kind in kinds:
         own = {n: a for n, a in positions.items() if a.kind == kind}
         if own:
-            prefix = "slide_" if both and kind == "slide" else ""
-            out += _of_positions(own, kind, prefix)
-            out += [_lag(prefix, own)] if len(outputs) > 1 else []
+            made = [*_of_positions(own, kind), *([_lag(own)] if len(outputs) > 1 else [])]
+            out += [
+                replace(e, name=prefix_of(kind, both) + e.name,
+                        phrase=with_kind(e.phrase, kind, both))
+                for e in made
+            ]  # fmt: skip
     return tuple(e for e in out if e.places)
 
 
@@ -64,24 +68,24 @@ def _is_position(model: mujoco.MjModel, output: str) -> bool:
     return int(model.sensor(output).type[0]) == int(mujoco.mjtSensor.mjSENS_JOINTPOS)
 
 
-def _of_positions(own: dict[str, Axis], kind: Kind, prefix: str) -> list[Effect]:
+def _of_positions(own: dict[str, Axis], kind: Kind) -> list[Effect]:
     x, names = ("rad" if kind == "hinge" else "m"), (*own,)
     far = OFFSET * max(a.travel for a in own.values())
     out = [
-        _effect(prefix, laws.encoder_offset, "y + c", (_size("c", x, far, "of its zero"),), names,
+        _effect(laws.encoder_offset, "y + c", (_size("c", x, far, "of its zero"),), names,
                 "sensor: zero is displaced"),
     ]  # fmt: skip
     if kind == "hinge":
         waves = (_size("a", x, ECCENTRICITY, "of the cosine"),
                  _size("b", x, ECCENTRICITY, "of the sine"))  # fmt: skip
-        out.append(_effect(prefix, laws.encoder_eccentricity, "y + a cos q + b sin q", waves, names,
+        out.append(_effect(laws.encoder_eccentricity, "y + a cos q + b sin q", waves, names,
                            "sensor: its disc is off centre"))  # fmt: skip
     return out
 
 
-def _lag(prefix: str, own: dict[str, Axis]) -> Effect:
+def _lag(own: dict[str, Axis]) -> Effect:
     sizes = (_size("tau", "s", LAG, "lag behind the other sensors"),)
-    made = _effect(prefix, laws.encoder_lag, LAGS, sizes, (*own,), "sensor: lags")
+    made = _effect(laws.encoder_lag, LAGS, sizes, (*own,), "sensor: lags")
     some = {where: at for where, at in made.places.items() if at}
     return replace(made, shapes=(KIND,), places=some)
 
@@ -91,10 +95,10 @@ def _size(name: str, unit: str, largest: float, about: str) -> Size:
 
 
 def _effect(
-    prefix: str, law: Function, said: str, sizes: tuple[Size, ...], names: tuple[str, ...],
+    law: Function, said: str, sizes: tuple[Size, ...], names: tuple[str, ...],
     phrase: str,
 ) -> Effect:  # fmt: skip
     return Effect(
-        prefix + law.__name__, said, sizes, places=places("sensor", names), phrase=phrase,
+        law.__name__, said, sizes, places=places("sensor", names), phrase=phrase,
         hooks={"reading": law},
     )  # fmt: skip

@@ -58,6 +58,7 @@ def _effect(
     probes: tuple[float, ...], phrase: str, reference: str, where: Mapping[str, str],
 ) -> Effect:  # fmt: skip
     return Effect(
-        g.prefix + law.__name__, said, (size,), shapes, phrase=phrase, reference=reference,
+        g.prefix + law.__name__, said, (size,), shapes, phrase=g.told(phrase),
+        reference=reference,
         places=where, probes=probes, hooks={hook: law},
     )  # fmt: skip

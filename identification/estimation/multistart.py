@@ -3,7 +3,8 @@
     q⁽⁰⁾ = q_start,   q⁽ⁱ⁾ uniform in q_start ± spread, inside the bounds
 
 If the criterion has local minima, different starts end in different places. If most starts end in
-the same place, this is a reason to believe it.
+the same place, this is a reason to believe it. The best is the one with the smallest criterion,
+in which each output counts by the noise of its unit: an angle and a way have no common rms.
 """
 
 from __future__ import annotations
@@ -14,7 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import DivergenceError, InputError
+from identification.estimation.ended import cost
 from identification.estimation.estimation import Estimate, Options, Progress, estimate
+from identification.logs.by_unit import by_unit, relative, rms_by_unit
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.coordinates import Coordinates, coordinates
@@ -31,12 +34,15 @@ class Starts:
 
     Attributes:
         best: the search that explains the log best.
-        rms: rms of the residual of each search, in the order of the starts, shape (n,), in the
-            outputs' unit; infinite where the search diverged.
+        cost: the criterion V at which each search ended, in the order of the starts, shape (n,),
+            without unit; infinite where the search diverged. The best has the smallest.
+        rms: rms of the residual of each search over all outputs, shape (n,), in their unit;
+            infinite where the search diverged. Where outputs have several units it says little.
         values: starting values, shape (n, p), in their units.
     """
 
     best: Estimate
+    cost: np.ndarray
     rms: np.ndarray
     values: np.ndarray
 
@@ -74,32 +80,39 @@ def estimate_from(
         raise InputError(f"{n} starts; give one or more")
     own = {**plant.parameters.values(), **(start or {})}
     first = np.array([own[plant.parameters[name].name] for name in names])
-    values = _around(coordinates(plant.parameters, names, first), first, n, spread, seed)
-    floor = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2)))
+    space = coordinates(plant.parameters, names, first)
+    values = _around(space, first, n, spread, seed)
+    floor = by_unit(noise_floor(log.outputs), log)
     best: Estimate | None = None
-    errors: list[float] = []
+    costs: list[float] = []
+    rms: list[float] = []
     for k, row in counted(enumerate(values), "starts", len(values)):
         begin = {**(start or {}), **dict(zip(names, row.tolist(), strict=True))}
         try:
             found = estimate(plant, log, names, begin, options, progress)
-            error = _rms(found)
+            error = _error(found)
         except InputError:
             if k == 0:
                 raise
-            errors.append(np.inf)  # the plant cannot start with these values
+            costs.append(np.inf)  # the plant cannot start with these values
+            rms.append(np.inf)
             continue
         except DivergenceError as lost:
-            errors.append(np.inf)
+            costs.append(np.inf)
+            rms.append(np.inf)
             reason = lost
             continue
-        if best is None or error < min(errors):
+        ended = cost(found, error, space.encode(first))
+        if best is None or ended < min(costs):
             best = found
-        errors.append(error)
-        if error < ENOUGH * floor or found.status == "stopped":
+        costs.append(ended)
+        rms.append(float(np.sqrt(np.mean(error**2))))
+        is_enough = relative(rms_by_unit(error, log), floor) < ENOUGH
+        if is_enough or found.status == "stopped":
             break
     if best is None:
         raise reason
-    return Starts(best, np.array(errors), values[: len(errors)])
+    return Starts(best, np.array(costs), np.array(rms), values[: len(costs)])
 
 
 def _around(space: Coordinates, first: np.ndarray, n: int, spread: float, seed: int) -> np.ndarray:
@@ -111,7 +124,7 @@ def _around(space: Coordinates, first: np.ndarray, n: int, spread: float, seed: 
     return np.concatenate([first[None], space.decode(low + share * (high - low))])
 
 
-def _rms(found: Estimate) -> float:
-    """Rms of the residual over all outputs."""
+def _error(found: Estimate) -> np.ndarray:
+    """y - ŷ at the end of a search, shape (n, ny)."""
     predicted = found.predictor.predict(found.space.decode(found.q))[0]
-    return float(np.sqrt(np.mean((found.predictor.log.outputs - predicted) ** 2)))
+    return np.asarray(found.predictor.log.outputs - predicted)

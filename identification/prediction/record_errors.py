@@ -1,25 +1,27 @@
 """Errors of two models by record, over windows of the horizon.
 
-    rms = S √mean (e/s)²,    S = √mean s²     s: scale of each output; S = 1 where units differ
+    rms = S √mean (e/s)²,        S = √mean s²       over all outputs; S = 1 where units differ
+    rms_g = S_g √mean (e/s)²,    S_g = √mean s²     over the outputs of a unit g
 
-With one output, or with outputs of one scale, this is the rms of e itself.
+s: scale of each output. Of one output, or of outputs of one scale, this is the rms of e itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from identification.logs.by_unit import by_unit
 from identification.logs.log import Log
 from identification.prediction.records import Record
 from identification.prediction.unseen import Unseen
 
-Squares = Sequence[np.ndarray]  # mean square of each window (W,) in units of s², one a record
+Errors = Sequence[np.ndarray]  # y - ŷ of windows (W, L, ny), one array a record
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class RecordError:
     """Errors on one record, over windows of the horizon.
 
@@ -30,12 +32,16 @@ class RecordError:
             over all outputs, in the outputs' unit where they have one, else in units of their
             scale.
         after: rms of the model after (the final one, or the fitted one).
+        before_by_unit: rms of the model before by the outputs' units, each in it.
+        after_by_unit: likewise of the model after.
     """
 
     name: str
     role: str
     before: float
     after: float
+    before_by_unit: Mapping[str, float]
+    after_by_unit: Mapping[str, float]
 
 
 def error_unit(log: Log, scale: np.ndarray) -> tuple[float, str]:
@@ -54,26 +60,43 @@ def scaled_squares(errors: Sequence[np.ndarray], scale: np.ndarray) -> list[np.n
     return [np.mean((e / scale) ** 2, axis=(1, 2)) for e in errors]
 
 
+def errors_by_unit(squares: np.ndarray, scale: np.ndarray, log: Log) -> dict[str, float]:
+    """rms_g by the outputs' units, each in it.
+
+    Args:
+        squares: mean squares of outputs in units of s², shape (…, ny).
+        scale: s of each output, shape (ny,), in its unit.
+        log: which outputs they are.
+    """
+    each = np.sqrt(squares.reshape(-1, squares.shape[-1]).mean(axis=0))
+    share = by_unit(each, log)
+    return {unit: size * share[unit] for unit, size in by_unit(scale, log).items()}
+
+
 def record_errors(
     records: Sequence[Record],
-    scale: float,
+    scale: np.ndarray,
     unseen: tuple[Unseen, Unseen],
-    fitted: Sequence[Squares],
+    fitted: tuple[Errors, Errors],
 ) -> tuple[RecordError, ...]:
     """Errors of two models on fitted records and on those that confirm.
 
     Args:
         records: of both roles, in the order of the errors of each.
-        scale: S, in the unit of the errors.
+        scale: s of each output, shape (ny,), in its unit.
         unseen: errors of both models on the records that confirm.
-        fitted: squares of both models on the records that were fitted.
+        fitted: errors of both models on the records that were fitted.
     """
+    squares = [[np.mean((e / scale) ** 2, axis=1) for e in each] for each in fitted]
     pairs = {
-        "fit": zip(*fitted, strict=True),
-        "confirm": zip(*(u.at_horizon for u in unseen), strict=True),
+        "fit": zip(*squares, strict=True),
+        "confirm": zip(*(u.of_outputs for u in unseen), strict=True),
     }
     out = []
     for record in records:
-        before, after = (scale * float(np.sqrt(x.mean())) for x in next(pairs[record.role]))
-        out.append(RecordError(name=record.log.name, role=record.role, before=before, after=after))
+        whole, _ = error_unit(record.log, scale)
+        pair = next(pairs[record.role])
+        before, after = (whole * float(np.sqrt(x.mean())) for x in pair)
+        told = [errors_by_unit(x, scale, record.log) for x in pair]
+        out.append(RecordError(record.log.name, record.role, before, after, *told))
     return tuple(out)

@@ -29,6 +29,7 @@ from identification.prediction.proof import find_doubt
 from identification.prediction.record_errors import (
     RecordError,
     error_unit,
+    errors_by_unit,
     record_errors,
     scaled_squares,
 )
@@ -100,6 +101,13 @@ class RecordsFit:
         return self.scale * float(np.sqrt(np.mean(np.concatenate(squares))))
 
     @property
+    def rms_by_unit(self) -> dict[str, float]:
+        """The same by the outputs' units, each in it."""
+        scale = self.model.scale
+        squares = [np.mean((e / scale) ** 2, axis=1) for e in self.model.fit.errors]
+        return errors_by_unit(np.concatenate(squares), scale, self.records[0].log)
+
+    @property
     def unseen_rms(self) -> tuple[float, float]:
         """Rms errors on the records that confirm: begun and fitted, in `unit`."""
         before, after = (
@@ -109,13 +117,24 @@ class RecordsFit:
         return before, after
 
     @property
+    def unseen_by_unit(self) -> dict[str, float]:
+        """Of the fitted values on the records that confirm, by the outputs' units, each in it."""
+        squares = np.concatenate(self.model.unseen.of_outputs)
+        return errors_by_unit(squares, self.model.scale, self.records[0].log)
+
+    @property
     def noise_rms(self) -> float:
         """Rms of the sensors' noise, in `unit`."""
         return self.scale * float(np.sqrt(self.model.unseen.floor))
 
     @property
+    def noise_by_unit(self) -> dict[str, float]:
+        """The same by the outputs' units, each in it."""
+        return errors_by_unit(self.model.unseen.noise, self.model.scale, self.records[0].log)
+
+    @property
     def unit(self) -> str:
-        """Of all errors; empty where outputs have several units, whose scale is then the unit."""
+        """Of errors over all outputs; empty where these have several, or none."""
         return error_unit(self.records[0].log, self.model.scale)[1]
 
     @cached_property
@@ -123,9 +142,8 @@ class RecordsFit:
         """By record, with the values with which the fit began and with the fitted ones."""
         fit, scale = self.model.fit, self.model.scale
         begun = _begun_errors(fit, fit.problem.prior.space.encode(self.start))
-        fitted = [scaled_squares(each, scale) for each in (begun, fit.errors)]
         unseen = self.begun, self.model.unseen
-        return record_errors(self.records, self.scale, unseen, fitted)
+        return record_errors(self.records, scale, unseen, (begun, fit.errors))
 
     @property
     def worse(self) -> Prediction | None:

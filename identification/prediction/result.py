@@ -83,10 +83,12 @@ class RecordsDiscovery:
         share: of the mean square above the sensors' noise on unseen records, how much the named
             effects take away, 0 to 1.
         unexplained: whether something is left that no named effect explains.
-        noise_rms: of the sensors, over all outputs, in the unit of `errors`.
+        noise_rms: of the sensors, over all outputs, in `unit`.
+        noise_by_unit: the same by the outputs' units, each in it.
         input_error: rms error of the inputs, constant over each window, that would make what the
             final model leaves of the fitted windows; a share of the inputs' own rms.
-        unit: of errors and noise; empty where outputs have several and their scale is the unit.
+        unit: of errors and noise over all outputs; empty where these have several units, or none,
+            and each counts in its own scale.
         before: the gap of the fitted nominal model on the records that confirm.
         after: the gap of the final model.
         errors: by record.
@@ -110,6 +112,7 @@ class RecordsDiscovery:
     share: float
     unexplained: bool
     noise_rms: float
+    noise_by_unit: Mapping[str, float]
     input_error: float
     unit: str
     before: Gap

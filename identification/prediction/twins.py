@@ -12,11 +12,11 @@ brakes.
 from __future__ import annotations
 
 from identification.effects.effect import Candidate
+from identification.effects.kinds import SLIDE
 from identification.prediction.model import WindowModel
 
 TWINS = {"offset": "asymmetric_friction", "asymmetric_friction": "offset"}
 LEVEL = "coulomb_friction.f_c"
-SLIDE = "slide_"  # before names of effects of slides, on a robot that has hinges too
 
 
 def find_twin(model: WindowModel, candidate: Candidate) -> str:

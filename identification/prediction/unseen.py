@@ -38,9 +38,11 @@ class Unseen:
         lengths: of windows, in units of the horizon.
         squares: mean square of each window in units of s², shape (W,), by length and record.
         moves: where each window begins, shape (W, nx), by length and record.
-        floor: mean square of the sensors' noise in units of s²: of each output the median over
-            the records; motion that is sampled slowly looks like noise, and an encoder that rests
-            like none.
+        of_outputs: mean square of each output over each window of the horizon itself in units of
+            s², shape (W, ny), by record.
+        noise: mean square of the sensors' noise in units of s², shape (ny,): of each output the
+            median over the records; motion that is sampled slowly looks like noise, and an encoder
+            that rests like none.
         fit_percent: over windows of the horizon, of each output, shape (ny,) [%].
         own: by record, the parameters that it has for itself: value and std of each, from the
             values of its two halves.
@@ -49,7 +51,8 @@ class Unseen:
     lengths: tuple[float, ...]
     squares: tuple[tuple[np.ndarray, ...], ...]
     moves: tuple[tuple[np.ndarray, ...], ...]
-    floor: float
+    of_outputs: tuple[np.ndarray, ...]
+    noise: np.ndarray
     fit_percent: np.ndarray
     own: Mapping[str, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
 
@@ -57,6 +60,11 @@ class Unseen:
         """Where windows of a length begin, in units of the horizon, and their errors, by record."""
         k = self.lengths.index(length)
         return tuple(Starts(*pair) for pair in zip(self.moves[k], self.squares[k], strict=True))
+
+    @property
+    def floor(self) -> float:
+        """Mean square of the sensors' noise over all outputs, in units of s²."""
+        return float(np.mean(self.noise))
 
     @property
     def at_horizon(self) -> tuple[np.ndarray, ...]:
@@ -132,7 +140,7 @@ def predict(
         DivergenceError: the model cannot be simulated.
     """
     squares, moves, lengths = [], [], []
-    percent = np.zeros(len(scale))
+    percent, of_outputs = np.zeros(len(scale)), ()
     halves = [own_values(plant, r, horizon, scale, values, own or Own()) for r in records]
     for factor in LENGTHS:
         try:
@@ -151,13 +159,14 @@ def predict(
             measured = np.concatenate([c.outputs.reshape(-1, len(scale)) for c in cuts])
             errors = np.concatenate([e.reshape(-1, len(scale)) for _, e in each])
             percent = fit_percent(measured, measured - errors)
+            of_outputs = tuple(np.mean((e / scale) ** 2, axis=1) for _, e in each)
         lengths.append(factor)
         moves.append(tuple(d for d, _ in each))
         squares.append(tuple(np.mean((e / scale) ** 2, axis=(1, 2)) for _, e in each))
     noise = np.median([noise_floor(r.log.outputs) for r in records], axis=0)
     return Unseen(
         lengths=tuple(lengths), squares=tuple(squares), moves=tuple(moves),
-        floor=float(np.mean((noise / scale) ** 2)), fit_percent=percent,
+        of_outputs=of_outputs, noise=(noise / scale) ** 2, fit_percent=percent,
         own={r.log.name: of_halves(*h) for r, h in zip(records, halves, strict=True)},
     )  # fmt: skip
 

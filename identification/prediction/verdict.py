@@ -16,12 +16,13 @@ from scipy.stats import ttest_1samp
 from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.options import DiscoveryOptions
+from identification.logs.log import Log
 from identification.logs.replay import REPLAYED, replayed_share
 from identification.prediction.clocks import record_shifts
 from identification.prediction.evidence import compute_confidence
 from identification.prediction.input_error import needed_input_error
 from identification.prediction.model import WindowModel
-from identification.prediction.record_errors import error_unit, record_errors, scaled_squares
+from identification.prediction.record_errors import error_unit, errors_by_unit, record_errors
 from identification.prediction.records import Record
 from identification.prediction.remaining import find_remaining
 from identification.prediction.result import (
@@ -74,16 +75,19 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     floor = model.unseen.floor
     before, after = (float(np.mean(np.concatenate(m.unseen.at_horizon))) for m in (nominal, model))
     above = before - min(floor, after)
-    scale, unit = error_unit(task.records[0].log, nominal.scale)
+    log = task.records[0].log
+    scale, unit = error_unit(log, nominal.scale)
     return RecordsDiscovery(
         records=task.records, options=options, horizon=task.horizon, verdict=verdict, named=named,
         rejected=rejected, share=float((before - after) / above) if above > 0 else 0.0,
         unexplained=verdict != "nothing missing" and (bool(findings) or not named),
         noise_rms=scale * float(np.sqrt(floor)), unit=unit, input_error=needed,
-        before=_gap(nominal.unseen, scale), after=_gap(model.unseen, scale),
+        noise_by_unit=errors_by_unit(model.unseen.noise, nominal.scale, log),
+        before=_gap(nominal.unseen, nominal.scale, log),
+        after=_gap(model.unseen, nominal.scale, log),
         errors=record_errors(
-            task.records, scale, (nominal.unseen, model.unseen),
-            [scaled_squares(m.fit.errors, nominal.scale) for m in (nominal, model)],
+            task.records, nominal.scale, (nominal.unseen, model.unseen),
+            (nominal.fit.errors, model.fit.errors),
         ),
         nominal=nominal, final=model,
         scores=state.nominal_scores, remaining=state.scores if named else state.nominal_scores,
@@ -181,6 +185,7 @@ def _is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
     return square > model.unseen.floor * (1 + options.min_gap_share)
 
 
-def _gap(unseen: Unseen, scale: float) -> Gap:
+def _gap(unseen: Unseen, scale: np.ndarray, log: Log) -> Gap:
     square = float(np.mean(np.concatenate(unseen.at_horizon)))
-    return Gap(scale * float(np.sqrt(square)), unseen.fit_percent)
+    each = errors_by_unit(np.concatenate(unseen.of_outputs), scale, log)
+    return Gap(error_unit(log, scale)[0] * float(np.sqrt(square)), unseen.fit_percent, each)

@@ -34,12 +34,16 @@ def split_detectable(
     detectable: Sequence[Detectable],
 ) -> tuple[list[Detectable], list[Detectable]]:
     """Effects that a plausible size would show, the easiest to find first; and the others."""
-    largest = {id(d): _largest(d) for d in detectable}
-    seen = [d for d in detectable if d.smallest <= largest[id(d)]]
+    seen = [d for d in detectable if is_plausible(d)]
     return (
-        sorted(seen, key=lambda d: d.smallest / largest[id(d)]),
-        [d for d in detectable if not d.smallest <= largest[id(d)]],
+        sorted(seen, key=lambda d: d.smallest / largest(d)),
+        [d for d in detectable if not is_plausible(d)],
     )
+
+
+def is_plausible(d: Detectable) -> bool:
+    """Whether a plausible size would have shown."""
+    return d.smallest < float("inf") and d.smallest <= largest(d)
 
 
 def smallest(d: Detectable) -> str:
@@ -47,5 +51,6 @@ def smallest(d: Detectable) -> str:
     return f"{d.size} {quantity(d.smallest, unit=d.unit)}"
 
 
-def _largest(d: Detectable) -> float:
+def largest(d: Detectable) -> float:
+    """The largest plausible magnitude of a size [unit]; inf where none is known."""
     return next((s.largest for s in d.candidate.effect.sizes if s.name == d.size), float("inf"))

@@ -32,9 +32,14 @@ def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
         where_section(found),
         rivals_section(found),
         diff_section(found, files),
-        parameters_section(found),
+        _final_first(parameters_section(found)),
         unseen_section(found),
     ]
+
+
+def _final_first(section: Section) -> Section:
+    """A section whose table has the final values beside the names."""
+    return replace(section, table=section.table and section.table.last_first)
 
 
 def write_discovery_report(

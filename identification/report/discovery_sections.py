@@ -115,9 +115,9 @@ def rivals_section(found: Discovery) -> Section:
         figures = (("Gain of the best candidates on the nominal fit", figure),)
     rows = tuple(
         (
-            describe_effect(n.candidate),
             describe_effect(r.candidate),
             f"{100 * r.confidence:.0f} %",
+            describe_effect(n.candidate),
             r.alike,
         )
         for n in found.named
@@ -138,7 +138,7 @@ def rivals_section(found: Discovery) -> Section:
         "Who could explain it",
         text,
         figures=figures,
-        table=Table(("named", "rival", "confidence", "alike"), rows) if rows else None,
+        table=Table(("rival", "confidence", "named", "alike"), rows) if rows else None,
     )
 
 

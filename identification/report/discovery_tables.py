@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from math import isfinite
 
-from identification.discovery.effect_results import Detectable
 from identification.discovery.final_values import collect_final_values, collect_std
 from identification.discovery.result import Discovery
 from identification.quantities import quantity
-from identification.report.discovery_limits import split_detectable
 from identification.report.effect_words import describe_effect, describe_gains
 from identification.report.page import Section, Table
 from identification.report.parameter_words import words_of
+from identification.report.shown_words import shown_rows, shown_sentences
 
 
 def diff_section(found: Discovery, files: str = "") -> Section:
@@ -27,16 +26,14 @@ def diff_section(found: Discovery, files: str = "") -> Section:
     for named in found.named:
         c = named.candidate
         for k, (name, (value, std, unit)) in enumerate(named.parameters.items()):
-            rows.append(
-                (f"+ {describe_effect(c)}" if k == 0 else "", c.effect.law if k == 0 else "", name,
-                 quantity(value, std, unit), f"{100 * named.confidence:.0f} %" if k == 0 else "")
-            )  # fmt: skip
+            once = (f"+ {describe_effect(c)}", f"{100 * named.confidence:.0f} %", c.effect.law)
+            rows.append((name, quantity(value, std, unit), *(once if k == 0 else ("",) * 3)))
     proofs = [f"{describe_effect(n.candidate)}: {describe_gains(n)}." for n in found.named]
     said = " ".join(f"{proof[:1].upper()}{proof[1:]}" for proof in proofs)
     return Section(
         "What was added",
         f"{said} {files}".strip(),
-        table=Table(("effect", "law", "parameter", "value", "confidence"), tuple(rows)),
+        table=Table(("parameter", "value", "effect", "confidence", "law"), tuple(rows)),
     )
 
 
@@ -78,33 +75,18 @@ def parameters_section(found: Discovery) -> Section:
 
 def unseen_section(found: Discovery) -> Section:
     """What this log would have shown, and what not."""
-    seen, blind = split_detectable(found.detectable)
-    rows = [(describe_effect(d.candidate), d.size, _sized(d.smallest, d.unit), _plausible(d))
-            for d in seen]  # fmt: skip
-    rows += [
-        (describe_effect(d.candidate), d.size, "not by this log", _plausible(d)) for d in blind
-    ]
+    if not found.detectable:
+        return Section("What it could have seen", "Not computed for this log.")
     return Section(
         "What it could have seen",
         "The smallest size of each effect that is found in 9 of 10 logs like this one, beside the"
-        " largest that is plausible. What is missing and smaller stays hidden."
-        if rows
-        else "Not computed for this log.",
-        table=Table(("effect", "size", "smallest seen", "largest plausible"), tuple(rows))
-        if rows
-        else None,
+        " largest that is plausible, the hardest to see first. What is missing and smaller stays"
+        f" hidden.\n\n{shown_sentences(found.detectable)}",
+        table=Table(
+            ("effect", "smallest seen", "largest plausible"), tuple(shown_rows(found.detectable))
+        ),
     )
 
 
 def _value(value: float | None, std: float | None, unit: str, like: float) -> str:
     return "–" if value is None or std is None else quantity(value, std, unit, like)
-
-
-def _sized(value: float, unit: str) -> str:
-    """A size; one without a unit is a share, in percent also where it is 1 or more."""
-    return quantity(value, unit=unit) if unit else f"{100 * value:.3g} %"
-
-
-def _plausible(d: Detectable) -> str:
-    size = next((s for s in d.candidate.effect.sizes if s.name == d.size), None)
-    return "–" if size is None else _sized(size.largest, size.unit)

@@ -9,27 +9,20 @@ from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import Finding
 from identification.discovery.result import Discovery
 from identification.prediction.result import RecordsDiscovery
-from identification.quantities import held, quantity
+from identification.quantities import held
 from identification.report.discovery_errors import errors_of, times_noise
-from identification.report.discovery_limits import split_detectable
 from identification.report.discovery_tables import parameters_section
-from identification.report.discovery_verdict import (
-    diff_line,
-    discovery_verdict,
-)
-from identification.report.effect_words import (
-    describe_effect,
-    describe_gains,
-    describe_rejected,
-    phrase,
-)
+from identification.report.discovery_verdict import discovery_verdict
+from identification.report.effect_words import describe_effect, describe_gains, describe_rejected
 from identification.report.error_words import error_words
 from identification.report.finding_words import describe_finding
 from identification.report.fitted_values import shown_values, unknown_shares
+from identification.report.named_words import diff_line
 from identification.report.parameter_words import words_of
 from identification.report.record_gaps import record_lines
 from identification.report.records_text import records_text, search_time
 from identification.report.records_values import text_table
+from identification.report.shown_words import shown_lines
 
 SHOWN = 0.005  # an explanation with a smaller confidence gets no line
 
@@ -48,7 +41,7 @@ def discovery_text(found: Discovery | RecordsDiscovery) -> str:
         _list("where the nominal model fails", found.located),
         _list("where the final model still fails", found.findings),
         "\n".join([f"{title}:", *(f"  {line}" for line in lines)]) if lines else "",
-        "\n".join(_detectable(found)),
+        "\n".join(shown_lines(found.detectable)),
         search_time(found.seconds),
     ]
     return "\n\n".join(part for part in parts if part)
@@ -101,16 +94,3 @@ def _values(found: Discovery) -> list[str]:
         *text_table(found_table.columns, shown),
         *([f"  {rest}"] if rest else []),
     ]
-
-
-def _detectable(found: Discovery) -> list[str]:
-    seen, blind = split_detectable(found.detectable)
-    if not found.detectable:
-        return []
-    lines = ["what this log would have shown in 9 cases of 10, and what not:"]
-    width = max(len(phrase(d.candidate.effect)) for d in found.detectable)
-    words = [f"  {phrase(d.candidate.effect):<{width}}  {d.size}" for d in (*seen, *blind)]
-    shown = [f"at least {quantity(d.smallest, unit=d.unit)}" for d in seen]
-    shown += ["at no plausible size"] * len(blind)
-    lines += [f"{what} {size}" for what, size in zip(words, shown, strict=True)]
-    return lines

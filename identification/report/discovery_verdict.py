@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from math import isfinite
 
-from identification.discovery.effect_results import NamedEffect, RejectedEffect
+from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.fitted_model import is_proven
 from identification.discovery.result import Discovery
-from identification.quantities import held, quantity
+from identification.quantities import held
 from identification.report.discovery_errors import (
     closed_share,
     errors_of,
@@ -18,19 +17,15 @@ from identification.report.discovery_errors import (
     sensors,
     times_noise,
 )
-from identification.report.discovery_limits import SHOWN, hiding, smallest, split_detectable
+from identification.report.discovery_limits import hiding
 from identification.report.effect_words import (
     describe_chance,
     describe_effect,
-    describe_outside,
-    describe_sizes,
-    phrase,
 )
-from identification.report.error_words import error_words
+from identification.report.error_words import change_words
 from identification.report.finding_words import describe_finding, sentence
-from identification.report.parameter_words import words_of
-
-RETUNED = 0.05  # the explanation without an effect gets a sentence above this confidence
+from identification.report.named_words import named_sentences
+from identification.report.nothing_words import nothing
 
 
 def discovery_verdict(found: Discovery) -> list[str]:
@@ -54,49 +49,13 @@ def _verdict(found: Discovery) -> list[str]:
         return [nothing(found)]
     if found.verdict == "unknown effect":
         return [unknown(found)]
-    said = [
-        f"{_named(found, named)}{_retuned(found, named)}{_outside(named)}{_agreement(named)}"
-        for named in found.named
-    ]
+    said = [named_sentences(found, named) for named in found.named]
     said.append(_proof(found))
     if found.unexplained:
         said.append(unexplained(found))
     elif found.hidden:
         said.append(f"Nothing else is missing that this log shows.{hiding(found)}")
     return said
-
-
-def nothing(found: Discovery) -> str:
-    """The paragraph that says that nothing is missing, as far as this log can tell."""
-    seen, unseen = split_detectable(found.detectable)
-    left = error_words([errors_of(found.before, found), floor(found)])[0]
-    noise = error_words([errors_of(found.before, found), floor(found)], "")[1]
-    said = (
-        "Nothing is missing: what the fitted model leaves unexplained is noise,"
-        f" {left} on unseen data where the sensors and unlogged disturbances make {noise}."
-    )
-    if floor_rms(found) > found.noise_rms:
-        said += _unlogged(found)
-    if seen:
-        listed = "; ".join(f"{describe_effect(d.candidate)}, {smallest(d)}" for d in seen[:SHOWN])
-        said += f" The log would have shown, in 9 cases of 10, effects as small as: {listed}."
-    said += hiding(found)
-    if unseen:
-        names = _unique(phrase(d.candidate.effect) for d in unseen)
-        said += f" No plausible size would show in it of these: {'; '.join(names)}."
-    return said
-
-
-def _unlogged(found: Discovery) -> str:
-    """The errors of the inputs that are part of the noise, and on which the verdict rests."""
-    level, log = found.final.level, found.log
-    (alone,) = error_words([sensors(found)], "")
-    size = quantity(level.input_std, unit=log.units.get(log.input_names[0], ""))
-    return (
-        f" The sensors alone make {alone}; the rest is what inputs do that err by {size} rms"
-        f" beside what the log says, for {level.noise.time:.2g} s at a time. If they are surely"
-        " known better, something is missing."
-    )
 
 
 def unknown(found: Discovery) -> str:
@@ -141,70 +100,14 @@ def _nearest(rejected: RejectedEffect) -> str:
     )
 
 
-def _named(found: Discovery, named: NamedEffect) -> str:
-    """A sentence on a named effect, or on the set that it belongs to where it is `one_of`."""
-    first = "Missing from the model" if named is found.named[0] else "Missing too"
-    if named.one_of and named.rivals:
-        rivals = [r for r in named.rivals if r.confidence >= 0.1 * named.confidence] or [
-            named.rivals[0]
-        ]
-        total = named.confidence + sum(r.confidence for r in rivals)
-        each = "; ".join(
-            [f"{describe_effect(named.candidate)} ({100 * named.confidence:.0f} %)"]
-            + [f"{describe_effect(r.candidate)} ({100 * r.confidence:.0f} %)" for r in rivals]
-        )
-        return (
-            f"{first} is one of these, which this log does not surely tell apart: {each};"
-            f" together {_percent(total)}. The first is put into the model:"
-            f" {describe_sizes(named)}." + (f" {named.advice}" if named.advice else "")
-        )
-    return (
-        f"{first}: {describe_effect(named.candidate)}, {describe_sizes(named)}"
-        f"; confidence {100 * named.confidence:.0f} % among the known effects"
-        + ("." if named.rivals else ", none of which was near enough to be refitted in its place.")
-    )
-
-
-def _retuned(found: Discovery, named: NamedEffect) -> str:
-    """A sentence where a parameter farther from what was known of it would explain the same."""
-    other = named.retuned
-    if other.confidence < RETUNED:
-        return ""
-    what = words_of(found)[other.parameter]
-    return (
-        f" Or it is no effect ({100 * other.confidence:.0f} %): with {what}"
-        f" {abs(other.distance):.2g} std {'above' if other.distance > 0 else 'below'} what was said"
-        " to be known of it, the model explains the same. Measure it, or record another motion."
-    )
-
-
-def _outside(named: NamedEffect) -> str:
-    """A sentence where a law that no catalogue lists may explain the same."""
-    if named.outside is None or named.outside.confidence < RETUNED:
-        return ""
-    return f" Or it is {describe_outside(named.outside)}."
-
-
-def _agreement(named: NamedEffect) -> str:
-    """On which of several records the effect holds."""
-    proof = named.proof
-    said = f" It holds on {', '.join(proof.agrees)}." if len(proof.agrees) > 1 else ""
-    if proof.disagrees:
-        said += f" It raises the error on {', '.join(proof.disagrees)}, beyond chance."
-    return said
-
-
 def _proof(found: Discovery) -> str:
-    errors = [errors_of(gap, found) for gap in (found.before, found.after)]
-    told = [*errors, floor(found), sensors(found)]
-    was, now = error_words(told)[:2] if len(errors[0]) > 1 else error_words(told, "")[:2]
-    noise, own = error_words(told, "")[2:]
+    errors = errors_of(found.before, found), errors_of(found.after, found)
+    change, (noise, own) = change_words(*errors, [floor(found), sensors(found)])
     whom = "it" if len(found.named) == 1 else "them"
     rest = f", of which sensors make {own} and unlogged errors of the inputs the rest"
     made = rest if floor_rms(found) > found.noise_rms else ""
-    rms = " rms" if len(errors[0]) == 1 else ""
     said = (
-        f"On data that the fit has not seen, the error falls from {was} to {now}{rms}"
+        f"On data that the fit has not seen, the error falls {change}"
         f" with {whom} in the model; the noise is {noise}{made}."
     )
     if (share := closed_share(found)) is not None:
@@ -212,17 +115,3 @@ def _proof(found: Discovery) -> str:
         percent = "more than 99" if nearly else f"{100 * share:.0f}"
         said += f" That is {percent} % of the power that was above the noise."
     return said
-
-
-def diff_line(named: NamedEffect) -> str:
-    """A named effect as a line of a diff of the model."""
-    return f"+ {describe_effect(named.candidate)}: {describe_sizes(named)}"
-
-
-def _percent(chance: float) -> str:
-    """A probability in percent; rounding makes no certainty of it."""
-    return "more than 99 %" if chance > 0.995 else f"{100 * chance:.0f} %"
-
-
-def _unique(names: Iterable[str]) -> list[str]:
-    return list(dict.fromkeys(names))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from identification.quantities import HELD, alike
+from identification.quantities import HELD, alike, held
 
 KINDS = {"rad": "angles", "m": "slides", "rad/s": "angular speeds", "m/s": "speeds of slides"}
 
@@ -34,6 +34,33 @@ def error_words(
         listed([f"{size}{after} ({what})" for size, what in zip(row, kinds, strict=True)])
         for row in rows
     ]
+
+
+def change_words(
+    before: Mapping[str, float],
+    after: Mapping[str, float],
+    beside: Sequence[Mapping[str, float]] = (),
+    digits: int = HELD,
+) -> tuple[str, list[str]]:
+    """A change of errors, "from 3.7 mrad to 1.1 mrad rms", and other errors beside it.
+
+    Args:
+        before: error by unit.
+        after: likewise.
+        beside: others, which get the prefixes of these and no "rms".
+        digits: of each size.
+    """
+    told = [before, after, *beside]
+    sizes = error_words(told, "", digits)
+    if len(before) == 1:
+        return f"from {sizes[0]} to {sizes[1]} rms", sizes[2:]
+    was, now = error_words(told, digits=digits)[:2]
+    return f"from {was} to {now}", sizes[2:]
+
+
+def times_words(errors: Mapping[str, float], of: Mapping[str, float]) -> str:
+    """Errors by unit as multiples of others, one for each unit: 2.1 and 3.4."""
+    return listed([held(e / of[unit]) if of[unit] > 0 else "∞" for unit, e in errors.items()])
 
 
 def kind(unit: str) -> str:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from identification.logs.by_unit import relative
 from identification.quantities import error, held
-from identification.report.error_words import error_words
+from identification.report.error_words import error_words, times_words
 from identification.report.untold_words import identifiable_sentences, weak_sentences
 
 if TYPE_CHECKING:
@@ -77,15 +76,10 @@ def _above(fit: Fit) -> float:
     return relative(fit.rms_by_unit, fit.floor_by_unit)
 
 
-def _times(errors: Mapping[str, float], of: Mapping[str, float]) -> str:
-    """Errors by unit as multiples of others, one for each unit."""
-    return " and ".join(held(e / of[u]) if of[u] > 0 else "∞" for u, e in errors.items())
-
-
 def _enough(fit: Fit) -> list[str]:
     ratio, (floor,) = _above(fit), error_words([fit.floor_by_unit], "")
     (left,) = error_words([fit.rms_by_unit])
-    times = _times(fit.rms_by_unit, fit.floor_by_unit)
+    times = times_words(fit.rms_by_unit, fit.floor_by_unit)
     sentences = [f"The residual is {left}, {times} times the noise floor of {floor}."]
     dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
     coloured = coloured_outputs(fit)
@@ -127,7 +121,8 @@ def _unseen(fit: Fit) -> list[str]:
             " so small errors of the parameters may do that there, and it says little. Judge over"
             " a horizon."
         ]
+    times = times_words(there, expected)
     return [
-        f"On unseen data the residual is {unseen}, {_times(there, expected)} times what the fit"
-        f" leads one to expect: {said}."
+        f"On unseen data the residual is {unseen}, {times} times what the fit leads one to expect:"
+        f" {said}."
     ]

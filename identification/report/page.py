@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,20 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 from identification.errors import InputError
 from identification.files import write_text
+from identification.report.cells import columns_of, text_of
+from identification.report.media import drawing, image_source, video_source
 from identification.report.origin import origin
+from identification.report.whole_quantities import whole_quantities
 
 if TYPE_CHECKING:
-    from markupsafe import Markup
     from matplotlib.figure import Figure
 
-_LARGEST_SVG = 600_000  # characters; a figure of more points is shown as pixels
-_LARGEST_VIDEO = 64 * 2**20  # bytes
-_NUMBER = re.compile(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?")
-_UNIT = r"[nµmkM]?(?:kg|rad|Hz|min|[gNmsAVWJh])(?:\^?-?[\d²³]+)?(?:/(?:\([^)]*\)|[\w²³^]+))?"
-_QUANTITY = re.compile(  # a number, its std, and a unit such as N m s/rad
-    rf"[-+]?\d[\d.]*(?:e[-+]?\d+)?(?: ± [\d.]+(?:e[-+]?\d+)?)?(?: %|(?: {_UNIT}(?![\w/]))+)"
-)
-_NONE = ("–", "unknown", None)  # in the place of a number
 LONG = 12  # rows: a table of more is folded
 WIDE = 9.0  # a figure of so many inches has a row of its own
 
@@ -40,6 +33,13 @@ class Table:
 
     columns: tuple[str, ...]
     rows: tuple[tuple[object, ...], ...]
+
+    @property
+    def last_first(self) -> Table:
+        """The same with the last column behind the first, so that both stand on a narrow screen."""
+        (name, *middle, last) = self.columns
+        rows = tuple((first, end, *rest) for first, *rest, end in self.rows)
+        return Table((name, last, *middle), rows)
 
     def __post_init__(self) -> None:
         for row in self.rows:
@@ -124,17 +124,6 @@ def write_report(
     return write_text(path, page)
 
 
-def whole_quantities(text: str) -> Markup:
-    """Text for a page in which no line ends between a number and its unit.
-
-    Args:
-        text: as it is read; it is escaped.
-    """
-    from markupsafe import Markup, escape
-
-    return Markup(_QUANTITY.sub(r'<span class="whole">\g<0></span>', str(escape(text))))
-
-
 def save_figures(sections: Iterable[Section], folder: Path) -> list[Path]:
     """Write the figures of some sections as PNG, named by their captions."""
     from identification.report.style import save_png
@@ -156,76 +145,15 @@ def _section(section: Section, number: int) -> dict[str, Any]:
         "figures": [
             (
                 caption,
-                _picture(figure, f"f{number}_{k}_", caption),
+                drawing(figure, f"f{number}_{k}_", caption),
                 figure.get_size_inches()[0] >= WIDE,
+                float(figure.get_size_inches()[0]),
             )
             for k, (caption, figure) in enumerate(section.figures, 1)
         ],
-        "columns": _columns(table) if table else [],
-        "rows": [[_text(cell) for cell in row] for row in table.rows] if table else [],
+        "columns": columns_of(table.columns, table.rows) if table else [],
+        "rows": [[text_of(cell) for cell in row] for row in table.rows] if table else [],
         "folded": table is not None and len(table.rows) > LONG,
-        "video": _video(section.video) if section.video else None,
-        "poster": _image(section.poster) if section.poster else None,
+        "video": video_source(section.video) if section.video else None,
+        "poster": image_source(section.poster) if section.poster else None,
     }
-
-
-def _picture(figure: Figure, prefix: str, caption: str) -> Any:
-    """An `<svg>` element, or an `<img>` of pixels where that would be too large."""
-    import io
-
-    from markupsafe import Markup
-
-    from identification.report.vector import svg
-
-    drawing = svg(figure, prefix, caption)
-    if len(drawing) <= _LARGEST_SVG:
-        return Markup(drawing)
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=150)
-    source = "data:image/png;base64," + b64encode(stream.getvalue()).decode()
-    said = '<img src="{}" role="img" alt="{}" title="{}" />'
-    return Markup(said).format(source, caption, caption)
-
-
-def _image(path: Path) -> str:
-    try:
-        return "data:image/jpeg;base64," + b64encode(path.read_bytes()).decode()
-    except OSError as error:
-        raise InputError(f"cannot read the picture {path}: {error.strerror}") from error
-
-
-def _video(path: Path) -> str:
-    try:
-        size = path.stat().st_size
-        if size > _LARGEST_VIDEO:
-            raise InputError(
-                f"{path} has {size / 2**20:.0f} MB, too much for one page; make a shorter film"
-            )
-        return "data:video/mp4;base64," + b64encode(path.read_bytes()).decode()
-    except OSError as error:
-        raise InputError(f"cannot read the film {path}: {error.strerror}") from error
-
-
-def _columns(table: Table) -> list[tuple[str, bool]]:
-    """Headings, and whether numbers stand below them."""
-    cells = zip(*table.rows, strict=True) if table.rows else ((),) * len(table.columns)
-    return [
-        (heading, _holds_numbers(column))
-        for heading, column in zip(table.columns, cells, strict=True)
-    ]
-
-
-def _holds_numbers(column: Iterable[object]) -> bool:
-    """Whether some of the cells are numbers, or all of them are written numbers."""
-    cells = list(column)
-    written = [isinstance(c, str) and bool(_NUMBER.fullmatch(c)) for c in cells]
-    numbers = [isinstance(c, int | float) and not isinstance(c, bool) for c in cells]
-    return any(numbers) or (
-        any(written) and all(w or c in _NONE for w, c in zip(written, cells, strict=True))
-    )
-
-
-def _text(cell: object) -> str:
-    if cell is None:
-        return "–"
-    return f"{cell:z.5g}" if isinstance(cell, float) else str(cell)

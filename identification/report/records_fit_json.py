@@ -22,8 +22,11 @@ def records_fit_to_json(found: RecordsFit) -> dict[str, Any]:
             for (name, value), std, first, bound in rows
         },
         "rms": found.rms,
+        "rms_by_unit": found.rms_by_unit,
         "validation_rms": found.unseen_rms[1],
+        "validation_rms_by_unit": found.unseen_by_unit,
         "noise_floor": found.noise_rms,
+        "noise_floor_by_unit": found.noise_by_unit,
         "seconds": found.seconds,
         "horizon": found.horizon,
         "worse": None if found.worse is None else {
@@ -31,6 +34,7 @@ def records_fit_to_json(found: RecordsFit) -> dict[str, Any]:
         },
         "records": [
             {"file": e.name, "role": e.role, "before": e.before, "after": e.after,
+             "before_by_unit": dict(e.before_by_unit), "after_by_unit": dict(e.after_by_unit),
              **_own(found, e.name, e.role)}
             for e in found.errors
         ],

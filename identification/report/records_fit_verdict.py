@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from identification.estimation.identifiability import in_words
+from identification.logs.by_unit import relative
 from identification.prediction.records_fit import RecordsFit
-from identification.quantities import error, held
+from identification.report.error_words import error_words, times_words
 from identification.report.scale_words import describe_scale
 from identification.report.step_words import step_sentences
 from identification.report.untold_words import WEAK, cure, too_weak
@@ -26,18 +27,18 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
         said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
     said += _blind(found) + _weak(found) + _unknown_std(found)
     windows = sum(len(part.cut.starts) for part in fit.problem.parts)
-    floor, rms = found.noise_rms, found.rms
-    own = error(floor, found.unit)
-    ratio = f", {held(rms / floor)} times the noise floor of {own}" if floor > 0 else ""
-    left = f"{error(rms, found.unit)} rms" + ("" if found.unit else " in the outputs' scale")
+    floor, rms = found.noise_by_unit, found.rms_by_unit
+    (left,), (own,) = error_words([rms]), error_words([floor], "")
+    is_known = any(floor.values())
+    ratio = f", {times_words(rms, floor)} times the noise floor of {own}" if is_known else ""
     each = "1 window" if windows == 1 else f"{windows} windows"
     said.append(f"{each} of {found.horizon:g} s leave {left}{ratio}.")
-    if floor > 0 and rms > MUCH * floor:
+    if is_known and relative(rms, floor) > MUCH:
         said.append(
             "That is far more than the sensors make: the model lacks something, or a column is not"
             " what the model takes it for; discover looks for what is missing."
         )
-    return [*said, *describe_scale(found.model, found.unit), *step_sentences(found.model)]
+    return [*said, *describe_scale(found.model), *step_sentences(found.model)]
 
 
 def _blind(found: RecordsFit) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from identification.discovery.effect_results import Gap
 from identification.effects.effect import Candidate
 from identification.prediction.model import WindowModel
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
@@ -21,6 +22,7 @@ READS = {  # what a curve is drawn over, by the last word of its name
 
 def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
     """The outcome as plain values; what is unknown or not finite is None."""
+    gaps = {"before": found.before, "after": found.after}
     record = {
         "verdict": found.verdict,
         "effects": [_named_to_json(named) for named in found.named],
@@ -29,11 +31,18 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
         "share": found.share,
         "gap": {
             "noise_rms": found.noise_rms,
-            "before": {"rms": found.before.rms, "fit_percent": found.before.fit_percent.tolist()},
-            "after": {"rms": found.after.rms, "fit_percent": found.after.fit_percent.tolist()},
+            "noise_rms_by_unit": dict(found.noise_by_unit),
+            **{name: _gap_to_json(gap) for name, gap in gaps.items()},
         },
         "records": [
-            {"file": e.name, "role": e.role, "before": e.before, "after": e.after}
+            {
+                "file": e.name,
+                "role": e.role,
+                "before": e.before,
+                "after": e.after,
+                "before_by_unit": dict(e.before_by_unit),
+                "after_by_unit": dict(e.after_by_unit),
+            }
             for e in found.errors
         ],
         "shifts": [asdict(s) for s in found.shifts],
@@ -49,6 +58,14 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
         "seconds": float(sum(found.seconds.values())),
     }
     return {key: finite(value) for key, value in record.items()}
+
+
+def _gap_to_json(gap: Gap) -> dict[str, Any]:
+    return {
+        "rms": gap.rms,
+        "rms_by_unit": dict(gap.rms_by_unit),
+        "fit_percent": gap.fit_percent.tolist(),
+    }
 
 
 def _values_to_json(model: WindowModel) -> dict[str, Any]:

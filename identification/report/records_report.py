@@ -9,16 +9,13 @@ import numpy as np
 from identification.prediction.result import RecordsDiscovery
 from identification.report.discovery_figures import gains_figure
 from identification.report.effect_words import describe_effect
-from identification.report.finding_words import describe_shift
+from identification.report.error_words import error_words
 from identification.report.law_section import law_sections
 from identification.report.page import Section, Table, save_figures, write_report
-from identification.report.records_text import (
-    best_scores,
-    records_verdict,
-    rejected_lines,
-    steps_taken,
-)
+from identification.report.records_finding_words import describe_shift
+from identification.report.records_text import best_scores, rejected_lines, steps_taken
 from identification.report.records_values import value_table
+from identification.report.records_verdict import DIGITS, records_verdict
 
 BEST = 10  # candidates shown
 
@@ -46,13 +43,13 @@ def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
 
 
 def _records(found: RecordsDiscovery) -> Section:
-    unit = f" [{found.unit}]" if found.unit else ""
-    rows = tuple((e.name, e.role, e.before, e.after) for e in found.errors)
+    pairs = (error_words([e.before_by_unit, e.after_by_unit], "", DIGITS) for e in found.errors)
+    rows = tuple((e.name, *pair, e.role) for e, pair in zip(found.errors, pairs, strict=True))
     return Section(
         "Error of prediction by record",
         f"Rms error over windows of {found.horizon:g} s, each from the state that explains it best."
         f" {' '.join(['Nothing was fitted to the records that confirm.', *steps_taken(found)])}",
-        table=Table(("record", "role", f"nominal model{unit}", f"final model{unit}"), rows),
+        table=Table(("record", "nominal model", "final model", "role"), rows),
     )
 
 
@@ -81,7 +78,7 @@ def _values(found: RecordsDiscovery) -> Section:
         "Parameters",
         "Std by blocks of windows, whose errors need not be white; unknown where too few windows"
         " tell of a value.",
-        table=Table(head, tuple(rows)),
+        table=Table(head, tuple(rows)).last_first,
     )
 
 

@@ -1,4 +1,4 @@
-"""In which scale errors count where outputs have several units, or none."""
+"""How errors of outputs of several units are counted together, in a sentence."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from identification.prediction.model import WindowModel
 from identification.quantities import quantity
 
 
-def describe_scale(model: WindowModel, unit: str) -> list[str]:
-    """A sentence that says what an error of 1 is; none where errors have a unit.
+def describe_scale(model: WindowModel) -> list[str]:
+    """A sentence that says what a mean square over unlike outputs is; none for outputs alike.
 
     Args:
         model: fitted; its scale is the rms error of each output under the nominal model.
-        unit: of the errors, "" where they count in that scale.
     """
-    if unit:
-        return []
     log = model.fit.problem.parts[0].predictor.log
+    units = [log.units.get(name, "") for name in log.output_names]
+    if len(set(units)) == 1:
+        return []
     each = ", ".join(
-        f"{quantity(float(s), unit=log.units.get(name, ''))} of {name}"
-        for name, s in zip(log.output_names, model.scale, strict=True)
+        f"{quantity(float(s), unit=unit)} of {name}"
+        for name, s, unit in zip(log.output_names, model.scale, units, strict=True)
     )
     return [
-        "Errors count in the scale of each output, its rms error under the nominal model: 1 is"
-        f" {each}."
+        "A mean square over outputs of several units counts the error of each output in multiples"
+        f" of its rms error under the fitted nominal model: {each}."
     ]

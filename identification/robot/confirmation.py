@@ -20,6 +20,7 @@ from identification.robot.record_error import (
     Confirmation,
     compare_unseen,
     compare_values,
+    of_record,
 )
 from identification.robot.robot import Robot
 
@@ -92,8 +93,8 @@ def _over_windows(robot: Robot, fit: RobotFit, found: RecordsFit) -> tuple[Confi
         predict_fitted(plant, records, found.horizon, model.scale, model.fit, {}),
     )
     return tuple(
-        Confirmation(e.name, e.before, e.after, found.unit, (AS_WRITTEN, FITTED))
-        for e in record_errors(records, found.scale, each, ([], []))
+        of_record(e, found.unit, (AS_WRITTEN, FITTED))
+        for e in record_errors(records, model.scale, each, ([], []))
     )
 
 
@@ -107,4 +108,4 @@ def _of_discovery(robot: Robot, found: RecordsDiscovery) -> tuple[Confirmation, 
                 " it to read_robot as one that confirms, and discover again"
             )
     each = [errors[log.name] for log in robot.records] or [*errors.values()]
-    return tuple(Confirmation(e.name, e.before, e.after, found.unit, WITHOUT) for e in each)
+    return tuple(of_record(e, found.unit, WITHOUT) for e in each)

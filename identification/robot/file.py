@@ -32,7 +32,7 @@ std = 0.1
 [effects]
 joints = ["slide"]                   # where they may act; the measured joints if not given
 turns = [1, 7, 14]                   # periods of a turn to try, where a motor's are known
-only = ["stribeck_friction"]         # candidates; all if not given
+only = ["stribeck_friction"]         # candidates; all if not given; slide_… where hinges are too
 
 A free name is a key under `parameters`, a path into the model or its start, or a size of an effect.
 """
@@ -40,7 +40,7 @@ A free name is a key under `parameters`, a path into the model or its start, or 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -48,44 +48,16 @@ from identification.errors import InputError
 from identification.files import is_file, read_toml
 from identification.robot.alike import Alike, read_alike
 from identification.robot.file_checks import (
-    Kinds,
     check_table,
     numbers,
     read_own,
     read_own_values,
     texts,
 )
+from identification.robot.file_keys import EFFECTS_KEYS, KEYS, PARAMETER_KEYS
 from identification.robot.trust import trusted
 
 LONGEST = 1e6  # [s] of a horizon
-
-_KINDS: Kinds = {
-    "model": (str, "a path in quotes"),
-    "outputs": (list, "a list of sensors"),
-    "free": (list, "a list of parameters"),
-    "own": (list, "a list of free parameters"),
-    "horizon": ((int, float), "a number of seconds"),
-    "every": (int, "a whole number of samples"),
-    "trust": (list, "a list of words in quotes"),
-    "start": (dict, "a table of numbers"),
-    "log": (dict, "a table"),
-    "columns": (dict, "a table"),
-    "fixed": (dict, "a table of numbers"),
-    "parameters": (dict, "a table of tables"),
-    "own_values": (dict, "a table of tables, one for each log"),
-    "spread": (dict, "a table of tables"),
-    "effects": (dict, "a table"),
-}
-_RECORD: Kinds = {
-    **dict.fromkeys(("path", "unit", "about"), (str, "text in quotes")),
-    **dict.fromkeys(
-        ("value", "prior", "known", "lower", "upper", "scale"), ((int, float), "a number")
-    ),
-}
-_EFFECTS: Kinds = {
-    **dict.fromkeys(("joints", "only"), (list, "a list of names")),
-    "turns": (list, "a list of numbers above zero"),
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,10 +118,10 @@ def read_robot_file(path: str | Path) -> RobotFile:
     """
     path = Path(path)
     content = read_toml(path, "robot file, such as robot.toml")
-    check_table(content, _KINDS, str(path))
+    check_table(content, KEYS, str(path))
     for key in ("model", "free"):
         if not content.get(key):
-            raise InputError(f"{path} does not say {key!r}; give {_KINDS[key][1]}")
+            raise InputError(f"{path} does not say {key!r}; give {KEYS[key][1]}")
     horizon = content.get("horizon")
     if horizon is not None and abs(horizon) > LONGEST:
         raise InputError(
@@ -161,7 +133,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
     for name, record in records.items():
         if not isinstance(record, dict):
             raise InputError(f"parameters.{name} in {path} must be a table")
-        check_table(record, _RECORD, f"parameters.{name} in {path}")
+        check_table(record, PARAMETER_KEYS, f"parameters.{name} in {path}")
         if name not in free:
             raise InputError(
                 f"{path} tells of parameter {name!r}, which is not among its `free`"
@@ -175,7 +147,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
     if twice:
         raise InputError(f"{path} gives {twice[0]} under [start] and frees it; keep one of both")
     effects = content.get("effects", {})
-    check_table(effects, _EFFECTS, f"effects in {path}")
+    check_table(effects, EFFECTS_KEYS, f"effects in {path}")
     model = path.parent / content["model"]
     if not is_file(model):
         raise InputError(f"{path} names the model {model}, which is no file; correct it there")
@@ -199,27 +171,3 @@ def read_robot_file(path: str | Path) -> RobotFile:
         turns=numbers(effects.get("turns", []), "effects.turns", path),
         spread=alike,
     )
-
-
-def with_spread(file: RobotFile, word: str) -> RobotFile:
-    """A robot's file with its own spread ("usual"), without deviations ("none"), or with another.
-
-    Args:
-        file: of the robot.
-        word: one of these words, or the path of a TOML with tables [spread.NAME].
-
-    Raises:
-        InputError: there is no such file, or it holds anything else.
-    """
-    if word == "usual":
-        return file
-    alike = tuple(replace(a, deviates=False) for a in file.spread)
-    if word != "none":
-        if not is_file(Path(word)):
-            raise InputError(f"no spread {word!r}; give none, usual, or a TOML file")
-        content = read_toml(Path(word))
-        check_table(content, {"spread": _KINDS["spread"]}, word)
-        alike = read_alike(content, Path(word), file.by_itself)
-    free = (*file.by_itself, *(n for a in alike for n in a.names))
-    records = {n: r for n, r in file.records.items() if n in free}
-    return replace(file, free=free, records=records, spread=alike)

@@ -16,7 +16,7 @@ from identification.estimation.estimation import estimate
 from identification.estimation.fit import Fit, assess
 from identification.prediction.records_fit import RecordsFit, fit_records
 from identification.robot.checks import refuse_horizon
-from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation
+from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, of_record
 from identification.robot.robot import Robot
 
 FEWEST = 10  # measured values for each parameter
@@ -95,7 +95,7 @@ class RobotFit:
         if isinstance(self.found, Fit):
             return ()
         return tuple(
-            Confirmation(e.name, e.before, e.after, self.found.unit, (AS_WRITTEN, FITTED))
+            of_record(e, self.found.unit, (AS_WRITTEN, FITTED))
             for e in self.found.errors
             if e.role == "confirm"
         )

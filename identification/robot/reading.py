@@ -9,8 +9,9 @@ from pathlib import Path
 from identification.effects.axes import axes
 from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
-from identification.robot.file import RobotFile, read_robot_file, with_spread
+from identification.robot.file import RobotFile, read_robot_file
 from identification.robot.free_inertias import inertias_sentence
+from identification.robot.other_spread import with_spread
 from identification.robot.robot import Robot, read_robot_log, robot_of
 from identification.robot.start import start_sentence
 from identification.robot.step_error import refuse_coarse_steps

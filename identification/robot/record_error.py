@@ -11,6 +11,7 @@ from identification.effects.jointed import JointPlant
 from identification.logs.by_unit import rms_by_unit
 from identification.logs.log import Log
 from identification.model.predictor import Plant, Predictor
+from identification.prediction.record_errors import RecordError
 from identification.quantities import alike
 from identification.report.error_words import error_words, kind, listed
 from identification.robot.robot import Robot
@@ -27,10 +28,9 @@ class Confirmation:
         log: name of the record.
         before: rms error of the first model, over all outputs.
         after: rms error of the second model.
-        unit: unit of the errors; empty where the outputs have several.
+        unit: of these two; empty where the outputs have several, or none.
         models: what the two models are, in words.
-        before_by_unit: error of the first model by the outputs' units, each in it; empty over a
-            horizon, where errors count in the scale of each output.
+        before_by_unit: error of the first model by the outputs' units, each in it.
         after_by_unit: likewise of the second model.
     """
 
@@ -57,6 +57,18 @@ class Confirmation:
         before, after = error_words([self.before_by_unit, self.after_by_unit], digits=3)
         each = listed([f"{_change(*pair)} ({kind(u)})" for u, pair in pairs.items()])
         return f"{before} {first}, {after} {second}; mean square {each}"
+
+
+def of_record(error: RecordError, unit: str, models: tuple[str, str]) -> Confirmation:
+    """The errors that a fit or a discovery over a horizon has found on a record.
+
+    Args:
+        error: of the record.
+        unit: of its errors over all outputs.
+        models: what the two models are, in words.
+    """
+    e = error
+    return Confirmation(e.name, e.before, e.after, unit, models, e.before_by_unit, e.after_by_unit)
 
 
 def compare_values(

@@ -16,6 +16,7 @@ from identification.effects.catalogue import all_effects
 from identification.effects.effect import Effect
 from identification.effects.joint_catalogue import TURNS
 from identification.effects.joint_plant import JointPlant, candidates, joint_plant
+from identification.effects.named import unknown_effect
 from identification.errors import InputError, told_of, unknown_name
 from identification.logs.decimation import decimate
 from identification.logs.log import Log
@@ -173,7 +174,7 @@ def robot_of(
     for name in file.only:
         if name not in {e.name for e in effects}:
             where = f"effect under effects.only in {file.path}:"
-            raise unknown_name(where, name, (e.name for e in effects))
+            raise unknown_effect(where, name, effects)
     priors = [free_parameter(file, name, model, effects, log) for name in file.free]
     logs = (log, *others, *records)
     valued = value_parameters(file, model, effects, logs)

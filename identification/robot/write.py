@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from identification.discovery.final_values import keep_of_robot
+from identification.effects.kinds import SLIDE
 from identification.files import write_text
 from identification.robot.parameters import KNOWN, Free, effect_sizes
 from identification.robot.robot import Robot
@@ -50,8 +51,10 @@ def write_robot(
     lines += [
         f"model = {_text(os.path.relpath(file.model, place))}",
         f"outputs = {_list(robot.log.output_names)}",
-        f"free = {_list([*file.by_itself, *found])}",
     ]
+    if any(SLIDE in name for name in found):
+        lines.append(f"# effects with {SLIDE} in their names act on slides, the others on hinges")
+    lines.append(f"free = {_list([*file.by_itself, *found])}")
     lines += [f"own = {_list(own)}"] if own else []
     lines += [] if file.horizon is None else [f"horizon = {file.horizon!r}"]
     lines += [f"every = {file.every}"] if file.every > 1 else []

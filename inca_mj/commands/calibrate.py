@@ -122,7 +122,7 @@ def keep(found: Calibration, out: Path) -> None:
             "Records", "Free runs over samples that no fit of physical values has seen.",
             table=Table(GAPS, gaps),
         ),
-        Section("Common values", table=Table(COMMON, common)),
+        Section("Common values", table=Table(COMMON, common).last_first),
         Section("Drives and points", figures=captions),
         Section("Deviation of each drive [%]", table=Table(EACH, drives)),
         Section("Displacement of each point [mm]", table=Table(POINTS, points)),

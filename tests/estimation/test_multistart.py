@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 from estimation_plants import record, slider
+from unlike_cases import MODEL, PARAMETERS, TRUE, write_robot_and_logs
 
-from identification import DivergenceError, InputError
+from identification import DivergenceError, InputError, joint_plant, read_robot
 from identification.estimation import multistart
-from identification.estimation.estimation import Options
+from identification.estimation.ended import LOSSES, cost
+from identification.estimation.estimation import Options, estimate
 from identification.estimation.multistart import estimate_from
 
 ONCE = Options(horizons=(1.0,), max_evaluations=20)
@@ -51,3 +53,49 @@ def test_a_start_that_the_plant_cannot_have_is_passed_over(monkeypatch):
     monkeypatch.setattr(multistart, "ENOUGH", 0.0)
     found = estimate_from(slider(stiffness=18.0), log, ("stiffness",), 3, 0)
     assert np.isfinite(found.rms).tolist() == [True, False, True]
+
+
+def test_the_best_start_is_that_of_the_weighted_criterion(monkeypatch, tmp_path):
+    """An error of 1 mm is far more than noise of 20 µm, and a smaller number than one of 3 mrad."""
+    folder = write_robot_and_logs(tmp_path)
+    log = read_robot(folder / "robot.toml", folder / "first.csv").log
+    plant, names = joint_plant(MODEL, PARAMETERS, log), tuple(TRUE)
+    slide_is_off, hinge_is_off = [TRUE["d"], 1.2 * TRUE["b"]], [1.1 * TRUE["d"], TRUE["b"]]
+    starts = np.array([slide_is_off, hinge_is_off])
+    monkeypatch.setattr(multistart, "_around", lambda *_: starts)
+    stay = Options(horizons=(1.0,), max_evaluations=1)
+    found = estimate_from(plant, log, names, 2, 0, options=stay)
+    assert found.rms[0] < found.rms[1]  # over numbers in SI units
+    assert found.cost[1] < found.cost[0]
+    assert [*found.best.values.values()] == pytest.approx(hinge_is_off)
+
+
+@pytest.mark.parametrize("loss", LOSSES)
+def test_the_criterion_is_that_which_the_search_lowers(loss):
+    log = record(slider(), ("position", "rate"), noise=1e-3)
+    far, ends = slider(stiffness=15.0), []
+    for most in (1, 60):
+        options = Options(
+            horizons=(1.0,), loss=loss, priors={"stiffness": 0.1}, max_evaluations=most
+        )
+        found = estimate(far, log, ("stiffness",), options=options)
+        ends.append(cost(found, error_of(found), found.space.encode(found.start)))
+    assert ends[1] < ends[0]
+
+
+def error_of(found):
+    predicted = found.predictor.predict(found.space.decode(found.q))[0]
+    return found.predictor.log.outputs - predicted
+
+
+def test_with_an_unknown_covariance_units_do_not_matter():
+    log = record(slider(), ("position", "rate"), noise=1e-3)
+    ends = []
+    for stiffness in (18.0, 19.5):
+        options = Options(criterion="det", horizons=(1.0,), max_evaluations=1)
+        found = estimate(slider(stiffness=stiffness), log, ("stiffness",), options=options)
+        units = (1.0, (1e3, 1.0))  # position in m, then in mm
+        ends.append([cost(found, error_of(found) * unit, found.q) for unit in units])
+    (far, far_in_mm), (near, near_in_mm) = ends
+    assert near < far
+    assert near_in_mm - far_in_mm == pytest.approx(near - far, rel=1e-6)

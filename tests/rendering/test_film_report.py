@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 import pytest
 
 from identification.errors import InputError
-from identification.report import page as report_module
+from identification.report import media
 from identification.report.page import Section, Table, write_report
 from inca_mj.report.figures import simulation_figures
 
@@ -64,7 +64,7 @@ def test_the_verdict_comes_first_and_text_is_escaped(page):
 
 
 def test_a_figure_of_many_points_becomes_pixels(tmp_path, pictures, monkeypatch):
-    monkeypatch.setattr(report_module, "_LARGEST_SVG", 100)
+    monkeypatch.setattr(media, "_LARGEST_SVG", 100)
     path = write_report(tmp_path / "r.html", "t", [], [Section("s", figures=pictures[:1])])
     assert '<img src="data:image/png;base64,' in path.read_text()
 

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from identification.report import page as page_module
 from identification.report.discovery_figures import gains_figure
 from identification.report.discovery_report import write_discovery_report
 from identification.report.effect_words import describe_gains
 from identification.report.origin import _command, origin
-from identification.report.page import Section, Table, write_report
+from identification.report.page import LONG, Section, Table, write_report
 from identification.report.style import SERIES
 from identification.report.vector import DARK, svg
+from identification.report.whole_quantities import whole_quantities
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -104,7 +104,7 @@ def test_the_proof_of_a_name_stands_in_the_report_as_in_the_terminal(page):
 
 
 def test_long_tables_are_folded_and_paper_says_where_they_are(tmp_path):
-    rows = tuple((f"p{k}", k) for k in range(page_module.LONG + 1))
+    rows = tuple((f"p{k}", k) for k in range(LONG + 1))
     sections = [Section(t, table=Table(("name", "value"), r)) for t, r in (
         ("long", rows), ("short", rows[:-1]))]  # fmt: skip
     text = write_report(tmp_path / "r.html", "t", [], sections).read_text(encoding="utf-8")
@@ -184,10 +184,10 @@ def test_titles_are_escaped(tmp_path):
     ],
 )
 def test_no_line_ends_between_a_number_and_its_unit(text, kept):
-    said = str(page_module.whole_quantities(text))
+    said = str(whole_quantities(text))
     assert re.findall(r'<span class="whole">(.*?)</span>', said) == kept
     assert re.sub(r"<[^>]*>", "", said) == text
-    assert "<b>" not in page_module.whole_quantities("<b> 3 m & more")
+    assert "<b>" not in whole_quantities("<b> 3 m & more")
 
 
 def test_a_section_whose_figures_stand_above_says_so(page):
@@ -199,10 +199,10 @@ def test_a_section_whose_figures_stand_above_says_so(page):
 
 
 def test_sizes_without_a_unit_are_all_in_percent():
-    from identification.report.discovery_tables import _sized
+    from identification.report.shown_words import sized
 
-    assert [_sized(value, "") for value in (0.3, 1.0, 2.5)] == ["30 %", "100 %", "250 %"]
-    assert _sized(0.02, "m") == "20 mm"
+    assert [sized(value, "") for value in (0.3, 1.0, 2.5)] == ["30 %", "100 %", "250 %"]
+    assert sized(0.02, "m") == "20 mm"
 
 
 def test_the_two_gains_are_told_apart(page):

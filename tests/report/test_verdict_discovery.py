@@ -14,9 +14,10 @@ from identification.report.discovery_errors import floor_rms
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_tables import parameters_section
 from identification.report.discovery_text import discovery_text
-from identification.report.discovery_verdict import diff_line, discovery_verdict
+from identification.report.discovery_verdict import discovery_verdict
 from identification.report.effect_words import describe_effect
 from identification.report.finding_words import describe_finding, sentence
+from identification.report.named_words import diff_line
 from identification.report.record_gaps import record_gaps
 
 

@@ -7,18 +7,9 @@ import numpy as np
 import pytest
 from fake_discovery import found as found_by_hand
 from robot_cases import run
+from unlike_cases import MODEL, NOISE, TOML, TRUE, write_robot_and_logs
 
-from identification import (
-    InputError,
-    Log,
-    Parameter,
-    Predictor,
-    discover,
-    fit,
-    joint_plant,
-    read_robot,
-    write_log,
-)  # fmt: skip
+from identification import InputError, discover, fit, read_robot
 from identification.logs.by_unit import relative
 from identification.report.discovery_json import discovery_to_json
 from identification.report.discovery_sections import gap_section, where_section
@@ -27,56 +18,12 @@ from identification.report.error_words import error_words
 from identification.report.fit_verdict import fit_verdict
 from identification.report.vector import svg
 
-STEP, NOISE = 0.01, {"turn": 1e-3, "way": 2e-5}  # [s], [rad] and [m]
-MODEL = """<mujoco>
-  <option timestep="0.005" gravity="0 0 0" integrator="RK4"/>
-  <worldbody>
-    <body name="arm"><inertial pos="0 0 0" mass="1" diaginertia="0.1 0.1 0.1"/>
-      <joint name="hinge" axis="0 1 0" stiffness="2" damping="0.2"/></body>
-    <body name="cart"><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>
-      <joint name="slide" type="slide" axis="1 0 0" stiffness="200" damping="4"/></body>
-  </worldbody>
-  <actuator><motor name="torque" joint="hinge"/><motor name="force" joint="slide"/></actuator>
-  <sensor><jointpos name="turn" joint="hinge"/><jointpos name="way" joint="slide"/></sensor>
-</mujoco>"""
 PAIR = r"[\d.]+ [mµ]*rad{0} \(angles\) and [\d.]+ [mµ]*m{0} \(slides\)"
-TRUE = {"d": 0.2, "b": 4.0}
-PARAMETERS = [
-    Parameter(name=name, value=value, unit=unit, where=f"joint/{where}.damping", lower=0.0)
-    for (name, value), unit, where in zip(
-        TRUE.items(), ("N m s/rad", "N s/m"), ("hinge", "slide"), strict=True
-    )
-]
-TOML = """model = "robot.xml"
-free = ["d", "b"]
-[parameters.d]
-path = "joint/hinge.damping"
-unit = "N m s/rad"
-value = 0.3
-[parameters.b]
-path = "joint/slide.damping"
-unit = "N s/m"
-value = 3.0
-"""
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    path = tmp_path_factory.mktemp("unlike")
-    (path / "robot.xml").write_text(MODEL)
-    (path / "robot.toml").write_text(TOML)
-    rng = np.random.default_rng(3)
-    for name in ("first", "second"):
-        u = np.repeat(rng.choice([-1.0, 1.0], (25, 2)), 20, axis=0) * (0.5, 2.0)
-        log = Log(
-            time=STEP * np.arange(len(u)), inputs=u, outputs=0.01 * u, name=name,
-            input_names=("torque", "force"), output_names=("turn", "way"),
-        )  # fmt: skip
-        plant = joint_plant(MODEL, PARAMETERS, log)
-        y = Predictor(plant, log, (), TRUE).predict(np.empty((1, 0)))[0]
-        y = y + np.array([*NOISE.values()]) * rng.standard_normal(y.shape)
-        write_log(replace(log, outputs=y), path / f"{name}.csv")
-    return path
+    return write_robot_and_logs(tmp_path_factory.mktemp("unlike"))
 
 
 def test_sentences_tell_each_unit_by_itself(folder, capsys):

@@ -1,0 +1,130 @@
+"""The verdict of a discovery on several records in sentences, and what supports it."""
+
+from __future__ import annotations
+
+from identification.prediction.result import NamedByPrediction, RecordsDiscovery
+from identification.report.effect_words import describe_effect, phrase
+from identification.report.error_words import change_words, error_words
+from identification.report.finding_words import describe_finding, sentence
+from identification.report.refitted_words import sizes_words
+from identification.report.scale_words import describe_scale
+
+NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
+DIGITS = 3  # of errors over a horizon
+
+
+def records_verdict(found: RecordsDiscovery) -> list[str]:
+    """The verdict first, then what supports it."""
+    return [*_verdict(found), *describe_scale(found.nominal)]
+
+
+def _verdict(found: RecordsDiscovery) -> list[str]:
+    if found.verdict == "nothing missing":
+        before, noise = _left(found)
+        return [
+            "Nothing is missing, as far as these records can tell: no candidate lowers the error of"
+            f" prediction on unseen data beyond chance. It is {before} over"
+            f" {found.horizon:g} s, where the sensors make {noise}." + _rest(found),
+            *(sentence(describe_finding(finding)) for finding in found.findings),
+        ]
+    if found.verdict == "unknown effect":
+        return [_unknown(found)]
+    said = [_named(found, named) for named in found.named]
+    said.append(_proof(found))
+    said += [sentence(describe_finding(finding)) for finding in found.findings]
+    return said
+
+
+def _rest(found: RecordsDiscovery) -> str:
+    """How far the inputs would have to err to make what the sensors do not."""
+    if found.input_error < NO_ERROR:
+        return " The sensors alone would make it."
+    return f" Inputs that err by {100 * found.input_error:.2g} % of their rms would make the rest."
+
+
+def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
+    first = "Missing from the model" if named is found.named[0] else "Missing too"
+    if found.verdict == "unlisted effect":
+        first += ", in no catalogue and drawn from the data"
+    mine = f"{describe_effect(named.effect.candidate)}{_twin(named)}"
+    sizes = sizes_words(named.effect)
+    confidence = f"{100 * named.effect.confidence:.0f} %"
+    others = [f"{describe_effect(r.candidate)} ({100 * r.confidence:.0f} %)" for r in named.rivals]
+    if named.one_of:
+        said = (
+            f"{first} is one of these, which these records do not surely tell apart:"
+            f" {'; '.join([f'{mine} ({confidence})', *others])}. The first is put into the model:"
+            f" {sizes}."
+        )
+    else:
+        said = f"{first}: {mine}, {sizes}; confidence {confidence}{_compared(named)}."
+        said += f" Less likely: {', '.join(others)}." if others else ""
+    said += _agreement(found, named)
+    if named.disagrees:
+        said += (
+            f" The named effect raises the error on {', '.join(named.disagrees)}, beyond chance."
+        )
+    return said
+
+
+def _twin(named: NamedByPrediction) -> str:
+    """The other name of the same force."""
+    if named.same_as is None:
+        return ""
+    return (
+        f' (or "{phrase(named.same_as)}": below the Coulomb friction it is the same force, and no'
+        " record tells which of the two it is)"
+    )
+
+
+def _compared(named: NamedByPrediction) -> str:
+    """What a confidence rests on."""
+    if not named.compared:
+        return ", the highest that is ever said, because no rival was near enough to be refitted"
+    rivals = "1 rival that was" if named.compared == 1 else f"{named.compared} rivals that were"
+    return f" beside {rivals} refitted in its place"
+
+
+def _agreement(found: RecordsDiscovery, named: NamedByPrediction) -> str:
+    """On how many unseen records it helps, those left out that only repeat others."""
+    confirm = [r.log.name for r in found.records if r.role == "confirm"]
+    distinct = [name for name in confirm if name not in found.repeats]
+    helped = sum(name in named.agrees for name in distinct)
+    if not distinct:
+        return " All unseen records repeat what was fitted, so that they hardly confirm it."
+    said = f" The named effect lowers the error on {helped} of {len(distinct)} unseen records."
+    if found.repeats:
+        one = len(found.repeats) == 1
+        said += f" {', '.join(found.repeats)} {'repeats' if one else 'repeat'} the motion of others"
+        said += " and does not count." if one else " and do not count."
+    return said
+
+
+def _proof(found: RecordsDiscovery) -> str:
+    errors = found.before.rms_by_unit, found.after.rms_by_unit
+    change, (noise,) = change_words(*errors, [found.noise_by_unit], DIGITS)
+    fall = 1 - (found.after.rms / found.before.rms) ** 2
+    return (
+        f"On records that no fit has seen, the error of prediction over {found.horizon:g} s falls"
+        f" {change} (mean square {-100 * fall:+z.0f} %); the sensors make {noise}."
+        f" That is {100 * found.share:z.0f} % of the power above the sensors' noise."
+    )
+
+
+def _unknown(found: RecordsDiscovery) -> str:
+    before, noise = _left(found)
+    percent = f"{100 * found.input_error:.2g}"
+    needed = f"; inputs would have to err by {percent} % of their rms to make that"
+    needed = needed if found.input_error > 0 else ""  # the fitted windows leave no more than noise
+    return (
+        "Something is missing that none of the known effects surely explains: the fitted model is"
+        f" {before} off over {found.horizon:g} s on unseen data, where the sensors make"
+        f" {noise}{needed}. It is not named here rather than named wrongly."
+        + "".join(f" {sentence(describe_finding(finding))}" for finding in found.findings)
+    )
+
+
+def _left(found: RecordsDiscovery) -> tuple[str, str]:
+    """What the nominal model leaves on unseen data, and what the sensors make of it."""
+    errors = found.before.rms_by_unit, found.noise_by_unit
+    return error_words(errors, digits=DIGITS)[0], error_words(errors, "", DIGITS)[1]

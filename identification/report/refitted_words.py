@@ -1,0 +1,30 @@
+"""An effect that was refitted over a horizon, in words: its sizes, and what it predicts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from identification.prediction.result import RefittedEffect
+from identification.report.effect_words import describe_effect
+from identification.report.records_finding_words import DOUBTS
+from identification.report.records_values import value_with_std
+
+
+def describe_refitted(effect: RefittedEffect) -> str:
+    """An effect with its sizes, and what it does for unseen records."""
+    fall = 100 * effect.prediction.fall
+    return (
+        f"{describe_effect(effect.candidate)}, {sizes_words(effect)}; unseen mean square"
+        f" {-fall:+z.0f} %, t = {effect.prediction.t:z.1f}"
+        + (f"; {DOUBTS[effect.doubt]}" if effect.doubt else "")
+    )
+
+
+def sizes_words(effect: RefittedEffect) -> str:
+    """Sizes and shapes, each with its std; no shape that no data tell."""
+    untold = {s.name for s in effect.candidate.effect.shapes}
+    return ", ".join(
+        f"{name} not felt" if np.isinf(std) else f"{name} = {value_with_std(v, std, unit)}"
+        for name, (v, std, unit) in effect.parameters.items()
+        if name not in untold or np.isfinite(std)
+    )

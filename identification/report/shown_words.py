@@ -1,0 +1,134 @@
+"""What a log would have shown: one line for each effect at its place, the hardest to see first.
+
+The hardest come first because the others would have been seen: who reads that nothing is missing
+asks what may be missing all the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf, isfinite
+
+from identification.discovery.effect_results import Detectable
+from identification.effects.effect import Candidate
+from identification.quantities import quantity
+from identification.report.discovery_limits import is_plausible, largest
+from identification.report.effect_words import describe_effect
+
+LISTED = 8  # effects that have a line; the others are counted
+FEW = 4  # that are told in a paragraph, above the table of all
+NEVER = "what this log would not have shown, at no plausible size"
+WHERE = (
+    "An effect is judged on all places alike or, where it acts on one at a time, at the place where"
+    " it is hardest to see."
+)
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a log would have shown of an effect.
+
+    Attributes:
+        candidate: the effect at the place where it is judged.
+        sizes: the smallest that shows of each of its sizes.
+    """
+
+    candidate: Candidate
+    sizes: tuple[Detectable, ...]
+
+    @property
+    def share(self) -> float:
+        """The smallest size that shows over the largest plausible one, the best of all sizes."""
+        return min(d.smallest / largest(d) if isfinite(d.smallest) else inf for d in self.sizes)
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether a plausible size shows."""
+        return any(map(is_plausible, self.sizes))
+
+
+def shown_effects(detectable: Sequence[Detectable]) -> list[Shown]:
+    """What a log would have shown, one for each effect, the hardest to see first."""
+    each: dict[str, list[Detectable]] = {}
+    for d in detectable:
+        each.setdefault(d.candidate.effect.name, []).append(d)
+    shown = [Shown(sizes[0].candidate, tuple(sizes)) for sizes in each.values()]
+    return sorted(shown, key=lambda s: -s.share)
+
+
+def shown_lines(detectable: Sequence[Detectable]) -> list[str]:
+    """The same for a terminal: what never shows, the hardest of the others, and how many more."""
+    shown = shown_effects(detectable)
+    never = [f"  {describe_effect(s.candidate)}" for s in shown if not s.is_seen]
+    seen = [s for s in shown if s.is_seen]
+    lines = [f"{NEVER}:", *never] if never else []
+    if seen:
+        lines.append("what this log would have shown in 9 cases of 10, the hardest to see first:")
+        lines += [f"  {describe_effect(s.candidate)}: {_from(s)}" for s in seen[:LISTED]]
+        lines += [f"  {more}" for more in _more(seen)]
+    return [*lines, f"  {WHERE}"] if lines else []
+
+
+def shown_sentences(detectable: Sequence[Detectable]) -> str:
+    """The same in a paragraph, beside which a table lists all effects; "" for none."""
+    shown = shown_effects(detectable)
+    never = [describe_effect(s.candidate) for s in shown if not s.is_seen]
+    seen = [s for s in shown if s.is_seen]
+    said = [f"{NEVER.capitalize()}: {'; '.join(never)}."] if never else []
+    if seen:
+        hard = "; ".join(f"{describe_effect(s.candidate)}, {_from(s)}" for s in seen[:FEW])
+        said.append(f"Hardest to see{' of the others' if never else ''}: {hard}.")
+    return " ".join([*said, WHERE]) if said else ""
+
+
+def shown_rows(detectable: Sequence[Detectable]) -> list[tuple[str, str, str]]:
+    """The same as a table of all effects: effect and place, smallest seen, largest plausible."""
+    return [
+        (
+            describe_effect(s.candidate),
+            "; ".join(_named(d, _smallest(d), s) for d in s.sizes)
+            if s.is_seen
+            else "not by this log",
+            "; ".join(_named(d, sized(largest(d), d.unit), s) for d in s.sizes),
+        )
+        for s in shown_effects(detectable)
+    ]
+
+
+def sized(value: float, unit: str) -> str:
+    """A size; one without a unit is a share, in percent also where it is 1 or more."""
+    if not isfinite(value):
+        return "–"
+    return quantity(value, unit=unit) if unit else f"{100 * value:.3g} %"
+
+
+def _smallest(d: Detectable) -> str:
+    return sized(d.smallest, d.unit) if is_plausible(d) else "at no plausible size"
+
+
+def _named(d: Detectable, said: str, shown: Shown) -> str:
+    """A size with its name, where the effect has several."""
+    return f"{d.size} {said}" if len(shown.sizes) > 1 else said
+
+
+def _from(shown: Shown) -> str:
+    """From which sizes on an effect shows, and up to which it is plausible."""
+    return ", ".join(
+        f"{d.size} from {sized(d.smallest, d.unit)} on (plausible up to {sized(most, d.unit)})"
+        if isfinite(most := largest(d))
+        else f"{d.size} from {sized(d.smallest, d.unit)} on"
+        for d in filter(is_plausible, shown.sizes)
+    )
+
+
+def _more(seen: Sequence[Shown]) -> list[str]:
+    """How many effects have no line."""
+    if len(seen) <= LISTED:
+        return []
+    count, share = len(seen) - LISTED, seen[LISTED].share
+    who = "1 more effect, which shows" if count == 1 else f"{count} more effects, which show"
+    return [
+        f"and {who} from {100 * share:.2g} % of the largest plausible size on, or less; report and"
+        " JSON list all"
+    ]
