@@ -189,12 +189,28 @@ def test_a_stopped_job_goes_on_where_it_was(serial):
 @quiet
 def test_what_a_backend_refuses(serial, tmp_path, refusal, monkeypatch, word, jobs, options, words):
     monkeypatch.setattr("identification.sweep.backends.dask_cluster.WAIT", 1)
+    monkeypatch.setenv("PATH", str(tmp_path))  # no Slurm
     path, _ = serial
 
     def call():
         return run(path, tmp_path / "out", backend_of(word, jobs, tmp_path, options))
 
     assert words in refusal(call)
+
+
+def test_a_cluster_that_takes_no_job_is_told(serial, tmp_path, refusal, monkeypatch):
+    programs, said = tmp_path / "bin", "Unable to contact slurm controller"
+    programs.mkdir()
+    for name in ("sbatch", "srun"):
+        (programs / name).write_text(f"#!/bin/sh\necho '{said}' >&2\nexit 1\n")
+        (programs / name).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{programs}:/usr/bin:/bin")
+
+    def call():
+        return run(serial[0], tmp_path / "out", backend_of("slurm", 1, tmp_path, {}))
+
+    assert f"slurm took no job: {said}" in (words := refusal(call))
+    assert "--resume" in words
 
 
 @pytest.mark.parametrize(

@@ -82,8 +82,15 @@ class Submitit:
 
         def chunks(count: int) -> list[Any]:
             made = (Chunk(work, some) for _ in range(count) if (some := [*islice(waiting, size)]))
-            with one_thread():  # the jobs have our environment
-                return [executor.submit(chunk) for chunk in made]
+            try:
+                with one_thread():  # the jobs have our environment
+                    return [executor.submit(chunk) for chunk in made]
+            except submitit.core.utils.FailedJobError as error:
+                raise LostWorkers(
+                    f"{self.cluster} took no job: {_last_line(error)}; see with `sinfo` whether it"
+                    " answers, or correct --job; the records that were written are kept: run the"
+                    " same command with --resume"
+                ) from error
 
         jobs: list[Any] = []
         poll = POLL if self.cluster == "local" else 10
