@@ -11,10 +11,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from identification.discovery.options import DiscoveryOptions
-from identification.effects.effect import Candidate, Effect
+from identification.effects.effect import Candidate, Effect, Size
 from identification.prediction.fit import WindowFit
 from identification.prediction.scores import WindowScore, window_scores
 
+AND = " and "  # between places, in words
 MOST_EFFECTS = 4  # that are tried at several places; each takes a simulation for each of them
 ROUNDS = 3  # of leaving places out
 
@@ -31,7 +32,30 @@ def at_several(effect: Effect, places: Sequence[str]) -> Effect:
         for where in places
         for size in effect.sizes
     )
-    return replace(effect, sizes=sizes, places={" and ".join(places): ""})
+    return replace(effect, sizes=sizes, places={AND.join(places): ""})
+
+
+def at_places(several: Effect, keep: Sequence[str]) -> Effect:
+    """An effect of `at_several` at some of its places.
+
+    Args:
+        several: with a size for each of its places.
+        keep: those of its places that stay, in their order.
+    """
+    places = places_of(next(iter(several.places)))
+    m = len(several.sizes) // len(places)
+    sizes = tuple(
+        size
+        for k, where in enumerate(places)
+        if where in keep
+        for size in several.sizes[m * k : m * (k + 1)]
+    )
+    return replace(several, sizes=sizes, places={AND.join(keep): ""})
+
+
+def places_of(where: str) -> list[str]:
+    """The places of an effect of `at_several`, in words; of another effect its one place."""
+    return where.split(AND)
 
 
 def several_scores(
@@ -73,13 +97,17 @@ def felt_places(
             score.size[m * k : m * (k + 1)], score.std[m * k : m * (k + 1)], effect.sizes,
             strict=True,
         )  # fmt: skip
-        if all(
-            z.sign * v >= 0
-            and options.min_proof_t * std < abs(v) <= options.size_factor * z.largest
-            for v, std, z in own
-        ):
+        if all(is_felt(v, std, z, options) for v, std, z in own):
             out.append(where)
     return out
+
+
+def is_felt(value: float, std: float, size: Size, options: DiscoveryOptions) -> bool:
+    """Whether a size is beyond its std, and plausible in sign and magnitude."""
+    return bool(
+        size.sign * value >= 0
+        and options.min_proof_t * std < abs(value) <= options.size_factor * size.largest
+    )
 
 
 def _single(effect: Effect) -> list[str]:

@@ -20,6 +20,7 @@ from identification.estimation.options import Progress
 from identification.prediction.blocks import count_blocks
 from identification.prediction.exchange import exchanged, without_contradicted
 from identification.prediction.extension import with_fitting_steps
+from identification.prediction.idle_places import without_idle_places
 from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import as_begun, fit_nominal
 from identification.prediction.proof import find_doubt
@@ -204,13 +205,13 @@ def _checked(
 
 
 def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
-    """Without the effects that later ones made needless."""
+    """Without the effects, and without the places of effects, that later ones made needless."""
     task = state.task
-    model, keep = prune(
-        state.model, state.accepted, task.nominal_model, task.confirm, task.options, progress
-    )
+    rest = task.nominal_model, task.confirm, task.options, progress
+    model, keep = prune(state.model, state.accepted, *rest)
+    model, accepted = without_idle_places(model, [state.accepted[k] for k in keep], *rest)
     return replace(
-        state, model=model, accepted=tuple(state.accepted[k] for k in keep),
+        state, model=model, accepted=accepted,
         alternatives=tuple(state.alternatives[k] for k in keep),
     )  # fmt: skip
 

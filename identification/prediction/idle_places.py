@@ -1,0 +1,90 @@
+"""Places at which an effect that was named at several of them does nothing after all.
+
+The places were chosen before later effects were there. Where one of these explains what a place
+had explained, its size is no longer beyond its std; the name is then told without that place, if
+unseen records are predicted as well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
+from identification.effects.effect import Candidate
+from identification.estimation.options import Progress
+from identification.prediction.crossing import at_their_best
+from identification.prediction.extension import refitted
+from identification.prediction.model import WindowModel
+from identification.prediction.proof import find_doubt
+from identification.prediction.records import Record
+from identification.prediction.rivals import NEEDLESS
+from identification.prediction.selection import Contender
+from identification.prediction.several_places import at_places, is_felt, places_of
+from identification.prediction.unseen import compare
+
+
+def without_idle_places(
+    model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
+    confirm: Sequence[Record], options: DiscoveryOptions, progress: Progress,
+) -> tuple[WindowModel, tuple[Contender, ...]]:  # fmt: skip
+    """The model, and the accepted effects, without places that are no longer needed.
+
+    Args:
+        model: with all of the accepted effects.
+        accepted: in their order.
+        nominal_model: the other free parameters, and the horizon.
+        confirm: records that no fit may see.
+        options: what a size must be to count, and what is beyond chance.
+        progress: is told which places are left out.
+    """
+    out = []
+    for old in accepted:
+        fewer = _fewer(model, old.candidate, options)
+        smaller = None if fewer is None else _with(model, old.candidate, fewer, nominal_model,
+                                                   confirm, options)  # fmt: skip
+        if fewer is None or smaller is None:
+            out.append(old)
+            continue
+        idle = [p for p in places_of(old.candidate.where) if p not in places_of(fewer.where)]
+        progress(f"{old.candidate.effect.name}: no longer needed at {' and '.join(idle)}")
+        model = smaller
+        others = old.model.candidates[:-1]
+        out.append(replace(old, model=replace(old.model, candidates=(*others, fewer))))
+    return model, tuple(out)
+
+
+def _fewer(model: WindowModel, c: Candidate, options: DiscoveryOptions) -> Candidate | None:
+    """The effect at those of its places where it is felt; None where that is all, or none."""
+    places = places_of(c.where)
+    if len(places) < 2 or c.effect.own or not set(c.sizes) <= set(model.std):
+        return None
+    m, each = len(c.sizes) // len(places), [*zip(c.sizes, c.effect.sizes, strict=True)]
+    keep = [
+        where
+        for k, where in enumerate(places)
+        if all(
+            is_felt(model.values[name], model.std[name], size, options)
+            for name, size in each[m * k : m * (k + 1)]
+        )
+    ]
+    if not keep or keep == places:
+        return None
+    effect = at_places(c.effect, keep)
+    return replace(c, effect=effect, where=next(iter(effect.places)))
+
+
+def _with(
+    model: WindowModel, old: Candidate, fewer: Candidate, nominal_model: NominalModel,
+    confirm: Sequence[Record], options: DiscoveryOptions,
+) -> WindowModel | None:  # fmt: skip
+    """The model with fewer places; None where it predicts unseen records worse, or cannot."""
+    candidates = tuple(fewer if c.key == old.key else c for c in model.candidates)
+    without = refitted(model, candidates, nominal_model, confirm)
+    if without is None:
+        return None
+    horizon = float(nominal_model.horizon or 0.0)
+    without, (best,) = at_their_best(without, [model], horizon, confirm)
+    needless = find_doubt(compare(without.unseen, best.unseen), 1, options) in NEEDLESS
+    return without if needless else None
