@@ -16,7 +16,8 @@ from identification.effects.catalogue import all_effects
 from identification.effects.effect import Effect
 from identification.effects.joint_catalogue import TURNS
 from identification.effects.joint_plant import JointPlant, candidates, joint_plant
-from identification.errors import InputError, told_of, unknown_name
+from identification.effects.named import effect_of
+from identification.errors import InputError, nearest, told_of, unknown_name
 from identification.logs.decimation import decimate
 from identification.logs.log import Log
 from identification.logs.read import read_log
@@ -147,7 +148,9 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     refuse_milliseconds(model, file, log, Path(path))
     refuse_every(file, log)
     given = {n: u for n in inputs if (u := log.units.get(own[n]))}
-    log = replace(log, input_names=inputs, output_names=outputs, units={**units, **given})
+    factors = {n: log.factors[own[n]] for n in own if own[n] in log.factors}
+    log = replace(log, input_names=inputs, output_names=outputs, units={**units, **given},
+                  factors=factors)  # fmt: skip
     return decimate(log, file.every) if file.every > 1 else log
 
 
@@ -173,7 +176,8 @@ def robot_of(
     for name in file.only:
         if name not in {e.name for e in effects}:
             where = f"effect under effects.only in {file.path}:"
-            raise unknown_name(where, name, (e.name for e in effects))
+            names = [e.name for e in effects]
+            raise unknown_name(where, name, names, nearest(effect_of(name), names))
     priors = [free_parameter(file, name, model, effects, log) for name in file.free]
     logs = (log, *others, *records)
     valued = value_parameters(file, model, effects, logs)
