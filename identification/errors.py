@@ -106,16 +106,27 @@ def refuse_kind(value: object, kinds: type | tuple[type, ...], what: str) -> Non
         raise InputError(f"{what}, not {line} of type {type(value).__name__}")
 
 
-def unknown_name(what: str, name: str, known: Iterable[str]) -> InputError:
+def unknown_name(
+    what: str, name: str, known: Iterable[str], likely: str | None = None
+) -> InputError:
     """An `InputError` for a misspelt name, with the likely one first and all good ones listed.
 
-    Of more than `LISTED` good ones the nearest are listed.
+    Args:
+        what: the name is of.
+        name: the misspelt one.
+        known: good ones; of more than `LISTED` the nearest are listed.
+        likely: what was meant, where that is known; the nearest good one when None.
     """
     names = sorted(known)
-    close = get_close_matches(name, names, n=1)
-    hint = f" did you mean {close[0]!r}?" if close else ""
+    likely = likely or nearest(name, names)
+    hint = f" did you mean {likely!r}?" if likely else ""
     shown, rest = names, ""
     if len(names) > LISTED:
-        shown = get_close_matches(name, names, n=NEAREST, cutoff=0.0)
+        shown = sorted(get_close_matches(name, names, n=NEAREST, cutoff=0.0))
         rest = f" and {len(names) - len(shown)} more"
     return InputError(f"unknown {what} {name!r};{hint} known: {', '.join(shown)}{rest}")
+
+
+def nearest(name: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
+    """The good name that is most like another, from a share of letters on; None where none is."""
+    return next(iter(get_close_matches(name, sorted(known), n=1, cutoff=cutoff)), None)

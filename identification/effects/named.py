@@ -3,43 +3,80 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from difflib import get_close_matches
 
 from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
 from identification.effects.kinds import about_names
-from identification.errors import InputError, unknown_name
+from identification.errors import InputError, nearest, unknown_name
+
+NEAR = 0.5  # share of letters: the number and the kind of joint may be missing in a name
 
 
 def means_effect(name: str, effects: Sequence[Effect]) -> bool:
     """Whether a name is meant to be a number of an effect, and not a path into the model."""
-    near = get_close_matches(name.partition(".")[0], [e.name for e in effects], n=1)
-    return "/" not in name and ("@" in name or bool(near))
+    near = nearest(effect_of(name), (e.name for e in effects))
+    return "/" not in name and ("@" in name or near is not None)
 
 
-def unknown_effect(what: str, name: str, effects: Sequence[Effect]) -> InputError:
-    """An unknown name of an effect, the good ones, and when they begin with `slide_`."""
+def effect_of(name: str) -> str:
+    """The part of a name such as `coulomb_friction.f_c@slide` that is the effect's."""
+    return name.partition("@")[0].partition(".")[0]
+
+
+def unknown_effect(
+    what: str, name: str, effects: Sequence[Effect], likely: str | None = None
+) -> InputError:
+    """An unknown name of an effect, the good ones, and when they begin with `slide_`.
+
+    Args:
+        what: the name is of.
+        name: the unknown one.
+        effects: the good ones.
+        likely: what was meant, where that is known.
+    """
     names = [e.name for e in effects]
     note = about_names(name, names)
-    said = str(unknown_name(what, name, names))
+    said = str(unknown_name(what, name, names, likely or nearest(effect_of(name), names)))
     return InputError(f"{said}.{note}" if note else said)
 
 
 def unknown_number(name: str, effects: Sequence[Effect]) -> InputError:
     """What is wrong with a name that is no number of an effect."""
-    head, _, rest = name.partition(".")
-    size, at, place = rest.partition("@")
+    head, (whole, at, place) = effect_of(name), name.partition("@")
+    size = whole[len(head) + 1 :]
     own = next((e for e in effects if e.name == head), None)
+    every = [p.name for e in effects for p in effect_parameters(e)]
     if own is None:
-        return unknown_effect(f"effect in {name!r}:", head, effects)
+        return unknown_effect(f"effect in {name!r}:", head, effects, _meant(name, every))
     numbers = [p.name for p in effect_parameters(own)]
     # of a robot with slides and hinges each kind has effects of its own
-    there = [p.name for e in effects for p in effect_parameters(e)
-             if at and p.name.endswith(f"{head}.{size}@{place}")]  # fmt: skip
+    kin = [n for n in every if at and effect_of(n).endswith(head)]
+    kin = [n for n in kin if n.partition(".")[2].startswith(f"{size}@" if size else "")]
+    there = [n for n in kin if n.endswith(f"@{place}")]
     if there:
         return unknown_name(f"number of {head}:", name, there)
     if at and any(n.startswith(f"{head}.{size}@") for n in numbers):
         known = {at[1:]: where.partition(" ")[0] for where, at in own.places.items() if at}
         (kind,) = set(known.values())
-        return unknown_name(f"{kind} in {name!r}:", place, known)
-    return unknown_name(f"number of {head}:", name, numbers)
+        at_all = {n.partition("@")[2]: n for n in kin}
+        near = nearest(place, at_all)
+        likely = at_all[near] if near and near not in known else None
+        return unknown_name(f"{kind} in {name!r}:", place, known, likely)
+    return unknown_name(f"number of {head}:", name, numbers, _meant(name, numbers))
+
+
+def _meant(name: str, numbers: Sequence[str]) -> str | None:
+    """The number that is meant, where the name of the effect is wrong or the number is left out.
+
+    Its effect is the nearest of those that have such a number there, else of those that act there.
+    """
+    head, (_, at, place) = effect_of(name), name.partition("@")
+    there = [n for n in numbers if at and n.endswith(f"@{place}")] or list(numbers)
+    same = [n for n in there if n.partition(".")[2] == name[len(head) :].lstrip(".")]
+    same = same or [n for n in there if n.partition(".")[2] == name]
+    for some in (same, there):
+        if (found := nearest(name, some, NEAR)) is not None:
+            return found
+    heads = sorted({effect_of(n) for n in there}, key=len)
+    near = nearest(head, heads) or next((h for h in heads if head in h), None)
+    return next((n for n in there if effect_of(n) == near), None)

@@ -14,7 +14,7 @@ from identification.logs.sidecar import Sidecar
 from identification.logs.table import Table
 from identification.logs.units import to_si
 
-HUGE = 1e50  # of any unit: squares and cubes of it are numbers too
+HUGE = 1e15  # of any SI unit: no angle, way, force, voltage or current of a robot is so large
 
 
 def conversions(

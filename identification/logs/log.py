@@ -40,6 +40,7 @@ class Log:
         notes: remarks of its author.
         hold: the input between samples: "zoh" keeps the last value, "foh" draws a straight line.
         remarks: what was changed when it was read from a file, a sentence each.
+        factors: what its TOML multiplied columns with beside their units, by column.
         splits: named parts [start, end) [s], such as estimation and validation.
         values: values of a robot's parameters that hold in this log alone, by name, such as a
             payload.
@@ -65,6 +66,7 @@ class Log:
     values: Mapping[str, float] = field(default_factory=dict)
     begun: float = 0.0
     remarks: tuple[str, ...] = ()
+    factors: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         def put(attribute: str, value: object) -> None:
@@ -77,6 +79,7 @@ class Log:
         put("extras", MappingProxyType({k: _frozen(v) for k, v in self.extras.items()}))
         put("units", MappingProxyType(dict(self.units)))
         put("values", MappingProxyType(dict(self.values)))
+        put("factors", MappingProxyType(dict(self.factors)))
         put("splits", MappingProxyType({k: (a, b) for k, (a, b) in self.splits.items()}))
         self._check()
 
@@ -109,7 +112,7 @@ class Log:
     ) -> tuple[Callable[[type[Log], dict[str, Any]], Log], tuple[type[Log], dict[str, Any]]]:
         # A mapping proxy cannot be pickled, but logs are sent to other processes.
         values = {name: getattr(self, name) for name in self.__dataclass_fields__}
-        for name in ("extras", "units", "values", "splits"):
+        for name in ("extras", "units", "values", "splits", "factors"):
             values[name] = dict(values[name])
         return _rebuild, (type(self), values)
 

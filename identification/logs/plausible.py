@@ -13,12 +13,31 @@ from pathlib import Path
 import numpy as np
 
 from identification.errors import InputError
+from identification.logs.conversion import HUGE
 from identification.logs.cures import lines_of, toml_key
 from identification.logs.names import group, lookup
 from identification.logs.table import Table
 from identification.logs.units import to_si, units_that_fit
 
 TURN = 0.1  # of a turn: a jump of a wrapped angle differs from a whole turn by less
+
+
+def check_possible(table: Table) -> None:
+    """Refuse a number that no robot has, in whatever unit it is.
+
+    Args:
+        table: columns in SI; of time its own checks judge.
+
+    Raises:
+        InputError: there is one.
+    """
+    for name in (n for n in table.names if n != "time"):
+        row = int(np.argmax(np.abs(table[name])))
+        if abs(table[name][row]) > HUGE:
+            raise InputError(
+                f"{table.place(row)}: {name} is {table[name][row]:.4g}, beyond {HUGE:g}, which no"
+                " robot has; repair or cut the log there, or correct the unit of the column"
+            )
 
 
 def check_plausible(
@@ -28,6 +47,7 @@ def check_plausible(
     limits: Mapping[str, float],
     rates: Mapping[str, float],
     sidecar: Path,
+    overrule: str = "",
 ) -> None:
     """Refuse a column that is too large, or moves too fast, and name the unit that would fit.
 
@@ -38,6 +58,7 @@ def check_plausible(
         limits: largest plausible size by column or group [SI].
         rates: largest plausible speed by column or group [SI/s].
         sidecar: the TOML file that may give the unit.
+        overrule: how a user may overrule this, for the message.
 
     Raises:
         InputError: a column exceeds its limit.
@@ -52,6 +73,7 @@ def check_plausible(
                     f"{table.place(row)}: {name} is {column[row]:.4g} {unit}".rstrip()
                     + f", beyond the plausible {size:g} {unit}".rstrip()
                     + _cure(table, name, factors, unit, column[row] / factors[name], size, sidecar)
+                    + overrule
                 )
         if rate is not None:
             with np.errstate(over="ignore"):
@@ -66,6 +88,7 @@ def check_plausible(
                         _wrapped(unit, column[row + 1] - column[row])
                         or _cure(table, name, factors, unit, moved, rate, sidecar)
                     )
+                    + overrule
                 )
 
 

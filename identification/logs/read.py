@@ -14,8 +14,8 @@ from identification.errors import InputError
 from identification.files import read_bytes
 from identification.logs.conversion import conversions, converted
 from identification.logs.log import Log
-from identification.logs.names import check_column_names, check_keys
-from identification.logs.plausible import check_plausible
+from identification.logs.names import check_column_names, check_keys, lookup
+from identification.logs.plausible import check_plausible, check_possible
 from identification.logs.read_csv import parse_csv
 from identification.logs.read_mat import parse_mat
 from identification.logs.resampling import even_out
@@ -37,6 +37,7 @@ def read_log(
     named_in: Path | None = None,
     lenient: bool = False,
     said: Mapping[str, Any] | None = None,
+    overrule: str = "",
 ) -> Log:
     """Read a log; columns may stand in any order, and a file that cannot be right is refused.
 
@@ -57,6 +58,7 @@ def read_log(
             cells are put on an even grid (`identification.logs.resampling`), which the log's
             remarks say.
         said: keys of the sidecar that hold where it does not say otherwise.
+        overrule: how a user may overrule `limits` and `rates`, for their messages.
 
     Returns:
         The log in SI units, named after the file.
@@ -99,7 +101,9 @@ def read_log(
     check_time(time, table.place, sidecar.sampling_time)
     if sidecar.sampling_time:  # the grid is better than coarse stamps
         time = grid(time[0], sidecar.sampling_time, len(time))
-    check_plausible(table, factors, si, limits, rates, sidecar.file_of("units"))
+    if lenient:  # a log of a robot; others may hold any number
+        check_possible(table)
+    check_plausible(table, factors, si, limits, rates, sidecar.file_of("units"), overrule)
     return Log(
         time=time,
         inputs=_stacked(table, inputs),
@@ -114,6 +118,7 @@ def read_log(
         splits=sidecar.splits,
         values=sidecar.values,
         remarks=remarks,
+        factors={n: f for n in table.names if (f := lookup(sidecar.factors, n)) is not None},
     )
 
 

@@ -126,6 +126,11 @@ def unit_readings(
 def output_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
     """Other signs and places of the outputs that are not explained; see `unit_readings`."""
     yield from output_turns(log, bad, column)
+    yield from output_exchanges(log, bad, column)
+
+
+def output_exchanges(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
+    """Two outputs that are not explained, each in the other's place; see `unit_readings`."""
     y, out = log.outputs, [column[n] for n in log.output_names]
     for i, j in combinations(np.flatnonzero(bad).tolist(), 2):
         yield Reading(replace(log, outputs=_exchanged(y, i, j)), [i, j], "were they exchanged",
@@ -146,6 +151,11 @@ def output_turns(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterat
 def input_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
     """Other signs and places of the inputs; see `unit_readings`."""
     yield from input_turns(log, bad, column)
+    yield from input_exchanges(log, bad, column)
+
+
+def input_exchanges(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
+    """Two inputs, each in the other's place; see `unit_readings`."""
     u, wrong = log.inputs, np.flatnonzero(bad).tolist()
     into = [column[n] for n in log.input_names]
     for i, j in combinations(range(u.shape[1]), 2):

@@ -137,7 +137,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
         if name not in free:
             raise InputError(
                 f"{path} tells of parameter {name!r}, which is not among its `free`"
-                f" ({', '.join(free)}); correct the name in one of the two places"
+                f" ({', '.join(sorted(free))}); correct the name in one of the two places"
             )
     columns, fixed = content.get("columns", {}), content.get("fixed", {})
     start = content.get("start", {})
@@ -159,7 +159,7 @@ def read_robot_file(path: str | Path) -> RobotFile:
         outputs=texts(content.get("outputs", []), "outputs", path),
         horizon=horizon,
         every=content.get("every", 1),
-        trust=trusted(content.get("trust", []), str(path)),
+        trust=trusted(content.get("trust", []), f"under trust in {path}"),
         start={name: float(value) for name, value in start.items()},
         log=content.get("log", {}),
         columns=dict(zip(columns, texts([*columns.values()], "columns", path), strict=True)),

@@ -13,7 +13,7 @@ from identification.robot.file import RobotFile, read_robot_file
 from identification.robot.free_inertias import inertias_sentence
 from identification.robot.other_spread import with_spread
 from identification.robot.robot import Robot, read_robot_log, robot_of
-from identification.robot.start import start_sentence
+from identification.robot.start import apart_sentence, start_sentence
 from identification.robot.step_error import refuse_coarse_steps
 from identification.robot.trust import trusted
 from identification.robot.wiring import refuse_miswired
@@ -49,7 +49,7 @@ def read_robot(
     for records, of in ((log, "log"), (confirm, "confirm")):
         _refuse_records(records, of)
     file = read_robot_file(path)
-    file = replace(file, trust=(*file.trust, *trusted(trust, "what was called")))
+    file = replace(file, trust=(*file.trust, *trusted(trust, "given as trust")))
     file = with_spread(file, spread)
     records = tuple(_log(file, record) for record in confirm)
     first, *others = (
@@ -82,7 +82,8 @@ def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
     """What was taken for granted, a sentence each."""
     file, own = robot.file, robot.plant.model
     # Over a horizon each window begins where it was measured.
-    begun = (start_sentence(file, own, log) for log in logs if file.horizon is None)
+    begun = (of(file, own, log) for log in logs if file.horizon is None
+             for of in (start_sentence, apart_sentence))  # fmt: skip
     inertias = inertias_sentence(file)
     resampled = (remark for log in logs for remark in log.remarks)
     return tuple(filter(None, (*robot.remarks, inertias, *resampled, *begun)))

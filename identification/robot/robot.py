@@ -148,7 +148,9 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     refuse_milliseconds(model, file, log, Path(path))
     refuse_every(file, log)
     given = {n: u for n in inputs if (u := log.units.get(own[n]))}
-    log = replace(log, input_names=inputs, output_names=outputs, units={**units, **given})
+    factors = {n: log.factors[own[n]] for n in own if own[n] in log.factors}
+    log = replace(log, input_names=inputs, output_names=outputs, units={**units, **given},
+                  factors=factors)  # fmt: skip
     return decimate(log, file.every) if file.every > 1 else log
 
 

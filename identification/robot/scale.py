@@ -21,7 +21,7 @@ from itertools import chain
 import mujoco
 import numpy as np
 
-from identification.logs.double_readings import double_readings
+from identification.logs.double_readings import turned_units
 from identification.logs.log import Log
 from identification.logs.readings import EXPLAINED, NEARER, Reading, unit_readings
 from identification.quantities import held
@@ -55,7 +55,7 @@ def rescaled(
         return None
     found: list[tuple[Reading, np.ndarray]] = []
     every = np.ones(len(own), bool)
-    both = double_readings(log, every, column) if signs else ()
+    both = turned_units(log, every, column) if signs else ()
     for reading in chain(unit_readings(log, every, column), both):
         left = unbalanced_share(model, reading.log, FREEDOM)
         if left is None or left.max() > EXPLAINED or left.sum() > NEARER * own.sum():

@@ -124,17 +124,48 @@ def start_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | No
         return None
     own, said = own_start(model), []
     for (field, i), begin in moved[:LISTED]:
-        unit = log.units.get(begin.output, "")
-        rate = field == "qvel" and not unit.endswith("/s")
-        here = float(getattr(own, field)[i])
-        pair = alike([begin.value, here], f"{unit}/s" if rate and unit else unit)
-        of = f"the rate of {begin.output}" if rate else begin.output
+        of, unit = _what(field, begin, log)
+        pair = alike([begin.value, float(getattr(own, field)[i])], unit)
         said.append(f"{of} at {pair[0]} instead of {pair[1]}")
     more = f" and {len(moved) - LISTED} more" if len(moved) > LISTED else ""
     return (
         f"Simulations of log {log.name!r} begin where it does, {', '.join(said)}{more}; write"
         f' trust = ["start"] into {file.path} to begin where {file.model.name} does.'
     )
+
+
+def given_apart(file: RobotFile, model: mujoco.MjModel, log: Log) -> dict[str, str]:
+    """What [start] of a robot's file gives elsewhere than a log begins, in words, by path."""
+    begins, found = measured_begin(model, log), {}
+    for path, value in file.start.items():
+        place = start_place(path, model)
+        begin = None if place is None else begins.get(place)
+        if place is None or begin is None or abs(value - begin.value) <= CLEAR * begin.std:
+            continue
+        of, unit = _what(place[0], begin, log)
+        (here,) = alike([begin.value], unit)
+        found[path] = f"{path} = {value:g} where {of} begins at {here}"
+    return found
+
+
+def apart_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
+    """One sentence that says what [start] gives elsewhere than a log begins; None where nothing."""
+    apart = list(given_apart(file, model, log).values())
+    if not apart:
+        return None
+    more = f" and {len(apart) - LISTED} more" if len(apart) > LISTED else ""
+    return (
+        f"For log {log.name!r} [start] of {file.path} gives {', '.join(apart[:LISTED])}{more};"
+        " leave it out to begin where the log does."
+    )
+
+
+def _what(field: str, begin: Begin, log: Log) -> tuple[str, str]:
+    """What an entry of the state is called by the output that shows it, and its unit."""
+    unit = log.units.get(begin.output, "")
+    if field != "qvel" or unit.endswith("/s"):
+        return begin.output, unit
+    return f"the rate of {begin.output}", f"{unit}/s" if unit else unit
 
 
 def _moved(file: RobotFile, model: mujoco.MjModel, log: Log) -> dict[Place, Begin]:

@@ -23,6 +23,7 @@ import numpy as np
 from identification.errors import DivergenceError, InputError
 from identification.logs.noise import noise_floor
 from identification.model.predictor import Predictor
+from identification.robot.blame import blamed
 from identification.robot.robot import Robot
 from identification.windows.window_error import window_error
 
@@ -55,15 +56,17 @@ def refuse_coarse_steps(robot: Robot) -> None:
     """Refuse a model whose integration errs by more than the noise of the log.
 
     Raises:
-        InputError: the error is larger than the noise.
+        InputError: the error is larger than the noise, or a factor or a start makes it so.
     """
     if "steps" in robot.file.trust:
         return
-    try:
-        worst = step_error(robot)
-    except DivergenceError:  # the search will say why
+    worst = _worst(robot)
+    if worst is not None and _is_small(robot, worst):
         return
-    if worst.error <= worst.noise or worst.error <= SMALL * _error_of_prediction(robot, worst):
+    own, said = robot.file.path, blamed(robot, _is_simulated)
+    if said is not None:
+        raise InputError(f'{said}, or, if it is right, write trust = ["steps"] into {own}')
+    if worst is None:  # the search will say why
         return
     option, unit = robot.plant.model.opt, robot.log.units.get(worst.output, "")
     raise InputError(
@@ -71,8 +74,25 @@ def refuse_coarse_steps(robot: Robot) -> None:
         + f" in {worst.output} with integrator {INTEGRATORS[int(option.integrator)]} and timestep"
         f" {option.timestep:g} s, more than the noise of log {robot.log.name!r},"
         f" {worst.noise:.2g} {unit}".rstrip()
-        + f'; {_cure(robot)}, or trust = ["steps"] into {robot.file.path}'
+        + f'; {_cure(robot)}, or write trust = ["steps"] into {robot.file.path}'
     )
+
+
+def _worst(robot: Robot) -> StepError | None:
+    """The largest error of the steps; None where the model cannot be simulated."""
+    try:
+        return step_error(robot)
+    except DivergenceError:
+        return None
+
+
+def _is_small(robot: Robot, worst: StepError) -> bool:
+    return worst.error <= worst.noise or worst.error <= SMALL * _error_of_prediction(robot, worst)
+
+
+def _is_simulated(robot: Robot) -> bool:
+    worst = _worst(robot)
+    return worst is not None and _is_small(robot, worst)
 
 
 def step_error(robot: Robot) -> StepError:

@@ -22,7 +22,7 @@ def trusted(words: Sequence[Any], where: str, judged: Mapping[str, str] = TRUST)
 
     Args:
         words: of those that are judged.
-        where: who gave them, for messages.
+        where: they stand, for messages, such as "under trust in robot.toml".
         judged: what is judged, by word.
 
     Raises:
@@ -30,5 +30,5 @@ def trusted(words: Sequence[Any], where: str, judged: Mapping[str, str] = TRUST)
     """
     for word in words:
         if str(word) not in judged:
-            raise unknown_name(f"word under trust in {where}:", str(word), judged)
+            raise unknown_name(f"word {where}:", str(word), judged)
     return tuple(words)

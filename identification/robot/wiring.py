@@ -7,14 +7,15 @@ one that makes the motion larger makes every error of the model smaller beside i
 refused only where the balance of forces says the same (`identification.robot.balance`): no payload,
 gravity, friction or mass lets the log be explained as it is read nearly as well as otherwise. Where
 that balance cannot be had, the other reading must explain nearly all. Two mistakes in one log, a
-unit and a sign, are looked for where no reading with one of them is far better, and only where the
-balance does not explain the log as it is read. A motion that is too
+sign and either a unit or an exchange, are looked for where no reading with one of them is far
+better, and only where the balance does not explain the log as it is read. These are many, so that a
+few windows of each are simulated first. A motion that is too
 large for the forces of the drives is refused without any simulation (`identification.robot.scale`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import chain
@@ -24,9 +25,10 @@ import numpy as np
 
 from identification.effects.joint_plant import JointPlant
 from identification.errors import DivergenceError, InputError
-from identification.logs.double_readings import double_readings
+from identification.logs.double_readings import turned_exchanges, turned_units
 from identification.logs.log import Log
 from identification.logs.readings import (
+    EXPLAINED,
     NEARER,
     UNEXPLAINED,
     Reading,
@@ -45,6 +47,8 @@ from identification.windows.window_error import first_error
 from identification.windows.windows import spread, windows
 
 MOST_WINDOWS = 60  # of a log that are simulated; a wrong reading is wrong everywhere
+FEW_WINDOWS = 15  # that are simulated first of a reading with two mistakes
+MARGIN = 2.0  # times as much as of all windows, that these few may leave
 LENGTHS = (0.1, 1.0)  # of windows, shares of a log, where the robot has no horizon of its own
 
 
@@ -60,9 +64,9 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
     """
     file, plant = robot.file, robot.plant_of(log)
     wanted = wanted_units(plant.model, log)
-    units = partial(unit_readings, wanted=wanted)
     kinds: dict[str, tuple[Callable[..., Iterable[Reading]], ...]] = {
-        "units": (units,), "wiring": (output_readings, input_readings)
+        "units": (partial(unit_readings, wanted=wanted),),
+        "wiring": (output_readings, input_readings),
     }  # fmt: skip
     read = [r for word, kind in kinds.items() if word not in file.trust for r in kind]
     column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
@@ -82,9 +86,13 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
         readings = chain(*(r(log, bad, column) for r in read))
         explain = partial(_unexplained, plant, length)
         found = misread(log, own, readings, explain, balance.confirms)
-        if found is None and not {*kinds} & {*file.trust} and balance.contradicts:
-            both = double_readings(log, bad, column, wanted)
-            found = misread(log, own, both, explain, balance.confirms)
+        if found is None and "wiring" not in file.trust and balance.contradicts:
+            units = () if "units" in file.trust else turned_units(log, bad, column, wanted)
+            # Over the shorter windows only: an exchange is seen in both, and these are many.
+            pairs = turned_exchanges(log, bad, column) if length == lengths[0] else ()
+            both = chain(units, pairs)
+            near = _promising(plant, length, log, both)
+            found = misread(log, own, near, explain, balance.confirms)
         if found is not None:
             raise _refusal(robot, log, *found)
     # The gain of a drive that wants a position is a guess, and its force with it.
@@ -130,12 +138,30 @@ class _Balance:
         return other is not None and bool(other[k].sum() < NEARER * self.own[k].sum())
 
 
-def _unexplained(plant: JointPlant, length: float, log: Log) -> np.ndarray | None:
+def _promising(
+    plant: JointPlant, length: float, log: Log, readings: Iterable[Reading]
+) -> Iterator[Reading]:
+    """The readings that a few windows do not speak against."""
+    if log.duration < 2 * FEW_WINDOWS * length:
+        yield from readings
+        return
+    own = _unexplained(plant, length, log, FEW_WINDOWS)
+    for reading in readings:
+        left, k = _unexplained(plant, length, reading.log, FEW_WINDOWS), list(reading.columns)
+        if own is None or left is None:
+            continue
+        if (left[k] < np.minimum(EXPLAINED, NEARER * MARGIN * own[k])).all():
+            yield reading
+
+
+def _unexplained(
+    plant: JointPlant, length: float, log: Log, most: int = MOST_WINDOWS
+) -> np.ndarray | None:
     """ε of each output, shape (ny,); None where nothing can be simulated so."""
     if not MIN_ROWS * log.sampling_time <= length <= log.duration:
         return None  # too short to tell, and whoever fits it will say so
     try:
-        error = first_error(plant, log, length, MOST_WINDOWS)
+        error = first_error(plant, log, length, most)
     except DivergenceError:
         return None
-    return unexplained_share(spread(windows(log, length), MOST_WINDOWS).outputs, error)
+    return unexplained_share(spread(windows(log, length), most).outputs, error)

@@ -63,7 +63,8 @@ class Calibrate:
         if not self.log:
             raise InputError("no log is given; write inca calibrate LOG...")
         logs, confirm = (
-            [read_inca_log(path) for path in paths] for paths in (self.log, flat(self.confirm))
+            [read_inca_log(path, flat(self.trust)) for path in paths]
+            for paths in (self.log, flat(self.confirm))
         )
         spread, parameters, place = (
             spread_of(self.spread), self.robot.parameters(), self.robot.place()

@@ -53,7 +53,7 @@ Trust = Annotated[
     tuple[tuple[Literal["sensors", "units", "wiring"], ...], ...],
     tyro.conf.UseAppendAction,
     tyro.conf.arg(metavar="WORD"),
-]  # checks of a log that the user overrules, words of `inca_mj.twin.wiring.JUDGED`
+]  # checks of a log that the user overrules, words of `inca_mj.twin.judged.JUDGED`
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 class Compare:
     """Lay a measured log over the twin's prediction from the same currents.
 
-    A log in other units, or whose encoders are exchanged, turned or dead, is refused; --trust shows
-    it all the same.
+    A log in other units, or whose encoders or currents are exchanged or turned, or with a dead
+    encoder, is refused; --trust shows it all the same.
 
     Examples:
         inca compare examples/log.csv --out out/compare
@@ -42,7 +42,9 @@ class Compare:
         do_not_draw()
         from inca_mj.twin.logs import read_inca_log
 
-        result = compare_with(self.robot, read_inca_log(self.log), flat(self.trust))
+        result = compare_with(
+            self.robot, read_inca_log(self.log, flat(self.trust)), flat(self.trust)
+        )
         conclude(self, result.to_json(), summary(result), partial(keep, result))
         if self.output.out is not None:
             note(f"figure, report, model and result.json are in {self.output.out}")
@@ -55,7 +57,7 @@ def compare_with(robot: SavedRobot, log: Log, trust: Sequence[str]) -> Compariso
     Args:
         robot: the options.
         log: what was measured.
-        trust: checks of the log that are overruled, words of `inca_mj.twin.wiring.JUDGED`.
+        trust: checks of the log that are overruled, words of `inca_mj.twin.judged.JUDGED`.
 
     Raises:
         InputError: the options describe no robot, the robot has no pretension, or the log is not

@@ -73,8 +73,8 @@ class Discover:
 
         if not self.log:
             raise InputError("no log is given; write inca discover LOG")
-        logs = [read_inca_log(path) for path in self.log]
-        confirm = [read_inca_log(path) for path in flat(self.confirm)]
+        logs = [read_inca_log(path, flat(self.trust)) for path in self.log]
+        confirm = [read_inca_log(path, flat(self.trust)) for path in flat(self.confirm)]
         parameters, place = self.robot.parameters(), self.robot.place()
         spread = spread_of(self.spread)
         options = None if self.options is None else read_options(self.options)

@@ -152,12 +152,12 @@ class Film:
         """What to film: a saved run, or a log beside the twin with the values that were asked."""
         from inca_mj.commands.compare import compare_with
         from inca_mj.rendering.scene import make_scene
+        from inca_mj.twin.judged import UNJUDGED
         from inca_mj.twin.logs import read_inca_log
-        from inca_mj.twin.wiring import UNJUDGED
 
         if source.suffix == ".npz":
             return make_scene(source, self.seconds)
-        log = read_inca_log(source)
+        log = read_inca_log(source, UNJUDGED)
         if self.seconds is not None and 0 < self.seconds < log.duration:
             log = log.between(float("-inf"), float(log.time[0]) + self.seconds)
         self.output.tell(f"simulating {log.duration:g} s of {source}")

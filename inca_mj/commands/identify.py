@@ -141,7 +141,7 @@ class Identify:
                 " --windows, --innovations and --starts"
             )
         log, parameters, place = (
-            read_inca_log(self.log), self.robot.parameters(), self.robot.place()
+            read_inca_log(self.log, flat(self.trust)), self.robot.parameters(), self.robot.place()
         )  # fmt: skip
         common: Any = {
             "free": free, "progress": self.output.tell, "timestep": self.robot.step,
@@ -193,7 +193,7 @@ def keep(result: Identification, profiles: Sequence[Profile], out: Path, robot: 
     from inca_mj.report.sections import compare_section, model_section
     from inca_mj.report.sections_fit import fit_section, profile_section
     from inca_mj.report.sections_information import information_section
-    from inca_mj.twin.wiring import UNJUDGED
+    from inca_mj.twin.judged import UNJUDGED
     from inca_mj.workflows.comparison import compare
 
     plant = result.fit.estimate.predictor.plant

@@ -63,10 +63,10 @@ class View:
             InputError: the file is neither a run nor a log.
         """
         from inca_mj.commands.compare import compare_with
+        from inca_mj.twin.judged import UNJUDGED
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.twin.run import load_run
-        from inca_mj.twin.wiring import UNJUDGED
 
         if source.suffix == ".npz":
             return load_run(source)
-        return compare_with(self.robot, read_inca_log(source), UNJUDGED).run
+        return compare_with(self.robot, read_inca_log(source, UNJUDGED), UNJUDGED).run

@@ -10,9 +10,9 @@ import numpy as np
 from identification.errors import InputError
 from identification.logs.log import Log
 from inca_mj.rendering.checks import refuse_seconds
+from inca_mj.twin.judged import UNJUDGED
 from inca_mj.twin.logs import pose_of, read_inca_log
 from inca_mj.twin.run import Run, load_run, rows_of
-from inca_mj.twin.wiring import UNJUDGED
 from inca_mj.workflows.comparison import Comparison, compare
 
 
@@ -83,7 +83,7 @@ def make_scene(source: Source, seconds: float | None = None) -> Scene:
     refuse_seconds(seconds)
     if isinstance(source, str | Path):
         path = Path(source)
-        source = load_run(path) if path.suffix == ".npz" else read_inca_log(path)
+        source = load_run(path) if path.suffix == ".npz" else read_inca_log(path, UNJUDGED)
     if isinstance(source, Log):
         if seconds is not None and seconds < source.duration:
             source = source.between(float("-inf"), float(source.time[0]) + seconds)

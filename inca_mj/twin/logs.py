@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from identification import InputError, Log, read_log
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.pose import POSE as POSE
+from inca_mj.twin.judged import overruled_by
 from inca_mj.twin.run import Run
 
 
@@ -36,14 +38,23 @@ SLOWEST = 0.5  # a larger sampling time means that time is in milliseconds [s]
 ZERO = 0.05  # a log begins at φ = 0; 0.05 rad is 0.9 mm of cable, 30 counts of an encoder [rad]
 
 
-def read_inca_log(path: str | Path) -> Log:
+def read_inca_log(path: str | Path, trust: Sequence[str] | None = None) -> Log:
     """Read a log of the robot: CSV with a TOML beside it, or MATLAB (`u`, `y`, `Ts`).
+
+    Args:
+        path: of the log.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`: with
+            "units" in it, numbers may be as large as they are. None where a caller asks nobody.
 
     Raises:
         InputError: the file cannot be a log of this robot (see `identification.read_log`), or does
             not begin at zero angles.
     """
-    log = read_log(path, CURRENTS, ANGLES, OPTIONAL, units=UNITS, limits=LIMITS, rates=RATES)
+    judged, asked = "units" not in (trust or ()), trust is not None
+    log = read_log(
+        path, CURRENTS, ANGLES, OPTIONAL, units=UNITS, limits=LIMITS if judged else None,
+        rates=RATES if judged else None, overrule=overruled_by("units") if asked else "",
+    )  # fmt: skip
     if log.sampling_time > SLOWEST:
         raise InputError(
             f"{path} has a sample every {log.sampling_time:g} s, too few for a robot that moves;"

@@ -25,7 +25,7 @@ def other_wiring(part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None
     """
 
     def unexplained(other: Log) -> np.ndarray:
-        return 1 - np.diag(_alike(other.outputs - other.outputs[0], predicted))
+        return 1 - np.diag(alike(other.outputs - other.outputs[0], predicted))
 
     def as_right(reading: Reading, left: np.ndarray) -> bool:
         return bool((left <= RIGHT).all())
@@ -48,7 +48,7 @@ def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Readin
     from scipy.optimize import linear_sum_assignment  # slow to import
 
     every = np.arange(y.shape[1])
-    cosine = _alike(y, predicted)
+    cosine = alike(y, predicted)
     for likeness in (cosine, np.abs(cosine)):  # whatever the signs, in the second
         _, at = linear_sum_assignment(1 - likeness)
         moved = np.flatnonzero(at != every).tolist()
@@ -69,7 +69,7 @@ def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Readin
                           f"rename {pairs}{how_to_rename(new_names)}{turn}")  # fmt: skip
 
 
-def _alike(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:
+def alike(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:
     """Cosines between measured and predicted angles, each (N, n): entry i, j of y_i and ŷ_j."""
     sizes = np.linalg.norm(y, axis=0)[:, None] * np.linalg.norm(predicted, axis=0)
     return np.asarray(y.T @ predicted / sizes)

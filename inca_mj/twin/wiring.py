@@ -7,13 +7,15 @@
 that lacks something is off by a few percent: ε <= 0.11 and 0.77 <= s <= 1.2 over 89 simulated logs
 of 25 effects; an anchor that is 0.1 m off makes even ε = 1.5. Where the twin does not move, nothing
 is said. A log is believed to be wired in another way only if all its angles, read in that way, are
-as near to the twin as those of a right log.
+as near to the twin as those of a right log. Currents are
+judged by all angles together (`inca_mj.twin.other_currents`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -22,9 +24,12 @@ from identification.errors import DivergenceError, InputError
 from identification.logs.cures import unit_lines
 from identification.logs.frozen import refuse_frozen
 from identification.logs.names import listed
+from identification.logs.readings import Reading
 from identification.logs.units import UNITS
 from identification.robot.same_units import NEAR
-from identification.robot.trust import TRUST, trusted
+from identification.robot.trust import trusted
+from inca_mj.twin.judged import JUDGED, overruled_by
+from inca_mj.twin.other_currents import Predict, apart, other_currents
 from inca_mj.twin.other_wiring import other_wiring
 from inca_mj.twin.twin import Twin
 
@@ -34,12 +39,10 @@ BEGINNING = 2.0  # [s] from there; later even a good model has drifted
 DEAD = 1e-3  # of the twin's motion
 UNIT = (0.2, 10.0)  # of the twin's motion; revolutions are at 0.12 to 0.19, degrees at 44 to 69
 ADVICE = ", with which `inca compare` shows the log beside the twin"
-JUDGED = {word: TRUST[word] for word in ("sensors", "units", "wiring")}  # a user may overrule
-UNJUDGED = (*JUDGED,)  # for who draws a log as it is
 
 
 def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
-    """Refuse a log whose angles cannot be those of the drives they are named after.
+    """Refuse a log whose angles or currents cannot be those of the drives they are named after.
 
     Args:
         log: of the robot.
@@ -48,30 +51,34 @@ def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
 
     Raises:
         InputError: an encoder is dead, frozen, reversed, swapped with another or in another unit,
-            or a word is unknown.
+            a current is reversed or swapped, or a word is unknown.
     """
-    overruled = {*trusted(trust, "--trust", JUDGED)}
+    overruled = {*trusted(trust, "given as trust", JUDGED)}
     if "sensors" not in overruled:
         for k in range(log.outputs.shape[1]):
-            refuse_frozen(log, k, log.inputs[:, [k]], log.outputs[:, :0], _overrule("sensors"))
+            refuse_frozen(log, k, log.inputs[:, [k]], log.outputs[:, :0], overruled_by("sensors"))
     found = _first_motion(log, plant) if {*JUDGED} - overruled else None
     if found is None:
         return
     part, predicted = found
     moves = _moving(part, predicted)
     if "sensors" not in overruled and not moves.all():
-        raise InputError(f"log {log.name!r}: {_standing(part, moves)}{_overrule('sensors')}")
+        raise InputError(f"log {log.name!r}: {_standing(part, moves)}{overruled_by('sensors')}")
     if not moves.any():
         return
+    predict = partial(_predicted, plant, part, moves)
     part, predicted = _with_outputs(part, moves), predicted[:, moves]
-    wiring = None if "wiring" in overruled else other_wiring(part, predicted)
+    wiring = None if "wiring" in overruled else _other_wiring(part, predicted, predict)
     read = part if wiring is None else wiring[0].log
+    predicted = predicted if read is part else predict(read.inputs)
     unit = None if "units" in overruled else _other_unit(read, predicted)
     wrong = {"wiring": f"the twin {wiring[1]}" if wiring is not None else None, "units": unit}
     said = {word: sentence for word, sentence in wrong.items() if sentence is not None}
     if said:
         both = "; so read, " if len(said) > 1 else ""
-        raise InputError(f"log {log.name!r}: {both.join(said.values())}{_overrule(*said)}{ADVICE}")
+        raise InputError(
+            f"log {log.name!r}: {both.join(said.values())}{overruled_by(*said)}{ADVICE}"
+        )
 
 
 def _other_unit(part: Log, predicted: np.ndarray) -> str | None:
@@ -110,10 +117,24 @@ def _how_to_convert(columns: Sequence[str], scale: float) -> str:
     return f": {unit_lines(dict.fromkeys(columns, word))}, or correct the unit that it has"
 
 
-def _overrule(*words: str) -> str:
-    """How the user overrules judgements, for the end of their message."""
-    known = " and that ".join(JUDGED[word] for word in words)
-    return f"; if you know that {known}, write --trust {' '.join(words)}"
+def _other_wiring(part: Log, predicted: np.ndarray, predict: Predict) -> tuple[Reading, str] | None:
+    """Another wiring of the angles or of the currents: the one that comes nearer to the twin."""
+    found = other_wiring(part, predicted), other_currents(part, predicted, predict)
+    return min(
+        (each for each in found if each is not None),
+        key=lambda each: apart(each[0].log, predict(each[0].log.inputs)),
+        default=None,
+    )
+
+
+def _predicted(plant: Twin, part: Log, kept: np.ndarray, currents: np.ndarray) -> np.ndarray:
+    """Some of the twin's angles under other currents, shape (n, angles) [rad].
+
+    Raises:
+        DivergenceError: the twin cannot be simulated under these.
+    """
+    other = replace(part, inputs=currents)
+    return np.asarray(Predictor(plant, other, (), {}).predict(np.zeros((1, 0)))[0][:, kept])
 
 
 def _moving(part: Log, predicted: np.ndarray) -> np.ndarray:
@@ -143,8 +164,9 @@ def _first_motion(log: Log, plant: Twin) -> tuple[Log, np.ndarray] | None:
     """
     start = float(log.time[0])
     part = log.between(start, start + LONGEST) if log.duration > LONGEST else log
+    every = np.ones(part.outputs.shape[1], bool)
     try:
-        predicted = Predictor(plant, part, (), {}).predict(np.zeros((1, 0)))[0]
+        predicted = _predicted(plant, part, every, part.inputs)
     except DivergenceError:  # the search says what to do
         return None
     late = np.flatnonzero(np.abs(predicted).max(axis=1) > MOTION)

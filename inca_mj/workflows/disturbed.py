@@ -51,7 +51,7 @@ def identify_windows(
             mass.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
-        trust: checks of the log that you overrule, words of `inca_mj.twin.wiring.JUDGED`.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`.
 
     Raises:
         InputError: the windows do not fit the log, or for the reasons of `identify`.
@@ -98,7 +98,7 @@ def identify_innovations(
         free: parameters to estimate; all of them and the pose when empty.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
-        trust: checks of the log that you overrule, words of `inca_mj.twin.wiring.JUDGED`.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`.
 
     Raises:
         InputError: for the reasons of `identify`.

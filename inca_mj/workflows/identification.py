@@ -103,7 +103,7 @@ def identify(
         options: how to search.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
-        trust: checks of the log that you overrule, words of `inca_mj.twin.wiring.JUDGED`.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`.
         starts: how many starts each search may try, until one ends near the noise floor.
         seed: of the starts after the first.
 

@@ -54,7 +54,7 @@ def identify_as_thesis(
         options: how to search; `Options(horizons=(1.0,))` is the thesis' single free-run fit.
         progress: is told one line per accepted step.
         timestep: largest step of the integrator [s].
-        trust: checks of the log that you overrule, words of `inca_mj.twin.wiring.JUDGED`.
+        trust: checks of the log that you overrule, words of `inca_mj.twin.judged.JUDGED`.
 
     Raises:
         InputError: the log is not wired as the robot is, or a start has no pretension.

@@ -9,10 +9,11 @@ import pytest
 
 from identification import InputError, Log
 from inca_mj.robot.inputs import make_input
+from inca_mj.twin.judged import JUDGED
 from inca_mj.twin.logs import read_inca_log, run_to_log
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
-from inca_mj.twin.wiring import JUDGED, refuse_miswired
+from inca_mj.twin.wiring import refuse_miswired
 
 LOG = Path(__file__).parents[2] / "examples" / "log.csv"  # an effect is missing from its model
 
@@ -191,6 +192,43 @@ def test_who_knows_better_overrules_a_check_and_only_this_check(plant, word, cha
     with pytest.raises(InputError, match=f"write --trust {word}"):
         refuse_miswired(log, plant, [other for other in JUDGED if other != word])
     refuse_miswired(log, plant, [word])
+
+
+def currents(log, change):
+    u = log.inputs.copy()
+    change(u)
+    return replace(log, inputs=u)
+
+
+@pytest.mark.parametrize("drive", range(8))
+def test_a_current_of_the_wrong_sign(plant, drive):
+    def reverse(u):
+        u[:, drive] *= -1
+
+    wrong = currents(read_inca_log(LOG), reverse)
+    with pytest.raises(InputError, match=rf"current_{drive + 1} = -1 under \[factors\]") as refused:
+        refuse_miswired(wrong, plant)
+    assert "write --trust wiring" in str(refused.value)
+    refuse_miswired(wrong, plant, ["wiring", "units"])  # it moves as if all were in another unit
+
+
+@pytest.mark.parametrize(("i", "j"), [(0, 2), (1, 3), (4, 5), (0, 5), (6, 1)])
+def test_swapped_currents(plant, i, j):
+    def swap(u):
+        u[:, [i, j]] = u[:, [j, i]]
+
+    a, b = sorted((i + 1, j + 1))
+    with pytest.raises(InputError, match=f"exchange current_{a} and current_{b} under"):
+        refuse_miswired(currents(read_inca_log(LOG), swap), plant)
+
+
+def test_a_current_of_the_wrong_sign_beside_degrees_is_told_with_them(plant):
+    log = read_inca_log(LOG)
+    wrong = replace(log, inputs=log.inputs * np.where(np.arange(8) == 3, -1, 1))
+    with pytest.raises(InputError, match="current_4 = -1") as refused:
+        refuse_miswired(replace(wrong, outputs=wrong.outputs * 180 / np.pi), plant)
+    assert 'write angle = "deg"' in str(refused.value)
+    assert "write --trust wiring units" in str(refused.value)
 
 
 def test_an_unknown_word_lists_the_good_ones(plant):

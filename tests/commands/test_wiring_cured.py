@@ -10,9 +10,10 @@ from advice import advised
 
 from identification import InputError, write_log
 from inca_mj.cli import main
+from inca_mj.twin.judged import JUDGED
 from inca_mj.twin.logs import read_inca_log
 from inca_mj.twin.twin import build_twin
-from inca_mj.twin.wiring import JUDGED, refuse_miswired
+from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import compare, compare_twin
 
 LOG = read_inca_log(Path(__file__).parents[2] / "examples" / "log.csv").between(0.0, 4.0)
@@ -108,6 +109,22 @@ def test_compare_judges_a_log_as_the_searches_do(plant, tmp_path, capsys, wrong,
         with pytest.raises(InputError, match=f"write --trust {word}, with which `inca compare`"):
             judged(wrong)
         np.testing.assert_allclose(judged(wrong, trust=[word]).rms, shown["rms"], rtol=1e-9)
+
+
+def test_compare_judges_currents_and_large_numbers_too(tmp_path, capsys):
+    turned = replace(LOG, inputs=LOG.inputs * np.where(np.arange(8) == 2, -1, 1))
+    large = replace(LOG, outputs=LOG.outputs * np.where(np.arange(8) == 2, 1e3, 1))
+    for wrong, told, words in (
+        (turned, "turn the sign of current_3: write current_3 = -1", "wiring units"),
+        (large, "beyond the plausible 400 rad", "units wiring sensors"),
+    ):
+        path = str(written(wrong, tmp_path))
+        assert main(["compare", path]) == 2
+        said = capsys.readouterr().err
+        assert told in said
+        assert f"write --trust {words.split()[0]}" in said
+        assert main(["compare", path, "--trust", *words.split(), "--json"]) == 0
+        capsys.readouterr()
 
 
 def test_compare_shows_a_right_log_the_same_whether_it_is_judged_or_not():

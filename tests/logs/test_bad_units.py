@@ -73,7 +73,7 @@ def test_a_factor_that_leaves_the_numbers_is_refused(csv, refusal, factor, lenie
         warnings.simplefilter("error")
         said = refusal(read, path, lenient=lenient)
     where = f"under 'factors' in {path.with_suffix('.toml')}"
-    assert f"the factor {factor:g} of angle_2 {where} makes numbers beyond 1e+50" in said
+    assert f"the factor {factor:g} of angle_2 {where} makes numbers beyond 1e+15" in said
     assert "such as -1" in said
 
 

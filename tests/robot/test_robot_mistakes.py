@@ -49,7 +49,10 @@ from identification.robot.robot import read_robot_log
             ("joint/slide.damping", "coulomb_friction.f_c@slid"),
             "'slid'; did you mean 'slide'? known: slide",
         ),
-        (("joint/slide.damping", "coulmb_friction.f_c@slide"), "did you mean 'coulomb_friction'?"),
+        (
+            ("joint/slide.damping", "coulmb_friction.f_c@slide"),
+            "mean 'coulomb_friction.f_c@slide'?",
+        ),
         (("joint/slide.damping", "coulomb_friction.f_c"), "did you mean 'coulomb_friction.f_c@sli"),
         (("joint/slide.damping", "delay.tau@forc"), "input in 'delay.tau@forc': 'forc'; did you"),
         (("joint/slide.damping", "stribeck_friction.v_s"), "give its value under [fixed]"),
@@ -101,6 +104,25 @@ def test_an_effect_of_the_other_kind_of_joint_is_suggested():
     crane = (Axis("swing", "hinge", 1.0, 1.0, 1.0), Axis("x", "slide", 1.0, 1.0, 1.0))
     said = str(unknown_number("coulomb_friction.f_c@x", joint_effects(crane, TURNS)))
     assert "did you mean 'slide_coulomb_friction.f_c@x'?" in said
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [("coulomb@x", "slide_coulomb_friction.f_c@x"),
+     ("coulomb.f_c@x", "slide_coulomb_friction.f_c@x"),
+     ("coulomb_friction@x", "slide_coulomb_friction.f_c@x"),
+     ("coulomb_friction.f_c@xx", "slide_coulomb_friction.f_c@x"),
+     ("coulomb@swing", "coulomb_friction.f_c@swing"),
+     ("friction.f_c@swing", "coulomb_friction.f_c@swing"),
+     ("f_c@swing", "coulomb_friction.f_c@swing"),
+     ("coulomb_friction.f_c@swin", "swing")],
+)  # fmt: skip
+def test_what_is_suggested_can_be_written(name, meant):
+    crane = (Axis("swing", "hinge", 1.0, 1.0, 1.0), Axis("x", "slide", 1.0, 1.0, 1.0))
+    said = str(unknown_number(name, joint_effects(crane, TURNS)))
+    assert f"did you mean {meant!r}?" in said
+    listed = said.partition("known: ")[2].partition(" and ")[0].split(", ")
+    assert listed == sorted(listed)
 
 
 def test_how_much_a_log_may_be_thinned_is_told(folder, capsys):
@@ -181,7 +203,7 @@ def test_a_huge_number_is_named(folder, capsys, command):
     outputs[7] = 1e200
     write_log(replace(log, outputs=outputs), folder / "huge.csv")
     said = refused(capsys, command, folder / "robot.toml", folder / "huge.csv")
-    assert "position of log 'huge' goes beyond" in said
+    assert f"of {folder / 'huge.csv'}: x is 1e+200, beyond 1e+15, which no robot has" in said
 
 
 def test_a_log_with_hardly_more_samples_than_parameters_is_refused(folder, capsys):

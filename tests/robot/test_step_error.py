@@ -99,5 +99,5 @@ def test_the_commands_refuse_in_one_sentence(tmp_path, log, capsys, command):
     said = capsys.readouterr().err
     assert said.count("\n") == 1
     assert f"{tmp_path / 'slider.xml'} errs by" in said
-    assert '; write integrator="RK4" into its <option>, or trust = ["steps"] into ' in said
+    assert '; write integrator="RK4" into its <option>, or write trust = ["steps"] into ' in said
     assert "m in position with integrator Euler" in said

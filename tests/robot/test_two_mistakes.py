@@ -72,3 +72,40 @@ def test_what_a_model_lacks_is_no_unit_and_no_sign(tmp_path, lacking):
     write_log(log, tmp_path / "log.csv")
     for horizon in ("", "horizon = 0.2"):
         refuse_miswired(*robot(tmp_path, ARM, log, horizon))
+
+
+PAIRS = [("outputs", [-1, 1]), ("outputs", [1, -1]), ("inputs", [-1, 1]), ("inputs", [1, -1])]
+
+
+def exchanged(log, of, signs, turned):
+    """A log with two columns exchanged, and after that with other signs of inputs or outputs."""
+    log = replace(log, **{of: getattr(log, of)[:, ::-1]})
+    return replace(log, **{turned: getattr(log, turned) * signs})
+
+
+@pytest.mark.parametrize("horizon", ["", "horizon = 0.2"])
+@pytest.mark.parametrize("turned", ["outputs", "inputs"])
+@pytest.mark.parametrize(("of", "signs"), PAIRS)
+def test_an_exchange_beside_a_turned_sign_is_told_and_mended(tmp_path, of, signs, turned, horizon):
+    right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION[ARM])
+    own, read = robot(tmp_path, ARM, exchanged(right, of, signs, turned), horizon)
+    with pytest.raises(InputError, match="exchanged and with the other sign") as refused:
+        refuse_miswired(own, read)
+    said = str(refused.value)
+    assert f'write trust = ["wiring"] into {own.file.path}' in said
+    (tmp_path / "log.toml").write_text(advised(said))
+    mended = read_robot_log(own.file, tmp_path / "log.csv")
+    turns = [np.sign(np.sum(getattr(mended, of) * getattr(right, of), axis=0))
+             for of in ("inputs", "outputs")]  # fmt: skip
+    for of, turn in zip(("inputs", "outputs"), turns, strict=True):
+        np.testing.assert_allclose(getattr(mended, of), turn * getattr(right, of), rtol=1e-12)
+    np.testing.assert_array_equal(*turns)  # joint and drive turned together: seen from behind
+    refuse_miswired(own, mended)
+
+
+def test_an_exchange_and_a_sign_are_overruled_by_one_word(tmp_path):
+    right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION[ARM])
+    own, read = robot(tmp_path, ARM, exchanged(right, "outputs", [1, -1], "outputs"), "")
+    refuse_miswired(replace(own, file=replace(own.file, trust=("wiring",))), read)
+    with pytest.raises(InputError, match="exchanged and with the other sign"):
+        refuse_miswired(replace(own, file=replace(own.file, trust=("units",))), read)

@@ -1,0 +1,79 @@
+"""A factor or a start that a user wrote is named before the model's step is blamed."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from identification import InputError, read_robot
+
+ELBOW = Path(__file__).parents[2] / "examples" / "elbow"
+FREE_RUN = "".join(
+    line for line in (ELBOW / "elbow.toml").read_text().splitlines(keepends=True)
+    if not line.startswith("horizon")
+)  # fmt: skip
+HORIZON = (ELBOW / "elbow.toml").read_text()
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for name in ("elbow.xml", "first.csv"):
+        shutil.copy(ELBOW / name, tmp_path / name)
+    return tmp_path
+
+
+def robot_in(folder, toml=FREE_RUN, start="", own=""):
+    (folder / "robot.toml").write_text(f"{toml}\n{start}")
+    (folder / "first.toml").write_text(own)
+    return read_robot(folder / "robot.toml", folder / "first.csv")
+
+
+def refused(*where, **written):
+    with pytest.raises(InputError) as caught:
+        robot_in(*where, **written)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("column", ["current", "angle"])
+@pytest.mark.parametrize("toml", [FREE_RUN, HORIZON], ids=["free run", "horizon"])
+def test_a_factor_beyond_what_robots_have_is_named(folder, toml, column):
+    said = refused(folder, toml, own=f"[factors]\n{column} = 1e20\n")
+    assert f"the factor 1e+20 of {column} under 'factors' in {folder / 'first.toml'}" in said
+    assert "step" not in said
+
+
+def test_a_number_in_the_log_beyond_what_robots_have_is_named_with_its_row(folder):
+    lines = (folder / "first.csv").read_text().splitlines()
+    lines[50] = "0.49,1e30,0"
+    (folder / "first.csv").write_text("\n".join(lines) + "\n")
+    said = refused(folder)
+    assert f"line 51 of {folder / 'first.csv'}: current is 1e+30, beyond 1e+15" in said
+
+
+def test_a_factor_that_no_step_can_follow_is_named(folder):
+    said = refused(folder, own="[factors]\ncurrent = 1e6\n")
+    assert "its TOML gives the factor 1e+06 of current under [factors]" in said
+    assert f'if it is right, write trust = ["steps"] into {folder / "robot.toml"}' in said
+
+
+@pytest.mark.parametrize("entry", ['"qpos[0]" = 1e20', '"qvel[0]" = 1e8', '"qvel[0]" = 1e20'])
+def test_a_start_from_which_nothing_can_be_simulated_is_named(folder, entry):
+    said = refused(folder, start=f"[start]\n{entry}\n")
+    assert f"[start] of {folder / 'robot.toml'} gives {entry[1:5]}[0] = " in said
+    assert "from where the log begins it can: correct the start, or leave it out" in said
+
+
+def test_a_start_elsewhere_is_remarked_where_nothing_fails(folder):
+    remarks = robot_in(folder, start='[start]\n"qpos[0]" = 0.5\n').remarks
+    (said,) = [r for r in remarks if "[start]" in r]
+    assert "gives qpos[0] = 0.5 where angle begins at" in said
+    assert not any("[start]" in r for r in robot_in(folder).remarks)
+
+
+def test_a_step_that_is_too_long_by_itself_is_blamed_beside_a_factor_that_is_right(folder):
+    model = (folder / "elbow.xml").read_text()
+    coarse = model.replace(' integrator="RK4"', "").replace('"0.005"', '"0.01"')
+    (folder / "elbow.xml").write_text(coarse)
+    said = refused(folder, own="[factors]\ncurrent = 1\n")
+    assert "errs by" in said
+    assert "factor" not in said
