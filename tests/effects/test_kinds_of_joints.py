@@ -32,6 +32,6 @@ def test_messages_that_list_names_say_when_they_begin_with_slide() -> None:
     assert of_both.endswith("begin with slide_ here, because effects may act on hinges too.")
     slides = joint_effects((SLIDER,), TURNS)
     of_one = str(unknown_number("slide_coulomb_friction.f_c@rail", slides))
-    assert "did you mean 'coulomb_friction'?" in of_one
+    assert "did you mean 'coulomb_friction.f_c@rail'?" in of_one
     assert of_one.endswith("begin with slide_ only where effects may act on hinges too.")
     assert "slide" not in str(unknown_effect("effect:", "nothing", slides))

@@ -121,7 +121,7 @@ def test_what_is_suggested_can_be_written(name, meant):
     crane = (Axis("swing", "hinge", 1.0, 1.0, 1.0), Axis("x", "slide", 1.0, 1.0, 1.0))
     said = str(unknown_number(name, joint_effects(crane, TURNS)))
     assert f"did you mean {meant!r}?" in said
-    listed = said.partition("known: ")[2].partition(" and ")[0].split(", ")
+    listed = said.partition("known: ")[2].partition(" and ")[0].partition(". ")[0].split(", ")
     assert listed == sorted(listed)
 
 
