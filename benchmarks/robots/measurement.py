@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import time
 from collections.abc import Callable
 from datetime import UTC, datetime
@@ -64,7 +65,7 @@ def measure(robot: MeasuredRobot, say: Callable[[str], None]) -> dict[str, Any]:
         return {**record, "refused": str(error), "seconds": time.perf_counter() - begun}
     say(records_text(found))
     known = {p.name: p.value for p in robot.published}
-    record |= {"discovery": records_to_json(found), "seconds": seconds, "published": [
+    record |= {"discovery": records_to_json(found), "seconds": seconds, **_busy(), "published": [
         vars(p) for p in robot.published
     ]}  # fmt: skip
     record["scores"] = [
@@ -102,6 +103,11 @@ def measure_again(robot: MeasuredRobot, record: dict[str, Any]) -> dict[str, Any
 def _shared(values: dict[str, Any]) -> dict[str, float]:
     """The fitted values that hold for all records, of a discovery's JSON."""
     return {n: v["value"] for n, v in values.items() if not n.endswith("]")}
+
+
+def _busy() -> dict[str, float]:
+    """How many processes ran in the last minute, and how many can at a time."""
+    return {"load": os.getloadavg()[0], "cores": os.cpu_count() or 1}
 
 
 def _own_values(plant: JointPlant, found: dict[str, Any]) -> dict[str, dict[str, float]]:

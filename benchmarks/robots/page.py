@@ -50,7 +50,7 @@ def _row(record: dict[str, Any]) -> tuple[str, ...]:
     name = record["robot"] + (f", {record['start']}" if "start" in record else "")
     counts = f"{len(record['fit'])}, {len(record['confirm'])}"
     if "refused" in record:
-        return (name, counts, "refused", *[""] * 6, f"{record['seconds']:.0f} s")
+        return (name, counts, "refused", *[""] * 6, _time(record))
     seen, effects = record["unseen"], record["discovery"]["effects"]
     unit, rms = record["unit"], seen["rms"]
     others = {n: v for n, v in rms.items() if n in record["published_models"]}
@@ -65,8 +65,14 @@ def _row(record: dict[str, Any]) -> tuple[str, ...]:
         amount(rms[FIRST], unit), after,
         f"{amount(others[best], unit)} ({best})" if best else "",
         f"{seen['better'][LAST]} of {len(record['confirm'])}" if LAST in rms else "",
-        f"{record['seconds']:.0f} s",
+        _time(record),
     )  # fmt: skip
+
+
+def _time(record: dict[str, Any]) -> str:
+    """How long it took, and whether the machine did other things as well."""
+    beside = ", beside other jobs" if record.get("load", 0) > record.get("cores", 0) + 0.5 else ""
+    return f"{record['seconds']:.0f} s{beside}"
 
 
 def _sizes(effect: dict[str, Any]) -> str:
@@ -124,7 +130,10 @@ def _section(name: str, kept: dict[str, Any]) -> str:
 def _named(effect: dict[str, Any]) -> str:
     said = f"- **{effect['name']}**, {effect['where']}: {_sizes(effect)}."
     if effect["rivals"]:
-        each = ", ".join(r["name"] for r in effect["rivals"])
+        at = effect["where"]
+        each = "; ".join(
+            r["name"] + (f", {r['where']}" if r["where"] != at else "") for r in effect["rivals"]
+        )
         said += f" {'Not told from' if effect['one_of'] else 'Less likely'}: {each}."
     if effect["disagrees"]:
         said += f" Worse on: {'; '.join(effect['disagrees'])}."
