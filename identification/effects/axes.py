@@ -18,11 +18,11 @@ import numpy as np
 
 from identification.engine import quiet
 from identification.errors import InputError
-from identification.logs.conversion import HUGE
 from identification.logs.frozen import refuse_frozen
 from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.logs.noise import noise_floor
+from identification.model.hostile import HUGE
 from identification.model.predictor import output_columns
 from identification.model.rollout import UNLOGGED, logged_inputs
 
