@@ -166,7 +166,7 @@ def _answer(law: dict[str, dict[int, float]], watched: Sequence[Row], cores: int
     """The answer in a paragraph."""
     two, all_ = law[_words(2)], law[_words(cores)]
     mjx, kernel = law["MJX, float64"], law["one CUDA kernel, float64"]
-    coarse = next(row for row in watched if (row["simulator"], row["bits"]) == ("mjx", 32))
+    coarse = next(row for row in watched if row["simulator"] == "warp")
     wrong, widest = coarse["central_columns"].values(), max(kernel)
     return SHORT.format(
         cores=cores, mjx_256=mjx[256], two_256=two[256], all_256=all_[256], mjx_32=mjx[32],

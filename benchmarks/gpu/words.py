@@ -60,16 +60,16 @@ TAKES = """
 The project does not depend on these packages. numba-cuda 0.30.4 asks numpy for a name that numpy
 2.5 no longer has; for the rows here, with numpy 2.5.2, `numpy.row_stack` was put back by hand.
 """
-SHORT = """**A GPU hardly helps the fits of this program today.** MJX can compute the robot with its
-law in float64. A step of 32 worlds then takes {mjx_32:.0f} µs, where MuJoCo takes {two_32:.0f} µs
-on two cores; a step of 256 worlds takes {mjx_256:.0f} µs, where MuJoCo takes {two_256:.0f} µs on
-two cores and {all_256:.0f} µs on {cores}. MJX is faster than two cores from {from_two} worlds
-on, and faster than {cores} from {from_all}. A fit simulates 20 to 600 worlds side by side, a
-sweep more. MuJoCo Warp computes in float32 only, which is of no use to a fit: with the
-differences that fits use, the best column of the Jacobian is wrong by {wrong:.0f} %. A kernel
-that is written for the INCA alone would pay. The robot and its law as one function in float64
-take {kernel_32:.0f} µs for 32 worlds, {kernel_256:.0f} µs for 256 and {kernel_widest:.0f} µs
-for {widest}, which is {times:.0f} times as fast as {cores} cores. That kernel is a benchmark
+SHORT = """**A GPU hardly helps the fits of this program today.** MJX can compute the robot with
+its law in float64. A step of 32 worlds then takes {mjx_32:.0f} µs, where MuJoCo takes
+{two_32:.0f} µs on two cores; a step of 256 worlds takes {mjx_256:.0f} µs, where MuJoCo takes
+{two_256:.0f} µs on two cores and {all_256:.0f} µs on {cores}. MJX is faster than two cores from
+{from_two} worlds on, and faster than {cores} from {from_all}. A fit simulates 20 to 600 worlds
+side by side, a sweep more. MuJoCo Warp computes in float32 only, which is of no use to a fit:
+with the differences that fits use, its best column of the Jacobian is wrong by {wrong:.0f} %. A
+kernel that is written for the INCA alone would pay. The robot and its law as one function in
+float64 take {kernel_32:.0f} µs for 32 worlds, {kernel_256:.0f} µs for 256 and {kernel_widest:.0f}
+µs for {widest}, which is {times:.0f} times as fast as {cores} cores. That kernel is a benchmark
 and no part of the program: it knows no other robot and no candidate effects."""
 ACCURACY = """
 ## Accuracy
@@ -79,7 +79,8 @@ Jacobian by differences of a relative step of 1e-4 (central) and 1e-6 (forward),
 them. The error of a column is relative to the twin's central difference, rms over the record; the
 table has the least and the largest of nine parameters. The largest errors in float64 are those of
 parameters that the record hardly tells, such as the damping b of the cables. An encoder with its
-noise errs by 0.67 mrad, so that float32 would do for a free run. Fits rely on columns that are
-right to about 1e-6: a float32 angle of a few rad is rounded by 1e-7 rad, and a difference divides
-what steps make of this by 1e-4 or 1e-6.
+noise errs by 0.67 mrad, so that float32 would do for a free run. In float64 the columns are as
+good as the processor's own, whose forward differences err by as much. In float32 an angle of a
+few rad is rounded by 1e-7 rad, and a difference divides what the steps make of this by 1e-4 or
+1e-6.
 """

@@ -31,7 +31,7 @@ def how_to_exchange(a: str, b: str) -> str:
 
 def unit_lines(units: Mapping[str, str]) -> str:
     """What says the units of some columns of a log, by column or by group."""
-    told = ", ".join(f"{toml_key(name)} = {json.dumps(word)}" for name, word in units.items())
+    told = lines_of([f"{toml_key(name)} = {json.dumps(word)}" for name, word in units.items()])
     return f"write {told} under [units] of the log's TOML"
 
 

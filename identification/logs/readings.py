@@ -123,9 +123,11 @@ def unit_readings(
         yield Reading(other, felt, said, told, ("units",))
 
 
-def output_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
-    """Other signs and places of the outputs that are not explained; see `unit_readings`."""
-    yield from output_turns(log, bad, column)
+def output_readings(
+    log: Log, bad: np.ndarray, column: Mapping[str, str], mirrored: bool = True
+) -> Iterator[Reading]:
+    """Other signs and places of the outputs that are not explained; see `output_turns`."""
+    yield from output_turns(log, bad, column, mirrored)
     yield from output_exchanges(log, bad, column)
 
 
@@ -137,12 +139,21 @@ def output_exchanges(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> It
                       how_to_exchange(out[i], out[j]))  # fmt: skip
 
 
-def output_turns(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
-    """The other sign of each output that is not explained, and of all; see `unit_readings`."""
+def output_turns(
+    log: Log, bad: np.ndarray, column: Mapping[str, str], mirrored: bool = True
+) -> Iterator[Reading]:
+    """The other sign of each output that is not explained, and of all; see `unit_readings`.
+
+    Args:
+        log: as it is read.
+        bad: true where an output is not explained, shape (ny,).
+        column: what an output or input is called in the log's file.
+        mirrored: whether all outputs with the other sign look as all inputs with the other sign.
+    """
     y, wrong = log.outputs, np.flatnonzero(bad).tolist()
     out, into = ([column[n] for n in names] for names in (log.output_names, log.input_names))
     for k in [*([k] for k in wrong), *([wrong] if len(wrong) > 1 else [])]:
-        mirror = f", or of {listed(into)}" if len(k) == y.shape[1] else ""  # looks the same
+        mirror = f", or of {listed(into)}" if mirrored and len(k) == y.shape[1] else ""
         yield Reading(replace(log, outputs=turned(y, k)), k, "with the other sign",
                       f"turn the sign of {listed(out[i] for i in k)}{mirror}"
                       f"{how_to_turn([out[i] for i in k])}")  # fmt: skip

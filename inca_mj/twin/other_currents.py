@@ -11,12 +11,16 @@ logs with γ > 0.005 no other reading left less than 0.48 of it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
 from identification import Log
 from identification.errors import DivergenceError
+from identification.logs.cures import how_to_turn
+from identification.logs.names import listed
 from identification.logs.readings import Reading, input_readings, misread
 from inca_mj.twin.other_wiring import RIGHT, alike
 
@@ -53,8 +57,16 @@ def other_currents(
 
     every = np.ones(y.shape[1], bool)
     column = {n: n for n in (*part.output_names, *part.input_names)}
-    readings = input_readings(part, every, column)
+    readings = chain(input_readings(part, every, column), _all_turned(part, every))
     return misread(part, own * every, readings, unexplained, as_right)
+
+
+def _all_turned(part: Log, every: np.ndarray) -> Iterator[Reading]:
+    """The other sign of all currents at once."""
+    names = list(part.input_names)
+    yield Reading(replace(part, inputs=-part.inputs), np.flatnonzero(every).tolist(),
+                  "with the other sign of all currents",
+                  f"turn the sign of {listed(names)}{how_to_turn(names)}")  # fmt: skip
 
 
 def apart(part: Log, predicted: np.ndarray) -> float:

@@ -33,7 +33,8 @@ def other_wiring(part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None
     y = part.outputs - part.outputs[0]
     column = {n: n for n in (*part.output_names, *part.input_names)}
     every = np.ones(y.shape[1], bool)
-    readings = chain(output_readings(part, every, column), _several(part, y, predicted))
+    # A cable pulls and does not push: other signs of all currents are no mirror of all angles.
+    readings = chain(output_readings(part, every, column, False), _several(part, y, predicted))
     return misread(part, unexplained(part), readings, unexplained, as_right)
 
 

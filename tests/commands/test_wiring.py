@@ -147,12 +147,19 @@ def test_a_log_that_rests_first_is_not_judged_by_its_noise(plant, rest):
     refuse_miswired(replace(log, outputs=step * np.round(log.outputs / step)), plant)
 
 
-def test_currents_of_the_wrong_sign(plant):
+def test_all_signs_turned_are_those_of_angles_or_of_currents(plant):
+    """A cable pulls only, so that the two are no mirror images: each has its own cure."""
+
     def reverse(y):
         y *= -1
 
-    with pytest.raises(InputError, match=r"turn the sign of angle_1, .* or of current_1"):
+    with pytest.raises(InputError, match="turn the sign of angle_1, ") as refused:
         refuse_miswired(changed(reverse), plant)
+    assert "current_" not in str(refused.value)
+    right = changed(lambda y: None)
+    with pytest.raises(InputError, match="turn the sign of current_1, ") as refused:
+        refuse_miswired(replace(right, inputs=-right.inputs), plant)
+    assert "angle_1 = -1" not in str(refused.value)
 
 
 def beside(plant, change) -> Log:
