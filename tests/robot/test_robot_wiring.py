@@ -134,7 +134,7 @@ def test_two_units_at_once_and_one_of_two_are_named(hanging, two_joints):
     own, log = hanging
     refuse_miswired(own, log)
     said = refused(own, replace(log, outputs=log.outputs * [1e3, 180 / np.pi]))
-    assert 'pos = "mm", ang = "deg"' in said
+    assert 'pos = "mm" and ang = "deg" (a line each)' in said
     own, log = two_joints
     said = refused(own, replace(log, outputs=log.outputs * [1.0, 180 / np.pi]))
     assert 'write b = "deg" under' in said

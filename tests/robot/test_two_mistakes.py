@@ -48,7 +48,7 @@ def test_both_are_told_of_a_model_that_is_not_quite_the_robot(tmp_path, world):
     own, read = robot(tmp_path, ARM, mistaken(ARM, "deg", [1, -1], world), "horizon = 0.2")
     with pytest.raises(InputError, match=r"turn the sign of q2") as refused:
         refuse_miswired(own, read)
-    assert 'q1 = "deg", q2 = "deg"' in str(refused.value)
+    assert 'q1 = "deg" and q2 = "deg" (a line each)' in str(refused.value)
 
 
 def test_who_knows_better_overrules_both(tmp_path):
