@@ -7,8 +7,8 @@
 that lacks something is off by a few percent: ε <= 0.11 and 0.77 <= s <= 1.2 over 89 simulated logs
 of 25 effects; an anchor that is 0.1 m off makes even ε = 1.5. Where the twin does not move, nothing
 is said. A log is believed to be wired in another way only if all its angles, read in that way, are
-as near to the twin as those of a right log. Currents are
-judged by all angles together (`inca_mj.twin.other_currents`).
+as near to the twin as those of a right log. Currents are judged by all angles together
+(`inca_mj.twin.other_currents`).
 """
 
 from __future__ import annotations
