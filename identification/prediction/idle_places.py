@@ -14,15 +14,11 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.estimation.options import Progress
-from identification.prediction.crossing import at_their_best
-from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
-from identification.prediction.proof import find_doubt
 from identification.prediction.records import Record
-from identification.prediction.rivals import NEEDLESS
+from identification.prediction.rivals import as_good_without
 from identification.prediction.selection import Contender
 from identification.prediction.several_places import at_places, is_felt, places_of
-from identification.prediction.unseen import compare
 
 
 def without_idle_places(
@@ -41,9 +37,10 @@ def without_idle_places(
     """
     out = []
     for old in accepted:
-        fewer = _fewer(model, old.candidate, options)
-        smaller = None if fewer is None else _with(model, old.candidate, fewer, nominal_model,
-                                                   confirm, options)  # fmt: skip
+        fewer, smaller = _fewer(model, old.candidate, options), None
+        if fewer is not None:
+            some = [fewer if c.key == old.candidate.key else c for c in model.candidates]
+            smaller = as_good_without(model, some, nominal_model, confirm, options)
         if fewer is None or smaller is None:
             out.append(old)
             continue
@@ -73,18 +70,3 @@ def _fewer(model: WindowModel, c: Candidate, options: DiscoveryOptions) -> Candi
         return None
     effect = at_places(c.effect, keep)
     return replace(c, effect=effect, where=next(iter(effect.places)))
-
-
-def _with(
-    model: WindowModel, old: Candidate, fewer: Candidate, nominal_model: NominalModel,
-    confirm: Sequence[Record], options: DiscoveryOptions,
-) -> WindowModel | None:  # fmt: skip
-    """The model with fewer places; None where it predicts unseen records worse, or cannot."""
-    candidates = tuple(fewer if c.key == old.key else c for c in model.candidates)
-    without = refitted(model, candidates, nominal_model, confirm)
-    if without is None:
-        return None
-    horizon = float(nominal_model.horizon or 0.0)
-    without, (best,) = at_their_best(without, [model], horizon, confirm)
-    needless = find_doubt(compare(without.unseen, best.unseen), 1, options) in NEEDLESS
-    return without if needless else None

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
+from identification.effects.effect import Candidate
 from identification.estimation.options import Progress
 from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import refitted
@@ -70,14 +71,35 @@ def prune(
     """
     keep = list(range(len(accepted)))
     for k, old in enumerate(accepted[:-1]):
-        rest = tuple(c for c in model.candidates if c.key != old.candidate.key)
-        without = refitted(model, rest, nominal_model, confirm)
-        if without is None:
-            continue
-        horizon = float(nominal_model.horizon or 0.0)
-        without, (best,) = at_their_best(without, [model], horizon, confirm)
-        if find_doubt(compare(without.unseen, best.unseen), 1, options) in NEEDLESS:
+        rest = [c for c in model.candidates if c.key != old.candidate.key]
+        without = as_good_without(model, rest, nominal_model, confirm, options)
+        if without is not None:
             progress(f"{old.candidate.effect.name}, {old.candidate.where}: no longer needed")
             model = without
             keep.remove(k)
     return model, tuple(keep)
+
+
+def as_good_without(
+    model: WindowModel, candidates: Sequence[Candidate], nominal_model: NominalModel,
+    confirm: Sequence[Record], options: DiscoveryOptions,
+) -> WindowModel | None:  # fmt: skip
+    """A model with fewer effects or places, refitted; None where it predicts unseen records worse.
+
+    Args:
+        model: with all of them.
+        candidates: those that it keeps.
+        nominal_model: the other free parameters, and the horizon.
+        confirm: records that no fit may see.
+        options: what is beyond chance, and matters.
+
+    Returns:
+        None also where it cannot be simulated.
+    """
+    without = refitted(model, candidates, nominal_model, confirm)
+    if without is None:
+        return None
+    horizon = float(nominal_model.horizon or 0.0)
+    without, (best,) = at_their_best(without, [model], horizon, confirm)
+    doubt = find_doubt(compare(without.unseen, best.unseen), 1, options)
+    return without if doubt in NEEDLESS else None
