@@ -19,26 +19,19 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
 from typing import Any
-from unittest import mock
 
 import fit_ratios
-import mujoco
 import step_ratios
-from mujoco.batch import Batch
 from speed_page import write_page
+from step_shares import SAMPLES, bare_times, lean, share_of
 
 from identification.engine import untimed
 from identification.estimation.estimation import estimate
-from identification.linear import points
-from identification.model import rollout
-from identification.native import forward
 from identification.sweep.code import commit
+from inca_mj.robot.inputs import prbs
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import Twin, build_twin
 
@@ -54,117 +47,18 @@ FITS = 5  # of which the median share counts
 DISCOVERY = ("discover", LOG, "--spread", "none")
 
 
-@dataclass(frozen=True)
-class Bare:
-    """Seconds of a step, of an evaluation, and of one that shares its positions, and no more."""
-
-    step: float
-    evaluation: float
-    shared: float
-
-
-@dataclass
-class Asked:
-    """What the simulator was asked for, and the processor time of the whole [s]."""
-
-    steps: int = 0
-    evaluations: int = 0
-    shared: int = 0
-    processor: float = 0.0
-
-    def share(self, bare: Bare) -> float:
-        """Bare time of what was asked over the processor time that it took."""
-        return (
-            self.steps * bare.step + self.evaluations * bare.evaluation + self.shared * bare.shared
-        ) / self.processor
-
-
-@contextmanager
-def counted() -> Iterator[Asked]:
-    """Counts the steps of all batches, and the evaluations at all points."""
-    asked = Asked()
-
-    class Counted(Batch):
-        def __init__(self, model: Any, n: int, *rest: Any) -> None:
-            super().__init__(model, n, *rest)
-            self.many = n
-
-        def rollout(self, steps: int, *rest: Any, **more: Any) -> Any:
-            asked.steps += steps * self.many
-            return super().rollout(steps, *rest, **more)
-
-    def evaluate(base: Any, cases: Any, results: Any, *, shares: bool, threads: int) -> Any:
-        many = len(base.states) * len(cases)
-        asked.shared += many if shares else 0
-        asked.evaluations += 0 if shares else many
-        return forward.evaluate(base, cases, results, shares=shares, threads=threads)
-
-    begin = time.process_time()
-    with (
-        mock.patch.object(rollout, "Batch", Counted),
-        mock.patch.object(points, "evaluate", evaluate),
-    ):
-        yield asked
-    asked.processor = time.process_time() - begin
-
-
-def lean(robot: Twin) -> Twin:
-    """The robot as fits simulate it: without shapes to draw, and without sensors."""
-    bare = build_twin(robot.parameters, visual=False)
-    return replace(bare, model=rollout.without_sensors(bare.model))
-
-
-def bare_times(robot: Twin, of: Callable[[list[float]], float] = min) -> Bare:
-    """What each takes in a loop that does nothing else: the least time, or what `of` makes of all.
-
-    The least time is the program's own. Beside another program's time, which has the machine's
-    pauses in it, stands the median.
-    """
-    model, at = robot.model, robot.state()
-    data = mujoco.MjData(model)
-    data.qpos[:], data.act[:] = at.qpos, at.act
-
-    def evaluations() -> None:
-        for _ in range(step_ratios.BURST):
-            mujoco.mj_forward(model, data)
-
-    def shared() -> None:
-        for _ in range(step_ratios.BURST):
-            mujoco.mj_forwardSkip(model, data, mujoco.mjtStage.mjSTAGE_POS, 0)
-
-    evaluations()
-    each = step_ratios.times([step_ratios.stepper(robot), evaluations, shared], 200)
-    return Bare(*(of(seconds) / step_ratios.BURST for seconds in each))
-
-
-def share_of(work: Callable[[], object], robot: Twin) -> tuple[float, Asked]:
-    """Bare time of what some work asks of the simulator over its processor time.
-
-    The speed of a machine changes within a minute by more than what is looked for, so bare times
-    are taken just before the work and just after it.
-    """
-
-    def bare() -> Bare:
-        with untimed():
-            return bare_times(robot, median)
-
-    before = bare()
-    with counted() as asked:
-        work()
-    shares = [asked.share(each) for each in (before, bare())]
-    return sum(shares) / 2, asked
-
-
 def measure_steps(robot: Twin) -> dict[str, dict]:
     """Ratios of a step, and what it takes at least."""
-    as_fits = lean(robot)
-    timed = bare_times(as_fits)
+    as_fits, inputs = lean(robot), prbs(SAMPLES, 0.01)
+    timed = bare_times(as_fits, inputs)
     with untimed():
-        bare = bare_times(as_fits)
-        law, drawn = step_ratios.law_ratio(as_fits), step_ratios.law_ratio(robot)
+        bare = bare_times(as_fits, inputs)
+        law, drawn = step_ratios.law_ratios(as_fits), step_ratios.law_ratios(robot)
     return {
-        "step_with_law_over_without": entry(law, 1.03, "as fits simulate it"),
-        "step_with_law_over_without_drawn": entry(drawn, None, "with shapes and sensors"),
+        "step_with_law_over_without": entry(law["law"], 1.03, "as fits simulate it"),
+        "step_with_idle_callbacks_over_without": entry(law["idle"]),
+        "step_with_exponentials_over_without": entry(law["exponentials"]),
+        "step_with_law_over_without_drawn": entry(drawn["law"], None, "with shapes and sensors"),
         "step_with_clock_over_without": entry(timed.step / bare.step),
         "python_callback_over_native": entry(step_ratios.python_ratio(robot), 4.0),
         "batch_on_2_threads_over_loop_on_1": entry(step_ratios.batch_ratio(robot)),
@@ -182,7 +76,8 @@ def measure_fit() -> dict[str, dict]:
         found = estimate(robot, log, fit_ratios.FREE)
     as_fits = lean(robot)
     shares = sorted(
-        share_of(lambda: estimate(robot, log, fit_ratios.FREE), as_fits)[0] for _ in range(FITS)
+        share_of(lambda: estimate(robot, log, fit_ratios.FREE), as_fits, log.inputs, median)[0]
+        for _ in range(FITS)
     )
     other, why = fit_ratios.sysid_seconds(robot, log, found.seconds)
     naive = fit_ratios.naive_seconds(robot, log, work.simulated)
@@ -203,7 +98,9 @@ def measure_discovery() -> dict[str, dict]:
 
     found: list[Any] = []
     log = read_inca_log(ROOT / LOG)
-    share, asked = share_of(lambda: found.append(discover([log])), lean(build_twin()))
+    share, asked = share_of(
+        lambda: found.append(discover([log])), lean(build_twin()), log.inputs, median
+    )
     total = sum(found[0].seconds.values())
     stages = {name: round(seconds / total, 3) for name, seconds in found[0].seconds.items()}
     return {

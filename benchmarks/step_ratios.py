@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
+import idle_law
 import mujoco
 import numpy as np
 import python_law
@@ -51,16 +52,23 @@ def stepper(robot: Twin, steps: int = BURST) -> Callable[[], None]:
     return run
 
 
-def law_ratio(robot: Twin) -> float:
-    """A step with the law over one without it."""
-    step = stepper(robot)
-    best = [float("inf")] * 2
-    for _ in range(2000):
-        for k, switch in enumerate((native.install, native.uninstall)):
-            switch()
-            best[k] = min(best[k], least([step], 1)[0])
+def law_ratios(robot: Twin) -> dict[str, float]:
+    """A step with the law, and with callbacks that compute less, over one without any."""
     native.install()
-    return best[0] / best[1]
+    step, law = stepper(robot), idle_law.held()
+    callbacks = {
+        "law": law,
+        "idle": idle_law.compiled(exponentials=False),
+        "exponentials": idle_law.compiled(exponentials=True),
+        "none": dict.fromkeys(law),
+    }
+    best = dict.fromkeys(callbacks, float("inf"))
+    for _ in range(2000):
+        for name, held in callbacks.items():
+            idle_law.hold(held)
+            best[name] = min(best[name], least([step], 1)[0])
+    idle_law.hold(law)
+    return {name: seconds / best["none"] for name, seconds in best.items()}
 
 
 def python_ratio(robot: Twin) -> float:

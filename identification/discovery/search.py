@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from identification.blas import one_blas_thread
 from identification.discovery.forecast import forecast, refuse_large
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
@@ -18,6 +19,7 @@ from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log
 
 
+@one_blas_thread()
 def discover(
     nominal_model: NominalModel,
     log: Log,

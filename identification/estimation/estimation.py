@@ -25,6 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from identification.blas import one_blas_thread
 from identification.errors import InputError, refuse_kind
 from identification.estimation.options import HORIZONS as HORIZONS
 from identification.estimation.options import Options as Options
@@ -81,6 +82,7 @@ class Estimate:
         return dict(zip(self.space.names, self.space.decode(self.q).tolist(), strict=True))
 
 
+@one_blas_thread()
 def estimate(
     plant: Plant,
     log: Log,

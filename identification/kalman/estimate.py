@@ -15,8 +15,8 @@ from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.errors import InputError
 from identification.estimation.estimation import Estimate
 from identification.estimation.fit import Fit, assess, combinations_of
@@ -166,7 +166,7 @@ def compute_innovations(end: Refit, whole: Log) -> np.ndarray:
     point = end.point
     predictor = replace(point.predictor, log=whole)
     values = point.space.decode(point.q)
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         filter_ = build_whitener(linearise(predictor, values), end.level.noise, whole.sampling_time)
         return filter_(whole.outputs - predictor.predict(values)[0])
 
@@ -174,7 +174,7 @@ def compute_innovations(end: Refit, whole: Log) -> np.ndarray:
 def _fitted_innovations(end: Refit) -> np.ndarray:
     """Innovations of the fitted samples, shape (n, ny), by the linearisation that is at hand."""
     point = end.point
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         filter_ = build_whitener(point.linear, end.level.noise, point.log.sampling_time)
         return filter_(point.e)
 
@@ -182,7 +182,7 @@ def _fitted_innovations(end: Refit) -> np.ndarray:
 def _of_innovations(end: Refit, fit: Fit) -> Fit:
     """The fit with the uncertainty and the tests of the innovations."""
     point, σ = end.point, end.level.sigma
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         filter_ = build_whitener(point.linear, end.level.noise, point.log.sampling_time)
         E = filter_(point.e)
         resolved = resolve(

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.kalman.derivatives import force_derivatives, state_derivatives
 from identification.kalman.exponential import transitions
 from identification.kalman.trajectory import COARSE, Trajectory, follow
@@ -133,7 +133,7 @@ def linearise_along(
     felt = _felt(F, C)
     F, G, C = F[:, felt][:, :, felt], G[:, felt], C[:, felt]
     positions = int(felt[: along.model.nv].sum())
-    with threadpool_limits(1, "blas"):  # the matrices are small, so threads would only wait
+    with one_blas_thread():
         A, Γ = transitions(F, along.duration)
     Γ = Γ[:, :, positions:]
     return Linearisation(along, A, Γ, Γ @ G[:, positions:], C, felt)

@@ -13,8 +13,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_model import Noise, Whitener, augment, build_whitener
 from identification.kalman.options import KalmanOptions
@@ -124,7 +124,7 @@ def fit_noise(
         largest: largest error of the inputs that is believed on the grid, in the inputs' unit.
     """
     time = options.start_correlation_time
-    with threadpool_limits(1, "blas"):  # the matrices are small, so threads would only wait
+    with one_blas_thread():
 
         def at(noise: Noise) -> NoiseLevel:
             return evaluate_noise(build_whitener(plant, noise, sampling_time), noise, e, J, prior)

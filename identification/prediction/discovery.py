@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from identification.blas import one_blas_thread
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
@@ -18,6 +19,7 @@ from identification.prediction.state import RecordsTask, first_state, next_state
 from identification.prediction.verdict import conclude
 
 
+@one_blas_thread()
 def discover_records(
     nominal_model: NominalModel,
     fit: Sequence[Log],

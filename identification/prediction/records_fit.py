@@ -15,6 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
+from identification.blas import one_blas_thread
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.errors import InputError
@@ -170,6 +171,7 @@ class RecordsFit:
         return error_unit(self.records[0].log, self.model.scale)[0]
 
 
+@one_blas_thread()
 def fit_records(
     nominal_model: NominalModel,
     fit: Sequence[Log],

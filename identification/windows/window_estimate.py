@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from identification.blas import one_blas_thread
 from identification.estimation.identifiability import Identifiability
 from identification.estimation.options import Progress
 from identification.estimation.resolution import resolve_columns, round_off
@@ -71,6 +72,7 @@ class WindowEstimate:
         return float(np.sqrt(np.mean(self.residual**2)))
 
 
+@one_blas_thread()
 def estimate_windows(
     plant: Plant,
     log: Log,
