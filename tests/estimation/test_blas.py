@@ -39,4 +39,6 @@ def test_a_fit_has_one_thread_and_finds_the_truth():
         assert threads() == {2}
     assert len(seen) > 0
     assert all(each == {1} for each in seen)
-    np.testing.assert_allclose(found.values["damping"], slider().parameters.values()["damping"], rtol=1e-5)
+    np.testing.assert_allclose(
+        found.values["damping"], slider().parameters.values()["damping"], rtol=1e-5
+    )
