@@ -108,8 +108,8 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
     """Of all rows that did not fail."""
     done = [row for row in rows if "error" not in row]
     kind = {k: [r for r in done if r["truth"]["kind"] == k]
-            for k in ("null", "single", "pair", "triple", "unknown")}  # fmt: skip
-    known = kind["single"] + kind["pair"] + kind["triple"]
+            for k in ("null", "single", "pair", "triple", "rule", "sensor", "unknown")}  # fmt: skip
+    known = [r for k, some in kind.items() if k not in ("null", "unknown") for r in some]
     confusion: dict[str, Counter[str]] = {}
     for row in done:
         names = [e["name"] for e in row["truth"]["effects"]]

@@ -31,7 +31,7 @@ def world_score(settings: WorldSettings, seed: Seed) -> dict[str, Any]:
     fit, _, scores = fit_nominal(log, settings.spread, settled=True)
     significant = named(scores)
     first = significant[0].partition(",")[0] if significant else ""
-    listed = truth["kind"] in ("single", "pair", "triple")
+    listed = truth["kind"] not in ("null", "unknown")
     return {
         **truth,
         "found": first in truth["hidden"] if listed else None,

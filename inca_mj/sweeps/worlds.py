@@ -19,8 +19,11 @@ from identification.sweep.method import Column, Seed
 from identification.sweep.words import file_setting, setting
 from inca_mj.workflows.spread import WORDS
 from inca_mj.worlds import (
+    ALL_EFFECTS,
     AS_BUILT,
+    CHANGES,
     EXACT,
+    FAULTS,
     HIDDEN_EFFECTS,
     SHAPES,
     UNLISTED,
@@ -33,7 +36,8 @@ from inca_mj.worlds.world import INPUTS
 
 COUNTS = {1: "single", 2: "pair", 3: "triple"}  # the kind of a world by its hidden effects
 RATIOS = (1.0, 3.0, 10.0)  # of what cannot be absorbed to the noise, drawn by chance
-KINDS = ("mixed", "null", "listed", "unknown")
+HIDES = {"listed": HIDDEN_EFFECTS, "unknown": UNLISTED, "rule": CHANGES, "sensor": FAULTS}
+KINDS = ("mixed", "null", *HIDES)
 SIZES = {"delay": "tau", "fraction": "c"}  # sizes of the worlds by the catalogue's names
 ERROR = 5e-4  # of the currents, unlogged and coloured [A]
 SPREAD = "what a search believes of drives and points: none, usual, or a TOML file"
@@ -50,8 +54,8 @@ class WorldSettings:
 
     world: int | None = setting("number of the world; from the seed of the task if not given", None)
     kind: str = setting(
-        "null, listed, unknown, or mixed: one world in six hides nothing, and one in six an effect"
-        " that no catalogue lists",
+        "null, listed, unknown (in no catalogue), rule (a parameter drifts or jumps), sensor (an"
+        " encoder's fault), or mixed: one world in six null, one in six unknown, the rest listed",
         "mixed",
     )
     first: int = setting("number of the first world; mixed counts from it", 0)
@@ -73,8 +77,8 @@ class WorldSettings:
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
             raise unknown_name("kind of world", self.kind, KINDS)
-        if self.effect and self.effect not in (known := {*HIDDEN_EFFECTS, *UNLISTED}):
-            raise unknown_name("effect", self.effect, known)
+        if self.effect and self.effect not in ALL_EFFECTS:
+            raise unknown_name("effect", self.effect, ALL_EFFECTS)
         if self.effects not in COUNTS:
             raise InputError(f"effects = {self.effects}: a world hides 1, 2 or 3")
         for name in ("world", "first"):
@@ -139,8 +143,8 @@ def _drawn(settings: WorldSettings, number: int) -> tuple[str, list[str], list[s
     kind = settings.kind
     if kind == "mixed":
         kind = {0: "null", 3: "unknown"}.get((number - settings.first) % 6, "listed")
-    count = {"null": 0, "unknown": 1}.get(kind, settings.effects)
-    known = [*(UNLISTED if kind == "unknown" else HIDDEN_EFFECTS)]
+    count = settings.effects if kind == "listed" else int(kind != "null")
+    known = [*HIDES.get(kind, HIDDEN_EFFECTS)]
     names = [str(name) for name in rng.choice(known, count, replace=False)]
     ratio = float(settings.ratio or rng.choice(RATIOS))
     others = [str(name) for name in rng.permutation(known) if name not in names]

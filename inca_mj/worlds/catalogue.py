@@ -8,7 +8,7 @@ import numpy as np
 
 from identification.errors import unknown_name
 from inca_mj.robot.geometry import DRIVES
-from inca_mj.worlds import cable, drum, friction, motor, place
+from inca_mj.worlds import cable, change, drum, friction, motor, place, sensor
 from inca_mj.worlds.effect import HiddenEffect, HiddenOneDriveEffect
 
 _KNOWN: tuple[type[HiddenEffect], ...] = (
@@ -44,13 +44,36 @@ _UNLISTED: tuple[type[HiddenEffect], ...] = (
     motor.HiddenTorqueRippleTime,
 )
 
+_CHANGES: tuple[type[HiddenEffect], ...] = (
+    change.HiddenFrictionDrift,
+    change.HiddenViscousFrictionDrift,
+    change.HiddenCableElasticityDrift,
+    change.HiddenDrumSpringDrift,
+    change.HiddenFrictionJump,
+    change.HiddenViscousFrictionJump,
+    change.HiddenCableElasticityJump,
+    change.HiddenDrumSpringJump,
+    change.HiddenTorqueConstantJump,
+)
+_FAULTS: tuple[type[HiddenEffect], ...] = (
+    sensor.HiddenEncoderScale,
+    sensor.HiddenEncoderEccentricity,
+    sensor.HiddenEncoderLag,
+    sensor.HiddenEncoderJump,
+)
+
 HIDDEN_EFFECTS = {kind.name: kind for kind in _KNOWN}  # what a discovery may name
 UNLISTED = {kind.name: kind for kind in _UNLISTED}  # what it must call unknown
+CHANGES = {kind.name: kind for kind in _CHANGES}  # parameters that drift or jump
+FAULTS = {kind.name: kind for kind in _FAULTS}  # of encoders
+ALL_EFFECTS = {**HIDDEN_EFFECTS, **UNLISTED, **CHANGES, **FAULTS}
 
 # Sizes whose sign physics leaves open; the others keep that of their default.
 _SIGNED = {
-    *("a", "b", "x", "y", "z", "delta", "alpha"),
+    *("a", "b", "x", "y", "z", "delta", "alpha", "s"),
 }
+
+SEEN = (1.0, 4.0)  # when something jumps [s]: in the first half of a log of 10 s, which is fitted
 
 # The same names by another law: a discovery that knows only the first law meets a wrong shape.
 SHAPES: dict[str, dict[str, float | bool]] = {
@@ -69,22 +92,21 @@ def effect(name: str, *, drive: int | None = None, other_shape: bool = False) ->
     """An effect of its default size.
 
     Args:
-        name: canonical name, of `HIDDEN_EFFECTS` or `UNLISTED`.
+        name: canonical name, of `ALL_EFFECTS`.
         drive: 1 to 8, for an effect that has one; all drives (or drive 1) when not given.
         other_shape: take the law of `SHAPES` instead of the usual one.
 
     Raises:
         InputError: the name is unknown, or has no other shape.
     """
-    kinds = {**HIDDEN_EFFECTS, **UNLISTED}
-    if name not in kinds:
-        raise unknown_name("effect", name, kinds)
+    if name not in ALL_EFFECTS:
+        raise unknown_name("effect", name, ALL_EFFECTS)
     options: dict[str, float | bool | int] = {} if drive is None else {"drive": drive}
     if other_shape:
         if name not in SHAPES:
             raise unknown_name("effect with another shape", name, SHAPES)
         options |= SHAPES[name]
-    return kinds[name](**options)
+    return ALL_EFFECTS[name](**options)
 
 
 def draw_effect(name: str, seed: int, *, other_shape: bool = False) -> HiddenEffect:
@@ -115,5 +137,9 @@ def draw_effect(name: str, seed: int, *, other_shape: bool = False) -> HiddenEff
         new["tau"] = float(np.exp(rng.uniform(np.log(0.2), np.log(5.0))))
     if name == "stribeck_friction":
         new["v_s"] = float(rng.uniform(0.7, 3.0))
+    if "t_s" in have:
+        new["t_s"] = round(float(rng.uniform(*SEEN)), 2)
+    if name == "encoder_lag":
+        new["late"] = bool(rng.integers(2))
     factor = float(np.exp(rng.uniform(np.log(0.5), np.log(2.0))))
     return replace(chosen, **new).scaled(factor)

@@ -7,7 +7,8 @@
     J ω̇_m      = K_t (1 + δ)(1 − D) i_m + torques − R_k T + R_s F_s − friction
     m v̇        = reference + weight of the cables − R_ABᵀ c |v|^(n−1) v
 
-R, R_s, K_t and the other numbers of a drive are its own: `own` is its row of the packed numbers.
+R, R_s, K_t and the other numbers of a drive are its own: `own` is its row of the packed numbers, in
+which one may change as time goes by.
 
 Each function is one of these lines and none of them is the reference's, so that a test may ask
 the two to agree where no effect is on. An effect that is off is skipped or adds an exact zero.
@@ -38,6 +39,20 @@ from inca_mj.worlds.pulley import path
 compiled = njit(error_model="numpy")
 
 EDGE = 1e-9  # a rotor this near to an edge of its gap pushes it: rounding must not let go [rad]
+
+
+@compiled
+def changed(t: float, heat: float, own: np.ndarray, D: np.ndarray) -> np.ndarray:
+    """The numbers of a drive at a time, of which one may drift or jump."""
+    which = int(D[at.CHANGED]) - 1
+    if which < 0:
+        return own
+    now = own.copy()
+    c = -D[at.CHANGE_RATE] * t - D[at.CHANGE_HEAT] * heat
+    if t >= D[at.JUMP_TIME] - 1e-9:
+        c += D[at.JUMP]
+    now[which] *= 1.0 + c
+    return now
 
 
 @compiled
@@ -165,7 +180,7 @@ def world_rate(t: float, x: np.ndarray, i: np.ndarray, q: np.ndarray, D: np.ndar
         x: state, shape (60,), in the order of `layout`.
         i: currents that flow, shape (8,) [A].
         q: packed numbers of the reference, shape (147,).
-        D: numbers of the drives, shape (8, 44).
+        D: numbers of the drives, shape (8, 49).
         P: numbers of the platform, shape (3,).
         rate: where ẋ is written, shape (60,).
     """
@@ -181,7 +196,8 @@ def world_rate(t: float, x: np.ndarray, i: np.ndarray, q: np.ndarray, D: np.ndar
     F = (m * down[0] + GB[0] + air[0], m * down[1] + GB[1] + air[1], m * down[2] + GB[2] + air[2])
     M = cross(b_G, GB)
     for k in range(base.DRIVES):
-        D_k, own = D[k], q[base.ROW * k :]
+        D_k = D[k]
+        own = changed(t, x[52 + k], q[base.ROW * k :], D_k)
         a, b_k = vector(A[3 * k :]), vector(B[3 * k :])
         φ, ω_m, d_0, R = x[12 + k], x[20 + k], x[28 + k], own[base.R]
         ψ, ε_v, heat = (φ if D_k[at.PLAY] == 0.0 else x[36 + k]), x[44 + k], x[52 + k]

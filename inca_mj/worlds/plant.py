@@ -33,7 +33,7 @@ class HiddenPlant:
 
     Attributes:
         q: packed numbers of the reference, at the true geometry, shape (147,).
-        D: numbers of the drives, shape (8, 44).
+        D: numbers of the drives, shape (8, 49).
         P: numbers of the platform, shape (3,).
         start: first state, shape (60,).
     """

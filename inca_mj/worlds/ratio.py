@@ -1,6 +1,6 @@
 """How large an effect is, as the part that a robot without it cannot absorb.
 
-    e(s)  = φ(with s times the effect) − φ(without), all samples and drives
+    e(s)  = φ(with s times the effect) − φ(without), all samples and drives, as encoders read it
     S     = ∂φ/∂(base parameters, start pose), by forward differences of the world without effects
     D     = ∂φ/∂(deviations of drives, points and platform), each times its std by the tolerances
     r(s)² = min over a, x of (‖e(s) − S a − D x‖² / σ² + ‖x‖²) / N,         σ the measurement noise
@@ -29,11 +29,11 @@ import numpy as np
 
 from identification.errors import DivergenceError, InputError
 from identification.model.parameter import ParameterSet
-from inca_mj.reference import layout as base
 from inca_mj.robot.geometry import Geometry
 from inca_mj.worlds import layout as at
 from inca_mj.worlds.effect import HiddenEffect
-from inca_mj.worlds.plant import make_plant, simulate_world
+from inca_mj.worlds.plant import make_plant
+from inca_mj.worlds.sensor import simulate_angles
 from inca_mj.worlds.tolerances import EXACT, Tolerances, usual_std
 
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -107,7 +107,7 @@ class HiddenAbsorbed:
         _, geometry, currents, sampling_time = self._robot
         plant = make_plant(parameters, geometry, effects)
         step = None if plant.D[:, at.PLAY].any() else COARSE
-        return simulate_world(plant, currents, sampling_time, step)[:, base.ANGLES].ravel()
+        return simulate_angles(plant, effects, currents, sampling_time, step)[1].ravel()
 
 
 class UnreachedError(InputError):

@@ -10,13 +10,13 @@ import numpy as np
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.model.parameter import ParameterSet
-from inca_mj.reference import layout as base
 from inca_mj.robot.geometry import DRIVES, INCA, Geometry
 from inca_mj.worlds.effect import HiddenEffect
 from inca_mj.worlds.measure import coloured, encode, noise_rms
-from inca_mj.worlds.plant import make_plant, simulate_world
+from inca_mj.worlds.plant import make_plant
 from inca_mj.worlds.ratio import HiddenAbsorbed, UnreachedError, sized
 from inca_mj.worlds.robot import elsewhere, true_robot
+from inca_mj.worlds.sensor import simulate_angles
 from inca_mj.worlds.setting import HiddenSetting, make_currents
 from inca_mj.worlds.truth import HiddenTruth, HiddenWorld
 
@@ -156,9 +156,9 @@ def _record(
         np.random.default_rng([seed, 2, *number]),
     )  # fmt: skip
     plant = make_plant(robot, geometry, effects)
-    angles = simulate_world(plant, u + error, setting.sampling_time)[:, base.ANGLES].copy()
+    angles, read = simulate_angles(plant, effects, u + error, setting.sampling_time)
     noise = np.random.default_rng([seed, 3, *number])
-    y = encode(angles, setting.counts, setting.noise, noise)
+    y = encode(read, setting.counts, setting.noise, noise)
     truth = HiddenTruth(
         seed=seed,
         effects=effects,

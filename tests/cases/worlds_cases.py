@@ -8,6 +8,7 @@ from inca_mj.reference import layout as base
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.worlds import (
+    CHANGES,
     HIDDEN_EFFECTS,
     SHAPES,
     UNLISTED,
@@ -22,7 +23,8 @@ from inca_mj.worlds.equations import world_rate
 
 TRIAL = parameter_set("trial")
 FINE = 5e-4  # a sampling time of one step [s]
-ALL = [(name, False) for name in (*HIDDEN_EFFECTS, *UNLISTED)] + [(name, True) for name in SHAPES]
+ALL = [(name, False) for name in (*HIDDEN_EFFECTS, *UNLISTED, *CHANGES)]  # not what encoders say
+ALL += [(name, True) for name in SHAPES]
 
 
 def plant(*effects, parameters=TRIAL, geometry=INCA) -> HiddenPlant:

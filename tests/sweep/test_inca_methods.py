@@ -15,7 +15,16 @@ from inca_mj.sweeps.null_score import null_findings
 from inca_mj.sweeps.practice import truth_of
 from inca_mj.sweeps.world_score import score_findings
 from inca_mj.sweeps.worlds import WorldSettings, make_world
-from inca_mj.worlds import HIDDEN_EFFECTS, UNLISTED, HiddenSetting, draw_effect, records, world
+from inca_mj.worlds import (
+    CHANGES,
+    FAULTS,
+    HIDDEN_EFFECTS,
+    UNLISTED,
+    HiddenSetting,
+    draw_effect,
+    records,
+    world,
+)
 
 SEED = Seed(5, (0, 0, 3))
 
@@ -68,6 +77,16 @@ def test_of_six_mixed_worlds_one_hides_nothing_and_one_an_unlisted_effect(monkey
     for kind, names, others, _ in drawn:
         if kind == "pair":
             assert sorted([*names, *others]) == sorted(HIDDEN_EFFECTS)
+
+
+@pytest.mark.parametrize(("kind", "known"), [("rule", CHANGES), ("sensor", FAULTS)])
+def test_a_kind_of_its_own_hides_one_of_its_effects(kind, known):
+    from inca_mj.sweeps.worlds import _drawn
+
+    drawn = [_drawn(WorldSettings(kind=kind), k) for k in range(150)]
+    assert {told for told, *_ in drawn} == {kind}
+    assert {name for _, names, *_ in drawn for name in names} == {*known}
+    assert all(sorted([*names, *others]) == sorted(known) for _, names, others, _ in drawn)
 
 
 @pytest.mark.parametrize(

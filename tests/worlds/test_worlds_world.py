@@ -10,10 +10,9 @@ from identification.errors import InputError
 from inca_mj.robot.geometry import INCA
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.worlds import (
+    ALL_EFFECTS,
     EVERY,
-    HIDDEN_EFFECTS,
     SHAPES,
-    UNLISTED,
     VARIED,
     HiddenAnchorOffset,
     HiddenBacklash,
@@ -146,7 +145,7 @@ def test_an_effect_in_reserve_takes_the_place_of_one_that_cannot_show_so_much():
     assert [e.name for e in made.truth.effects] == ["cogging"]
 
 
-@pytest.mark.parametrize("name", [*HIDDEN_EFFECTS, *UNLISTED])
+@pytest.mark.parametrize("name", ALL_EFFECTS)
 def test_every_effect_begins_at_a_size_that_a_robot_may_have(name):
     assert draw_effect(name, 3).most >= 1.0
     if name in SHAPES:
