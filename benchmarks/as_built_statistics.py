@@ -91,20 +91,21 @@ def _worlds(rows: Sequence[Row]) -> list[str]:
     lines = [
         "## Worlds of our own, as built", "",
         "    inca sweep benchmarks/sweeps/as_built.toml", "",
-        "Robots, inputs and effects are drawn by chance; one in six has nothing hidden, and one in"
-        " six an effect that no catalogue lists. With `effects = 3` three are hidden, and"
+        "Robots, inputs and effects are drawn by chance; one in six has nothing hidden, and one"
+        " in six an effect that no catalogue lists. With `effects = 3` three are hidden, and"
         " `records = 3` makes three logs of one robot. Sizes are such that 20 times the noise, or"
-        " what a line says, is left when base parameters and start are tuned again and parts deviate"
-        " as parts do, each at the price of its usual std. Older rows count base parameters and start only: their"
-        " effects are smaller, and some are within the spread. Some rows are of effects larger than"
-        " robots usually have them, such as a cable of 90 g/m: no smaller one leaves so much, and"
-        " worlds have another effect in their place since then. Worlds up to 8216, and from 9000 to"
-        " 9408, count the common radius, spring constant and slope of the friction as known. A"
-        " hysteresis of the drum springs in worlds up to 8509, and from 9000 to 9616, is friction"
-        " and stiffness to first order (r₁ < r/10, `inca_mj/worlds/ratio.py`): nobody can tell it"
-        " from them, and worlds have another effect in its place since then. A scale of 5 % of"
-        " one encoder leaves a third of the noise in 10 s (worlds 5 and 6), because other parameters"
-        " of its drive do the same: nobody can tell it, and no world has it.", "",
+        " what a line says, is left when base parameters and start are tuned again and parts"
+        " deviate as parts do, each at the price of its usual std. Older rows count base"
+        " parameters and start only: their effects are smaller, and some are within the spread."
+        " Some rows are of effects larger than robots usually have them, such as a cable of 90"
+        " g/m: no smaller one leaves so much, and worlds have another effect in their place since"
+        " then. Worlds up to 8216, and from 9000 to 9408, count the common radius, spring constant"
+        " and slope of the friction as known. A hysteresis of the drum springs in worlds up to"
+        " 8509, and from 9000 to 9616, is friction and stiffness to first order (r₁ < r/10,"
+        " `inca_mj/worlds/ratio.py`): nobody can tell it from them, and worlds have another effect"
+        " in its place since then. A scale of 5 % of one encoder leaves a third of the noise in 10"
+        " s (worlds 5 and 6), because other parameters of its drive do the same: nobody can tell"
+        " it, and no world has it.", "",
     ]  # fmt: skip
     one = {"the right name first": right, "right or in the set": in_set,
            "a wrong name": lambda r: bool(r["answer"]["named"]) and not right(r)}  # fmt: skip
