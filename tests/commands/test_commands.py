@@ -109,7 +109,7 @@ def test_crosscheck_disagrees_aloud(
     monkeypatch.setattr(
         check, "run_reference", lambda c, p, g: right(c, p.with_values({"b_c": 0.0051}), g)
     )
-    assert run("crosscheck", "--duration", 1, "--states", 50, "--json") == 1
+    assert run("crosscheck", "--duration", 0.3, "--states", 10, "--json") == 1
     assert last_json(capsys)["passed"] is False
 
 
