@@ -73,6 +73,12 @@ def log():
 
 
 def fit(values: dict[str, float]) -> Refit:
+    return _fit(tuple(values.items()))
+
+
+@cache
+def _fit(items: tuple[tuple[str, float], ...]) -> Refit:
+    values = dict(items)
     names = (*BASE, *(n for n in values if n not in BASE))
     predictor = Predictor(robot(), log(), names)
     space = coordinates(robot().parameters, names, np.array([values[n] for n in names]))
@@ -85,6 +91,7 @@ def fit(values: dict[str, float]) -> Refit:
     return Refit(point=point, level=_level(), std=std, mean=q, prior=prior, steps=3)
 
 
+@cache
 def found(verdict="named", *, one_of=False, unexplained=False, several=False) -> Discovery:
     """A discovery of the Stribeck peak that is in the log; or of nothing."""
     nominal = fit({"b_v": 2.4e-4, "x": 0.003})

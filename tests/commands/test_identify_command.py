@@ -19,13 +19,15 @@ from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
 
 TRUTH = {"b_v": 2.3e-4, "b_c": 0.0056}
-FREE = ("--free", "b_v", "b_c")
+STEP = 2e-3  # [s] of the log and of the model
+FREE = ("--free", "b_v", "b_c", "--step", str(STEP))
 
 
 @pytest.fixture(scope="module")
 def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A second of the robot, its drives' noise of two sizes."""
-    run = simulate(build_twin(parameter_set("trial", TRUTH)), make_input("prbs", 1.0, seed=0))
+    robot = build_twin(parameter_set("trial", TRUTH), timestep=STEP)
+    run = simulate(robot, make_input("prbs", 1.0, seed=0))
     clean = run_to_log(run, "second")
     size = np.array([1e-4, 2e-3] * 4)
     noise = size * np.random.default_rng(1).standard_normal(clean.outputs.shape)

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from identification import InputError
 from inca_mj.cli import main
 from inca_mj.twin.run import load_run
 
@@ -35,12 +36,21 @@ def test_it_keeps_a_run_that_can_be_loaded_and_says_how_far_off_it_was(tmp_path,
     assert list(out.glob("*.png"))
 
 
-def test_an_effect_by_its_name_alone_is_its_first_size(capsys):
-    said = []
+def test_an_effect_by_its_name_alone_is_its_first_size(monkeypatch, capsys):
+    robots = []
+
+    def begun(robot, model, *arguments, **options):
+        robots.append(robot)
+        raise InputError("that was all")
+
+    monkeypatch.setattr("inca_mj.workflows.tracking.track", begun)
     for word in ("load_dependent_friction=0.05", "load_dependent_friction.mu=0.05"):
-        assert main(["track", *SHORT, "--effect", word, "--json"]) == 0
-        said.append(json.loads(capsys.readouterr().out))
-    assert said[0] == said[1]
+        assert main(["track", *SHORT, "--effect", word, "--json"]) == 2
+        assert "that was all" in capsys.readouterr().err
+    alone, whole = robots
+    assert alone.effects == whole.effects
+    assert alone.parameters.values() == whole.parameters.values()
+    assert alone.parameters.values()["load_dependent_friction.mu"] == 0.05
 
 
 @pytest.mark.parametrize(

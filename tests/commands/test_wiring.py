@@ -16,6 +16,7 @@ from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
 
 LOG = Path(__file__).parents[2] / "examples" / "log.csv"  # an effect is missing from its model
+pytestmark = pytest.mark.usefixtures("each_run_once")
 
 
 @pytest.fixture(scope="module")

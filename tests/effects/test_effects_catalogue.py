@@ -67,14 +67,16 @@ def test_numbers_make_sense(effect):
 @pytest.mark.parametrize("effect", CATALOGUE, ids=lambda e: e.name)
 def test_a_probe_shows_and_is_nearly_linear(effect):
     """Half the probe moves the angles half as much."""
+    jump = effect.name.endswith("_jump")
     shapes = {"current_saturation.i_max": 0.75} if effect.name == "current_saturation" else {}
+    shapes |= {f"{effect.name}.t_s": 0.5} if jump else {}
     names = [*shapes, *probes(effect)]
     values = [[*shapes.values(), *(f * p for p in probes(effect).values())] for f in (0, 0.5, 1)]
-    # A drift begins at nothing, and a jump comes after five of these seconds.
-    seconds = 4 if effect.name.endswith("_drift") else 8 if effect.name.endswith("_jump") else 1
+    # A drift begins at nothing, and a jump comes after half of the first second.
+    seconds = 4 if effect.name.endswith("_drift") else 2 if jump else 1
     none, half, whole = simulate(full(), names, values, seconds=seconds)
     size = np.sqrt(np.mean((whole - none) ** 2))
-    assert size > (1e-5 if effect.name.endswith("_jump") else 1e-4)
+    assert size > (1e-5 if jump else 1e-4)
     assert np.sqrt(np.mean((whole - none - 2 * (half - none)) ** 2)) < 0.5 * size
 
 

@@ -17,19 +17,20 @@ from inca_mj.workflows.disturbed import identify_windows
 from inca_mj.workflows.thesis import SMALL
 
 NOISE = 2e-4  # [rad]
+STEP = 2e-3  # [s] of the log and of the model
 OFF = {"x": 0.002, "y": -0.002, "z": 1.433}  # where the platform begins, and no angle says so
 
 
 @pytest.fixture(scope="module")
 def measured():
-    robot = build_twin(parameter_set("trial", OFF))
+    robot = build_twin(parameter_set("trial", OFF), timestep=STEP)
     log = run_to_log(simulate(robot, make_input("prbs", 0.4, seed=0)), "a short log")
     noise = NOISE * np.random.default_rng(3).standard_normal(log.outputs.shape)
     return replace(log, outputs=log.outputs + noise, extras={}, units={})
 
 
 def test_windows_find_the_truth_of_the_cable_robot(measured):
-    robot = build_twin(parameter_set("trial"))
+    robot = build_twin(parameter_set("trial"), timestep=STEP)
     found = estimate_windows(robot, measured, (*SMALL, *POSE), 0.2, SMALL)
     true = parameter_set("trial", OFF).values()
     error = np.array([found.values[n] - true[n] for n in SMALL])

@@ -18,11 +18,12 @@ from inca_mj.workflows.limits import Limits, extent
 from inca_mj.workflows.recipes import changed, draw
 
 NAMES = ("b", "J", "b_v")
+STEP = 2e-3  # [s]
 
 
 @pytest.fixture(scope="module")
 def robot() -> Twin:
-    return build_twin()
+    return build_twin(timestep=STEP)
 
 
 def test_the_design_keeps_its_limits_and_repeats(robot: Twin) -> None:
@@ -94,14 +95,14 @@ def test_bad_designs_are_refused(robot: Twin) -> None:
 
 def test_excite_writes_what_simulate_replays(tmp_path: Path, capsys) -> None:
     arguments = ["excite", "--duration", "0.3", "--budget", "1", "--free", "J", "b_v",
-                 "--out", str(tmp_path), "--json"]  # fmt: skip
+                 "--step", str(STEP), "--out", str(tmp_path), "--json"]  # fmt: skip
     assert main(arguments) == 0
     result = json.loads(capsys.readouterr().out)
     assert set(result["parameters"]) == {"J", "b_v"}
     assert (tmp_path / "report.html").exists()
     assert (tmp_path / "result.json").exists()
     replay = ["simulate", "--input", str(tmp_path / "excite.csv"), "--out", str(tmp_path / "again")]
-    assert main([*replay, "--json"]) == 0
+    assert main([*replay, "--step", str(STEP), "--json"]) == 0
     again = json.loads(capsys.readouterr().out)
     assert again["tension_min"] == pytest.approx(result["tension_min"], rel=1e-9)
 

@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pytest
 from example_logs import HEADER, ROWS, UNITS, lines, read, wave
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.io import savemat
 
@@ -223,22 +223,18 @@ def test_misspelt_options_are_refused(csv, refusal):
 ALPHABET = st.sampled_from([*',;\n\r\t "#.-+0123456789einfa_\0\x85\ufeff', "time", "nan"])
 
 
-@given(
-    content=st.one_of(
-        st.binary(max_size=200),
-        st.lists(ALPHABET, max_size=60).map(lambda p: "".join(p).encode()),
-        st.lists(ALPHABET, max_size=60).map(lambda p: (HEADER + "".join(p)).encode()),
-        st.lists(st.tuples(*[st.floats()] * 5), max_size=8).map(
-            lambda rows: (HEADER + "".join(",".join(map(repr, r)) + "\n" for r in rows)).encode()
-        ),
+BYTES = st.one_of(
+    st.binary(max_size=200),
+    st.lists(ALPHABET, max_size=60).map(lambda p: "".join(p).encode()),
+    st.lists(ALPHABET, max_size=60).map(lambda p: (HEADER + "".join(p)).encode()),
+    st.lists(st.tuples(*[st.floats()] * 5), max_size=8).map(
+        lambda rows: (HEADER + "".join(",".join(map(repr, r)) + "\n" for r in rows)).encode()
     ),
-    suffix=st.sampled_from(["csv", "mat", "toml"]),
 )
-@example(content=(HEADER + "-1e308,1,2,3,4\n0,1,2,3,4\n1e308,1,2,3,4\n").encode(), suffix="csv")
-@example(content=(HEADER + "0,1,2,1e308,4\n1,1,2,-1e308,4\n2,1,2,3,4\n").encode(), suffix="csv")
-@example(content=(HEADER + "0,1,2,3,4\n5e-324,1,2,3,4\n1e-323,1,2,3,5\n").encode(), suffix="csv")
-@example(content=b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM" + bytes(60), suffix="mat")
-def test_no_bytes_raise_anything_but_input_error(content, suffix):
+
+
+def sentence_of(content, suffix):
+    """What is said of bytes in a file with this suffix, nothing where they can be read."""
     with TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("error")
         path = Path(folder) / f"log.{suffix}"
@@ -249,10 +245,23 @@ def test_no_bytes_raise_anything_but_input_error(content, suffix):
         try:
             read(source, units=UNITS, limits={"angle": 1e300}, rates={"angle": 300})
         except InputError as error:
-            sentence = str(error)
-        else:
-            sentence = ""
-        assert len(sentence.splitlines()) <= 1
+            return str(error)
+    return ""
+
+
+@given(content=BYTES, suffix=st.sampled_from(["csv", "toml"]))
+@example(content=(HEADER + "-1e308,1,2,3,4\n0,1,2,3,4\n1e308,1,2,3,4\n").encode(), suffix="csv")
+@example(content=(HEADER + "0,1,2,1e308,4\n1,1,2,-1e308,4\n2,1,2,3,4\n").encode(), suffix="csv")
+@example(content=(HEADER + "0,1,2,3,4\n5e-324,1,2,3,4\n1e-323,1,2,3,5\n").encode(), suffix="csv")
+def test_no_bytes_raise_anything_but_input_error(content, suffix):
+    assert len(sentence_of(content, suffix).splitlines()) <= 1
+
+
+@given(content=BYTES)
+@settings(max_examples=5)  # each begins a process that reads it; `make fuzz` tries thousands
+@example(content=b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM" + bytes(60))
+def test_no_bytes_of_a_matlab_file_raise_anything_but_input_error(content):
+    assert len(sentence_of(content, "mat").splitlines()) <= 1
 
 
 def test_a_gap_in_an_even_log_is_found_where_it_is(refusal):

@@ -62,14 +62,17 @@ def test_both_models_are_filmed_and_the_section_says_when(tmp_path, monkeypatch)
     assert np.abs(left - right).max() > 60  # two models, two pictures
 
 
-@pytest.mark.usefixtures("opengl")
 @pytest.mark.parametrize(("seconds", "said"), [((0.6, 1.0), "unseen"), ((0.3, 0.8), "fitted")])
 def test_the_section_says_whether_a_fit_has_seen_what_is_filmed(
     tmp_path, monkeypatch, seconds, said
 ):
     """As the first record is fitted whole where others confirm."""
-    monkeypatch.setattr("inca_mj.commands.filmed.FPS", 4)
+    filmed = []
+    monkeypatch.setattr("inca_mj.commands.filmed.film", lambda *given, **_: filmed.append(given[0]))
     monkeypatch.setattr("inca_mj.commands.filmed.filmed_seconds", lambda log: seconds)
     _, section = film_discovery(fake_discovery.found(), tmp_path)
+    (scene,) = filmed
+    assert scene.run.time[0] == pytest.approx(seconds[0])
+    assert scene.run.time[-1] <= seconds[1]
     assert section.title.startswith(f"The film: {said} seconds")
     assert ("no fit has seen" in section.text) == (said == "unseen")
