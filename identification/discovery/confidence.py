@@ -15,8 +15,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.discovery.effect_results import NamedEffect, Outside, Rival
 from identification.discovery.fitted_model import AcceptedEffect, FittedModel, collect_parameters
 from identification.discovery.free_curves import NODES, Curve, find_curves
@@ -131,7 +131,7 @@ def _compare(
     wanted = [_find_nearest(c, known[_key(c)]) for c in (mine, *rivals)]
     point, level = final.refit.point, final.refit.level
     keep = [i for i, n in enumerate(point.space.names) if n in task.nominal_model.names]
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         filter_ = build_whitener(point.linear, level.noise, point.log.sampling_time)
         stacked = np.concatenate([point.J[..., keep], *wanted], axis=2)
         W = filter_(stacked).reshape(point.e.size, -1)

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.kalman.linear import LinearPlant, linearise
 from identification.kalman.noise_fit import compute_unit_ratio, fit_noise
 from identification.kalman.options import KalmanOptions
@@ -62,7 +62,7 @@ def estimate_missing_forces(fit: Refit, options: KalmanOptions) -> tuple[Missing
     dofs = [d for _, of, _, _ in groups for d in of]
     plant = linearise(point.predictor, point.space.decode(point.q), forces=dofs)
     Ts, time, out, done = point.log.sampling_time, options.start_correlation_time, [], 0
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         for where, of, names, units in groups:
             B = plant.B[:, :, done : done + len(of)]
             done += len(of)

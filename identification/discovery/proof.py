@@ -20,8 +20,8 @@ from collections.abc import Iterator
 
 import numpy as np
 from scipy.stats import t as student
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.discovery.effect_results import Proof
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.validation import Validation
@@ -40,7 +40,7 @@ def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -
         with_it: the model with it.
         options: the number of blocks.
     """
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         E = without.filter(with_it.e) / without.refit.level.sigma
     fewer = np.sum(without.innovations**2 - E**2, axis=1) / 2
     gain = fewer[~with_it.seen]

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.discovery.effect_results import Rival
 from identification.discovery.record_forces import force_of_records
 from identification.discovery.recovered_force import (
@@ -52,7 +52,7 @@ def recover_force(
     steps = law_steps(candidate, dict(zip(space.names, fit.std * slope, strict=True)))
     moved = [{**values, name: values[name] + step} for name, step in steps.items()]
     sets = [values, *moved, *({**r.values, **_absent(base, r.values)} for r in rivals)]
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         find = _of_readings if "reading" in candidate.effect.hooks else _of_forces
         shown = find(fit, candidate, values, base, sets)
         if shown is None or shown.is_mixed:

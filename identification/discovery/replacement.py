@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.effects.effect import Candidate
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.problem import linearise_criterion
@@ -53,7 +53,7 @@ def replace_effect(
     m = S.shape[2]
     if not mine.any():
         return Replacement(np.inf, np.inf, np.zeros(m))
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         problem = linearise_criterion(point, level, fit.mean, fit.prior)
         W = problem.filter(S).reshape(point.e.size, m) / level.sigma
     added = np.vstack([W, np.zeros((len(names), m))])

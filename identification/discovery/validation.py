@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.discovery.disturbance import propagate_input_error
 from identification.discovery.effect_results import Gap
 from identification.estimation.metrics import fit_percent
@@ -80,7 +80,7 @@ def validate(fit: Refit, log: Log) -> Validation:
     """
     point = extend_point(fit.point, log)
     seen = rows_of(log, "estimation")
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         filter_ = build_whitener(point.linear, fit.level.noise, log.sampling_time)
         E = filter_(point.e) / fit.level.sigma
         nu, ratio = point.linear.B.shape[2], fit.level.noise.ratio

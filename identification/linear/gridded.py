@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.errors import InputError, unknown_name
 from identification.linear.export import ARRAYS, NAMES, names_of, read_arrays, write_arrays
 from identification.linear.system import LinearSystem, held_for, sampling_time_of
@@ -133,7 +133,7 @@ class GriddedSystem:
         y = np.empty((len(inputs), len(self.outputs)))
         now = np.asarray(start, float)
         h = sampling_time_of(rate)
-        with threadpool_limits(1, "blas"):  # the matrices are small, so threads would only wait
+        with one_blas_thread():
             for k, u in enumerate(np.asarray(inputs, float)):
                 s = self.at({name: float(now[i]) for name, i in where.items()})
                 δx, δu = now - s.x, u - s.u

@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.errors import InputError
 
 FASTEST = 1e6  # [Hz]
@@ -71,7 +71,7 @@ class LinearSystem:
                 " discretise the continuous one"
             )
         h = sampling_time_of(rate)
-        with threadpool_limits(1, "blas"):  # the matrices are small, so threads would only wait
+        with one_blas_thread():
             A, B = held_for(self.A, self.B, h)
         return replace(self, A=A, B=B, sampling_time=h)
 

@@ -15,8 +15,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.discovery.force_along import forces_along
 from identification.discovery.recovered_force import (
     RecoveredForce,
@@ -61,7 +61,7 @@ def recover_over_horizon(
     is_reading = "reading" in candidate.effect.hooks
     rivals = [r for r in rivals if _is_alike(r.candidate, is_reading)]
     steps = law_steps(candidate, model.std)
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         each = [_windows(model, k, candidate, steps, rivals) for k in range(len(model.fit.moves))]
         shown = (_of_readings if is_reading else _of_forces)(candidate, each)
         if shown is None or shown.is_mixed:

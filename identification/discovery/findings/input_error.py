@@ -20,8 +20,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.discovery.findings.evidence import StructuredInputError
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
@@ -107,7 +107,7 @@ def fit_families(validation: Validation, options: DiscoveryOptions) -> tuple[Fam
         J = evaluate_sensitivities(fit.point, validation.log)
     except DivergenceError:  # a small change of a parameter makes the simulation diverge
         return ()
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         F = validation.filter(J) / fit.level.sigma
         families = list_families(validation, options.error_knots)
         each = [_fit_family(validation, J, F, f, options.proof_blocks) for f in families]

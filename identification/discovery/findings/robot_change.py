@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.stats import ttest_ind
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.discovery.findings.evidence import RobotChange
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
@@ -85,7 +85,7 @@ def _is_larger(fitted: np.ndarray, unseen: np.ndarray, options: DiscoveryOptions
 def _explain(validation: Validation) -> np.ndarray:
     """What a small change of the parameters explains of all innovations, shape (N, ny)."""
     fit = validation.refit
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         J = evaluate_sensitivities(fit.point, validation.log)
         F = validation.filter(J).reshape(validation.e.size, -1) / fit.level.sigma
         rows = np.vstack([F, np.diag(fit.prior)])

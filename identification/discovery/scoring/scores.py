@@ -26,8 +26,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 from scipy.stats import f as f_distribution
-from threadpoolctl import threadpool_limits
 
+from identification.blas import one_blas_thread
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.effects.effect import Candidate
@@ -76,7 +76,7 @@ def score(
     """
     point, noise = fit.point, fit.level.noise
     stacked = np.concatenate([point.e[..., None], point.J, *(s.S for s in sensitivities)], axis=2)
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         seen = [
             _Projected(fit, noise.scaled(share), stacked, sensitivities)
             for share in (SMALLER if noise.ratio else (1.0,))
