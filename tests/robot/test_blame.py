@@ -77,3 +77,22 @@ def test_a_step_that_is_too_long_by_itself_is_blamed_beside_a_factor_that_is_rig
     said = refused(folder, own="[factors]\ncurrent = 1\n")
     assert "errs by" in said
     assert "factor" not in said
+
+
+@pytest.mark.parametrize("factor", ["1000", "0.001"])
+def test_a_wrong_factor_of_an_output_is_named_over_a_horizon(folder, factor):
+    said = refused(folder, HORIZON, own=f"[factors]\nangle = {factor}\n")
+    assert f"without the factor {factor} of angle that the log's TOML gives" in said
+    assert "correct the factor of angle under [factors] there" in said
+    assert "[units]" not in said
+    assert 'or write trust = ["units"] into' in said
+
+
+@pytest.mark.parametrize("factor", [1000.0, -0.001])
+def test_a_right_factor_of_an_output_is_not_blamed(folder, factor):
+    """Numbers of the file that are off by it, and the factor that repairs them."""
+    head, *rows = (folder / "first.csv").read_text().splitlines()
+    cells = [row.split(",") for row in rows]
+    made = [f"{t},{u},{float(y) / factor!r}" for t, u, y in cells]
+    (folder / "first.csv").write_text("\n".join([head, *made]) + "\n")
+    assert not robot_in(folder, HORIZON, own=f"[factors]\nangle = {factor}\n").remarks
