@@ -51,6 +51,7 @@ class Discover(OnRobot):
         from identification.report.discovery_text import discovery_text
         from identification.robot.confirmation import confirm
         from identification.robot.discovery import discover
+        from identification.robot.reading import wrong_start
         from identification.robot.repetition import find_repetitions
         from identification.robot.write import write_robot
 
@@ -59,12 +60,13 @@ class Discover(OnRobot):
             return self._keep_records(robot, found)
         pairs = confirm(robot, found)
         repeated = find_repetitions(robot)
+        told = [*wrong_start(robot), *map(str, (*pairs, *repeated))]
         record: dict[str, Any] = _with_repetitions(discovery_to_json(found), repeated)
         record = {**record, "confirm": [vars(c) for c in pairs], "remarks": list(robot.remarks)}
         if self.output.json:
             say_json(record)
         else:
-            say("\n".join([discovery_text(found), *map(str, (*pairs, *repeated))]))
+            say("\n".join([discovery_text(found), *told]))
         if self.output.out is not None:
             with whole_folder(self.output.out) as out:
                 has = {
@@ -79,7 +81,6 @@ class Discover(OnRobot):
                 }
                 write_robot(robot, values, out / "robot.toml", self.output.out)
                 write_result(out / "result.json", self, record)
-                told = [*map(str, (*pairs, *repeated))]
                 self._draw(partial(write_discovery_report, found, out, sentences=told))
         return 0
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
-from identification.effects.kinds import about_names
+from identification.effects.kinds import SLIDE, about_names
 from identification.errors import InputError, nearest, unknown_name
 
 NEAR = 0.5  # share of letters: the number and the kind of joint may be missing in a name
@@ -40,21 +40,30 @@ def unknown_effect(
     return InputError(f"{said}.{note}" if note else said)
 
 
-def unknown_number(name: str, effects: Sequence[Effect]) -> InputError:
-    """What is wrong with a name that is no number of an effect."""
+def unknown_number(name: str, effects: Sequence[Effect], is_free: bool = True) -> InputError:
+    """What is wrong with a name that is no number of an effect.
+
+    Args:
+        name: the unknown one.
+        effects: the known ones.
+        is_free: whether it shall be fitted: only a size can be, and a shape is not suggested.
+    """
     head, (whole, at, place) = effect_of(name), name.partition("@")
     size = whole[len(head) + 1 :]
     own = next((e for e in effects if e.name == head), None)
-    every = [p.name for e in effects for p in effect_parameters(e)]
+    every = [n for e in effects for n in _numbers(e, is_free)]
     if own is None:
         return unknown_effect(f"effect in {name!r}:", head, effects, _meant(name, every))
-    numbers = [p.name for p in effect_parameters(own)]
+    numbers = _numbers(own, is_free)
     # of a robot with slides and hinges each kind has effects of its own
-    kin = [n for n in every if at and effect_of(n).endswith(head)]
-    kin = [n for n in kin if n.partition(".")[2].startswith(f"{size}@" if size else "")]
-    there = [n for n in kin if n.endswith(f"@{place}")]
+    plain = head.removeprefix(SLIDE)
+    both = [n for n in every if at and effect_of(n).removeprefix(SLIDE) == plain]
+    kin = [n for n in both if n.partition(".")[2].startswith(f"{size}@" if size else "")]
+    there = [n for n in kin if n.endswith(f"@{place}")] or [
+        n for n in both if n.endswith(f"@{place}") and effect_of(n) != head
+    ]
     if there:
-        return unknown_name(f"number of {head}:", name, there)
+        return unknown_name(f"number of {head}:", name, there, nearest(name, there, NEAR))
     if at and any(n.startswith(f"{head}.{size}@") for n in numbers):
         known = {at[1:]: where.partition(" ")[0] for where, at in own.places.items() if at}
         (kind,) = set(known.values())
@@ -65,15 +74,29 @@ def unknown_number(name: str, effects: Sequence[Effect]) -> InputError:
     return unknown_name(f"number of {head}:", name, numbers, _meant(name, numbers))
 
 
+def _numbers(effect: Effect, is_free: bool) -> list[str]:
+    """Names of the numbers of an effect, or only of those that can be fitted: its sizes."""
+    sizes = {s.name for s in effect.sizes}
+    return [p.name for p in effect_parameters(effect) if p.symbol in sizes or not is_free]
+
+
 def _meant(name: str, numbers: Sequence[str]) -> str | None:
     """The number that is meant, where the name of the effect is wrong or the number is left out.
 
     Its effect is the nearest of those that have such a number there, else of those that act there.
     """
     head, (_, at, place) = effect_of(name), name.partition("@")
-    there = [n for n in numbers if at and n.endswith(f"@{place}")] or list(numbers)
+    there = [n for n in numbers if at and n.endswith(f"@{place}")]
+    if at and not there:  # the place is misspelt too
+        near = nearest(place, {n.partition("@")[2] for n in numbers})
+        there = [n for n in numbers if near and n.endswith(f"@{near}")]
+        place = near or place
+    there = there or list(numbers)
+    # without an effect, a size and a place are the whole name
+    alone = [n for n in there if at and n.partition(".")[2] == f"{head}@{place}"]
+    if alone:
+        return nearest(name, alone, 0.0)
     same = [n for n in there if n.partition(".")[2] == name[len(head) :].lstrip(".")]
-    same = same or [n for n in there if n.partition(".")[2] == name]
     for some in (same, there):
         if (found := nearest(name, some, NEAR)) is not None:
             return found

@@ -25,6 +25,7 @@ from identification.logs.units import UNITS
 UNEXPLAINED = 0.05  # least ε of an output that is not what it says
 NEARER = 0.2  # of ε, that another reading must leave
 EXPLAINED = 0.5  # ε of all that it changes, at most
+SAME = 0.01  # of ε, within which two readings are the same: a factor of 57.3 and the unit deg
 
 Unexplained = Callable[[Log], np.ndarray | None]  # ε, shape (ny,); None where none can be had
 
@@ -57,7 +58,8 @@ def misread(
 ) -> tuple[Reading, str] | None:
     """The reading that explains a log far better than it is read, and that in words.
 
-    Far better: every column that it changes. Of several, the one that leaves least in all.
+    Far better: every column that it changes. Of several, the one that leaves least in all, and of
+    those that leave the same the first.
 
     Args:
         log: as it is read.
@@ -75,7 +77,7 @@ def misread(
         left, k = unexplained(reading.log), list(reading.columns)
         if left is None or not (left[k] < np.minimum(EXPLAINED, NEARER * own[k])).all():
             continue
-        if left.sum() < least and believed(reading, left):
+        if left.sum() < (1 - SAME) * least and believed(reading, left):
             best, least = (reading, left), float(left.sum())
     if best is None:
         return None

@@ -20,10 +20,12 @@ import numpy as np
 from identification.errors import DivergenceError
 from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
 from identification.estimation.options import Progress
+from identification.logs.by_unit import rms_by_unit
 from identification.model.rollout import State
 from identification.prediction.point import AtPoint, linearised, projected
 from identification.prediction.problem import Problem
 from identification.progress import counted
+from identification.quantities import alike
 from identification.windows.tangents import Tangent
 
 # Of the squared norms of the columns of X and S.
@@ -136,7 +138,6 @@ def solve(
     """
     at = linearised(problem, problem.prior.space.inside(q), tuple(moves), tolerance)
     converged, steps = False, 1
-    samples = sum(p.cut.outputs.size for p in problem.parts)
     trials = levenberg_marquardt(at, AtPoint.moved, DAMPING)
     for _ in counted(count(), "steps of a fit"):
         if converged or steps >= most:
@@ -157,8 +158,7 @@ def solve(
         except DivergenceError:  # a neighbour of the new point: the last one stands
             break
         if trial.taken and progress is not None:
-            error = np.sqrt(at.cost / samples)
-            progress(f"error {error:.4g} of its scale, step {steps}")
+            progress(f"error {_error_words(problem, at)}, step {steps}")
     if not at.is_fresh:  # std and scores are those of slopes here
         with suppress(DivergenceError):
             at, steps = at.refreshed(), steps + 1
@@ -166,3 +166,12 @@ def solve(
         problem=problem, q=at.q, moves=at.moves, tangents=at.tangents, cost=at.cost,
         converged=converged, steps=steps,
     )  # fmt: skip
+
+
+def _error_words(problem: Problem, at: AtPoint) -> str:
+    """The rms error of the windows at a point, with its unit; of several units each."""
+    log = problem.parts[0].predictor.log
+    pairs = zip(problem.parts, at.tangents, strict=True)
+    each = np.concatenate([part.error(t.r).reshape(-1, len(log.output_names)) for part, t in pairs])
+    told = [f"{alike([rms], unit, 4)[0]} rms" for unit, rms in rms_by_unit(each, log).items()]
+    return " and ".join(told)

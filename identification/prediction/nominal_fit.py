@@ -91,11 +91,11 @@ def fit_nominal(
 
 
 def _of(length: float, scale: int, progress: Progress | None) -> Progress | None:
-    """Progress that says the windows' length and in whose scale their errors are counted."""
+    """Progress that says the windows' length, and which fit over windows of the horizon it is."""
     if progress is None:
         return None
-    tell, unit = progress, f", scale of fit {scale}" if scale else ""
-    return lambda line: tell(f"windows of {length:.3g} s{unit}: {line}")
+    tell, which = progress, f", fit {scale + 1}" if scale else ""
+    return lambda line: tell(f"windows of {length:.3g} s{which}: {line}")
 
 
 def as_begun(nominal_model: NominalModel, fitted: WindowModel, unseen: Unseen) -> WindowModel:

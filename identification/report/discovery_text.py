@@ -76,8 +76,10 @@ def _gap(found: Discovery) -> list[str]:
         times = f", {held(ratio)} times the noise" if isfinite(ratio) else ""
         return f"  {what:<7}{size}{times}"
 
-    out = ["error on unseen data:", line("before", before, found.before)]
-    return [*out, line("after", after, found.after)] if found.named else out
+    if not found.named:
+        return [f"error on unseen data:{line('', before, found.before)[8:]}"]
+    told = [line("before", before, found.before), line("after", after, found.after)]
+    return ["error on unseen data:", *told]
 
 
 def _values(found: Discovery) -> list[str]:

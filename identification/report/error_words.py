@@ -36,6 +36,24 @@ def error_words(
     ]
 
 
+def pair_words(
+    pairs: Sequence[tuple[Mapping[str, float], Mapping[str, float]]],
+    word: str = "rms",
+    digits: int = HELD,
+) -> list[tuple[str, str]]:
+    """Errors of two models on several records in words, one prefix for all, as in a table.
+
+    Args:
+        pairs: errors of both, by unit and in it; all have the same units.
+        word: that follows each size; "" for none.
+        digits: of each size.
+    """
+    if not pairs:
+        return []
+    each = error_words([errors for pair in pairs for errors in pair], word, digits)
+    return [*zip(each[::2], each[1::2], strict=True)]
+
+
 def change_words(
     before: Mapping[str, float],
     after: Mapping[str, float],

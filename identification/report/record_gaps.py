@@ -9,7 +9,7 @@ import numpy as np
 from identification.discovery.result import Discovery
 from identification.logs.by_unit import relative, rms_by_unit
 from identification.logs.joined import JoinedLog, records_of, rows_of
-from identification.report.error_words import error_words
+from identification.report.error_words import pair_words
 
 
 def record_gaps(found: Discovery) -> list[dict[str, Any]]:
@@ -42,14 +42,16 @@ def record_lines(found: Discovery) -> list[str]:
     """The same as lines of text; nothing for a single record."""
     if not isinstance(found.log, JoinedLog):
         return []
-    lines = ["unseen samples of each record:"]
-    for gap in record_gaps(found):
+    lines, gaps = ["unseen samples of each record:"], record_gaps(found)
+    pairs = [(g["before_by_unit"], g["after_by_unit"]) for g in gaps if g["before"] is not None]
+    words = iter(pair_words(pairs, "rms" if any(len(of) > 1 for of, _ in pairs) else "", 3))
+    for gap in gaps:
         if gap["before"] is None:
             lines.append(f"  {gap['file']}: all of it was fitted")
             continue
         pair = gap["before_by_unit"], gap["after_by_unit"]
-        after = error_words(pair, digits=3)[1]
-        before = error_words(pair, "" if len(pair[0]) == 1 else "rms", digits=3)[0]
+        before, after = next(words)
+        rms = " rms" if len(pair[0]) == 1 else ""
         worse = "; it is predicted worse" if relative(*pair[::-1]) > 1 else ""
-        lines.append(f"  {gap['file']}: {before} -> {after}{worse}")
+        lines.append(f"  {gap['file']}: {before} -> {after}{rms}{worse}")
     return lines

@@ -9,7 +9,7 @@ import numpy as np
 from identification.prediction.result import RecordsDiscovery
 from identification.report.discovery_figures import gains_figure
 from identification.report.effect_words import describe_effect
-from identification.report.error_words import error_words
+from identification.report.error_words import pair_words
 from identification.report.law_section import law_sections
 from identification.report.page import Section, Table, save_figures, write_report
 from identification.report.records_finding_words import describe_shift
@@ -43,7 +43,7 @@ def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
 
 
 def _records(found: RecordsDiscovery) -> Section:
-    pairs = (error_words([e.before_by_unit, e.after_by_unit], "", DIGITS) for e in found.errors)
+    pairs = pair_words([(e.before_by_unit, e.after_by_unit) for e in found.errors], "", DIGITS)
     rows = tuple((e.name, *pair, e.role) for e, pair in zip(found.errors, pairs, strict=True))
     return Section(
         "Error of prediction by record",

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from identification.prediction.result import RecordsDiscovery, RefittedEffect
 from identification.prediction.scores import WindowScore
 from identification.report.effect_words import describe_effect
-from identification.report.error_words import error_words
+from identification.report.error_words import pair_words
 from identification.report.records_finding_words import describe_shift
 from identification.report.records_values import text_table, value_table, value_words
 from identification.report.records_verdict import DIGITS, records_verdict
@@ -78,8 +78,10 @@ def steps_taken(found: RecordsDiscovery) -> list[str]:
 
 
 def _records(found: RecordsDiscovery) -> list[str]:
-    lines = [f"error of prediction over {found.horizon:g} s, without and with what is named:"]
-    for e in found.errors:
-        before, after = error_words([e.before_by_unit, e.after_by_unit], "", DIGITS)
+    """The error of each record, and where something is named that with it."""
+    which = "without and with what is named" if found.named else "nothing is named"
+    lines = [f"error of prediction over {found.horizon:g} s, {which}:"]
+    pairs = pair_words([(e.before_by_unit, e.after_by_unit) for e in found.errors], "", DIGITS)
+    for e, (before, after) in zip(found.errors, pairs, strict=True):
         lines.append(f"  {e.name} ({e.role}): {before}" + (f" -> {after}" if found.named else ""))
     return lines

@@ -15,7 +15,7 @@ import numpy as np
 
 from identification.logs.log import Log
 from identification.robot.robot import Robot
-from identification.robot.start import given_apart
+from identification.robot.start_words import given_apart
 
 LARGE = 10.0  # a factor from here on is asked; a smaller one makes no step too long by itself
 

@@ -27,7 +27,7 @@ def with_fixed(file: RobotFile, plant: JointPlant, effects: Sequence[Effect]) ->
             if name in plant.parameters.values():
                 continue
             if means_effect(name, effects):
-                raise unknown_number(name, effects)
+                raise unknown_number(name, effects, is_free=False)
             raise InputError(
                 f"{name!r} is no number of an effect; write its value into {file.model}, or name"
                 " it under free"

@@ -13,7 +13,7 @@ from identification.robot.file import RobotFile, read_robot_file
 from identification.robot.free_inertias import inertias_sentence
 from identification.robot.other_spread import with_spread
 from identification.robot.robot import Robot, read_robot_log, robot_of
-from identification.robot.start import apart_sentence, start_sentence
+from identification.robot.start_words import apart_sentence, start_sentence, unused_sentence
 from identification.robot.step_error import refuse_coarse_steps
 from identification.robot.trust import trusted
 from identification.robot.wiring import refuse_miswired
@@ -78,12 +78,27 @@ def _refuse_records(records: object, of: str) -> None:
         refuse_kind(each, (str, Path, Log), what)
 
 
+def wrong_start(robot: Robot) -> list[str]:
+    """A sentence where a free run of the robot's log begins elsewhere than the log does.
+
+    It is a remark too, and stands beside the result again, because the result depends on it.
+
+    Args:
+        robot: the result of `read_robot`.
+    """
+    if robot.file.horizon is not None:
+        return []
+    said = apart_sentence(robot.file, robot.plant.model, robot.log)
+    return [] if said is None else [said]
+
+
 def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
     """What was taken for granted, a sentence each."""
     file, own = robot.file, robot.plant.model
-    # Over a horizon each window begins where it was measured.
-    begun = (of(file, own, log) for log in logs if file.horizon is None
-             for of in (start_sentence, apart_sentence))  # fmt: skip
+    if file.horizon is None:
+        begun = [of(file, own, log) for log in logs for of in (start_sentence, apart_sentence)]
+    else:  # each window begins where it was measured
+        begun = [unused_sentence(file, own, robot.log)]
     inertias = inertias_sentence(file)
     resampled = (remark for log in logs for remark in log.remarks)
     return tuple(filter(None, (*robot.remarks, inertias, *resampled, *begun)))

@@ -22,6 +22,7 @@ import mujoco
 import numpy as np
 
 from identification.logs.double_readings import turned_units
+from identification.logs.factor_readings import factor_readings
 from identification.logs.log import Log
 from identification.logs.readings import EXPLAINED, NEARER, Reading, unit_readings
 from identification.quantities import held
@@ -30,6 +31,7 @@ from identification.robot.model_units import UNITS
 
 FREEDOM = Freedom(has_springs=True)
 WIDER = (1, 2, 4)  # times ψ; a fourfold one has 32 times less noise in its accelerations
+DIGITS = 6  # of a change; a factor of 1000 and the unit mrad are the same one
 NEEDED = 1.0  # η of a motion that the drives cannot have made
 
 
@@ -56,7 +58,8 @@ def rescaled(
     found: list[tuple[Reading, np.ndarray]] = []
     every = np.ones(len(own), bool)
     both = turned_units(log, every, column) if signs else ()
-    for reading in chain(unit_readings(log, every, column), both):
+    factors = factor_readings(log, every, column)
+    for reading in chain(factors, unit_readings(log, every, column), both):
         left = unbalanced_share(model, reading.log, FREEDOM)
         if left is None or left.max() > EXPLAINED or left.sum() > NEARER * own.sum():
             continue
@@ -65,7 +68,8 @@ def rescaled(
         return None
     least = min(left.sum() for _, left in found)
     near = [(r, left) for r, left in found if NEARER * left.sum() <= least]
-    reading, left = min(near, key=lambda each: _change(each[0].log, log))
+    # Rounded, so that of two readings that are the same the first one counts.
+    reading, left = min(near, key=lambda each: round(_change(each[0].log, log), DIGITS))
     times = held(float(np.sqrt(own.max())))
     return reading, (
         f"needs forces {times} times those of the drives for this motion, whatever"

@@ -22,13 +22,11 @@ from identification.logs.noise import noise_floor
 from identification.model.plant import own_start, start_place
 from identification.model.predictor import output_columns
 from identification.model.rollout import State
-from identification.quantities import alike
 from identification.robot.file import RobotFile
 
 CLEAR = 3.0  # std that a start must differ by; of white noise alone these are 8 std
 AGREE = 2.0  # std within which two spans agree
 SPANS = (3, 5, 9, 17, 33)  # m that are tried
-LISTED = 3  # joints that a sentence lists
 
 Place = tuple[str, int]
 
@@ -101,7 +99,7 @@ def start_of(file: RobotFile, model: mujoco.MjModel, log: Log) -> State:
     """
     own = own_start(model)
     start = {f: np.array(getattr(own, f)) for f in ("qpos", "qvel", "act")}
-    for (field, i), begin in _moved(file, model, log).items():
+    for (field, i), begin in moved_begin(file, model, log).items():
         start[field][i] = begin.value
     for path, value in file.start.items():
         place = start_place(path, model)
@@ -110,66 +108,14 @@ def start_of(file: RobotFile, model: mujoco.MjModel, log: Log) -> State:
     return State(**start)
 
 
-def start_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
-    """One sentence that says where a log begins elsewhere than the model; None where it does not.
+def moved_begin(file: RobotFile, model: mujoco.MjModel, log: Log) -> dict[Place, Begin]:
+    """What a log shows to begin elsewhere than the model, and the robot's file does not give.
 
     Args:
         file: the robot's.
         model: with the log's sensors.
         log: what was measured.
     """
-    free = {start_place(str(file.records.get(n, {}).get("path", n)), model) for n in file.free}
-    moved = [(p, b) for p, b in _moved(file, model, log).items() if p not in free]
-    if not moved:
-        return None
-    own, said = own_start(model), []
-    for (field, i), begin in moved[:LISTED]:
-        of, unit = _what(field, begin, log)
-        pair = alike([begin.value, float(getattr(own, field)[i])], unit)
-        said.append(f"{of} at {pair[0]} instead of {pair[1]}")
-    more = f" and {len(moved) - LISTED} more" if len(moved) > LISTED else ""
-    return (
-        f"Simulations of log {log.name!r} begin where it does, {', '.join(said)}{more}; write"
-        f' trust = ["start"] into {file.path} to begin where {file.model.name} does.'
-    )
-
-
-def given_apart(file: RobotFile, model: mujoco.MjModel, log: Log) -> dict[str, str]:
-    """What [start] of a robot's file gives elsewhere than a log begins, in words, by path."""
-    begins, found = measured_begin(model, log), {}
-    for path, value in file.start.items():
-        place = start_place(path, model)
-        begin = None if place is None else begins.get(place)
-        if place is None or begin is None or abs(value - begin.value) <= CLEAR * begin.std:
-            continue
-        of, unit = _what(place[0], begin, log)
-        (here,) = alike([begin.value], unit)
-        found[path] = f"{path} = {value:g} where {of} begins at {here}"
-    return found
-
-
-def apart_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
-    """One sentence that says what [start] gives elsewhere than a log begins; None where nothing."""
-    apart = list(given_apart(file, model, log).values())
-    if not apart:
-        return None
-    more = f" and {len(apart) - LISTED} more" if len(apart) > LISTED else ""
-    return (
-        f"For log {log.name!r} [start] of {file.path} gives {', '.join(apart[:LISTED])}{more};"
-        " leave it out to begin where the log does."
-    )
-
-
-def _what(field: str, begin: Begin, log: Log) -> tuple[str, str]:
-    """What an entry of the state is called by the output that shows it, and its unit."""
-    unit = log.units.get(begin.output, "")
-    if field != "qvel" or unit.endswith("/s"):
-        return begin.output, unit
-    return f"the rate of {begin.output}", f"{unit}/s" if unit else unit
-
-
-def _moved(file: RobotFile, model: mujoco.MjModel, log: Log) -> dict[Place, Begin]:
-    """What the log shows to begin elsewhere than the model, and the file does not give."""
     if "start" in file.trust:
         return {}
     own = own_start(model)

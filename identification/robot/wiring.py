@@ -26,6 +26,7 @@ import numpy as np
 from identification.effects.joint_plant import JointPlant
 from identification.errors import DivergenceError, InputError
 from identification.logs.double_readings import turned_exchanges, turned_units
+from identification.logs.factor_readings import factor_readings
 from identification.logs.log import Log
 from identification.logs.readings import (
     EXPLAINED,
@@ -65,7 +66,7 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
     file, plant = robot.file, robot.plant_of(log)
     wanted = wanted_units(plant.model, log)
     kinds: dict[str, tuple[Callable[..., Iterable[Reading]], ...]] = {
-        "units": (partial(unit_readings, wanted=wanted),),
+        "units": (factor_readings, partial(unit_readings, wanted=wanted)),
         "wiring": (output_readings, input_readings),
     }  # fmt: skip
     read = [r for word, kind in kinds.items() if word not in file.trust for r in kind]

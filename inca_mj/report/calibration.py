@@ -158,7 +158,9 @@ def point_rows(found: Calibration) -> list[tuple[str, ...]]:
 
 def gap_rows(found: Calibration) -> list[tuple[str, ...]]:
     """Records: name, role, and the gap on unseen samples before and after."""
-    return [(g.name, g.role, *alike([g.before, g.after], "rad")) for g in found.unseen]
+    told = alike([rms for g in found.unseen for rms in (g.before, g.after)], "rad")
+    pairs = zip(told[::2], told[1::2], strict=True)
+    return [(g.name, g.role, *pair) for g, pair in zip(found.unseen, pairs, strict=True)]
 
 
 def calibration_json(found: Calibration) -> dict[str, Any]:

@@ -153,6 +153,8 @@ def test_records_without_an_effect_get_no_name():
     assert answer.named == ()
     assert answer.verdict == "nothing missing"
     assert "Nothing is missing" in records_text(answer)
+    assert "error of prediction over 0.2 s, nothing is named:" in records_text(answer)
+    assert "->" not in records_text(answer).partition("nothing is named:")[2].split("\n\n")[0]
 
 
 def test_a_law_that_is_not_in_the_list_is_not_called_by_another_name():

@@ -1,5 +1,6 @@
 """Fits over the windows of records, scores and comparisons, against slow obvious ways."""
 
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -59,12 +60,14 @@ def test_clean_records_give_the_values_that_made_them():
     assert clean().values["d"] == pytest.approx(0.02, rel=1e-4)
 
 
-def test_progress_says_the_length_of_windows_and_the_scale_of_their_errors():
+def test_progress_says_the_length_of_windows_and_their_error_in_its_unit():
     logs, lines = records(2), []
-    fit_nominal(nominal_model(), as_records(logs[:1], logs[1:]), lines.append)
+    found = fit_nominal(nominal_model(), as_records(logs[:1], logs[1:]), lines.append)
     lengths = [line.partition(" s")[0] for line in lines]
     assert list(dict.fromkeys(lengths)) == [f"windows of {g:g}" for g in (0.05, 0.1, 0.2)]
-    assert any(line.startswith("windows of 0.2 s, scale of fit 1: error ") for line in lines)
+    left = np.sqrt(np.mean(np.concatenate(found.fit.errors) ** 2))
+    told = re.fullmatch(r"windows of 0\.2 s, fit 2: error (\S+) µrad rms, step \d+", lines[-1])
+    assert float(told[1]) == pytest.approx(1e6 * left, rel=0.01)
 
 
 def test_slopes_that_are_kept_lead_to_the_same_fit_with_fewer_linearisations(monkeypatch):

@@ -38,3 +38,11 @@ def test_a_measured_pose_is_used_as_it_is(short_run):
 def test_measurements_of_another_shape_are_refused(short_run, angles, poses):
     with pytest.raises(InputError, match="measured"):
         ghost_positions(short_run.twin, angles, poses)
+
+
+def test_angles_that_no_pose_comes_near_are_refused_at_their_first_sample(short_run):
+    """Each sample would take all steps of the search: of 4700 rad a film never ended."""
+    angles = 200.0 * short_run.motor_angle
+    angles[-1] = 4700.0
+    with pytest.raises(InputError, match=r"of sample \d+ give: .* check the unit of the angles"):
+        ghost_positions(short_run.twin, angles, None)

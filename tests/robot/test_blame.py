@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from identification import InputError, read_robot
+from identification import InputError, fit, read_robot
+from identification.robot.fit_json import robot_fit_to_json
 
 ELBOW = Path(__file__).parents[2] / "examples" / "elbow"
 FREE_RUN = "".join(
@@ -67,6 +68,7 @@ def test_a_start_elsewhere_is_remarked_where_nothing_fails(folder):
     remarks = robot_in(folder, start='[start]\n"qpos[0]" = 0.5\n').remarks
     (said,) = [r for r in remarks if "[start]" in r]
     assert "gives qpos[0] = 0.5 where angle begins at" in said
+    assert "delete qpos[0] under [start] to begin where the log does" in said
     assert not any("[start]" in r for r in robot_in(folder).remarks)
 
 
@@ -77,3 +79,38 @@ def test_a_step_that_is_too_long_by_itself_is_blamed_beside_a_factor_that_is_rig
     said = refused(folder, own="[factors]\ncurrent = 1\n")
     assert "errs by" in said
     assert "factor" not in said
+
+
+def test_the_verdict_of_a_fit_says_that_the_start_is_elsewhere(folder):
+    """What a fit found depends on it, and the remark may be far above."""
+    robot = robot_in(folder, start='[start]\n"qpos[0]" = 0.2\n')
+    (said,) = [s for s in robot_fit_to_json(fit(robot))["verdict"] if "[start]" in s]
+    assert "so that the values of a fit make up for this; delete qpos[0]" in said
+    assert said in robot.remarks
+
+
+def test_a_start_that_a_horizon_does_not_use_is_remarked(folder):
+    robot = robot_in(folder, HORIZON, '[start]\n"qpos[0]" = 0.0\n"qvel[0]" = 0.1\n')
+    (said,) = robot.remarks
+    assert "qpos[0] and qvel[0] under [start] of" in said
+    assert "are not used, because the file gives a horizon: each window of 0.3 s begins" in said
+    assert not robot_in(folder, HORIZON).remarks
+
+
+@pytest.mark.parametrize("factor", ["1000", "0.001"])
+def test_a_wrong_factor_of_an_output_is_named_over_a_horizon(folder, factor):
+    said = refused(folder, HORIZON, own=f"[factors]\nangle = {factor}\n")
+    assert f"without the factor {factor} of angle that the log's TOML gives" in said
+    assert "correct the factor of angle under [factors] there" in said
+    assert "[units]" not in said
+    assert 'or write trust = ["units"] into' in said
+
+
+@pytest.mark.parametrize("factor", [1000.0, -0.001])
+def test_a_right_factor_of_an_output_is_not_blamed(folder, factor):
+    """Numbers of the file that are off by it, and the factor that repairs them."""
+    head, *rows = (folder / "first.csv").read_text().splitlines()
+    cells = [row.split(",") for row in rows]
+    made = [f"{t},{u},{float(y) / factor!r}" for t, u, y in cells]
+    (folder / "first.csv").write_text("\n".join([head, *made]) + "\n")
+    assert not robot_in(folder, HORIZON, own=f"[factors]\nangle = {factor}\n").remarks

@@ -1,5 +1,6 @@
 """Mistakes in a robot's TOML, its model or its log are told in one sentence."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -8,6 +9,7 @@ from robot_cases import TOML, refused, simulated
 
 from identification import write_log
 from identification.effects.axes import Axis
+from identification.effects.effect_parameters import effect_parameters
 from identification.effects.joint_catalogue import TURNS, joint_effects
 from identification.effects.named import unknown_number
 from identification.robot.file import read_robot_file
@@ -100,15 +102,16 @@ def test_a_folder_is_no_log(folder, capsys, log):
     )
 
 
-def test_an_effect_of_the_other_kind_of_joint_is_suggested():
-    crane = (Axis("swing", "hinge", 1.0, 1.0, 1.0), Axis("x", "slide", 1.0, 1.0, 1.0))
-    said = str(unknown_number("coulomb_friction.f_c@x", joint_effects(crane, TURNS)))
-    assert "did you mean 'slide_coulomb_friction.f_c@x'?" in said
-
-
 @pytest.mark.parametrize(
     ("name", "meant"),
-    [("coulomb@x", "slide_coulomb_friction.f_c@x"),
+    [("coulomb_friction.f_c@x", "slide_coulomb_friction.f_c@x"),
+     ("slide_coulomb_friction.f_c@swing", "coulomb_friction.f_c@swing"),
+     ("slide_coulomb_friction@swing", "coulomb_friction.f_c@swing"),
+     ("slide_coulomb_friction.f_c@swin", "coulomb_friction.f_c@swing"),
+     ("slide_stribeck_friction.v_s@swing", "stribeck_friction.f_s@swing"),
+     ("f_c@x", "slide_coulomb_friction.f_c@x"),
+     ("f_c@swin", "coulomb_friction.f_c@swing"),
+     ("coulomb@x", "slide_coulomb_friction.f_c@x"),
      ("coulomb.f_c@x", "slide_coulomb_friction.f_c@x"),
      ("coulomb_friction@x", "slide_coulomb_friction.f_c@x"),
      ("coulomb_friction.f_c@xx", "slide_coulomb_friction.f_c@x"),
@@ -123,6 +126,17 @@ def test_what_is_suggested_can_be_written(name, meant):
     assert f"did you mean {meant!r}?" in said
     listed = said.partition("known: ")[2].partition(" and ")[0].partition(". ")[0].split(", ")
     assert listed == sorted(listed)
+
+
+def test_what_cannot_be_fitted_is_suggested_under_fixed_alone():
+    """A shape, such as the time of a jump, is no size; a user frees sizes."""
+    effects = joint_effects((Axis("swing", "hinge", 1.0, 1.0, 1.0, duration=9.0),), TURNS)
+    sizes = {p.name for e in effects for p in effect_parameters(e) if "@" in p.name}
+    for name in ("friction", "friction_jump", "friction_jump.w@swing", "stribeck", "push"):
+        said = str(unknown_number(name, effects))
+        assert re.search("did you mean '(.*?)'", said)[1] in sizes, said
+    said = str(unknown_number("friction_jump.ww", effects, is_free=False))
+    assert "did you mean 'friction_jump.w'?" in said
 
 
 def test_how_much_a_log_may_be_thinned_is_told(folder, capsys):

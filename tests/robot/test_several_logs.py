@@ -87,6 +87,17 @@ def test_a_fit_that_predicts_unseen_records_worse_says_so(folder):
     assert not any("worse than" in s for s in robot_fit_to_json(good)["verdict"])
 
 
+def test_a_fit_that_is_worse_by_chance_or_not_says_in_one_sentence_that_it_is_not_confirmed(folder):
+    """Two windows prove nothing, and a reader need not compare two numbers."""
+    logs = written(folder, measured(1), measured(2, {"J": 1.6e-3, "d": 0.028}, samples=40))
+    found = fit(read_robot(folder / "robot.toml", logs[0], confirm=logs[1:]))
+    assert not found.is_worse
+    verdict = robot_fit_to_json(found)["verdict"]
+    (said,) = [s for s in verdict if "worse than" in s]
+    assert verdict.index(said) == 0
+    assert "This may be chance, but it does not confirm the fitted values" in said
+
+
 def test_the_command_keeps_a_fit_that_is_worse_and_says_so_everywhere(folder, capsys):
     logs = written(folder, measured(1), measured(2, {"J": 1.5e-3, "d": 0.03}))
     out, robot = folder / "out", folder / "robot.toml"

@@ -198,8 +198,13 @@ def test_what_a_backend_refuses(serial, tmp_path, refusal, monkeypatch, word, jo
     assert words in refusal(call)
 
 
-def test_a_cluster_that_takes_no_job_is_told(serial, tmp_path, refusal, monkeypatch):
-    programs, said = tmp_path / "bin", "Unable to contact slurm controller"
+@pytest.mark.parametrize(
+    ("options", "cure"),
+    [({"slurm_partition": "lnog"}, "correct the options that --job gives (slurm_partition=lnog)"),
+     ({}, "give the options that it wants with --job, such as slurm_partition=long")],
+)  # fmt: skip
+def test_a_cluster_that_takes_no_job_is_told(serial, tmp_path, refusal, monkeypatch, options, cure):
+    programs, said = tmp_path / "bin", "sbatch: error: invalid partition specified"
     programs.mkdir()
     for name in ("sbatch", "srun"):
         (programs / name).write_text(f"#!/bin/sh\necho '{said}' >&2\nexit 1\n")
@@ -207,9 +212,10 @@ def test_a_cluster_that_takes_no_job_is_told(serial, tmp_path, refusal, monkeypa
     monkeypatch.setenv("PATH", f"{programs}:/usr/bin:/bin")
 
     def call():
-        return run(serial[0], tmp_path / "out", backend_of("slurm", 1, tmp_path, {}))
+        return run(serial[0], tmp_path / "out", backend_of("slurm", 1, tmp_path, options))
 
     assert f"slurm took no job: {said}" in (words := refusal(call))
+    assert cure in words
     assert "--resume" in words
 
 

@@ -87,9 +87,9 @@ class Submitit:
                     return [executor.submit(chunk) for chunk in made]
             except submitit.core.utils.FailedJobError as error:
                 raise LostWorkers(
-                    f"{self.cluster} took no job: {_last_line(error)}; see with `sinfo` whether it"
-                    " answers, or correct --job; the records that were written are kept: run the"
-                    " same command with --resume"
+                    f"{self.cluster} took no job: {_last_line(error)}; {self._correct}, or see with"
+                    " `sinfo` which partitions there are and whether Slurm answers; the records"
+                    " that were written are kept: run the same command with --resume"
                 ) from error
 
         jobs: list[Any] = []
@@ -104,13 +104,23 @@ class Submitit:
                 yield from outcomes
         except (submitit.core.utils.FailedJobError, submitit.core.utils.UncompletedJobError) as e:
             raise LostWorkers(
-                f"a job failed, and what it said is in {self.folder}: {_last_line(e)}; the records"
-                " that were written are kept: run the same command with --resume"
+                f"a job failed, and what it said is in {self.folder}: {_last_line(e)}; where Slurm"
+                " ended it for its time or its memory, give it more with --job (timeout_min,"
+                " mem_gb); the records that were written are kept: run the same command with"
+                " --resume"
             ) from e
         finally:
             for job in jobs:
                 job.cancel(check=False)
         rmtree(self.folder, ignore_errors=True)
+
+    @property
+    def _correct(self) -> str:
+        """What a user does where a job is refused: the options that were given, or could be."""
+        given = " ".join(f"{name}={value}" for name, value in self.options.items())
+        if given:
+            return f"correct the options that --job gives ({given})"
+        return "give the options that it wants with --job, such as slurm_partition=long"
 
     def _executor(self) -> tuple[Any, int]:
         import submitit
@@ -125,7 +135,7 @@ class Submitit:
         except (RuntimeError, NameError, AssertionError, TypeError, OSError) as error:
             raise InputError(
                 f"submitit cannot submit to {self.cluster}: {' '.join(str(error).split())};"
-                " correct --job, or choose another --backend"
+                f" {self._correct}, or choose another --backend"
             ) from error
         return executor, size
 
