@@ -35,9 +35,9 @@ from inca_mj.twin.twin import Twin
 
 ASTRAY = 0.02  # γ from which a log is looked at: it is √(2γ), a fifth of its motion, off the twin
 NEARER = 0.1  # of γ, that another reading must leave
+MOST = 2  # angles that are wrong beside a current; more free ones come near by chance
 NEARLY = 3.0  # times the least γ, of a reading that is as likely: often the mirror image
 FAR = 10.0  # times as far as the other angles is in another unit
-FARTHEST = 8.0  # factor by which wrong currents may change how far the twin moves
 
 
 def other_currents(
@@ -79,6 +79,8 @@ def _nearest(
         if not np.isfinite(predicted).all() or not predicted.any(axis=0).all():
             continue
         P = _places_of_angles(part, predicted) if with_angles else np.eye(part.outputs.shape[1])
+        if np.sum(np.diag(P) != 1) > MOST:
+            continue
         reading = rewired(part, Places(P, Q))
         left = apart(reading.log, predicted)
         if left < NEARER * own and is_right(reading.log, predicted):
@@ -106,7 +108,9 @@ def _followed(plant: Twin, longer: Log, predicted: np.ndarray) -> Iterator[np.nd
 
 
 def likely_units(log: Log, predicted: np.ndarray) -> list[float]:
-    """Factors that make angles radians, if they move about as far as the twin's; the nearest first.
+    """The two factors to radians with which angles move nearest as far as the twin's.
+
+    Wrong currents change how far the twin moves, so that the nearest may be a wrong one.
 
     Args:
         log: with all eight angles.
@@ -117,7 +121,7 @@ def likely_units(log: Log, predicted: np.ndarray) -> list[float]:
     far = np.log(np.median(sizes))  # of one angle in another unit, the others tell
     factors = [factor for si, factor in UNITS.values() if si == "rad"]
     off = {factor: abs(far + np.log(factor)) for factor in factors}
-    return sorted((f for f in factors if off[f] < np.log(FARTHEST)), key=off.__getitem__)[:2]
+    return sorted(factors, key=off.__getitem__)[:2]
 
 
 def _single() -> Iterator[np.ndarray]:
