@@ -15,21 +15,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
 from identification import Log, Predictor
 from identification.errors import DivergenceError, InputError
-from identification.logs.cures import unit_lines
 from identification.logs.frozen import refuse_frozen
 from identification.logs.names import listed
 from identification.logs.readings import Reading
-from identification.logs.units import UNITS
-from identification.robot.same_units import NEAR
 from identification.robot.trust import trusted
+from inca_mj.twin.angles_under import angles_under
+from inca_mj.twin.dead_current import dead_current
 from inca_mj.twin.judged import JUDGED, overruled_by
-from inca_mj.twin.other_currents import Predict, apart, other_currents
+from inca_mj.twin.other_currents import ASTRAY, apart, other_currents
+from inca_mj.twin.other_unit import other_unit
 from inca_mj.twin.other_wiring import other_wiring
 from inca_mj.twin.twin import Twin
 
@@ -37,7 +36,6 @@ LONGEST = 10.0  # [s] in which motion must begin
 MOTION = 0.05  # [rad] of the twin; a hundred times an encoder's noise
 BEGINNING = 2.0  # [s] from there; later even a good model has drifted
 DEAD = 1e-3  # of the twin's motion
-UNIT = (0.2, 10.0)  # of the twin's motion; revolutions are at 0.12 to 0.19, degrees at 44 to 69
 ADVICE = ", with which `inca compare` shows the log beside the twin"
 
 
@@ -51,7 +49,7 @@ def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
 
     Raises:
         InputError: an encoder is dead, frozen, reversed, swapped with another or in another unit,
-            a current is reversed or swapped, or a word is unknown.
+            currents are reversed, swapped or were not logged, or a word is unknown.
     """
     overruled = {*trusted(trust, "given as trust", JUDGED)}
     if "sensors" not in overruled:
@@ -66,75 +64,49 @@ def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
         raise InputError(f"log {log.name!r}: {_standing(part, moves)}{overruled_by('sensors')}")
     if not moves.any():
         return
-    predict = partial(_predicted, plant, part, moves)
+    every, longer = bool(moves.all()), _longer(log, part)
     part, predicted = _with_outputs(part, moves), predicted[:, moves]
-    wiring = None if "wiring" in overruled else _other_wiring(part, predicted, predict)
+    dead = dead_current(plant, part, predicted) if every and "sensors" not in overruled else None
+    if dead is not None:
+        raise InputError(f"log {log.name!r}: {dead}{overruled_by('sensors')}{ADVICE}")
+    wiring = None
+    if "wiring" not in overruled:
+        wiring = _other_wiring(plant, part, predicted, longer if every else None)
     read = part if wiring is None else wiring[0].log
-    predicted = predicted if read is part else predict(read.inputs)
-    unit = None if "units" in overruled else _other_unit(read, predicted)
-    wrong = {"wiring": f"the twin {wiring[1]}" if wiring is not None else None, "units": unit}
-    said = {word: sentence for word, sentence in wrong.items() if sentence is not None}
-    if said:
-        both = "; so read, " if len(said) > 1 else ""
+    predicted = predicted if read is part else angles_under(plant, read, read.inputs[None])[0]
+    unit = None
+    if "units" not in overruled:
+        unit = other_unit(read, predicted, "wiring" in overruled or wiring is not None)
+    wrong: dict[tuple[str, ...], str] = {}
+    if wiring is not None:
+        wrong[("wiring",)] = f"the twin {wiring[1]}"
+    if unit is not None:
+        wrong[unit[1]] = unit[0]
+    if wrong:
+        words = dict.fromkeys(word for words in wrong for word in words)
         raise InputError(
-            f"log {log.name!r}: {both.join(said.values())}{overruled_by(*said)}{ADVICE}"
+            f"log {log.name!r}: {'; so read, '.join(wrong.values())}{overruled_by(*words)}{ADVICE}"
         )
 
 
-def _other_unit(part: Log, predicted: np.ndarray) -> str | None:
-    """What tells that angles are in another unit than radians, and the cure; None if nothing does.
-
-    Args:
-        part: the first motion, n samples of angles that all move.
-        predicted: the twin's angles, shape (n, angles) [rad].
-    """
-    y = part.outputs - part.outputs[0]
-    scales = np.abs((y * predicted).sum(0) / (predicted**2).sum(0))
-    scale, far = float(np.exp(np.mean(np.log(scales)))), np.flatnonzero(scales > UNIT[1])
-    if UNIT[0] < scale < UNIT[1] and len(far):
-        names, most = [part.output_names[k] for k in far], float(scales[far].max())
-        return (
-            f"{listed(names)}: moves {most:.2g} times as far as the twin's"
-            " under these currents, and the other angles do not; all must be in radians (a degree"
-            f" is 0.0175){_how_to_convert(names, most)}"
-        )
-    if not UNIT[0] < scale < UNIT[1]:
-        return (
-            f"the angles move {scale:.2g} times as far as the twin's under these"
-            " currents; they must be in radians (a revolution is 6.28, a degree 0.0175) and"
-            f" currents in ampere, each with its sign{_how_to_convert(['angle'], scale)}"
-        )
-    return None
-
-
-def _how_to_convert(columns: Sequence[str], scale: float) -> str:
-    """What the TOML must say of angles that move so many times as far as the twin's."""
-    fitting = (word for word, (si, factor) in UNITS.items()
-               if si == "rad" and 1 / NEAR < scale * factor < NEAR)  # fmt: skip
-    word = next(fitting, None)
-    if word is None:
-        return ""
-    return f": {unit_lines(dict.fromkeys(columns, word))}, or correct the unit that it has"
-
-
-def _other_wiring(part: Log, predicted: np.ndarray, predict: Predict) -> tuple[Reading, str] | None:
+def _other_wiring(
+    plant: Twin, part: Log, predicted: np.ndarray, longer: Log | None
+) -> tuple[Reading, str] | None:
     """Another wiring of the angles or of the currents: the one that comes nearer to the twin."""
-    found = other_wiring(part, predicted), other_currents(part, predicted, predict)
-    return min(
-        (each for each in found if each is not None),
-        key=lambda each: apart(each[0].log, predict(each[0].log.inputs)),
-        default=None,
-    )
+    angles = other_wiring(part, predicted)
+    left = np.inf if angles is None else apart(angles[0].log, predicted)
+    if left <= ASTRAY:
+        return angles
+    currents = other_currents(plant, part, predicted, longer)
+    if currents is None:
+        return angles
+    under = angles_under(plant, part, currents[0].log.inputs[None])[0]
+    return currents if apart(currents[0].log, under) < left else angles
 
 
-def _predicted(plant: Twin, part: Log, kept: np.ndarray, currents: np.ndarray) -> np.ndarray:
-    """Some of the twin's angles under other currents, shape (n, angles) [rad].
-
-    Raises:
-        DivergenceError: the twin cannot be simulated under these.
-    """
-    other = replace(part, inputs=currents)
-    return np.asarray(Predictor(plant, other, (), {}).predict(np.zeros((1, 0)))[0][:, kept])
+def _longer(log: Log, part: Log) -> Log:
+    """The first motion and what follows it, for what cannot drift away."""
+    return log.between(float(part.time[0]), float(part.time[-1]) + BEGINNING)
 
 
 def _moving(part: Log, predicted: np.ndarray) -> np.ndarray:
@@ -164,9 +136,8 @@ def _first_motion(log: Log, plant: Twin) -> tuple[Log, np.ndarray] | None:
     """
     start = float(log.time[0])
     part = log.between(start, start + LONGEST) if log.duration > LONGEST else log
-    every = np.ones(part.outputs.shape[1], bool)
     try:
-        predicted = _predicted(plant, part, every, part.inputs)
+        predicted = Predictor(plant, part, (), {}).predict(np.zeros((1, 0)))[0]
     except DivergenceError:  # the search says what to do
         return None
     late = np.flatnonzero(np.abs(predicted).max(axis=1) > MOTION)
