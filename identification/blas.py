@@ -12,13 +12,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 
-import scipy.linalg  # noqa: F401  loads its own library, which the controller is to find
 from threadpoolctl import ThreadpoolController
 
 
 @cache
 def _controller() -> ThreadpoolController:
     """Of the libraries that this process has loaded; finding them takes a millisecond."""
+    import scipy.linalg  # noqa: F401  slow; loads a library of its own, which is to be found
+
     return ThreadpoolController()
 
 

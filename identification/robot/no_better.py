@@ -36,8 +36,8 @@ def no_better(result: RobotFit, confirmed: Sequence[Confirmation]) -> list[str]:
         return []
     return [
         "The fitted values predict what was not fitted worse than the values with which the fit"
-        f" began (mean square {100 * rise:+.0f} %). This may be chance, but it does not confirm the"
-        " fitted values: fit a longer log, or more logs, before you use them."
+        f" began (mean square {100 * rise:+z.0f} %). This may be chance, but it does not confirm"
+        " the fitted values: fit a longer log, or more logs, before you use them."
     ]
 
 

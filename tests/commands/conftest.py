@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from inca_mj.twin import wiring
+from inca_mj.twin import angles_under, other_currents, wiring
 from inca_mj.twin.twin import Twin
 
 
@@ -25,17 +25,18 @@ def each_run_once() -> Iterator[None]:
     A free run knows the currents, their times and their hold, and nothing of the log's angles but
     their names, so that logs whose angles alone are wrong are all judged by the same runs.
     """
-    simulated, known = wiring._predicted, {}
+    simulated, known = angles_under.angles_under, {}
 
-    def predicted(plant, part, kept, currents):
+    def angles(plant, log, currents):
         key = (
-            _numbers(plant), currents.tobytes(), kept.tobytes(), part.output_names,
-            part.sampling_time, part.hold, part.begun,
+            _numbers(plant), currents.tobytes(), currents.shape, log.output_names,
+            log.sampling_time, log.hold, log.begun,
         )  # fmt: skip
         if key not in known:
-            known[key] = simulated(plant, part, kept, currents)
+            known[key] = simulated(plant, log, currents)
         return np.copy(known[key])
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(wiring, "_predicted", predicted)
+        for module in (wiring, other_currents):
+            patch.setattr(module, "angles_under", angles)
         yield

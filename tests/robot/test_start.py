@@ -61,7 +61,7 @@ def test_a_start_of_the_file_stands(late):
     path.write_text(HELD + '[start]\n"qpos[0]" = 0.05\n"qvel[0]" = 0\n')
     robot = read_robot(path, late / "log.csv")
     (said,) = robot.remarks
-    assert f"[start] of {path} gives qpos[0] = 0.05 where position begins at" in said
+    assert f"[start] of {path} says, and it gives qpos[0] = 0.05 where position begins at" in said
     assert robot.plant.bare.start.qpos[0] == 0.05
     robot = read_robot(late / "held.toml", late / "log.csv", trust=["start"])
     assert robot.remarks == ()
