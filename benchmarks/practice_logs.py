@@ -21,6 +21,8 @@ from typing import Any
 import numpy as np
 
 from identification.sweep.statistics import rate
+from inca_mj.effects.change import DEVIANTS
+from inca_mj.workflows.spread import spread_of
 
 HERE = Path(__file__).parent
 ROWS = HERE / "results" / "practice.jsonl"
@@ -31,6 +33,7 @@ KEPT = (
     "right", "false_name",
 )  # fmt: skip
 CLOSE, CLOSED = 0.1, 0.9  # of a size, and of the gap on unseen samples
+BEYOND = 3.0  # std of the usual spread, from which a drive that differs is to be named
 Row = dict[str, Any]
 
 HEAD = """# Practice logs
@@ -99,11 +102,28 @@ def is_silent(row: Row) -> bool:
     return row["verdict"] == "nothing missing"
 
 
+def kind_of(row: Row) -> str:
+    """The kind of a log; `within` where a drive differs by no more than drives usually do."""
+    names = {effect: name.partition("@")[0] for name, (effect, _) in DEVIANTS.items()}
+    std = spread_of("usual").drives
+    sizes = [
+        (names.get(n.partition(".")[0], ""), x)
+        for n, x in zip(row["hidden_size_of"], row["hidden_sizes"], strict=True)
+    ]
+    ours = [name in std and abs(x) <= BEYOND * std[name] for name, x in sizes]
+    within = row["spread"] == "usual" and row["kind"] == "single" and any(ours)
+    return "within" if within else str(row["kind"])
+
+
 def group_lines(kind: str, rows: Sequence[Row]) -> list[str]:
     """What the rows of one kind come to."""
     if kind == "null":
         silent = [*map(is_silent, rows)]
         return ["- nothing hidden: " + said(rows, '"nothing missing"', silent) + "."]
+    if kind == "within":
+        silent = [*map(is_silent, rows)]
+        what = f"a drive that differs by less than {BEYOND:g} std of the usual spread"
+        return [f"- {what}: " + said(rows, '"nothing missing"', silent) + "."]
     if kind == "unknown":
         unknown = [r["verdict"] == "unknown effect" for r in rows]
         return ["- an effect in no catalogue: " + said(rows, '"unknown effect"', unknown) + "."]
@@ -130,7 +150,7 @@ def group_lines(kind: str, rows: Sequence[Row]) -> list[str]:
 
 def is_odd(row: Row) -> bool:
     """Whether a row is not what one hopes for."""
-    if row["kind"] == "null":
+    if kind_of(row) in ("null", "within"):
         return not is_silent(row)
     if row["kind"] == "unknown":
         return bool(row["verdict"] != "unknown effect")
@@ -167,8 +187,12 @@ def page(rows: Sequence[Row]) -> str:
         some = list(group)
         codes = ", ".join(sorted({r["code"].split(", ")[-1] for r in some}))
         lines.append(f"## {data}, spread {spread} ({len(some)} logs, {codes})\n")
-        by = sorted(some, key=lambda r: (r["kind"], r["ratio"]))
-        for (kind, _), alike in groupby(by, lambda r: (r["kind"], r["ratio"])):
+
+        def sort(row: Row) -> tuple[str, float]:
+            kind = kind_of(row)
+            return kind, 0.0 if kind == "within" else row["ratio"]
+
+        for (kind, _), alike in groupby(sorted(some, key=sort), sort):
             lines += group_lines(kind, list(alike))
         seconds = np.median([r["seconds"] for r in some])
         lines += ["", f"Median processor time {seconds:.0f} s.", *table([*filter(is_odd, some)])]
