@@ -6,7 +6,9 @@
 
 T, the temperature, is above 1 because the likelihood believes its noise model. The confidence has
 an upper limit because no effect is certain that was confirmed under one kind of input only. Both
-are judgement; a sweep over hidden worlds says how well the confidence is calibrated.
+are judgement; a sweep over hidden worlds says how well the confidence is calibrated. Where
+something is left beside the names, the limit is lower: it is the share of such names that were
+right in hidden worlds.
 """
 
 from __future__ import annotations
@@ -35,6 +37,7 @@ def name_effects(
     final: FittedModel,
     sensitivities: Sequence[Sensitivity],
     explained: float,
+    limit: float,
 ) -> tuple[NamedEffect, ...]:
     """The accepted effects with their final values, their rivals and their confidence.
 
@@ -44,10 +47,13 @@ def name_effects(
         final: the model with all of them.
         sensitivities: of all candidates.
         explained: share of the gap that they close together, 0 to 1.
+        limit: the upper limit of the confidence.
     """
     names = {_key(a.candidate) for a in accepted}
     curves = find_curves(final.refit, task.options) if accepted else ()
-    return tuple(_name(task, a, names, final, sensitivities, curves, explained) for a in accepted)
+    return tuple(
+        _name(task, a, names, final, sensitivities, curves, explained, limit) for a in accepted
+    )
 
 
 def _name(
@@ -58,6 +64,7 @@ def _name(
     sensitivities: Sequence[Sensitivity],
     curves: Sequence[Curve],
     explained: float,
+    limit: float,
 ) -> NamedEffect:
     options, mine = task.options, effect.candidate
     # An effect that is named itself is no rival of another named effect.
@@ -73,7 +80,7 @@ def _name(
     cosines = _compare(task, final, mine, rivals, sensitivities)
     values = final.refit.point.values
     shape = {s.name: values[mine.effect.parameter(s.name, mine.where)] for s in mine.effect.shapes}
-    own = min(options.max_confidence, probability[0])
+    own = min(limit, probability[0])
     of_rivals = probability[1:-2]
     return NamedEffect(
         candidate=replace(mine, shape=shape),

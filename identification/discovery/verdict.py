@@ -103,8 +103,11 @@ def conclude(state: SearchState) -> Discovery:
     options, log = task.options, task.log
     findings = find_remaining(state)
     explained = compute_explained_share(nominal, model, findings, options)
+    tried = len(state.rejected)
+    beside = [r for r in state.rejected if r.gain > 0 and is_proven(r.proof, options, tried)]
+    limit = options.left_confidence if findings or beside else options.max_confidence
     share = explained if findings else 1.0
-    every = name_effects(task, state.accepted, model, state.sensitivities, share)
+    every = name_effects(task, state.accepted, model, state.sensitivities, share, limit)
     named = tuple(n for n in every if n.odds >= options.min_confidence)
     verdict = decide(named, findings, explained, model, options)
     if every and not named:
@@ -112,10 +115,6 @@ def conclude(state: SearchState) -> Discovery:
     if verdict == "unknown effect":
         named, model, scores = (), nominal, state.nominal_scores
     unnamed = [n for n in every if n not in named]
-    tried = len(state.rejected)
-    beside = [
-        r for r in state.rejected if named and r.gain > 0 and is_proven(r.proof, options, tried)
-    ]
     refused = (
         RejectedEffect(n.candidate, n.parameters, n.gain, n.proof, n.outside) for n in unnamed
     )
@@ -131,7 +130,7 @@ def conclude(state: SearchState) -> Discovery:
         verdict=verdict,
         named=named,
         rejected=rejected,
-        unexplained=bool(findings or unnamed or beside),
+        unexplained=bool(findings or unnamed or (named and beside)),
         noise_rms=model.refit.level.sigma,
         disturbance_rms=model.validation.disturbance if is_random else 0.0,
         noise_by_unit=by_unit(model.validation.noise, log),

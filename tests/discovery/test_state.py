@@ -75,9 +75,11 @@ def test_of_two_effects_neither_is_the_others_rival(states):
     first, second = end.accepted
     there = replace(first.model, candidates=second.model.candidates[-1:])
     accepted = (replace(first, alternatives=(there,)), second)
-    again = name_effects(end.task, accepted, end.model, end.sensitivities, 1.0)
+    again = name_effects(end.task, accepted, end.model, end.sensitivities, 1.0, 0.95)
     assert not again[0].rivals
     assert again[0].confidence > 0.5
+    lower = name_effects(end.task, accepted, end.model, end.sensitivities, 1.0, 0.6)
+    assert [n.confidence for n in lower] == [min(0.6, n.confidence) for n in again]
 
 
 def test_an_effect_gives_way_to_one_that_was_never_refitted_but_explains_more(states):
