@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from discovery_cases import EFFECTS, OPTIONS, disturbed, nominal_model
 
-from identification.discovery.fitted_model import is_confirmed
+from identification.discovery.fitted_model import fit_model, is_confirmed
 from identification.discovery.proof import prove
 from identification.discovery.search import discover
 from identification.discovery.selection.forward_selection import Selection, select_effect
@@ -38,6 +38,23 @@ def test_a_search_goes_on_from_what_is_not_proven_alone(monkeypatch, sizes):
     assert {a.candidate.effect.name for a in pair} == hidden
     assert all(is_confirmed(a.proof, OPTIONS) for a in pair)
     assert not pair or len(pair[-1].model.candidates) == 2
+
+
+def test_the_second_alone_is_named_where_the_first_stood_in_its_place(monkeypatch):
+    """A wrong effect is likely and not proven; beside it the right one shows, and needs it not."""
+
+    def astray(asked, model, scores, progress):
+        if model.candidates:
+            return select_effect(asked, model, scores, progress)
+        wrong = next(s.candidate for s in scores if s.candidate.effect.name == "offset")
+        return Selection(unproven=fit_model(asked, (wrong,), model.refit.point.values, model))
+
+    monkeypatch.setattr("identification.discovery.state.select_effect", astray)
+    answer = discover(nominal_model(), disturbed(**RUBBING), EFFECTS)
+    (named,) = answer.named
+    assert named.candidate.effect.name == "rubbing"
+    assert [r.candidate.effect.name for r in named.rivals] == ["offset"]
+    assert is_confirmed(named.proof, OPTIONS)
 
 
 @pytest.mark.parametrize(("fall", "hidden"), [(0.9, {"offset", "rubbing"}), (0.0, set())])

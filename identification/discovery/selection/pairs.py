@@ -3,6 +3,10 @@
 An effect may be likely, and predict the next sample of unseen data better, and yet bring the free
 run no nearer while another effect is missing. A second effect is then searched beside it. Each of
 the two must be proven beside the other, and both together against the model with neither.
+
+Or the first was only in the place of the second, which did not show before: a linear score says
+little where the fit without an effect has moved the parameters far. The second is then accepted
+alone, if it is likelier than the first and proven against the model with neither.
 """
 
 from __future__ import annotations
@@ -30,7 +34,7 @@ def find_pair(
     sensitivities: Sequence[Sensitivity],
     progress: Progress,
 ) -> tuple[AcceptedEffect, ...]:
-    """The effect that is not proven alone and the one beside which it is; empty without such.
+    """The effect that is not proven alone and the one beside which it is, or the second alone.
 
     Args:
         task: the nominal model, the log and the options.
@@ -38,6 +42,9 @@ def find_pair(
         first: the model with the first effect.
         sensitivities: of all candidates.
         progress: is told a line per refit.
+
+    Returns:
+        The accepted effects, of which the last has the model with all of them; empty without any.
     """
     options = task.options
     scores = score_candidates(first, sensitivities, options)
@@ -52,6 +59,14 @@ def find_pair(
         return ()
     proof = prove(alone.validation, pair.validation, options)
     together = prove(model.validation, pair.validation, options)
-    if not (is_confirmed(proof, options) and is_confirmed(together, options)):
-        return ()
-    return AcceptedEffect(first, proof, first.negative_bic - model.negative_bic, ()), second
+    if is_confirmed(proof, options) and is_confirmed(together, options):
+        return AcceptedEffect(first, proof, first.negative_bic - model.negative_bic, ()), second
+    instead, gain = prove(model.validation, alone.validation, options), _gain(model, alone)
+    tried = len(second.alternatives) + 2  # with the first
+    if gain > _gain(model, first) and is_confirmed(instead, options, tried):
+        return (AcceptedEffect(alone, instead, gain, (first,)),)
+    return ()
+
+
+def _gain(model: FittedModel, new: FittedModel) -> float:
+    return new.negative_bic - model.negative_bic
