@@ -45,14 +45,15 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     """
     task, nominal, model = state.task, state.nominal, state.model
     options = task.options
-    named = tuple(
-        _named(state, a, others)
-        for a, others in zip(state.accepted, state.alternatives, strict=True)
-    )
     rejected = tuple(_refitted(c.model, c, 0.0) for c in state.rejected)
-    sure = all(n.effect.confidence >= 0.5 or n.one_of for n in named)
     shifts = record_shifts(task, model)
     findings = find_remaining(state, rejected, shifts)
+    limit = options.left_confidence if findings else options.max_confidence
+    named = tuple(
+        _named(state, a, others, limit)
+        for a, others in zip(state.accepted, state.alternatives, strict=True)
+    )
+    sure = all(n.effect.confidence >= 0.5 or n.one_of for n in named)
     doubtful = any(f.kind is FindingKind.UNPROVEN_EFFECT for f in findings)
     different = any(
         f.kind in (FindingKind.DIFFERENT_RECORD, FindingKind.SHIFTED_RECORD) for f in findings
@@ -108,9 +109,16 @@ def _repeats(records: Sequence[Record]) -> tuple[str, ...]:
 
 
 def _named(
-    state: RecordsState, accepted: Contender, others: Sequence[Contender]
+    state: RecordsState, accepted: Contender, others: Sequence[Contender], limit: float
 ) -> NamedByPrediction:
-    """An accepted effect at the values of the final model, with its rivals."""
+    """An accepted effect at the values of the final model, with its rivals.
+
+    Args:
+        state: the finished state.
+        accepted: the effect.
+        others: what was refitted in its place.
+        limit: the upper limit of the confidence.
+    """
     options, mine = state.task.options, accepted.candidate
     is_final = any(c.key == mine.key for c in state.model.candidates)
     is_law = not mine.effect.is_curve  # which curves may imitate, but are no rival of its name
@@ -125,7 +133,7 @@ def _named(
         for o, share in zip(others, shares[1:], strict=True)
         if share > options.listed_confidence
     ]
-    effect = _refitted(final, accepted, min(options.max_confidence, float(shares[0])))
+    effect = _refitted(final, accepted, min(limit, float(shares[0])))
     confirm = state.task.confirm
     seen = accepted.prediction
     worse = [

@@ -107,6 +107,7 @@ def _refit_candidates(
     task: DiscoveryTask, model: FittedModel, scores: Sequence[Score], progress: Progress
 ) -> list[FittedModel]:
     """The model with each of the best candidates in turn, the most likely one first."""
+    scores = (*scores, *_sharpen(model, scores, task.options))
     chosen = _select_contenders(select_significant(scores, task.options), task.options)
     chosen = _try_between(model, chosen, task.options)
     is_hidden = not chosen and bool(model.refit.level.noise.ratio)
@@ -129,6 +130,26 @@ def _refit_candidates(
         if not is_hidden or new.refit.log_posterior > least:
             refitted.append(new)
     return sorted(refitted, key=lambda new: new.negative_bic, reverse=True)
+
+
+def _sharpen(
+    model: FittedModel, scores: Sequence[Score], options: DiscoveryOptions
+) -> tuple[Score, ...]:
+    """Scores at more values of their shapes, of the candidates that lack only the right one.
+
+    What jumps acts in a few blocks, and at a wrong time it leaves as much in one of them as it
+    explains: the score is then far beyond chance by the noise model and not by the blocks.
+    """
+    significant = {s.candidate.key for s in select_significant(scores, options)}
+    likely = [s for s in scores if s.p_value * len(scores) < options.significance]
+    near = [
+        s for s in _select_contenders(select_plausible(likely, options), options)
+        if s.candidate.key not in significant
+    ]  # fmt: skip
+    finer = [c for s in near for c in list_between(s.candidate)]
+    if not finer:
+        return ()
+    return score_candidates(model, compute_sensitivities(model.refit.point, finer), options)
 
 
 def _try_between(model: FittedModel, chosen: list[Score], options: DiscoveryOptions) -> list[Score]:

@@ -1,0 +1,56 @@
+"""A jump whose scored times are all wrong is scored at the times between them."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from identification.discovery.options import DiscoveryOptions
+from identification.discovery.selection import forward_selection
+from identification.effects.effect import Candidate, Effect, Shape, Size
+
+JUMP = Effect(
+    "jump", "", (Size("c", "", 1.0, 0.1, about=""),),
+    (Shape("t_s", "s", (1.0, 2.0, 4.0), 0.1, 9.0, about="", step=0.5),), places={"joint": ""},
+    phrase="jump",
+)  # fmt: skip
+
+
+def score(p, blocks, gain=100.0, t_s=2.0, effect=JUMP):
+    return SimpleNamespace(
+        candidate=Candidate(effect, "joint", {"t_s": t_s} if effect.shapes else {}),
+        size=np.array([0.5]), gain=gain, p_value=p, block_p_value=blocks,
+    )  # fmt: skip
+
+
+@pytest.fixture
+def sharpened(monkeypatch):
+    """The times at which candidates are scored again."""
+    monkeypatch.setattr(forward_selection, "compute_sensitivities", lambda point, some: some)
+    monkeypatch.setattr(forward_selection, "score_candidates", lambda model, some, options: some)
+    model = SimpleNamespace(refit=SimpleNamespace(point=None))
+
+    def of(*scores):
+        found = forward_selection._sharpen(model, scores, DiscoveryOptions())
+        return [c.shape["t_s"] for c in found]
+
+    return of
+
+
+def test_what_only_the_blocks_refuse_is_scored_between_its_neighbours(
+    sharpened,
+):
+    assert sharpened(score(1e-30, 0.5)) == [1.5, 2.0, 2.5, 3.0, 3.5]
+
+
+def test_what_is_beyond_chance_already_or_not_at_all_is_not(sharpened):
+    assert sharpened(score(1e-30, 1e-30)) == []
+    assert sharpened(score(0.5, 0.5)) == []
+    assert sharpened(score(1e-30, 0.5, gain=-1.0)) == []
+    assert sharpened(score(1e-30, 0.5, effect=replace(JUMP, shapes=()))) == []
+
+
+def test_a_far_worse_one_is_not(sharpened):
+    better = score(1e-90, 0.5, gain=1e3, effect=replace(JUMP, name="constant", shapes=()))
+    assert sharpened(better, score(1e-30, 0.5)) == []
