@@ -15,6 +15,7 @@ from identification.logs.log import Log
 from identification.prediction.discovery import discover_records
 from identification.prediction.result import RecordsDiscovery
 from identification.robot.checks import refuse_horizon, refuse_unlike
+from identification.robot.diverged import told_of_factors
 from identification.robot.robot import Robot
 
 
@@ -74,9 +75,10 @@ def discover(
         fitted = (model.log, *model.others)
         for each in (*fitted, *model.records):
             refuse_horizon(model.file, each, is_whole=bool(model.records))
-        return discover_records(
-            model.nominal_model, fitted, model.records, model.candidates, progress, options
-        )
+        with told_of_factors(model):
+            return discover_records(
+                model.nominal_model, fitted, model.records, model.candidates, progress, options
+            )
     if log is None or effects is None:
         raise InputError("discover needs a log and candidate effects beside a nominal model")
     refuse_kind(log, Log, "discover takes a Log (read_log) beside a nominal model")

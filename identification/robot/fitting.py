@@ -16,6 +16,7 @@ from identification.estimation.estimation import estimate
 from identification.estimation.fit import Fit, assess
 from identification.prediction.records_fit import RecordsFit, fit_records
 from identification.robot.checks import refuse_horizon
+from identification.robot.diverged import told_of_factors
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, of_record
 from identification.robot.robot import Robot
 
@@ -141,4 +142,5 @@ def fit(robot: Robot, progress: Callable[[str], None] | None = None) -> RobotFit
         return RobotFit(robot, assess(estimated, robot.log))
     for log in (*logs, *robot.records):
         refuse_horizon(file, log, is_whole)
-    return RobotFit(robot, fit_records(model, logs, robot.records, progress))
+    with told_of_factors(robot):
+        return RobotFit(robot, fit_records(model, logs, robot.records, progress))

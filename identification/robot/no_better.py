@@ -14,6 +14,7 @@ import numpy as np
 from identification.prediction.records_fit import RecordsFit
 from identification.robot.fitting import RobotFit
 from identification.robot.record_error import Confirmation
+from identification.robot.worse_unit import worse_unit
 
 LEAST = 0.01  # rise of the mean square that is told; the noise of a right fit makes less
 
@@ -33,11 +34,12 @@ def no_better(result: RobotFit, confirmed: Sequence[Confirmation]) -> list[str]:
         before, after = (_over_all([getattr(c, k) for c in confirmed]) for k in ("before", "after"))
     rise = (after / before) ** 2 - 1 if before > 0 else 0.0
     if not rise > LEAST:
-        return []
+        return worse_unit(confirmed)
     return [
         "The fitted values predict what was not fitted worse than the values with which the fit"
         f" began (mean square {100 * rise:+z.0f} %). This may be chance, but it does not confirm"
-        " the fitted values: fit a longer log, or more logs, before you use them."
+        " the fitted values: fit a longer log, or more logs, before you use them.",
+        *worse_unit(confirmed),
     ]
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from identification.effects.axes import axes
 from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
+from identification.robot.absurd_start import refuse_absurd_start
 from identification.robot.file import RobotFile, read_robot_file
 from identification.robot.free_inertias import inertias_sentence
 from identification.robot.other_spread import with_spread
@@ -57,6 +58,7 @@ def read_robot(
     )
     robot = robot_of(file, first, others, records)
     refuse_coarse_steps(robot)
+    refuse_absurd_start(robot)
     for record in records:
         axes(robot.plant.model, record, file.trust)  # a sensor that froze is refused
     every = (robot.log, *robot.others, *records)

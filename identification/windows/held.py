@@ -87,7 +87,10 @@ class HeldWindows:
             y = self._simulated(at_own_steps(self.for_slopes, self.model), moves)
         each = np.stack([self._joined(*p) for p in zip(y, moves, strict=True)], axis=-1)
         if not np.isfinite(each).all():
-            raise DivergenceError("the simulation of a window diverged beside its best start")
+            raise DivergenceError(
+                "the simulation of a window diverged beside its best start; use a smaller step, or"
+                " values nearer to the nominal ones"
+            )
         X = (each[..., :1] - each[..., 1:]) / h
         return decomposed(r, X, np.zeros((*r.shape, 0)))
 

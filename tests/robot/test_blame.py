@@ -114,3 +114,12 @@ def test_a_right_factor_of_an_output_is_not_blamed(folder, factor):
     made = [f"{t},{u},{float(y) / factor!r}" for t, u, y in cells]
     (folder / "first.csv").write_text("\n".join([head, *made]) + "\n")
     assert not robot_in(folder, HORIZON, own=f"[factors]\nangle = {factor}\n").remarks
+
+
+@pytest.mark.parametrize("entry", ['"qpos[0]" = 1e9', '"qvel[0]" = -1e5'])
+def test_a_start_beyond_all_that_the_log_shows_is_refused(folder, entry):
+    own = '\ntrust = ["steps"]\n'
+    said = refused(folder, own + FREE_RUN, start=f"[start]\n{entry}\n")
+    assert said.startswith(f"start in {folder / 'robot.toml'}: it gives {entry[1:8]} = ")
+    assert f"correct {entry[1:8]}, or delete it to begin where the log does" in said
+    assert robot_in(folder, own + FREE_RUN, start='[start]\n"qpos[0]" = 500.0\n').remarks
