@@ -47,7 +47,8 @@ def body_effects(spec: mujoco.MjSpec) -> tuple[Effect, ...]:
                            (_size("delta", "", 0.5, "relative, about its centre of mass"),),
                            turning, "body: another inertia"))  # fmt: skip
     if last:
-        out.append(_effect("payload", "a point mass M at the body's farthest point",
+        at = "; ".join("{}: ({:.3g}, {:.3g}, {:.3g}) m".format(b.label, *b.point) for b in last)
+        out.append(_effect("payload", f"a point mass M at the farthest point of its frame ({at})",
                            (Size("M", "kg", 2 * mass, 0.01 * mass, 1, "mass of the payload"),),
                            last, "body: a payload at its end"))  # fmt: skip
     return tuple(out)

@@ -23,10 +23,10 @@ class MovingBody:
         label: its name, or that of its first joint where it has none.
         index: in the model.
         mass: [kg].
-        point: where a payload would sit, in its frame: its farthest site, else the centre of its
-            farthest geom, else twice as far as its centre of mass, where a uniform link ends,
-            shape (3,) [m].
-        reach: distance of the farthest of these from its frame [m].
+        point: where a payload would sit, in its frame: its farthest site, else the farthest end of
+            its geoms (of a capsule, cylinder or box; of others the centre), else twice as far as
+            its centre of mass, where a uniform link ends, shape (3,) [m].
+        reach: distance of the farthest site or centre of a geom from its frame [m].
         is_last: whether it carries no other moving body.
     """
 
@@ -67,7 +67,7 @@ def moving_bodies(model: mujoco.MjModel) -> tuple[MovingBody, ...]:
             continue
         points = _points(model, b) or [2 * model.body_ipos[b]]
         reach = max(float(np.linalg.norm(p)) for p in (*points, model.body_ipos[b]))
-        far = max(points, key=lambda p: float(np.linalg.norm(p)))
+        far = max(_ends(model, b) or points, key=lambda p: float(np.linalg.norm(p)))
         out.append(
             MovingBody(
                 label=label, index=b, mass=float(model.body_mass[b]), reach=reach,
@@ -123,6 +123,30 @@ def _points(model: mujoco.MjModel, b: int) -> list[np.ndarray]:
         if any(np.linalg.norm(p) > 0 for p in own):
             return own
     return []
+
+
+def _ends(model: mujoco.MjModel, b: int) -> list[np.ndarray]:
+    """Ends of the geoms of a body that has no site away from its frame."""
+    sites = [model.site_pos[i] for i in range(model.nsite) if model.site_bodyid[i] == b]
+    if any(np.linalg.norm(p) > 0 for p in sites):
+        return []
+    return [
+        model.geom_pos[i] + sign * half
+        for i in range(model.ngeom) if model.geom_bodyid[i] == b
+        for half in _half_axes(model, i) for sign in (-1, 1)
+    ]  # fmt: skip
+
+
+def _half_axes(model: mujoco.MjModel, i: int) -> list[np.ndarray]:
+    """From the centre of a geom to the middle of its ends, in its body's frame [m]."""
+    R = np.zeros(9)
+    mujoco.mju_quat2Mat(R, model.geom_quat[i])
+    kind, size, axes = mujoco.mjtGeom(model.geom_type[i]), model.geom_size[i], R.reshape(3, 3).T
+    if kind in (mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_CYLINDER):
+        return [size[1] * axes[2]]
+    if kind == mujoco.mjtGeom.mjGEOM_BOX:
+        return [half * axis for half, axis in zip(size, axes, strict=True)]
+    return [np.zeros(3)]
 
 
 def _states(model: mujoco.MjModel) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:

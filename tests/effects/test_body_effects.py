@@ -65,6 +65,26 @@ def test_without_sites_and_geoms_a_payload_hangs_where_a_uniform_link_ends():
     assert lower.point == pytest.approx((0, 0.1, 0))
 
 
+@pytest.mark.parametrize(
+    ("geom", "end"),
+    [
+        ('type="capsule" fromto="0 0 0 0 0 -0.4" size="0.03"', (0, 0, -0.4)),
+        ('type="cylinder" fromto="0.1 0 0 0.1 0.3 0" size="0.03"', (0.1, 0.3, 0)),
+        ('type="box" pos="0 0 -0.2" size="0.02 0.03 0.25"', (0, 0, -0.45)),
+        ('type="sphere" pos="0 0 -0.3" size="0.1"', (0, 0, -0.3)),
+    ],
+)
+def test_without_sites_a_payload_hangs_at_the_end_of_the_farthest_geom(geom, end):
+    body = LOWER + f'<geom {geom} mass="0"/>'
+    model = mujoco.MjModel.from_xml_string(ARM.replace(LOWER, body))
+    (lower,) = (b for b in moving_bodies(model) if b.is_last)
+    assert lower.point == pytest.approx(end)
+    tip = '<site pos="0 0 -0.05"/>'
+    model = mujoco.MjModel.from_xml_string(ARM.replace(LOWER, body + tip))
+    (lower,) = (b for b in moving_bodies(model) if b.is_last)
+    assert lower.point == pytest.approx((0, 0, -0.05))
+
+
 def test_an_inertia_in_axes_of_its_own_is_kept():
     tilted = LOWER.replace("/>", ' quat="0.9 0.1 0.3 -0.2"/>')
     heavy = tilted.replace('mass="0.5" diaginertia="0.01 0.01 0.005"',
