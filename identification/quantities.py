@@ -20,6 +20,7 @@ _LARGE = 1e6  # a larger value in a table is a power of ten
 _FINEST = 1e-5  # a smaller std is said as a power of ten
 _MOST = 15  # decimals, beyond which a number of a computer has none
 _DIGITS = 3  # of a value whose std is not known
+_DIGITS_IN_TABLE = 4  # of such a value in a table
 _ALONE = re.compile(r"\(([^\W\d_]+)\)")  # brackets around one symbol
 HELD = 2  # digits of the error of a model that are said (docs/identification.md)
 
@@ -58,14 +59,17 @@ def matched(value: float, std: float, sign: str = "") -> tuple[str, str]:
 
     Args:
         value: in its unit.
-        std: in the same unit; where it is not finite, or zero, the value has six digits.
+        std: in the same unit; where it is zero, the value has six digits, and where it is not
+            finite, four.
         sign: "+" where the sign is always written.
     """
     if not isfinite(std):
-        return f"{value:{sign}z.6g}", "unknown"
+        return f"{value:{sign}z.{_DIGITS_IN_TABLE}g}", "unknown"
     if std <= 0:
         return f"{value:{sign}z.6g}", f"{std:.2g}"
     places = _shared(value, std)
+    if std < _FINEST and _LEAST <= abs(value) < _LARGE and places <= _MOST:
+        return f"{value:{sign}z.{places}f}", f"{std:.1e}"
     if std < _FINEST or abs(value) >= _LARGE:  # a power of ten, with the std's digits
         lead = floor(log10(max(abs(value), std)))
         return f"{value:{sign}z.{min(max(0, lead + places), _MOST)}e}", f"{std:.1e}"

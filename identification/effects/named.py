@@ -9,6 +9,13 @@ from identification.effects.effect_parameters import effect_parameters
 from identification.effects.kinds import SLIDE, about_names
 from identification.errors import InputError, nearest, unknown_name
 
+# What words that name no effect mean most likely.
+USUAL = {
+    "friction": "coulomb_friction",
+    "dry_friction": "coulomb_friction",
+    "stiction": "stribeck_friction",
+    "static_friction": "stribeck_friction",
+}
 NEAR = 0.5  # share of letters: the number and the kind of joint may be missing in a name
 
 
@@ -94,9 +101,14 @@ def _meant(name: str, numbers: Sequence[str]) -> str | None:
     there = there or list(numbers)
     # without an effect, a size and a place are the whole name
     alone = [n for n in there if at and n.partition(".")[2] == f"{head}@{place}"]
+    if at and not alone:  # the place is unknown
+        alone = [n for n in there if n.partition(".")[2].startswith(f"{head}@")]
     if alone:
         return nearest(name, alone, 0.0)
     same = [n for n in there if n.partition(".")[2] == name[len(head) :].lstrip(".")]
+    usual = [n for n in there if effect_of(n).removeprefix(SLIDE) == USUAL.get(head)]
+    if usual and not same:
+        return usual[0]
     for some in (same, there):
         if (found := nearest(name, some, NEAR)) is not None:
             return found

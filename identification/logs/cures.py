@@ -6,13 +6,34 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 
+from identification.logs.names import listed
+
 _BARE = re.compile(r"[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
 
 
-def how_to_turn(columns: Sequence[str]) -> str:
-    """How to turn the sign of some columns of a log."""
-    told = lines_of([f"{toml_key(name)} = -1" for name in columns])
-    return f": write {told} under [factors] of the log's TOML, or turn the sign that it has"
+def how_to_turn(
+    columns: Sequence[str], factors: Mapping[str, float] | None = None, instead: str = ""
+) -> str:
+    """How to turn the sign of some columns of a log.
+
+    Args:
+        columns: of the log's file.
+        factors: those that the log's TOML gives, by column; -1 is not written where one stands.
+        instead: other columns that may be turned as well, such as ", or of force".
+    """
+    factors, cures = factors or {}, []
+    if given := [n for n in columns if n in factors]:
+        told = listed(f"{factors[n]:g} of {n}" for n in given)
+        cures.append(f"turn the sign of the factor {told} that the log's TOML gives")
+    if new := [n for n in columns if n not in factors]:
+        told = lines_of([f"{toml_key(name)} = -1" for name in new])
+        cures.append(f"write {told} under [factors] of the log's TOML")
+        if not given:
+            cures.append("or turn the sign that it has")
+    if not (new or instead):
+        return cures[0]
+    how = (", " if not given else ", and ").join(cures)
+    return f"turn the sign of {listed(columns)}{instead}: {how}"
 
 
 def how_to_rename(names: Mapping[str, str]) -> str:

@@ -6,6 +6,7 @@ Neither of the two readings explains such a log by itself, so that each alone wo
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from itertools import chain
 
 import numpy as np
@@ -43,7 +44,8 @@ def turned_units(
 def turned_exchanges(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
     """Two outputs or two inputs exchanged, and the other sign of an output or an input.
 
-    A sign belongs to a column as it is called after the exchange, as the TOML of a log reads it.
+    A sign belongs to a column as it is called after the exchange, as the TOML of a log reads it;
+    which of its factors that column then has is not known here.
 
     Args:
         log: as it is read.
@@ -52,7 +54,7 @@ def turned_exchanges(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> It
     """
     pairs = chain(output_exchanges(log, bad, column), input_exchanges(log, bad, column))
     for exchange in pairs:
-        for turn in _turns(exchange.log, bad, column):
+        for turn in _turns(replace(exchange.log, factors={}), bad, column):
             yield _both(exchange, turn, "and, so named,", turn.log)
 
 

@@ -154,11 +154,11 @@ def output_turns(
     """
     y, wrong = log.outputs, np.flatnonzero(bad).tolist()
     out, into = ([column[n] for n in names] for names in (log.output_names, log.input_names))
+    factors = {column[n]: f for n, f in log.factors.items() if n in column}
     for k in [*([k] for k in wrong), *([wrong] if len(wrong) > 1 else [])]:
         mirror = f", or of {listed(into)}" if mirrored and len(k) == y.shape[1] else ""
         yield Reading(replace(log, outputs=turned(y, k)), k, "with the other sign",
-                      f"turn the sign of {listed(out[i] for i in k)}{mirror}"
-                      f"{how_to_turn([out[i] for i in k])}")  # fmt: skip
+                      how_to_turn([out[i] for i in k], factors, mirror))  # fmt: skip
 
 
 def input_readings(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
@@ -179,10 +179,11 @@ def input_exchanges(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Ite
 def input_turns(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
     """The other sign of each input; see `unit_readings`."""
     u, wrong = log.inputs, np.flatnonzero(bad).tolist()
+    factors = {column[n]: f for n, f in log.factors.items() if n in column}
     for k, name in enumerate(column[n] for n in log.input_names):
         yield Reading(replace(log, inputs=turned(u, [k])), wrong,
                       "with the other sign of an input",
-                      f"turn the sign of {name}{how_to_turn([name])}")  # fmt: skip
+                      how_to_turn([name], factors))  # fmt: skip
 
 
 def turned(signals: np.ndarray, columns: Sequence[int]) -> np.ndarray:

@@ -114,8 +114,9 @@ def _samples(log: str, name: str, time: FloatArray, values: FloatArray) -> _Chan
     rows = np.flatnonzero(np.isfinite(values))
     rows = rows[np.append(np.diff(time[rows]) > 0, True)] if rows.size else rows
     if rows.size < MIN_ROWS:
+        has = "1 sample" if rows.size == 1 else f"{rows.size} samples"
         raise InputError(
-            f"column {quoted(name)} of log {log!r} has {rows.size} samples and needs {MIN_ROWS};"
+            f"column {quoted(name)} of log {log!r} has {has} and needs {MIN_ROWS};"
             " leave it out, or record again"
         )
     return _Channel(name, time[rows], values[rows])

@@ -58,7 +58,13 @@ def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str
     share, own = held(found.rms / floor) if floor > 0 else "", error(floor, unit)
     ratio = f", {share} times the noise floor of {own}" if share else ""
     left = error(found.rms, unit)
-    said.append(f"{len(found.residual)} windows of {found.length:g} s leave {left} rms{ratio}.")
+    count = len(found.residual)
+    each = (
+        f"1 window of {found.length:g} s leaves"
+        if count == 1
+        else (f"{count} windows of {found.length:g} s leave")
+    )
+    said.append(f"{each} {left} rms{ratio}.")
     return said
 
 

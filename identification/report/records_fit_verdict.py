@@ -31,8 +31,9 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
     (left,), (own,) = error_words([rms]), error_words([floor], "")
     is_known = any(floor.values())
     ratio = f", {times_words(rms, floor)} times the noise floor of {own}" if is_known else ""
-    each = "1 window" if windows == 1 else f"{windows} windows"
-    said.append(f"{each} of {found.horizon:g} s leave {left}{ratio}.")
+    of = f"of {found.horizon:g} s"
+    each = f"1 window {of} leaves" if windows == 1 else f"{windows} windows {of} leave"
+    said.append(f"{each} {left}{ratio}.")
     if is_known and relative(rms, floor) > MUCH:
         said.append(
             "That is far more than the sensors make: the model lacks something, or a column is not"

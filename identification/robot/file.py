@@ -109,6 +109,17 @@ class RobotFile:
         """The free parameters that belong to no spread."""
         return tuple(n for n in self.free if n not in {m for a in self.spread for m in a.names})
 
+    @property
+    def held(self) -> str:
+        """What is wrong where it tells of a parameter that is not free; "" where nothing is."""
+        held = [name for name in self.records if name not in self.free]
+        if not held:
+            return ""
+        return (
+            f"{self.path} tells of parameter {held[0]!r}, which is not among its `free`"
+            f" ({', '.join(sorted(self.free))}); correct the name in one of the two places"
+        )
+
 
 def read_robot_file(path: str | Path) -> RobotFile:
     """Read a robot's TOML.
@@ -120,6 +131,11 @@ def read_robot_file(path: str | Path) -> RobotFile:
     content = read_toml(path, "robot file, such as robot.toml")
     check_table(content, KEYS, str(path))
     for key in ("model", "free"):
+        if key == "free" and content.get(key) == []:
+            raise InputError(
+                f"`free` in {path} is empty, so that there is nothing to fit; write what is to be"
+                ' found into it, such as free = ["joint/slide.damping"]'
+            )
         if not content.get(key):
             raise InputError(f"{path} does not say {key!r}; give {KEYS[key][1]}")
     horizon = content.get("horizon")
@@ -134,11 +150,6 @@ def read_robot_file(path: str | Path) -> RobotFile:
         if not isinstance(record, dict):
             raise InputError(f"parameters.{name} in {path} must be a table")
         check_table(record, PARAMETER_KEYS, f"parameters.{name} in {path}")
-        if name not in free:
-            raise InputError(
-                f"{path} tells of parameter {name!r}, which is not among its `free`"
-                f" ({', '.join(sorted(free))}); correct the name in one of the two places"
-            )
     columns, fixed = content.get("columns", {}), content.get("fixed", {})
     start = content.get("start", {})
     for key, table in (("fixed", fixed), ("start", start)):

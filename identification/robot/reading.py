@@ -14,7 +14,12 @@ from identification.robot.file import RobotFile, read_robot_file
 from identification.robot.free_inertias import inertias_sentence
 from identification.robot.other_spread import with_spread
 from identification.robot.robot import Robot, read_robot_log, robot_of
-from identification.robot.start_words import apart_sentence, start_sentence, unused_sentence
+from identification.robot.start_words import (
+    apart_sentence,
+    made_up_sentence,
+    start_sentence,
+    unused_sentence,
+)
 from identification.robot.step_error import refuse_coarse_steps
 from identification.robot.trust import trusted
 from identification.robot.wiring import refuse_miswired
@@ -83,14 +88,14 @@ def _refuse_records(records: object, of: str) -> None:
 def wrong_start(robot: Robot) -> list[str]:
     """A sentence where a free run of the robot's log begins elsewhere than the log does.
 
-    It is a remark too, and stands beside the result again, because the result depends on it.
+    A remark says it at length; it stands beside the result in short, which depends on it.
 
     Args:
         robot: the result of `read_robot`.
     """
     if robot.file.horizon is not None:
         return []
-    said = apart_sentence(robot.file, robot.plant.model, robot.log)
+    said = made_up_sentence(robot.file, robot.plant.model, robot.log)
     return [] if said is None else [said]
 
 

@@ -177,7 +177,14 @@ def robot_of(
         if name not in {e.name for e in effects}:
             where = f"effect under effects.only in {file.path}:"
             raise unknown_effect(where, name, effects)
-    priors = [free_parameter(file, name, model, effects, log) for name in file.free]
+    try:
+        priors = [free_parameter(file, name, model, effects, log) for name in file.free]
+    except InputError as wrong:  # a wrong name in free is told first
+        if not file.held:
+            raise
+        raise InputError(f"{str(wrong).removesuffix('.')}. {file.held}") from None
+    if file.held:
+        raise InputError(file.held)
     logs = (log, *others, *records)
     valued = value_parameters(file, model, effects, logs)
     start = start_of(file, model, log)

@@ -73,6 +73,24 @@ def apart_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | No
     )
 
 
+def made_up_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
+    """What `apart_sentence` means for values, in short, for beside them; None where nothing.
+
+    Args:
+        file: the robot's.
+        model: with the log's sensors.
+        log: what was measured.
+    """
+    apart = given_apart(file, model, log)
+    if not apart:
+        return None
+    more = f" and {len(apart) - LISTED} more" if len(apart) > LISTED else ""
+    return (
+        f"The values make up for {' and '.join([*apart][:LISTED])}{more} under [start] of"
+        f" {file.path}, because log {log.name!r} begins elsewhere."
+    )
+
+
 def unused_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | None:
     """One sentence that says what of [start] is not used over a horizon; None where all is.
 

@@ -280,3 +280,13 @@ def test_the_advice_to_turn_signs_is_toml(columns):
     lines = told.removesuffix(" (a line each)").split(" and ")
     said = tomllib.loads("\n".join(["[factors]", *lines]))
     assert said == {"factors": dict.fromkeys(columns, -1)}
+
+
+def test_a_factor_that_stands_in_the_toml_is_turned_and_not_written_again():
+    assert how_to_turn(["phi"], {"phi": -1.0, "x": 2.0}) == (
+        "turn the sign of the factor -1 of phi that the log's TOML gives"
+    )
+    assert how_to_turn(["x", "phi"], {"phi": -1.0}, ", or of force") == (
+        "turn the sign of x, phi, or of force: turn the sign of the factor -1 of phi that the"
+        " log's TOML gives, and write x = -1 under [factors] of the log's TOML"
+    )

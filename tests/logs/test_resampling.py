@@ -83,6 +83,8 @@ def test_time_that_goes_back_and_channels_that_do_not_overlap_are_refused(refusa
     assert "goes back after 0.99 s" in refusal(even, np.tile(t, 2), {"y": np.tile(t, 2)})
     late = np.where(t > 0.975, 1.0, np.nan)
     assert "has 2 samples and needs 3" in refusal(even, t, {"y": t, "x": late})
+    late[-2] = np.nan
+    assert "has 1 sample and needs 3" in refusal(even, t, {"y": t, "x": late})
 
 
 def test_a_file_is_read_with_its_cells_missing_and_its_unused_columns_left_out(csv):

@@ -79,6 +79,12 @@ def test_what_rounds_to_zero_has_no_minus_sign(value: float, std: float, unit: s
     assert not [text for text in said if MINUS_ZERO.search(text)]
 
 
+def test_a_column_of_a_table_has_plain_decimals_and_four_digits_without_a_std() -> None:
+    assert matched(2.98818, float("inf")) == ("2.988", "unknown")
+    assert matched(0.02300003, 3e-8) == ("0.023000030", "3.0e-08")
+    assert matched(2.3e-7, 3e-8)[0] == "2.30e-07"
+
+
 @given(st.floats(1e-9, 1e9), STDS, UNITS)
 def test_a_negative_number_is_said_as_the_positive_one_behind_a_minus_sign(
     value: float, std: float, unit: str

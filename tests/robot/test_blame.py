@@ -85,8 +85,9 @@ def test_the_verdict_of_a_fit_says_that_the_start_is_elsewhere(folder):
     """What a fit found depends on it, and the remark may be far above."""
     robot = robot_in(folder, start='[start]\n"qpos[0]" = 0.2\n')
     (said,) = [s for s in robot_fit_to_json(fit(robot))["verdict"] if "[start]" in s]
-    assert "so that the values of a fit make up for this; delete qpos[0]" in said
-    assert said in robot.remarks
+    assert said.startswith("The values make up for qpos[0] under [start] of")
+    (remark,) = [r for r in robot.remarks if "[start]" in r]
+    assert "so that the values of a fit make up for this; delete qpos[0]" in remark
 
 
 def test_a_start_that_a_horizon_does_not_use_is_remarked(folder):

@@ -20,7 +20,10 @@ from identification.robot.robot import read_robot_log
 @pytest.mark.parametrize(
     ("change", "said"),
     [
+        (("mass", "weight"), "'weight' is no model path"),
         (("mass", "weight"), "tells of parameter 'mass'"),
+        (('["mass", ', "[] # "), "is empty, so that there is nothing to fit; write what is to be"),
+        (('["mass", ', '["joint/slide.damping"] # '), "bad.toml tells of parameter 'mass'"),
         (('model = "slider.xml"', ""), "does not say 'model'"),
         (('"slider.xml"', '"none.xml"'), "none.xml"),
         (("joint/slide.damping", "joint/slid.damping"), "did you mean 'slide'"),
@@ -118,6 +121,10 @@ def test_a_folder_is_no_log(folder, capsys, log):
      ("coulomb@swing", "coulomb_friction.f_c@swing"),
      ("friction.f_c@swing", "coulomb_friction.f_c@swing"),
      ("f_c@swing", "coulomb_friction.f_c@swing"),
+     ("friction", "coulomb_friction.f_c@swing"),
+     ("friction@x", "slide_coulomb_friction.f_c@x"),
+     ("stiction", "stribeck_friction.f_s@swing"),
+     ("f_c@joint", "coulomb_friction.f_c@swing"),
      ("coulomb_friction.f_c@swin", "swing")],
 )  # fmt: skip
 def test_what_is_suggested_can_be_written(name, meant):

@@ -115,7 +115,10 @@ def test_a_turned_sign_is_named(cart, two_joints):
     assert "turn the sign of position" in refused(own, replace(log, outputs=-log.outputs))
     own, log = two_joints
     refuse_miswired(own, log)
-    assert "turn the sign of b" in refused(own, replace(log, outputs=log.outputs * [1, -1]))
+    turned = replace(log, outputs=log.outputs * [1, -1])
+    assert "turn the sign of b: write b = -1 under [factors]" in refused(own, turned)
+    said = refused(own, replace(turned, factors={"b": -1.0}))
+    assert "; turn the sign of the factor -1 of b that the log's TOML gives, or give" in said
 
 
 def test_exchanged_columns_are_named(two_joints):
