@@ -52,7 +52,7 @@ class NamedByPrediction:
         effect: as it was refitted, its values those of the final model.
         rivals: other effects that were refitted in its place and are not much worse.
         compared: how many others were refitted in its place and compared with it; where there are
-            none, its confidence is the highest that is ever said.
+            none, its confidence is the upper limit.
         one_of: whether the records cannot tell it from its first rival.
         same_as: the effect that is the same force by another name, so that no record tells which
             it is (`prediction.twins`); None where there is none.

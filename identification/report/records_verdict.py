@@ -57,7 +57,7 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
             f" {sizes}."
         )
     else:
-        said = f"{first}: {mine}, {sizes}; confidence {confidence}{_compared(named)}."
+        said = f"{first}: {mine}, {sizes}; confidence {confidence}{_compared(named, found.unexplained)}."
         said += f" Less likely: {', '.join(others)}." if others else ""
     said += _agreement(found, named)
     if named.disagrees:
@@ -77,10 +77,11 @@ def _twin(named: NamedByPrediction) -> str:
     )
 
 
-def _compared(named: NamedByPrediction) -> str:
+def _compared(named: NamedByPrediction, is_left: bool) -> str:
     """What a confidence rests on."""
     if not named.compared:
-        return ", the highest that is ever said, because no rival was near enough to be refitted"
+        when = "said while something is left" if is_left else "ever said"
+        return f", the highest that is {when}, because no rival was near enough to be refitted"
     rivals = "1 rival that was" if named.compared == 1 else f"{named.compared} rivals that were"
     return f" beside {rivals} refitted in its place"
 
