@@ -57,7 +57,8 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
             f" {sizes}."
         )
     else:
-        said = f"{first}: {mine}, {sizes}; confidence {confidence}{_compared(named, found.unexplained)}."
+        compared = _compared(named, found.unexplained)
+        said = f"{first}: {mine}, {sizes}; confidence {confidence}{compared}."
         said += f" Less likely: {', '.join(others)}." if others else ""
     said += _agreement(found, named)
     if named.disagrees:
