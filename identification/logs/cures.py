@@ -12,7 +12,10 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
 
 
 def how_to_turn(
-    columns: Sequence[str], factors: Mapping[str, float] | None = None, instead: str = ""
+    columns: Sequence[str],
+    factors: Mapping[str, float] | None = None,
+    instead: str = "",
+    renamed: bool = False,
 ) -> str:
     """How to turn the sign of some columns of a log.
 
@@ -20,6 +23,7 @@ def how_to_turn(
         columns: of the log's file.
         factors: those that the log's TOML gives, by column; -1 is not written where one stands.
         instead: other columns that may be turned as well, such as ", or of force".
+        renamed: whether these are the new names of columns.
     """
     factors, cures = factors or {}, []
     if given := [n for n in columns if n in factors]:
@@ -33,7 +37,8 @@ def how_to_turn(
     if not (new or instead):
         return cures[0]
     how = (", " if not given else ", and ").join(cures)
-    return f"turn the sign of {listed(columns)}{instead}: {how}"
+    the = "the new " if renamed else ""
+    return f"turn the sign of {the}{listed(columns)}{instead}: {how}"
 
 
 def how_to_rename(names: Mapping[str, str]) -> str:

@@ -44,8 +44,7 @@ def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Readin
     if 1 < len(back) < y.shape[1]:
         outputs = turned(part.outputs, back)
         yield Reading(replace(part, outputs=outputs), back, "with the other sign",
-                      f"turn the sign of {listed(names[k] for k in back)}"
-                      f"{how_to_turn([names[k] for k in back])}")  # fmt: skip
+                      how_to_turn([names[k] for k in back], part.factors))  # fmt: skip
     from scipy.optimize import linear_sum_assignment  # slow to import
 
     every = np.arange(y.shape[1])
@@ -60,7 +59,7 @@ def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Readin
             new_names = {names[i]: names[at[i]] for i in moved}
             pairs = listed(f"{old} to {new}" for old, new in new_names.items())
             new = [names[at[i]] for i in back]
-            turn = f", and turn the sign of the new {listed(new)}{how_to_turn(new)}" if back else ""
+            turn = f", and {how_to_turn(new, renamed=True)}" if back else ""
             changed = [k for k in every.tolist() if k in (*at[moved], *at[back])]
             wrong = [k for k in changed if 1 - cosine[k, k] > RIGHT]  # others are right by a mirror
             if not wrong:

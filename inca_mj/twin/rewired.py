@@ -7,7 +7,7 @@ P and Q are signed permutations, the identity where a log is right.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -55,7 +55,7 @@ def rewired(part: Log, places: Places) -> Reading:
         part, outputs=part.outputs @ places.angles.T, inputs=part.inputs @ places.currents.T
     )
     return Reading(log, range(len(part.output_names)), _said(renamed, turned),
-                   _cure(dict(sorted(renamed.items())), turned))  # fmt: skip
+                   _cure(dict(sorted(renamed.items())), turned, part.factors))  # fmt: skip
 
 
 def _said(renamed: dict[str, str], turned: Sequence[str]) -> str:
@@ -68,14 +68,14 @@ def _said(renamed: dict[str, str], turned: Sequence[str]) -> str:
     return " and ".join(said)
 
 
-def _cure(renamed: dict[str, str], turned: Sequence[str]) -> str:
+def _cure(renamed: dict[str, str], turned: Sequence[str], factors: Mapping[str, float]) -> str:
     """What to write into the TOML of the log."""
-    turn = f"turn the sign of {'the new ' if renamed else ''}{listed(turned)}{how_to_turn(turned)}"
     if not renamed:
-        return turn
+        return how_to_turn(turned, factors)
+    turn = f", and {how_to_turn(turned, renamed=True)}" if turned else ""
     pairs = [(old, new) for old, new in renamed.items() if renamed[new] == old and old < new]
     if 2 * len(pairs) == len(renamed):
         told = f"exchange {', and '.join(f'{a} and {b}' for a, b in pairs)}"
     else:
         told = f"rename {listed(f'{old} to {new}' for old, new in renamed.items())}"
-    return f"{told}{how_to_rename(renamed)}{f', and {turn}' if turned else ''}"
+    return f"{told}{how_to_rename(renamed)}{turn}"
