@@ -90,7 +90,7 @@ def _worlds(rows: Sequence[Row]) -> list[str]:
         return []
     lines = [
         "## Worlds of our own, as built", "",
-        "    inca sweep benchmarks/sweeps/as_built.toml", "",
+        "    inca sweep benchmarks/sweeps/as_built.toml        (and rules_and_sensors.toml)", "",
         "Robots, inputs and effects are drawn by chance; one in six has nothing hidden, and one"
         " in six an effect that no catalogue lists. With `effects = 3` three are hidden, and"
         " `records = 3` makes three logs of one robot. Sizes are such that 20 times the noise, or"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import mujoco
 
 from identification.logs.log import Log
@@ -30,7 +32,7 @@ def start_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | No
         of, unit = _what(field, begin, log)
         pair = alike([begin.value, float(getattr(own, field)[i])], unit)
         said.append(f"{of} at {pair[0]} instead of {pair[1]}")
-    more = f" and {len(moved) - LISTED} more" if len(moved) > LISTED else ""
+    more = _more(moved)
     return (
         f"Simulations of log {log.name!r} begin where it does, {', '.join(said)}{more}; write"
         f' trust = ["start"] into {file.path} to begin where {file.model.name} does.'
@@ -62,8 +64,7 @@ def apart_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | No
     apart = given_apart(file, model, log)
     if not apart:
         return None
-    more = f" and {len(apart) - LISTED} more" if len(apart) > LISTED else ""
-    paths = " and ".join([*apart][:LISTED]) + more
+    paths, more = _first(apart), _more(apart)
     it = "it" if len(apart) == 1 else "them"
     return (
         f"Simulations of log {log.name!r} begin where [start] of {file.path} says, and it gives"
@@ -84,10 +85,9 @@ def made_up_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | 
     apart = given_apart(file, model, log)
     if not apart:
         return None
-    more = f" and {len(apart) - LISTED} more" if len(apart) > LISTED else ""
     return (
-        f"The values make up for {' and '.join([*apart][:LISTED])}{more} under [start] of"
-        f" {file.path}, because log {log.name!r} begins elsewhere."
+        f"The values make up for {_first(apart)} under [start] of {file.path}, because log"
+        f" {log.name!r} begins elsewhere."
     )
 
 
@@ -103,14 +103,23 @@ def unused_sentence(file: RobotFile, model: mujoco.MjModel, log: Log) -> str | N
     unused = [p for p in file.start if start_place(p, model) in begins]
     if not unused:
         return None
-    more = f" and {len(unused) - LISTED} more" if len(unused) > LISTED else ""
     is_one = len(unused) == 1
     it, are = ("it", "is") if is_one else ("them", "are")
     return (
-        f"{' and '.join(unused[:LISTED])}{more} under [start] of {file.path} {are} not used,"
+        f"{_first(unused)} under [start] of {file.path} {are} not used,"
         f" because the file gives a horizon: each window of {file.horizon:g} s begins where the log"
         f" is at that time; delete {it}, or delete horizon to simulate a free run from {it}."
     )
+
+
+def _first(paths: Collection[str]) -> str:
+    """The first few paths, and how many more there are."""
+    return " and ".join([*paths][:LISTED]) + _more(paths)
+
+
+def _more(items: Collection[object]) -> str:
+    """How many there are beside those that a sentence lists."""
+    return f" and {len(items) - LISTED} more" if len(items) > LISTED else ""
 
 
 def _what(field: str, begin: Begin, log: Log) -> tuple[str, str]:

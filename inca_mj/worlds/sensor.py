@@ -71,7 +71,7 @@ class HiddenEncoderScale(HiddenOneDriveEffect, HiddenEncoderFault):
     s: float = 0.003
 
     def added(self, motion: Motion) -> np.ndarray:
-        """S φ."""
+        """The scale adds s φ, shape (n, k) [rad]."""
         return self.s * motion.angles
 
 
@@ -86,7 +86,7 @@ class HiddenEncoderEccentricity(HiddenOneDriveEffect, HiddenEncoderFault):
     b: float = 0.005
 
     def added(self, motion: Motion) -> np.ndarray:
-        """A cos φ + b sin φ."""
+        """The eccentric disc adds a cos φ + b sin φ, shape (n, k) [rad]."""
         return np.asarray(self.a * np.cos(motion.angles) + self.b * np.sin(motion.angles))
 
 
@@ -101,7 +101,7 @@ class HiddenEncoderLag(HiddenEncoderFault):
     late: bool = False
 
     def added(self, motion: Motion) -> np.ndarray:
-        """Read angle less the true one."""
+        """The read angle less the true one, shape (n, k) [rad]."""
         if self.late:
             return motion.at(motion.time - self.tau) - motion.angles
         return lagged(motion, self.tau) - motion.angles
@@ -118,7 +118,7 @@ class HiddenEncoderJump(HiddenOneDriveEffect, HiddenEncoderFault):
     t_s: float = 0.5
 
     def added(self, motion: Motion) -> np.ndarray:
-        """C where t ≥ t_s."""
+        """The jump adds c where t ≥ t_s, shape (n, k) [rad]."""
         late = motion.time >= self.t_s - 1e-9
         return self.c * np.repeat(late[:, None], motion.angles.shape[1], axis=1)
 
