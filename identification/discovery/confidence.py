@@ -78,12 +78,10 @@ def _name(
     probability = weights / weights.sum()
     rivals = [m.candidates[-1] for m in others]
     cosines = _compare(task, final, mine, rivals, sensitivities)
-    values = final.refit.point.values
-    shape = {s.name: values[mine.effect.parameter(s.name, mine.where)] for s in mine.effect.shapes}
     own = min(limit, probability[0])
     of_rivals = probability[1:-2]
     return NamedEffect(
-        candidate=replace(mine, shape=shape),
+        candidate=final.with_fitted_shape(mine),
         parameters=collect_parameters(task, final, mine),
         confidence=float(own * min(1.0, max(0.0, explained))),
         rivals=tuple(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -46,6 +46,13 @@ class FittedModel:
     def log_posterior_of_equal(self, free: int) -> float:
         """The log posterior with which a model of so many free parameters has the same BIC."""
         return (self.negative_bic + free * float(np.log(len(self.refit.point.log)))) / 2
+
+    def with_fitted_shape(self, candidate: Candidate) -> Candidate:
+        """One of its effects, with the shape that was fitted."""
+        values, effect = self.refit.point.values, candidate.effect
+        names = [s.name for s in effect.shapes]
+        shape = {name: values[effect.parameter(name, candidate.where)] for name in names}
+        return replace(candidate, shape=shape)
 
     @property
     def innovations(self) -> np.ndarray:

@@ -16,13 +16,14 @@ from identification.discovery.findings.input_hold import find_input_hold
 from identification.discovery.findings.location import locate_error
 from identification.discovery.findings.robot_change import find_robot_change
 from identification.discovery.findings.structure import find_structure
-from identification.discovery.fitted_model import FittedModel, is_proven
+from identification.discovery.fitted_model import FittedModel, is_proven, score_candidates
 from identification.discovery.missing_forces import estimate_missing_forces
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import prove
 from identification.discovery.result import Discovery, Verdict
 from identification.discovery.scoring.detectability import list_detectable
 from identification.discovery.scoring.hidden import list_hidden
+from identification.discovery.scoring.sensitivities import compute_sensitivities
 from identification.discovery.state import SearchState
 from identification.logs.by_unit import by_unit
 
@@ -40,11 +41,26 @@ def find_remaining(state: SearchState) -> tuple[Finding, ...]:
         *find_robot_change(model.validation, options),
         *find_input_error(model.validation, options),
         *(() if named else find_doubtful_effect(state.rejected, samples, options)),
-        *find_oversized_effect(state.nominal_scores, named, options),
+        *_find_oversized(state, named),
     )
     if not findings:
         return ()
     return (*find_input_hold(state.nominal.refit, options), *findings)
+
+
+def _find_oversized(state: SearchState, named: Sequence[str]) -> tuple[Finding, ...]:
+    """A candidate beyond belief that explains more than the named effects, as they were found.
+
+    What jumps is scored at a few times only, so that its first score may be a small one.
+    """
+    options, nominal = state.task.options, state.nominal
+    found = find_oversized_effect(state.nominal_scores, named, options)
+    if not found:
+        return found
+    fitted = [state.model.with_fitted_shape(a.candidate) for a in state.accepted]
+    own = compute_sensitivities(nominal.refit.point, fitted)
+    scores = (*state.nominal_scores, *score_candidates(nominal, own, options))
+    return find_oversized_effect(scores, named, options)
 
 
 def compute_explained_share(

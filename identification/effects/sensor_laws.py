@@ -5,7 +5,7 @@
     eccentricity    a cos q + b sin q       its disc turns about another centre
     lag             x - q, τ ẋ = q - x      kind 0: it is filtered
                     q(t - τ) - q            kind 1: it is read or sent too late
-    jump            c where t ≥ t_s         counts are lost, within a tenth of a second about t_s
+    jump            c where t ≥ t_s         counts are lost, within the time w about t_s
 
 Each function takes the state of a sensor (see `identification.native.reading.Reading`) and the
 effect's parameters, sizes first.
@@ -18,8 +18,6 @@ from math import cos, sin
 from numba import njit
 
 from identification.native.reading import lagged_position, position_at
-
-LASTS = 0.1  # of a jump [s]: the outputs are to change smoothly with its time
 
 
 @njit
@@ -51,5 +49,5 @@ def encoder_lag(s, p):  # type: ignore[no-untyped-def]
 
 @njit
 def encoder_jump(s, p):  # type: ignore[no-untyped-def]
-    """c from the time t_s on."""
-    return p[0] * min(1.0, max(0.0, 0.5 + (s.time - p[1]) / LASTS))
+    """c from the time t_s on, as a ramp that takes the time w."""
+    return p[0] * min(1.0, max(0.0, 0.5 + (s.time - p[1]) / p[2]))

@@ -6,7 +6,8 @@
     jump            φ + c from t_s on       counts are lost
 
 They act on what is measured; the robot moves as if they were not there. Their laws are those of any
-robot (`identification.effects.sensor_laws`).
+robot (`identification.effects.sensor_laws`). A jump is looked for as a ramp of a tenth of a second,
+so that the outputs change smoothly with its time, and is then fitted as short as it is.
 """
 
 from identification.effects import sensor_laws as laws
@@ -50,7 +51,10 @@ ENCODER_JUMP = Effect(
     "encoder_jump",
     "φ + c from t_s on",
     (Size("c", "rad", 0.5, 1e-3, about="what the reading jumps by"),),
-    (Shape("t_s", "s", TIMES, 0.1, 600.0, about="time of the jump in the record", step=LASTS),),
+    (
+        Shape("t_s", "s", TIMES, 0.1, 600.0, about="time of the jump in the record", step=LASTS),
+        Shape("w", "s", (LASTS,), 1e-3, 1.0, about="how long the jump takes"),
+    ),
     places=ONE_DRIVE,
     phrase="encoder: its reading jumps",
     reference="data sheet of the encoder",

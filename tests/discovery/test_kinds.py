@@ -10,7 +10,7 @@ from identification.discovery.fitted_model import AcceptedEffect, fit_model
 from identification.discovery.replacement import replace_effect
 from identification.discovery.scoring.sensitivities import Sensitivity, compute_sensitivities
 from identification.discovery.selection import kinds
-from identification.discovery.selection.kinds import improve_kinds
+from identification.discovery.selection.kinds import improve_kinds, improve_rivals
 from identification.effects.effect import Candidate, Effect, Shape
 
 ROBOT = {"mass": 2.2, "damping": 2.7, "x0": 0.01, "v0": 0.02}
@@ -145,3 +145,29 @@ def test_a_free_shape_is_chosen_anew_for_another_kind(asked, monkeypatch):
     (((candidate,), start),) = tried  # one refit per kind
     assert candidate.shape == {"kind": 1.0, "width": 3.0}
     assert (start["offset.width"], start["offset.kind"]) == (3.0, 1.0)
+
+
+def with_gain(model, candidate, gain):
+    """A model with an effect that is likelier by a gain of twice the log likelihood."""
+    level = model.refit.level
+    level = replace(level, log_likelihood=level.log_likelihood + gain / 2)
+    return replace(model, candidates=(candidate,), refit=replace(model.refit, level=level))
+
+
+@pytest.mark.parametrize(("gain", "first"), [(1.0, "spring"), (5.0, "offset"), (-5.0, "spring")])
+def test_a_rival_is_compared_as_its_likeliest_kind(asked, monkeypatch, gain, first):
+    """It comes first where it is likelier by more than is worth a bare mention."""
+    model, _ = fitted(asked, "offset", {"offset.f": 0.1})
+    best = with_gain(model, Candidate(of_kinds("spring"), "joint", {"kind": 0.0}), 300.0)
+    sense_as(monkeypatch, "offset")  # as good to first order, in which nothing is believed here
+    other = Candidate(of_kinds("offset"), "joint", {"kind": 1.0})
+    refit = with_gain(model, other, 300.0 + gain)
+    monkeypatch.setattr(kinds, "try_fit", lambda *_, **__: refit)
+    refits = improve_rivals(asked, best, [model])
+    assert refits[0].candidates[-1].effect.name == first
+    assert refits[0].candidates == (best if first == "spring" else refit).candidates
+    assert any(m is refit for m in refits)
+    monkeypatch.setattr(kinds, "try_fit", lambda *_, **__: None)  # it cannot be fitted
+    assert [
+        m is n for m, n in zip(improve_rivals(asked, best, [model]), (best, model), strict=True)
+    ]

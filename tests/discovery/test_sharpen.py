@@ -1,4 +1,4 @@
-"""A jump whose scored times are all wrong is scored at the times between them."""
+"""A likely jump is scored at the times between those that were scored, before any is refitted."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -15,6 +15,8 @@ JUMP = Effect(
     (Shape("t_s", "s", (1.0, 2.0, 4.0), 0.1, 9.0, about="", step=0.5),), places={"joint": ""},
     phrase="jump",
 )  # fmt: skip
+
+OTHER = replace(JUMP, name="other")
 
 
 def score(p, blocks, gain=100.0, t_s=2.0, effect=JUMP):
@@ -44,11 +46,33 @@ def test_what_only_the_blocks_refuse_is_scored_between_its_neighbours(
     assert sharpened(score(1e-30, 0.5)) == [1.5, 2.0, 2.5, 3.0, 3.5]
 
 
-def test_what_is_beyond_chance_already_or_not_at_all_is_not(sharpened):
-    assert sharpened(score(1e-30, 1e-30)) == []
+def test_what_is_beyond_chance_already_is_as_well(sharpened):
+    assert sharpened(score(1e-30, 1e-30)) == [1.5, 2.0, 2.5, 3.0, 3.5]
+    both = sharpened(score(1e-30, 1e-30), score(1e-30, 0.5, gain=90.0, effect=OTHER))
+    assert both == 2 * [1.5, 2.0, 2.5, 3.0, 3.5]
+
+
+def test_what_is_chance_or_has_no_times_is_not(sharpened):
     assert sharpened(score(0.5, 0.5)) == []
     assert sharpened(score(1e-30, 0.5, gain=-1.0)) == []
     assert sharpened(score(1e-30, 0.5, effect=replace(JUMP, shapes=()))) == []
+
+
+def test_no_time_of_one_is_compared_with_a_better_time_of_another(monkeypatch):
+    """Both are scored anew, and the true one, which was only beyond chance at first, leads."""
+    gains = {"jump": 900.0, "other": 500.0}
+
+    def anew(model, some, options):
+        return [score(1e-99, 1e-99, gains[c.effect.name], c.shape["t_s"], c.effect) for c in some]
+
+    monkeypatch.setattr(forward_selection, "compute_sensitivities", lambda point, some: some)
+    monkeypatch.setattr(forward_selection, "score_candidates", anew)
+    begun = (score(1e-30, 1e-30, 100.0), score(1e-30, 0.5, 95.0, effect=OTHER))
+    model = SimpleNamespace(refit=SimpleNamespace(point=None))
+    scores = (*begun, *forward_selection._sharpen(model, begun, DiscoveryOptions()))
+    significant = forward_selection.select_significant(scores, DiscoveryOptions())
+    first, second = forward_selection._select_contenders(significant, DiscoveryOptions())[:2]
+    assert (first.candidate.effect.name, second.candidate.effect.name) == ("jump", "other")
 
 
 def test_a_far_worse_one_is_not(sharpened):

@@ -90,11 +90,12 @@ def test_readings_of_encoders_follow_their_laws_and_leave_the_motion_alone():
     names = ["encoder_eccentricity.a", "encoder_eccentricity.b"]
     none, waved = simulate(full(), names, [[0.0, 0.0], [0.01, 0.02]], 0.5)
     np.testing.assert_allclose(waved, none + 0.01 * np.cos(none) + 0.02 * np.sin(none), atol=1e-12)
-    jump = ["encoder_jump.c@6", "encoder_jump.t_s"]
-    none, jumped = simulate(full(), jump, [[0.0, 0.3], [0.02, 0.3]], 0.5)
-    moved = np.zeros_like(none)
-    moved[:, 5] = 0.02 * np.clip(0.5 + (0.01 * np.arange(len(none)) - 0.3) / 0.1, 0, 1)
-    np.testing.assert_allclose(jumped, none + moved, atol=1e-12)
+    jump = ["encoder_jump.c@6", "encoder_jump.t_s", "encoder_jump.w"]
+    for w in (0.1, 1e-3):  # the second one takes less than a sample
+        none, jumped = simulate(full(), jump, [[0.0, 0.303, w], [0.02, 0.303, w]], 0.5)
+        moved = np.zeros_like(none)
+        moved[:, 5] = 0.02 * np.clip(0.5 + (0.01 * np.arange(len(none)) - 0.303) / w, 0, 1)
+        np.testing.assert_allclose(jumped, none + moved, atol=1e-12)
     delay = ["encoder_lag.kind", "encoder_lag.tau@5"]
     none, late = simulate(full(), delay, [[1.0, 0.0], [1.0, 0.01]], 0.5)
     np.testing.assert_array_equal(np.delete(late, 4, axis=1), np.delete(none, 4, axis=1))

@@ -40,6 +40,7 @@ from identification.discovery.scoring.significance import (
     select_plausible,
     select_significant,
 )
+from identification.discovery.selection.kinds import improve_rivals
 from identification.discovery.selection.shapes import improve_shape
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
@@ -79,7 +80,8 @@ def select_effect(
     options = task.options
     refitted = _refit_candidates(task, model, scores, progress)
     if refitted:
-        refitted[0] = improve_shape(task, model, refitted[0], scores)
+        best = improve_shape(task, model, refitted[0], scores)
+        refitted = improve_rivals(task, best, refitted[1:])
     rejected: list[RejectedEffect] = []
     unproven: FittedModel | None = None
     tried = len(refitted)
@@ -109,7 +111,6 @@ def _refit_candidates(
     """The model with each of the best candidates in turn, the most likely one first."""
     scores = (*scores, *_sharpen(model, scores, task.options))
     chosen = _select_contenders(select_significant(scores, task.options), task.options)
-    chosen = _try_between(model, chosen, task.options)
     is_hidden = not chosen and bool(model.refit.level.noise.ratio)
     if is_hidden:
         chosen = _select_likeliest(scores, task.options)
@@ -135,30 +136,19 @@ def _refit_candidates(
 def _sharpen(
     model: FittedModel, scores: Sequence[Score], options: DiscoveryOptions
 ) -> tuple[Score, ...]:
-    """Scores at more values of their shapes, of the candidates that lack only the right one.
+    """Scores at more values of their shapes, as finely as a refit asks, of the likely candidates.
 
     What jumps acts in a few blocks, and at a wrong time it leaves as much in one of them as it
-    explains: the score is then far beyond chance by the noise model and not by the blocks.
+    explains: the score is then far beyond chance by the noise model and not by the blocks. It must
+    not stand back behind another candidate at a better time.
     """
-    significant = {s.candidate.key for s in select_significant(scores, options)}
     likely = [s for s in scores if s.p_value * len(scores) < options.significance]
-    near = [
-        s for s in _select_contenders(select_plausible(likely, options), options)
-        if s.candidate.key not in significant
-    ]  # fmt: skip
-    finer = [c for s in near for c in list_between(s.candidate)]
+    ranked = (select_significant(scores, options), select_plausible(likely, options))
+    near = {id(s): s for some in ranked for s in _select_contenders(some, options)}
+    finer = [c for s in near.values() for c in list_between(s.candidate)]
     if not finer:
         return ()
     return score_candidates(model, compute_sensitivities(model.refit.point, finer), options)
-
-
-def _try_between(model: FittedModel, chosen: list[Score], options: DiscoveryOptions) -> list[Score]:
-    """The chosen scores with the best of more values of their shapes, as finely as a refit asks."""
-    finer = [c for s in chosen for c in list_between(s.candidate)]
-    if not finer:
-        return chosen
-    found = score_candidates(model, compute_sensitivities(model.refit.point, finer), options)
-    return _select_contenders(select_plausible((*chosen, *found), options), options)
 
 
 def _select_likeliest(scores: Sequence[Score], options: DiscoveryOptions) -> list[Score]:

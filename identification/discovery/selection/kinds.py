@@ -56,7 +56,7 @@ def improve_kinds(
     for i, old in enumerate(kept):
         mine = next(c for c in model.candidates if c.key == old.candidate.key)
         kinds = (
-            _list_kinds(task, mine, model)
+            _list_kinds(task, mine, model, _share(task, model))
             if mine.free
             else _list_limits(task, mine, model, sensitivities)
         )
@@ -72,6 +72,36 @@ def improve_kinds(
     return tuple(kept), model
 
 
+def improve_rivals(
+    task: DiscoveryTask, best: FittedModel, others: Sequence[FittedModel]
+) -> list[FittedModel]:
+    """Refits of a round, each rival of the kind that is the likeliest, the best refit first.
+
+    A delay of all encoders is one of all inputs, and no lag. The first order says little about the
+    trajectory of a wrong effect, so that each kind is refitted that explains enough. A rival comes
+    first only where it is likelier than the best refit by more than is worth a bare mention.
+
+    Args:
+        task: the nominal model, the log and the options.
+        best: the best refit; its effect is the last of its candidates, and of the likeliest kind.
+        others: refits of other effects in its place, the most likely one first.
+    """
+    improved, share = [], task.options.retry_share
+    for model in others:
+        mine, rival = model.candidates[-1], model
+        for other, start in _list_kinds(task, mine, model, share) if mine.free else []:
+            new = _fit_kind(task, other, start, model)
+            if new is not None and new.negative_bic > rival.negative_bic:
+                rival = new
+        improved.append(rival)
+    margin = task.options.bare_bic
+
+    def order(model: FittedModel) -> float:
+        return model.negative_bic + (margin if model is best else 0.0)
+
+    return sorted([best, *improved], key=order, reverse=True)
+
+
 def _fit_kind(
     task: DiscoveryTask, other: Candidate, start: Mapping[str, float], model: FittedModel
 ) -> FittedModel | None:
@@ -83,17 +113,27 @@ def _fit_kind(
     return try_fit(task, candidates, begin, model, least=least)
 
 
+def _share(task: DiscoveryTask, model: FittedModel) -> float:
+    """Share of an effect's gain that another kind may lose to first order, and is refitted."""
+    return task.options.retry_share if is_structured(model, task.options) else 0.0
+
+
 def _list_kinds(
-    task: DiscoveryTask, old: Candidate, model: FittedModel
+    task: DiscoveryTask, old: Candidate, model: FittedModel, share: float
 ) -> list[tuple[Candidate, dict[str, float]]]:
     """An effect of each other kind that explains more, or enough to be refitted, to first order.
+
+    Args:
+        task: the nominal model, the log and the options.
+        old: the effect, one of the model's.
+        model: the model with it.
+        share: of its gain that another kind may lose and is refitted all the same.
 
     Returns:
         The effect of each such kind, and the values of its sizes and shapes to begin at.
     """
     best: dict[tuple[float, ...], tuple[float, Candidate, np.ndarray]] = {}
     kinds, fit = [s.name for s in old.effect.shapes if not s.free], model.refit
-    share = task.options.retry_share if is_structured(model, task.options) else 0.0
     for s in compute_beside(fit.point, _other_kinds(old, model)):
         other = replace_effect(fit, old, s.S, fit.level)
         kind = tuple(s.candidate.shape[name] for name in kinds)
