@@ -1,7 +1,8 @@
 """Curves drawn from the data, which explain what no listed law does; see `curve_laws`.
 
 A curve has eight sizes, so that a law that explains as much with fewer wins by its criterion. It
-acts on one joint, because each joint has a range of its own.
+acts on one joint, because each joint has a range of its own. What it depends on may be the position
+of a neighbour: a hose, a spring or a cable between two bodies pulls at one joint as another moves.
 """
 
 from __future__ import annotations
@@ -23,6 +24,13 @@ def curve_effects(g: Group) -> list[Effect]:
                        "force: some curve of the drive's force"), places=single),
         _curve(g, laws.curve_position, "f(q)", "force: some curve of position"),
     ]  # fmt: skip
+    if g.both or len(g.axes) > 1:
+        out += [
+            _curve(g, laws.curve_before, "f(q) of the joint before it",
+                   "force: some curve of the position of the joint before it"),
+            _curve(g, laws.curve_behind, "f(q) of the joint behind it",
+                   "force: some curve of the position of the joint behind it"),
+        ]  # fmt: skip
     if g.T > 0:
         out.append(_curve(g, laws.curve_time, "f(t)", "force: some curve of time"))
     return out

@@ -6,6 +6,7 @@
     of the load     x = f_u/f_top,            the same nodes, and f(0) = 0
     of position     x = (q - q_mid)/q_far,    nodes evenly from -1 to 1
     of time         x = 2 t/t_end - 1,        the same nodes
+    of a neighbour  x = (q - q_mid)/q_far of the joint before or behind it, the same nodes
 
 A force that depends on speed or on the drive alone is none at rest or without the drive: what would
 be left is a constant force, which is an effect by itself. Nodes of speed are dense where frictions
@@ -57,6 +58,18 @@ def curve_load(s, p):  # type: ignore[no-untyped-def]
 def curve_position(s, p):  # type: ignore[no-untyped-def]
     """f((q - q_mid)/q_far)."""
     return straight((s.q - s.q_mid) / s.q_far, p)
+
+
+@njit
+def curve_before(s, p):  # type: ignore[no-untyped-def]
+    """f(x) of the joint before it in the model; none where there is no such joint."""
+    return straight(s.x_before, p) if s.x_before == s.x_before else 0.0
+
+
+@njit
+def curve_behind(s, p):  # type: ignore[no-untyped-def]
+    """f(x) of the joint behind it in the model; none where there is no such joint."""
+    return straight(s.x_behind, p) if s.x_behind == s.x_behind else 0.0
 
 
 @njit

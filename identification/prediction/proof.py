@@ -11,7 +11,9 @@ from identification.prediction.model import WindowModel
 from identification.prediction.unseen import Prediction
 
 AT_BOUND = 1e-6  # relative distance from a bound that is on it
-Doubt = Literal["numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange"]
+Doubt = Literal[
+    "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve"
+]  # fmt: skip
 
 
 def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Doubt | None:

@@ -17,6 +17,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
 from identification.errors import InputError
 from identification.estimation.options import Progress
+from identification.prediction.beside_curves import without_laws_beside_curves
 from identification.prediction.blocks import count_blocks
 from identification.prediction.exchange import exchanged, without_contradicted
 from identification.prediction.extension import with_fitting_steps
@@ -205,14 +206,17 @@ def _checked(
 
 
 def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
-    """Without the effects, and without the places of effects, that later ones made needless."""
+    """Without what later effects made needless, and without laws that a curve may have left."""
     task = state.task
     rest = task.nominal_model, task.confirm, task.options, progress
     model, keep = prune(state.model, state.accepted, *rest)
     model, accepted = without_idle_places(model, [state.accepted[k] for k in keep], *rest)
+    others = {a.candidate.key: state.alternatives[k] for a, k in zip(accepted, keep, strict=True)}
+    base, confirm = task.nominal_model, task.confirm
+    model, accepted, lost = without_laws_beside_curves(model, accepted, base, confirm, progress)
     return replace(
-        state, model=model, accepted=accepted,
-        alternatives=tuple(state.alternatives[k] for k in keep),
+        state, model=model, accepted=accepted, rejected=(*lost, *state.rejected),
+        alternatives=tuple(others[a.candidate.key] for a in accepted),
     )  # fmt: skip
 
 

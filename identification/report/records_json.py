@@ -17,6 +17,8 @@ READS = {  # what a curve is drawn over, by the last word of its name
     "load": "force of the drives of {}",
     "position": "position of {}",
     "time": "time",
+    "before": "position of the joint before {}",
+    "behind": "position of the joint behind {}",
 }
 
 
@@ -99,9 +101,8 @@ def _called(candidate: Candidate) -> dict[str, Any]:
         return {"name": effect.name, "where": where}
     word = effect.name.rpartition("_")[2]
     joint = where.removeprefix("joint ")
-    return {
-        "name": "unlisted", "where": where, "depends_on": word, "reads": READS[word].format(joint)
-    }  # fmt: skip
+    reads = READS[word].format(joint)
+    return {"name": "unlisted", "where": where, "depends_on": word, "reads": reads}
 
 
 def _named_to_json(named: NamedByPrediction) -> dict[str, Any]:

@@ -99,6 +99,12 @@ def reached(plant, joint):
     return plant.model.jnt_user[plant.model.joint(joint).id, -width:][:5].tolist()
 
 
+def share(plant, joint, q):
+    """Where a joint is in its travel, (q - q_mid)/q_far, as its neighbours see it."""
+    middle, far = reached(plant, joint)[:2]
+    return (q - middle) / far
+
+
 def sums(plant, joint, values):
     """Force and largest friction of a joint in plain Python, each a function of `Joint`."""
     every = {**plant.parameters.values(), **values}

@@ -14,6 +14,7 @@ from joint_cases import (
     forces,
     run,
     seen,
+    share,
     slider,
     slider_log,
     steps,
@@ -130,6 +131,10 @@ LAWS = [
     ("curve_position", CURVE, S._replace(q_mid=0.3, q_far=2.0), 4.5),
     ("curve_position", CURVE, S._replace(q_mid=9.3, q_far=2.0), 1.0),
     ("curve_position", CURVE, S._replace(q_mid=-0.7, q_far=1.0), 8.0),
+    ("curve_before", CURVE, S._replace(x_before=0.0, x_behind=1.0), 4.5),
+    ("curve_before", CURVE, S._replace(x_behind=1.0), 0.0),
+    ("curve_behind", CURVE, S._replace(x_before=0.0, x_behind=1.0), 8.0),
+    ("curve_behind", CURVE, S._replace(x_before=0.0), 0.0),
     ("curve_time", CURVE, S._replace(t_end=2.0), 8.0),
     ("curve_time", CURVE, S._replace(time=1.0, t_end=2.0), 4.5),
     ("push", (3.0, 1.0, 0.9, 0.1), S, 0.0),
@@ -190,10 +195,12 @@ def applied(plant, values, model, inputs):
         mujoco.mj_fullM(model, M, data.qM) if hasattr(data, "qM") else mujoco.mj_fullM(
             model, data, M
         )
+        x = [share(plant, joint, data.qpos[j]) for j, joint in enumerate(joints)]
         states = [
             seen(plant, joint, data.qpos[j], data.qvel[j], drive[j], -still.qfrc_bias[j], data.time)
             for j, joint in enumerate(joints)
         ]
+        states = [states[0]._replace(x_behind=x[1]), states[1]._replace(x_before=x[0])]
         more = np.array([force(s) for (force, _), s in zip(laws, states, strict=True)])
         g = M @ data.qvel / T + drive + data.qfrc_passive + more - data.qfrc_bias
         low, high = (

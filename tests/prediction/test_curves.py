@@ -10,6 +10,7 @@ from identification.effects.joint_plant import candidates
 from identification.prediction.discovery import discover_records
 
 CURVES = ("curve_speed", "curve_load", "curve_position")
+NEIGHBOURS = ("curve_before", "curve_behind")
 
 
 def found(values, names, samples=260):
@@ -40,7 +41,7 @@ def test_records_without_an_effect_get_no_curve():
 def test_curves_bend_either_way_and_act_on_single_joints():
     timed = Axis("b", "hinge", 1.0, 1.0, 1.0, plain=False, duration=5.0)
     curves = [e for e in joint_effects((AXIS, timed)) if e.is_curve]
-    assert {e.name for e in curves} == {*CURVES, "curve_time"}
+    assert {e.name for e in curves} == {*CURVES, *NEIGHBOURS, "curve_time"}
     assert all(s.sign == 0 for e in curves for s in e.sizes)
     assert all("" not in e.places.values() for e in curves)
     assert all(len(e.sizes) == 8 for e in curves)
@@ -51,8 +52,9 @@ def test_curves_bend_either_way_and_act_on_single_joints():
 
 def test_curves_of_slides_are_called_curves_too():
     mixed = joint_effects((AXIS, Axis("s", "slide", 1.0, 1.0, 1.0)))
+    some = (*CURVES, *NEIGHBOURS)
     assert {e.name for e in mixed if "curve" in e.name} == {
-        *CURVES, *(c.replace("curve", "curve_slide") for c in CURVES)
+        *some, *(c.replace("curve", "curve_slide") for c in some)
     }  # fmt: skip
     assert all(e.is_curve for e in mixed if "curve" in e.name)
 
@@ -61,3 +63,4 @@ def test_curves_of_slides_are_called_curves_too():
 def test_a_curve_of_a_single_joint_keeps_its_place(name):
     (effect,) = (e for e in pendulum().effects if e.name == name)
     assert effect.places == {"joint hinge": "@hinge"}
+    assert not {*NEIGHBOURS} & {e.name for e in pendulum().effects}
