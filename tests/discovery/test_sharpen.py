@@ -31,7 +31,9 @@ def sharpened(monkeypatch):
     """The times at which candidates are scored again."""
     monkeypatch.setattr(forward_selection, "compute_sensitivities", lambda point, some: some)
     monkeypatch.setattr(forward_selection, "score_candidates", lambda model, some, options: some)
-    model = SimpleNamespace(refit=SimpleNamespace(point=None))
+    model = SimpleNamespace(
+        refit=SimpleNamespace(point=SimpleNamespace(log=None)), innovations=None
+    )
 
     def of(*scores):
         found = forward_selection._sharpen(model, scores, DiscoveryOptions())
@@ -68,7 +70,9 @@ def test_no_time_of_one_is_compared_with_a_better_time_of_another(monkeypatch):
     monkeypatch.setattr(forward_selection, "compute_sensitivities", lambda point, some: some)
     monkeypatch.setattr(forward_selection, "score_candidates", anew)
     begun = (score(1e-30, 1e-30, 100.0), score(1e-30, 0.5, 95.0, effect=OTHER))
-    model = SimpleNamespace(refit=SimpleNamespace(point=None))
+    model = SimpleNamespace(
+        refit=SimpleNamespace(point=SimpleNamespace(log=None)), innovations=None
+    )
     scores = (*begun, *forward_selection._sharpen(model, begun, DiscoveryOptions()))
     significant = forward_selection.select_significant(scores, DiscoveryOptions())
     first, second = forward_selection._select_contenders(significant, DiscoveryOptions())[:2]

@@ -33,6 +33,7 @@ from identification.discovery.fitted_model import (
 )
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import prove
+from identification.discovery.scoring.outliers import list_at_outliers
 from identification.discovery.scoring.scores import Score
 from identification.discovery.scoring.sensitivities import compute_sensitivities, list_between
 from identification.discovery.scoring.significance import (
@@ -140,12 +141,15 @@ def _sharpen(
 
     What jumps acts in a few blocks, and at a wrong time it leaves as much in one of them as it
     explains: the score is then far beyond chance by the noise model and not by the blocks. It must
-    not stand back behind another candidate at a better time.
+    not stand back behind another candidate at a better time. A sensor that jumps is scored where
+    the outputs jump.
     """
     likely = [s for s in scores if s.p_value * len(scores) < options.significance]
     ranked = (select_significant(scores, options), select_plausible(likely, options))
     near = {id(s): s for some in ranked for s in _select_contenders(some, options)}
     finer = [c for s in near.values() for c in list_between(s.candidate)]
+    every, log = [s.candidate for s in scores], model.refit.point.log
+    finer += list_at_outliers(every, model.innovations, log, options)
     if not finer:
         return ()
     return score_candidates(model, compute_sensitivities(model.refit.point, finer), options)
