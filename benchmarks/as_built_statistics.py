@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from as_built_calibrations import calibration_lines
@@ -108,7 +108,7 @@ def _worlds(rows: Sequence[Row]) -> list[str]:
         " it, and no world has it.", "",
     ]  # fmt: skip
     one = {"the right name first": right, "right or in the set": in_set,
-           "a wrong name": lambda r: bool(r["answer"]["named"]) and not right(r)}  # fmt: skip
+           "a wrong name": lambda r: bool(r["answer"]["named"]) and not in_set(r)}  # fmt: skip
     tests: dict[str, dict[str, Any]] = {
         **dict.fromkeys(("single", "rule", "sensor"), one),
         "null": {'"nothing missing"': lambda r: r["answer"]["verdict"] == "nothing missing",
@@ -127,7 +127,8 @@ def _worlds(rows: Sequence[Row]) -> list[str]:
             some = [r for r in done if _group(r) == group and r["truth"]["kind"] == kind]
             if some and kind in tests:
                 rates = (f"{what} {rate_of(some, test)}" for what, test in tests[kind].items())
-                lines.append(f"- {_words(group)}, {title}: {'; '.join(rates)}.")
+                newest = _of_newest(some, *next(iter(tests[kind].items())))
+                lines.append(f"- {_words(group)}, {title}: {'; '.join(rates)}.{newest}")
     close = [error <= CLOSE for error in size_errors(done)]
     if close:
         lines.append(f"- sizes of right names within {CLOSE:.0%}: {sum(close)} of {len(close)}.")
@@ -141,6 +142,15 @@ def _worlds(rows: Sequence[Row]) -> list[str]:
         world, what = row["key"].split("/")[1], _words(_group(row))
         lines.append(f"| {world} | {what} | {truth} | {names or answer['verdict']} |")
     return [*lines, ""]
+
+
+def _of_newest(rows: Sequence[Row], what: str, test: Callable[[Row], bool]) -> str:
+    """The same of the rows that the newest code made, where older code made others."""
+    code = rows[-1].get("code")
+    mine = [row for row in rows if row.get("code") == code]
+    if not code or len(mine) == len(rows):
+        return ""
+    return f" Of the newest rows ({code.rpartition(' ')[2]}) {what} {rate_of(mine, test)}."
 
 
 class Group(NamedTuple):
@@ -217,7 +227,7 @@ def _rates(kind: str, rows: Sequence[Row]) -> list[str]:
         "the right name first": lambda r: bool(r["named"]) and _names(r)[0] in _truth(r),
         "right or in the set": _is_in_set,
         "the right score first": lambda r: r["scores"][0][0] in _truth(r),
-        "a wrong name": lambda r: any(n not in _truth(r) for n in _names(r)),
+        "a wrong name": lambda r: any(n not in _truth(r) for n in _names(r)) and not _is_in_set(r),
     }
     if kind == "null":
         tests = {
