@@ -30,6 +30,18 @@ def finite_or_none(value: float | None) -> float | None:
     return None if value is None or not isfinite(value) else float(value)
 
 
+def fall_words(fall: float) -> str:
+    """The relative change of a mean square in words: "falls by 12 %", "rises by 3 %".
+
+    Args:
+        fall: 1 minus the new value over the old one.
+    """
+    percent = f"{100 * abs(fall):.0f} %"
+    if percent == "0 %":
+        return "stays the same"
+    return f"{'falls' if fall > 0 else 'rises'} by {percent}"
+
+
 def quantity(value: float, std: float = float("nan"), unit: str = "", like: float = 0.0) -> str:
     """A value with its std and unit.
 

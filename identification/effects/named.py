@@ -16,6 +16,8 @@ USUAL = {
     "stiction": "stribeck_friction",
     "static_friction": "stribeck_friction",
 }
+# A friction that grows with speed is no effect: every joint of a model has it as a number.
+DAMPING = ("viscous_friction", "viscous_damping", "viscous", "damping")
 NEAR = 0.5  # share of letters: the number and the kind of joint may be missing in a name
 
 
@@ -60,7 +62,8 @@ def unknown_number(name: str, effects: Sequence[Effect], is_free: bool = True) -
     own = next((e for e in effects if e.name == head), None)
     every = [n for e in effects for n in _numbers(e, is_free)]
     if own is None:
-        return unknown_effect(f"effect in {name!r}:", head, effects, _meant(name, every))
+        likely = (damping_of(name, effects) if is_free else None) or _meant(name, every)
+        return unknown_effect(f"effect in {name!r}:", head, effects, likely)
     numbers = _numbers(own, is_free)
     # of a robot with slides and hinges each kind has effects of its own
     plain = head.removeprefix(SLIDE)
@@ -79,6 +82,21 @@ def unknown_number(name: str, effects: Sequence[Effect], is_free: bool = True) -
         likely = at_all[near] if near and near not in known else None
         return unknown_name(f"{kind} in {name!r}:", place, known, likely)
     return unknown_name(f"number of {head}:", name, numbers, _meant(name, numbers))
+
+
+def damping_of(name: str, effects: Sequence[Effect]) -> str | None:
+    """The path of a joint's damping in the model, where a name means that; else None.
+
+    Args:
+        name: such as `viscous_friction.d@slide`, which is the name of no effect.
+        effects: the known ones.
+    """
+    if effect_of(name).removeprefix(SLIDE) not in DAMPING:
+        return None
+    joints = dict.fromkeys(where.removeprefix("joint ") for e in effects for where in e.places
+                           if where.startswith("joint "))  # fmt: skip
+    joint = nearest(name.partition("@")[2], joints) or next(iter(joints), None)
+    return f"joint/{joint}.damping" if joint else None
 
 
 def _numbers(effect: Effect, is_free: bool) -> list[str]:

@@ -1,4 +1,4 @@
-"""Two mistakes in one log: a sign that is turned, and another unit or two columns exchanged.
+"""Two mistakes in one log: a sign that is turned, and another unit, an exchange or another sign.
 
 Neither of the two readings explains such a log by itself, so that each alone would pass it.
 """
@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from itertools import chain
+from itertools import chain, combinations
 
 import numpy as np
 
+from identification.logs.cures import how_to_turn
 from identification.logs.log import Log
 from identification.logs.readings import (
     Reading,
@@ -18,6 +19,7 @@ from identification.logs.readings import (
     input_turns,
     output_exchanges,
     output_turns,
+    turned,
     unit_readings,
 )
 
@@ -56,6 +58,29 @@ def turned_exchanges(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> It
     for exchange in pairs:
         for turn in _turns(replace(exchange.log, factors={}), bad, column):
             yield _both(exchange, turn, "and, so named,", turn.log)
+
+
+def two_turns(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:
+    """The other sign of two columns: of outputs that are not explained, and of inputs.
+
+    Args:
+        log: as it is read.
+        bad: true where an output is not explained, shape (ny,).
+        column: what an output or input is called in the log's file.
+    """
+    wrong, ny = np.flatnonzero(bad).tolist(), log.outputs.shape[1]
+    names = [column[n] for n in (*log.output_names, *log.input_names)]
+    factors = {column[n]: f for n, f in log.factors.items() if n in column}
+    for pair in combinations([*wrong, *range(ny, len(names))], 2):
+        other = replace(
+            log,
+            outputs=turned(log.outputs, pair),
+            inputs=turned(log.inputs, [k - ny for k in pair]),
+        )
+        of_outputs = [k for k in pair if k < ny]
+        yield Reading(other, of_outputs if len(of_outputs) == 2 else wrong,
+                      "with the other sign of two columns",
+                      how_to_turn([names[k] for k in pair], factors))  # fmt: skip
 
 
 def _turns(log: Log, bad: np.ndarray, column: Mapping[str, str]) -> Iterator[Reading]:

@@ -33,6 +33,7 @@ from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction, Unseen, compare
 from identification.progress import counted
+from identification.quantities import fall_words
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,8 +114,8 @@ def refit_contenders(
         if more:
             parent, out = judge(parent, [*(c.model for c in out), *more])
     for c in out:
-        fall, t = c.prediction.fall, c.prediction.t
-        progress(f"{_label(c.candidate)}: unseen mean square {-100 * fall:+z.0f} %, t {t:z.1f}")
+        change, t = fall_words(c.prediction.fall), c.prediction.t
+        progress(f"{_label(c.candidate)}: mean square error on unseen records {change}, t {t:z.1f}")
     return parent, _ranked(out, options)
 
 

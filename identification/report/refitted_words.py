@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from identification.prediction.result import RefittedEffect
+from identification.quantities import fall_words
 from identification.report.effect_words import describe_effect
 from identification.report.records_finding_words import DOUBTS
 from identification.report.records_values import value_with_std
@@ -12,10 +13,9 @@ from identification.report.records_values import value_with_std
 
 def describe_refitted(effect: RefittedEffect) -> str:
     """An effect with its sizes, and what it does for unseen records."""
-    fall = 100 * effect.prediction.fall
     return (
-        f"{describe_effect(effect.candidate)}, {sizes_words(effect)}; unseen mean square"
-        f" {-fall:+z.0f} %, t = {effect.prediction.t:z.1f}"
+        f"{describe_effect(effect.candidate)}, {sizes_words(effect)}; the unseen mean"
+        f" square error {fall_words(effect.prediction.fall)}, t = {effect.prediction.t:z.1f}"
         + (f"; {DOUBTS[effect.doubt]}" if effect.doubt else "")
     )
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from identification.effects.effect import Effect
 from identification.effects.joint_plant import JointPlant
-from identification.effects.named import means_effect, unknown_number
+from identification.effects.named import damping_of, means_effect, unknown_number
 from identification.errors import InputError, told_of
 from identification.robot.file import RobotFile
 
@@ -26,6 +26,11 @@ def with_fixed(file: RobotFile, plant: JointPlant, effects: Sequence[Effect]) ->
         for name in file.fixed:
             if name in plant.parameters.values():
                 continue
+            if (path := damping_of(name, effects)) is not None:
+                raise InputError(
+                    f"{name!r} is no number of an effect; it is {path} in {file.model}: write its"
+                    f" value there, or name {path} under free"
+                )
             if means_effect(name, effects):
                 raise unknown_number(name, effects, is_free=False)
             raise InputError(

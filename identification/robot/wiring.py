@@ -7,10 +7,10 @@ one that makes the motion larger makes every error of the model smaller beside i
 refused only where the balance of forces says the same (`identification.robot.balance`): no payload,
 gravity, friction or mass lets the log be explained as it is read nearly as well as otherwise. Where
 that balance cannot be had, the other reading must explain nearly all. Two mistakes in one log, a
-sign and either a unit or an exchange, are looked for where no reading with one of them is far
-better, and only where the balance does not explain the log as it is read. These are many, so that a
-few windows of each are simulated first. A motion that is too
-large for the forces of the drives is refused without any simulation (`identification.robot.scale`).
+sign and a unit, an exchange or another sign, are looked for where no reading with one of them is
+far better, and only where the balance does not explain the log as it is read. These are many, so
+that a few windows of each are simulated first. A motion that is too large for the forces of the
+drives is refused without any simulation (`identification.robot.scale`).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ import numpy as np
 
 from identification.effects.joint_plant import JointPlant
 from identification.errors import DivergenceError, InputError
-from identification.logs.double_readings import turned_exchanges, turned_units
+from identification.logs.double_readings import turned_exchanges, turned_units, two_turns
 from identification.logs.factor_readings import factor_readings
 from identification.logs.log import Log
 from identification.logs.readings import (
@@ -90,8 +90,8 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
         if found is None and "wiring" not in file.trust and balance.contradicts:
             units = () if "units" in file.trust else turned_units(log, bad, column, wanted)
             # Over the shorter windows only: an exchange is seen in both, and these are many.
-            pairs = turned_exchanges(log, bad, column) if length == lengths[0] else ()
-            both = chain(units, pairs)
+            pairs = (two_turns, turned_exchanges) if length == lengths[0] else ()
+            both = chain(units, *(pair(log, bad, column) for pair in pairs))
             near = _promising(plant, length, log, both)
             found = misread(log, own, near, explain, balance.confirms)
         if found is not None:

@@ -59,7 +59,7 @@ class WorldSettings:
         "mixed",
     )
     first: int = setting("number of the first world; mixed counts from it", 0)
-    effect: str = setting('effect that is hidden; by chance if ""', "")
+    effect: str = setting('effect that is hidden, of the kind; by chance if ""', "")
     effects: int = setting("how many effects are hidden, 1 to 3", 1)
     ratio: float | None = setting(
         "what an effect leaves over the noise, above 0; 1, 3 or 10 by chance if not given", None
@@ -79,6 +79,7 @@ class WorldSettings:
             raise unknown_name("kind of world", self.kind, KINDS)
         if self.effect and self.effect not in ALL_EFFECTS:
             raise unknown_name("effect", self.effect, ALL_EFFECTS)
+        self._refuse_other_kind()
         if self.effects not in COUNTS:
             raise InputError(f"effects = {self.effects}: a world hides 1, 2 or 3")
         for name in ("world", "first"):
@@ -88,6 +89,22 @@ class WorldSettings:
             refuse_number("ratio", self.ratio, 0 < self.ratio < inf, "a number above zero")
         refuse_number("records", self.records, self.records >= 1, "1 or more")
         self.setting(0)
+
+    def _refuse_other_kind(self) -> None:
+        """Refuse an effect that worlds of this kind never hide, so that it would be left out.
+
+        Raises:
+            InputError: it is of another kind.
+        """
+        hidden = {**HIDES, "mixed": {**HIDDEN_EFFECTS, **UNLISTED}, "null": {}}[self.kind]
+        if not self.effect or self.effect in hidden:
+            return
+        own = next(kind for kind, names in HIDES.items() if self.effect in names)
+        good = f", or one of kind {self.kind}: {', '.join(sorted(hidden))}" if hidden else ""
+        raise InputError(
+            f'effect = "{self.effect}" is of kind {own}, and worlds of kind {self.kind} do not hide'
+            f' it; write kind = "{own}", or leave effect out{good}'
+        )
 
     def setting(self, number: int) -> HiddenSetting:
         """How a world of a number is measured.

@@ -77,14 +77,25 @@ def places_of(log: Log, currents: np.ndarray) -> np.ndarray:
     """
     from scipy.optimize import linear_sum_assignment  # slow to import
 
-    once = _low_pass(log.inputs, log.sampling_time)
-    smoothed = (2 * once - _low_pass(once, log.sampling_time))[1:]
-    regressors = np.column_stack([smoothed, np.ones(len(smoothed))])[SETTLED:]
-    W = np.linalg.lstsq(regressors, currents[SETTLED:], rcond=None)[0][:DRIVES].T
+    W = shares_of(log, currents)
     k, m = linear_sum_assignment(-np.abs(W))
     places = np.zeros_like(W)
     places[k, m] = np.where(W[k, m] < 0, -1.0, 1.0)
     return places
+
+
+def shares_of(log: Log, currents: np.ndarray) -> np.ndarray:
+    """W: how much of each logged current is in that of each drive, shape (8, 8), without unit.
+
+    Args:
+        log: n samples.
+        currents: of all drives under which the twin follows it, shape (n - 1, 8) [A].
+    """
+    once = _low_pass(log.inputs, log.sampling_time)
+    smoothed = (2 * once - _low_pass(once, log.sampling_time))[1:]
+    regressors = np.column_stack([smoothed, np.ones(len(smoothed))])[SETTLED:]
+    W: np.ndarray = np.linalg.lstsq(regressors, currents[SETTLED:], rcond=None)[0][:DRIVES].T
+    return W
 
 
 def _low_pass(signals: np.ndarray, sampling_time: float) -> np.ndarray:

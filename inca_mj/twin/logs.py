@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from identification import InputError, Log, read_log
+from identification.logs.cures import unit_lines
+from identification.logs.noise import noise_floor
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.pose import POSE as POSE
 from inca_mj.twin.judged import overruled_by
@@ -35,6 +37,7 @@ RATES = {"angle": 300.0}
 
 SLOWEST = 0.5  # a larger sampling time means that time is in milliseconds [s]
 
+NOISE = 6.0  # std that the noise of one sample may be
 ZERO = 0.05  # a log begins at φ = 0; 0.05 rad is 0.9 mm of cable, 30 counts of an encoder [rad]
 
 
@@ -63,12 +66,29 @@ def read_inca_log(path: str | Path, trust: Sequence[str] | None = None) -> Log:
     if not np.ptp(log.outputs, axis=0).any():
         raise InputError(f"nothing moves in {path}: all eight angles are constant")
     worst = int(np.abs(log.outputs[0]).argmax())
-    if abs(log.outputs[0, worst]) > ZERO:
+    first = float(log.outputs[0, worst])
+    if abs(first) > ZERO:
+        noise = float(noise_floor(log.outputs)[worst])
         raise InputError(
-            f"{path} begins at {ANGLES[worst]} = {log.outputs[0, worst]:.3g} rad, but a log begins"
-            " at rest with all angles zero; cut it where the robot rests and subtract its angles"
+            f"{path} begins at {ANGLES[worst]} = {first:.3g} rad, but a log begins at rest with all"
+            f" angles zero; {_how_to_begin_at_zero(first, noise)}"
         )
     return log
+
+
+def _how_to_begin_at_zero(first: float, noise: float) -> str:
+    """The cure for a log that does not begin at zero angles: another unit, or another beginning.
+
+    Args:
+        first: the angle at its first sample, as it is read [rad].
+        noise: std of that angle's noise, as it is read [rad].
+    """
+    if abs(first) > NOISE * noise:
+        return "cut it where the robot rests and subtract its angles"
+    return (
+        f"its noise is as large ({noise:.2g} rad), so that the angles may be in another unit:"
+        f" {unit_lines({'angle': 'deg'})}, or the unit that they have"
+    )
 
 
 def pose_of(log: Log) -> np.ndarray | None:

@@ -25,16 +25,20 @@ from identification.logs.names import listed
 from identification.logs.readings import Reading
 from identification.robot.trust import trusted
 from inca_mj.twin.angles_under import angles_under
+from inca_mj.twin.cable_lengths import some, unreached_share
 from inca_mj.twin.dead_current import dead_current
 from inca_mj.twin.judged import JUDGED, overruled_by
 from inca_mj.twin.other_currents import ASTRAY, apart, other_currents
 from inca_mj.twin.other_unit import other_unit
 from inca_mj.twin.other_wiring import other_wiring
+from inca_mj.twin.renamed_drives import renamed_drives
+from inca_mj.twin.scaled_column import scaled_angle, scaled_current
 from inca_mj.twin.twin import Twin
 
 LONGEST = 10.0  # [s] in which motion must begin
 MOTION = 0.05  # [rad] of the twin; a hundred times an encoder's noise
 BEGINNING = 2.0  # [s] from there; later even a good model has drifted
+AS_NEAR = 3.0  # times κ, of a reading that fits as well: the frame is symmetric, the start nearly
 DEAD = 1e-3  # of the twin's motion
 ADVICE = ", with which `inca compare` shows the log beside the twin"
 
@@ -77,6 +81,8 @@ def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
     unit = None
     if "units" not in overruled:
         unit = other_unit(read, predicted, "wiring" in overruled or wiring is not None)
+        if unit is None and every and wiring is None:
+            unit = _scaled(plant, part, longer, predicted)
     wrong: dict[tuple[str, ...], str] = {}
     if wiring is not None:
         wrong[("wiring",)] = f"the twin {wiring[1]}"
@@ -94,14 +100,32 @@ def _other_wiring(
 ) -> tuple[Reading, str] | None:
     """Another wiring of the angles or of the currents: the one that comes nearer to the twin."""
     angles = other_wiring(part, predicted)
+    if angles is not None and longer is not None and _tears(plant, part, angles[0].log):
+        angles = None
     left = np.inf if angles is None else apart(angles[0].log, predicted)
     if left <= ASTRAY:
         return angles
-    currents = other_currents(plant, part, predicted, longer)
-    if currents is None:
+    found = other_currents(plant, part, predicted, longer)
+    if found is None and longer is not None and apart(part, predicted) > ASTRAY:
+        found = renamed_drives(plant, part, predicted)
+    if found is None:
         return angles
-    under = angles_under(plant, part, currents[0].log.inputs[None])[0]
-    return currents if apart(currents[0].log, under) < left else angles
+    under = angles_under(plant, part, found[0].log.inputs[None])[0]
+    return found if apart(found[0].log, under) < left else angles
+
+
+def _tears(plant: Twin, part: Log, other: Log) -> bool:
+    """Whether the angles of another reading belong to no poses, and those as they are read do."""
+    own, new = unreached_share(plant, np.stack([some(log.outputs) for log in (part, other)]))
+    return bool(new > AS_NEAR * own)
+
+
+def _scaled(
+    plant: Twin, part: Log, longer: Log, predicted: np.ndarray
+) -> tuple[str, tuple[str, ...]] | None:
+    """What tells that one column is far too small or too large, and what this judges."""
+    said = scaled_angle(plant, part, predicted) or scaled_current(plant, part, longer, predicted)
+    return None if said is None else (said, ("units",))
 
 
 def _longer(log: Log, part: Log) -> Log:

@@ -128,6 +128,22 @@ def test_compare_judges_currents_and_large_numbers_too(tmp_path, capsys):
         capsys.readouterr()
 
 
+def test_a_log_in_degrees_is_not_told_to_begin_elsewhere(tmp_path, capsys):
+    path = written(mistaken(word="deg"), tmp_path)
+    assert main(["film", str(path)]) == 2  # it draws a log as it is, however far it moves
+    said = capsys.readouterr().err
+    assert "its noise is as large" in said
+    assert "subtract" not in said
+    path.with_suffix(".toml").write_text(advised(said))
+    np.testing.assert_allclose(read_inca_log(path).outputs, LOG.outputs, rtol=1e-9, atol=1e-12)
+
+
+def test_a_log_that_begins_in_motion_is_told_to_begin_at_rest(tmp_path):
+    moving = LOG.between(1.0, 4.0)
+    with pytest.raises(InputError, match="cut it where the robot rests and subtract its angles"):
+        read_inca_log(written(moving, tmp_path))
+
+
 def test_compare_shows_a_right_log_the_same_whether_it_is_judged_or_not():
     np.testing.assert_array_equal(compare(LOG).rms, compare(LOG, trust=tuple(JUDGED)).rms)
 

@@ -12,6 +12,7 @@ from advice import advised
 
 from identification import InputError, write_log
 from inca_mj.robot.inputs import make_input
+from inca_mj.twin.cable_lengths import some, unreached_share
 from inca_mj.twin.followed_log import follow, places_of
 from inca_mj.twin.logs import read_inca_log, run_to_log
 from inca_mj.twin.run import simulate
@@ -20,6 +21,7 @@ from inca_mj.twin.wiring import refuse_miswired
 
 LOG = read_inca_log(Path(__file__).parents[2] / "examples" / "log.csv").between(0.0, 4.0)
 RIGHT, NONE = (0, 1, 2, 3, 4, 5, 6, 7), ()
+CYCLED = (0, 4, 2, 3, 6, 5, 1, 7)
 
 
 @pytest.fixture(scope="module")
@@ -50,6 +52,7 @@ def places(at, back):
             "exchange current_1 and current_2, and current_3 and current_4 under",
         ),
         ((RIGHT, NONE), ((2, 1, 0, 3, 4, 5, 6, 7), (2, 5)), 1.0, "turn the sign of the new"),
+        ((CYCLED, NONE), (CYCLED, NONE), 1.0, "drives 2, 5, 7 numbered in another order"),
         (
             (RIGHT, NONE),
             ((0, 2, 3, 1, 4, 5, 6, 7), NONE),
@@ -74,6 +77,19 @@ def test_what_is_told_of_several_columns_mends_the_log(
     refuse_miswired(mended, plant)
 
 
+def test_drives_in_reverse_order_are_told_up_to_the_symmetry_of_the_robot(plant, tmp_path):
+    wrong = replace(LOG, outputs=LOG.outputs[:, ::-1], inputs=LOG.inputs[:, ::-1])
+    with pytest.raises(InputError, match=r"numbered in another order.*robot is symm") as refused:
+        refuse_miswired(wrong, plant)
+    path = tmp_path / "log.csv"
+    write_log(wrong, path)
+    path.with_suffix(".toml").write_text(advised(str(refused.value)))
+    mended = read_inca_log(path)
+    shares = unreached_share(plant, np.stack([some(log.outputs) for log in (mended, LOG)]))
+    assert shares[0] < 3 * shares[1]
+    refuse_miswired(mended, plant)
+
+
 @pytest.mark.parametrize("drive", [3, 6])
 def test_a_current_that_was_not_logged(plant, drive):
     u = LOG.inputs.copy()
@@ -82,6 +98,47 @@ def test_a_current_that_was_not_logged(plant, drive):
     with pytest.raises(InputError, match=f"current_{drive + 1} stands still at 0 A") as refused:
         refuse_miswired(wrong, plant)
     assert "write --trust sensors" in str(refused.value)
+
+
+def test_a_current_that_was_not_logged_is_told_beside_a_turned_one(plant):
+    wrong = replace(LOG, inputs=LOG.inputs * [1, 1, 0, 1, 1, -1, 1, 1])
+    with pytest.raises(InputError, match="current_3 stands still at 0 A") as refused:
+        refuse_miswired(wrong, plant)
+    assert "turn the sign of current_6: write current_6 = -1 under [factors]" in str(refused.value)
+
+
+def test_two_currents_that_were_not_logged_are_told(plant):
+    wrong = replace(LOG, inputs=LOG.inputs * [1, 1, 1, 0, 1, 1, 0, 1])
+    with pytest.raises(InputError, match="current_4, current_7 stand still at 0, 0 A"):
+        refuse_miswired(wrong, plant)
+
+
+@pytest.mark.parametrize(
+    ("of", "drive", "factor", "told"),
+    [
+        ("outputs", 3, 1 / (2 * np.pi), r'write angle_4 = "rev" under \[units\]'),
+        ("outputs", 6, 0.5, r"write angle_7 = (1.9|2|2.1) under \[factors\]"),
+        ("outputs", 1, 2.0, r"write angle_2 = 0.(4[5-9]|5\d?) under \[factors\]"),
+        ("inputs", 4, 2.0, r"write current_5 = 0.(4\d|5\d?) under \[factors\]"),
+        ("inputs", 4, 0.5, r"write current_5 = (1.[89]|2|2.[12]) under \[factors\]"),
+    ],
+)
+def test_one_column_of_another_scale_is_told(plant, of, drive, factor, told):
+    scale = np.where(np.arange(8) == drive, factor, 1.0)
+    wrong = replace(LOG, **{of: getattr(LOG, of) * scale})
+    with pytest.raises(InputError, match=told) as refused:
+        refuse_miswired(wrong, plant)
+    assert "write --trust units" in str(refused.value)
+    refuse_miswired(wrong, plant, ["units"])
+
+
+def test_angles_belong_to_poses_of_one_platform_in_the_right_order_only(plant):
+    y = some(LOG.outputs)
+    right, backward = unreached_share(plant, np.stack([y, y[:, ::-1]]))
+    assert right < 1e-3
+    assert backward > 10 * right
+    still = unreached_share(plant, np.zeros((1, 3, 8)))
+    assert np.isinf(still).all()
 
 
 @pytest.mark.parametrize("level", [0.0, 0.75])

@@ -124,7 +124,7 @@ def test_each_candidate_is_listed_once_and_in_words(tmp_path):
     tried = said[said.index("not proven on unseen data:") :].split("\n\n")[0].splitlines()[1:]
     assert len(tried) == len({n.effect.candidate.key for n in answer.named})
     page = write_records_report(again, tmp_path).read_text()
-    assert page.count("unseen mean square") == len(tried)
+    assert page.count("the unseen mean square error") == len(tried)
 
 
 def test_steps_that_are_longer_than_the_models_are_told(tmp_path):

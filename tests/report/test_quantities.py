@@ -9,7 +9,16 @@ from hypothesis import strategies as st
 
 import identification
 import inca_mj
-from identification.quantities import HELD, alike, held, matched, per, probability, quantity
+from identification.quantities import (
+    HELD,
+    alike,
+    fall_words,
+    held,
+    matched,
+    per,
+    probability,
+    quantity,
+)
 from identification.report.page import Section, Table, write_report
 
 NAN, INF = float("nan"), float("inf")
@@ -140,6 +149,15 @@ def test_the_prefix_is_that_of_the_larger_of_value_and_std(
 ) -> None:
     said = quantity(value, std, unit).split(" ")
     assert said[3:] == quantity(max(value, std), std, unit).split(" ")[3:]
+
+
+@pytest.mark.parametrize(
+    ("fall", "said"),
+    [(1.0, "falls by 100 %"), (0.126, "falls by 13 %"), (-0.03, "rises by 3 %"),
+     (-2.5, "rises by 250 %"), (0.004, "stays the same"), (-0.004, "stays the same")],
+)  # fmt: skip
+def test_a_change_of_a_mean_square_is_said_without_a_sign(fall: float, said: str) -> None:
+    assert fall_words(fall) == said
 
 
 def test_brackets_stand_only_around_products() -> None:

@@ -46,6 +46,11 @@ from identification.robot.robot import read_robot_log
             "did you mean 'stribeck",
         ),
         (("[columns]", "[effects]\njoints = ['arm']\n[columns]"), "known: slide"),
+        (("joint/slide.damping", "viscous_friction.d@slide"), "mean 'joint/slide.damping'?"),
+        (
+            ("[columns]", "[fixed]\n'viscous_friction.d@slide' = 1.0\n[columns]"),
+            "is no number of an effect; it is joint/slide.damping in",
+        ),
         (("= [", "= {"), "is not TOML"),
         (("free", "trust = ['wirring']\nfree"), "did you mean 'wiring'? known: sensors, start"),
         (("[columns]", "[start]\n'qpos[0]' = 0.1\n[columns]"), "under [start] and frees it"),
@@ -125,6 +130,10 @@ def test_a_folder_is_no_log(folder, capsys, log):
      ("friction@x", "slide_coulomb_friction.f_c@x"),
      ("stiction", "stribeck_friction.f_s@swing"),
      ("f_c@joint", "coulomb_friction.f_c@swing"),
+     ("viscous_friction", "joint/swing.damping"),
+     ("viscous_friction.d@x", "joint/x.damping"),
+     ("slide_viscous_friction.b@x", "joint/x.damping"),
+     ("viscous_damping@swin", "joint/swing.damping"),
      ("coulomb_friction.f_c@swin", "swing")],
 )  # fmt: skip
 def test_what_is_suggested_can_be_written(name, meant):

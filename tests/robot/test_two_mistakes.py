@@ -103,6 +103,34 @@ def test_an_exchange_beside_a_turned_sign_is_told_and_mended(tmp_path, of, signs
     refuse_miswired(own, mended)
 
 
+@pytest.mark.parametrize("horizon", ["", "horizon = 0.2"])
+@pytest.mark.parametrize(
+    ("outputs", "inputs"), [((1, 1), (-1, -1)), ((-1, 1), (1, -1)), ((1, -1), (-1, 1))]
+)
+def test_two_turned_signs_are_told_and_mended(tmp_path, outputs, inputs, horizon):
+    right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION[ARM])
+    wrong = replace(right, outputs=right.outputs * outputs, inputs=right.inputs * inputs)
+    own, read = robot(tmp_path, ARM, wrong, horizon)
+    with pytest.raises(InputError, match=r'turn the sign of .*trust = \["wiring"\]') as refused:
+        refuse_miswired(own, read)
+    (tmp_path / "log.toml").write_text(advised(str(refused.value)))
+    mended = read_robot_log(own.file, tmp_path / "log.csv")
+    turns = [np.sign(np.sum(getattr(mended, of) * getattr(right, of), axis=0))
+             for of in ("inputs", "outputs")]  # fmt: skip
+    np.testing.assert_array_equal(*turns)  # all turned together: seen from behind
+    assert len({*turns[0]}) == 1
+    refuse_miswired(own, mended)
+
+
+def test_joint_and_drive_of_an_arm_that_are_turned_together_are_told(tmp_path):
+    """The joint beside it feels the other sign of its acceleration."""
+    right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION[ARM])
+    wrong = replace(right, outputs=right.outputs * [1, -1], inputs=right.inputs * [1, -1])
+    own, read = robot(tmp_path, ARM, wrong, "")
+    with pytest.raises(InputError, match=r"turn the sign of q\d, u\d: write"):
+        refuse_miswired(own, read)
+
+
 def test_an_exchange_and_a_sign_are_overruled_by_one_word(tmp_path):
     right = tracked(mujoco.MjModel.from_xml_string(ARM), MOTION[ARM])
     own, read = robot(tmp_path, ARM, exchanged(right, "outputs", [1, -1], "outputs"), "")

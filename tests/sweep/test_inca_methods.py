@@ -94,6 +94,12 @@ def test_a_kind_of_its_own_hides_one_of_its_effects(kind, known):
     [
         ({"kind": "nul"}, "unknown kind of world 'nul'; did you mean 'null'"),
         ({"effect": "cog"}, "unknown effect 'cog'"),
+        (
+            {"effect": "cogging", "kind": "sensor"},
+            'write kind = "listed", or leave effect out, or one of kind sensor: encoder_ecc',
+        ),
+        ({"effect": "encoder_lag", "kind": "mixed"}, "is of kind sensor"),
+        ({"effect": "cogging", "kind": "null"}, "worlds of kind null do not hide it"),
         ({"effects": 4}, "a world hides 1, 2 or 3"),
         ({"rate": 0.0}, "give samples a second above zero"),
         ({"ratio": -1.0}, "give a number above zero"),
@@ -104,6 +110,15 @@ def test_a_kind_of_its_own_hides_one_of_its_effects(kind, known):
 def test_settings_of_worlds_are_checked(settings, words):
     with pytest.raises(InputError, match=words):
         WorldSettings(**settings)
+
+
+@pytest.mark.parametrize("kind", ["listed", "mixed", "unknown", "rule", "sensor"])
+def test_an_effect_of_its_own_kind_may_be_asked_for(kind):
+    from inca_mj.sweeps.worlds import HIDES, _drawn
+
+    for effect in HIDES.get(kind, HIDDEN_EFFECTS):
+        number = 1  # of six mixed worlds, this one hides what is listed
+        assert _drawn(WorldSettings(kind=kind, effect=effect), number)[1] == [effect]
 
 
 def test_labels_are_read(tmp_path, refusal):
