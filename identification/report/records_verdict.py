@@ -20,11 +20,8 @@ def records_verdict(found: RecordsDiscovery) -> list[str]:
 
 def _verdict(found: RecordsDiscovery) -> list[str]:
     if found.verdict == "nothing missing":
-        before, noise = _left(found)
         return [
-            "Nothing is missing, as far as these records can tell: no candidate lowers the error of"
-            f" prediction on unseen data beyond chance. It is {before} over"
-            f" {found.horizon:g} s, where the sensors make {noise}." + _rest(found),
+            _nothing(found),
             *(sentence(describe_finding(finding)) for finding in found.findings),
         ]
     if found.verdict == "unknown effect":
@@ -33,6 +30,24 @@ def _verdict(found: RecordsDiscovery) -> list[str]:
     said.append(_proof(found))
     said += [sentence(describe_finding(finding)) for finding in found.findings]
     return said
+
+
+def _nothing(found: RecordsDiscovery) -> str:
+    """That no candidate helps; where sensors do not make the error, no clean bill is given."""
+    before, noise = _left(found)
+    tried = "no candidate lowers the error of prediction on unseen data beyond chance"
+    over = f"{before} over {found.horizon:g} s"
+    ratio = found.before.rms / found.noise_rms if found.noise_rms else 1.0
+    if found.input_error < NO_ERROR or ratio**2 <= 1 + found.options.min_gap_share:
+        return (
+            f"Nothing is missing, as far as these records can tell: {tried}. It is {over}, where"
+            f" the sensors make {noise}." + _rest(found)
+        )
+    return (
+        f"No effect is named: {tried}. It is {over}, {ratio:.2g} times the {noise} that the sensors"
+        f" make. Either the inputs err by {100 * found.input_error:.2g} % of their rms, or"
+        " something is missing that no candidate explains."
+    )
 
 
 def _rest(found: RecordsDiscovery) -> str:

@@ -153,6 +153,12 @@ def test_records_without_an_effect_get_no_name():
     assert answer.named == ()
     assert answer.verdict == "nothing missing"
     assert "Nothing is missing" in records_text(answer)
+    large = replace(answer, before=replace(answer.before, rms=9 * answer.noise_rms))
+    said = records_text(replace(large, input_error=0.021))
+    assert said.startswith("No effect is named: ")
+    assert "9 times the" in said
+    assert "Either the inputs err by 2.1 % of their rms, or something is missing" in said
+    assert records_text(replace(large, input_error=0.0)).startswith("Nothing is missing")
     assert "error of prediction over 0.2 s, nothing is named:" in records_text(answer)
     assert "->" not in records_text(answer).partition("nothing is named:")[2].split("\n\n")[0]
 
