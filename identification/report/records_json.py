@@ -7,28 +7,21 @@ from typing import Any
 
 from identification.discovery.effect_results import Gap
 from identification.effects.effect import Candidate
+from identification.model.predictor import Plant
 from identification.prediction.model import WindowModel
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery, RefittedEffect
+from identification.report.curve_nodes import curve_nodes
 from identification.report.finding_json import finding_to_json, finite
 from identification.report.finding_words import describe_finding
-
-READS = {  # what a curve is drawn over, by the last word of its name
-    "speed": "rate of {}",
-    "load": "force of the drives of {}",
-    "position": "position of {}",
-    "time": "time",
-    "before": "position of the joint before {}",
-    "behind": "position of the joint behind {}",
-}
 
 
 def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
     """The outcome as plain values; what is unknown or not finite is None."""
-    gaps = {"before": found.before, "after": found.after}
+    gaps, plant = {"before": found.before, "after": found.after}, found.nominal.plant
     record = {
         "verdict": found.verdict,
-        "effects": [_named_to_json(named) for named in found.named],
-        "rejected": [_refitted_to_json(effect) for effect in found.rejected],
+        "effects": [_named_to_json(named, plant) for named in found.named],
+        "rejected": [_refitted_to_json(effect, plant) for effect in found.rejected],
         "unexplained": found.unexplained,
         "share": found.share,
         "gap": {
@@ -79,10 +72,10 @@ def _values_to_json(model: WindowModel) -> dict[str, Any]:
     }
 
 
-def _refitted_to_json(effect: RefittedEffect) -> dict[str, Any]:
+def _refitted_to_json(effect: RefittedEffect, plant: Plant) -> dict[str, Any]:
     seen = effect.prediction
     return {
-        **_called(effect.candidate),
+        **_called(effect.candidate, plant),
         "confidence": effect.confidence,
         "parameters": {
             name: {"value": value, "std": std, "unit": unit}
@@ -94,22 +87,23 @@ def _refitted_to_json(effect: RefittedEffect) -> dict[str, Any]:
     }
 
 
-def _called(candidate: Candidate) -> dict[str, Any]:
+def _called(candidate: Candidate, plant: Plant) -> dict[str, Any]:
     """Name and place; a curve of the data has no name, but says what it depends on."""
     effect, where = candidate.effect, candidate.where
     if not effect.is_curve:
         return {"name": effect.name, "where": where}
-    word = effect.name.rpartition("_")[2]
-    joint = where.removeprefix("joint ")
-    reads = READS[word].format(joint)
-    return {"name": "unlisted", "where": where, "depends_on": word, "reads": reads}
-
-
-def _named_to_json(named: NamedByPrediction) -> dict[str, Any]:
+    nodes = curve_nodes(candidate, plant)
     return {
-        **_refitted_to_json(named.effect),
+        "name": "unlisted", "where": where, "depends_on": nodes.depends_on, "reads": nodes.reads,
+        "nodes": nodes.at.tolist(), "nodes_unit": nodes.unit,
+    }  # fmt: skip
+
+
+def _named_to_json(named: NamedByPrediction, plant: Plant) -> dict[str, Any]:
+    return {
+        **_refitted_to_json(named.effect, plant),
         "rivals": [
-            {**_called(r.candidate), "confidence": r.confidence} for r in named.rivals
+            {**_called(r.candidate, plant), "confidence": r.confidence} for r in named.rivals
         ],
         "compared": named.compared,
         "one_of": named.one_of,

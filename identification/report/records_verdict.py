@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery
+from identification.report.curve_nodes import curve_nodes, nodes_sentence
 from identification.report.effect_words import describe_effect, phrase
 from identification.report.error_words import change_words, error_words
 from identification.report.finding_words import describe_finding, sentence
@@ -75,6 +76,8 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
         compared = _compared(named, found.unexplained)
         said = f"{first}: {mine}, {sizes}; confidence {confidence}{compared}."
         said += f" Less likely: {', '.join(others)}." if others else ""
+    if named.effect.candidate.effect.is_curve:
+        said += f" {nodes_sentence(curve_nodes(named.effect.candidate, found.nominal.plant))}"
     said += _agreement(found, named)
     if named.disagrees:
         said += (
@@ -109,7 +112,8 @@ def _agreement(found: RecordsDiscovery, named: NamedByPrediction) -> str:
     helped = sum(name in named.agrees for name in distinct)
     if not distinct:
         return " All unseen records repeat what was fitted, so that they hardly confirm it."
-    said = f" The named effect lowers the error on {helped} of {len(distinct)} unseen records."
+    what = "curve" if named.effect.candidate.effect.is_curve else "named effect"
+    said = f" The {what} lowers the error on {helped} of {len(distinct)} unseen records."
     if found.repeats:
         one = len(found.repeats) == 1
         said += f" {', '.join(found.repeats)} {'repeats' if one else 'repeat'} the motion of others"

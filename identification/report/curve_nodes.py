@@ -1,0 +1,80 @@
+"""Where the nodes of a curve stand that was drawn from the data: of what, and at which values.
+
+    speed           v = ±x² v_top               x = ¼, ½, ¾, 1, first the negative ones
+    load            f_u = ±x f_top              the same
+    position        q = q_mid + x q_far         x evenly from -1 to 1; also of a neighbouring joint
+    time            t = (x + 1)/2 t_end         the same
+
+The laws are those of `identification.effects.curve_laws`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.effects.axes import Axis
+from identification.effects.curve_laws import NODES
+from identification.effects.effect import Candidate
+from identification.effects.jointed import JointPlant
+from identification.model.predictor import Plant
+from identification.quantities import held
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """The nodes of a curve.
+
+    Attributes:
+        depends_on: the last word of the curve's name, such as "position" or "before".
+        reads: what it is drawn over, in words.
+        unit: of that.
+        at: its values at the nodes, shape (8,).
+    """
+
+    depends_on: str
+    reads: str
+    unit: str
+    at: np.ndarray
+
+
+def curve_nodes(candidate: Candidate, plant: Plant) -> Nodes:
+    """The nodes of a curve on a joint of a robot.
+
+    Args:
+        candidate: a curve (`Effect.is_curve`) on one joint.
+        plant: the robot.
+
+    Raises:
+        TypeError: the robot is none with effects on its joints, which alone have curves.
+    """
+    if not isinstance(plant, JointPlant):
+        raise TypeError(f"a {type(plant).__name__} has no curves on joints")
+    word = candidate.effect.name.rpartition("_")[2]
+    joint = candidate.where.removeprefix("joint ")
+    axis = _axis(plant, joint, {"before": -1, "behind": 1}.get(word, 0))
+    x, steps = "rad" if axis.kind == "hinge" else "m", np.arange(1, NODES // 2 + 1) / (NODES // 2)
+    even, signed = np.linspace(-1.0, 1.0, NODES), np.concatenate([-steps, steps])
+    if word == "speed":
+        at = np.sign(signed) * signed**2 * axis.speed
+        return Nodes(word, f"rate of {joint}", f"{x}/s", at)
+    if word == "load":
+        unit = "N m" if axis.kind == "hinge" else "N"
+        return Nodes(word, f"force of the drives of {joint}", unit, signed * axis.force)
+    if word == "time":
+        return Nodes(word, "time", "s", (even + 1) / 2 * axis.duration)
+    return Nodes(word, f"position of {axis.joint}", x, axis.middle + even * axis.travel / 2)
+
+
+def nodes_sentence(nodes: Nodes) -> str:
+    """Where the nodes stand, in words."""
+    values = ", ".join(held(float(v)) for v in nodes.at)
+    return f"Its nodes c_1 to c_{NODES} stand at {values} {nodes.unit} ({nodes.reads})."
+
+
+def _axis(plant: JointPlant, joint: str, side: int) -> Axis:
+    """A joint, or the one before (-1) or behind (1) it in the model."""
+    model = plant.model
+    name = model.joint(int(model.joint(joint).id) + side).name if side else joint
+    return next(axis for axis in plant.axes if axis.joint == name)

@@ -1,0 +1,53 @@
+"""The nodes that are told are those of the law: at node k a curve is c_k."""
+
+import numpy as np
+import pytest
+from joint_cases import arm, seen, share, slider
+
+from identification.effects.effect import Candidate
+from identification.model.plant import ModelPlant
+from identification.report.curve_nodes import curve_nodes, nodes_sentence
+
+C = (1.0, -2.0, 3.0, -4.0, 5.0, -6.0, 7.0, -8.0)
+FIELD = {"speed": "v", "load": "f_u", "position": "q", "time": "time",
+         "before": "x_before", "behind": "x_behind"}  # fmt: skip
+ENDS = {("curve_before", "joint shoulder"), ("curve_behind", "joint elbow")}  # no such neighbour
+NEIGHBOUR = {"joint elbow": "shoulder", "joint shoulder": "elbow"}
+CASES = [
+    (plant, effect, where)
+    for plant in (arm(), slider())
+    for effect in plant.effects
+    if effect.is_curve
+    for where in effect.places
+    if (effect.name, where)
+    not in {("curve_before", "joint shoulder"), ("curve_behind", "joint elbow")}
+]
+
+
+@pytest.mark.parametrize(
+    ("plant", "effect", "where"), CASES, ids=[f"{e.name}-{w}" for _, e, w in CASES]
+)
+def test_a_curve_has_its_sizes_at_its_nodes(plant, effect, where):
+    nodes = curve_nodes(Candidate(effect, where, {}), plant)
+    joint, field = where.removeprefix("joint "), FIELD[nodes.depends_on]
+    neighbour = NEIGHBOUR[where] if nodes.depends_on in ("before", "behind") else ""
+    (law,) = effect.hooks.values()
+    for at, c in zip(nodes.at, C, strict=True):
+        x = share(plant, neighbour, at) if neighbour else at
+        s = seen(plant, joint, 0.0, 0.0, 0.0, 0.0, 0.0)._replace(**{field: x})
+        assert law.py_func(s, C) == pytest.approx(c, rel=1e-9)
+    assert (neighbour or joint) in nodes.reads or nodes.reads == "time"
+    assert np.isfinite(nodes.at).all()
+    assert f"{nodes.unit} ({nodes.reads})" in nodes_sentence(nodes)
+
+
+def test_every_kind_of_curve_is_among_them():
+    assert {e.name.rpartition("_")[2] for _, e, _ in CASES} == {*FIELD}
+
+
+def test_a_robot_without_effects_on_joints_has_no_curves():
+    (effect, *_) = (e for e in arm().effects if e.is_curve)
+    bare = arm().bare
+    assert isinstance(bare, ModelPlant)
+    with pytest.raises(TypeError, match="ModelPlant has no curves"):
+        curve_nodes(Candidate(effect, "joint elbow", {}), bare)
