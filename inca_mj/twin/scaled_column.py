@@ -102,8 +102,7 @@ def scaled_current(plant: Twin, part: Log, longer: Log, predicted: np.ndarray) -
     name = part.input_names[k]
     return (
         f"{name} is {1 / factor:.2g} times as large as the one that moves the robot so, and the"
-        f" other currents are not; correct its scale: write {toml_key(name)} = {factor:.2g} under"
-        " [factors] of the log's TOML, or correct the factor or the unit that it has"
+        f" other currents are not: {_as_factor(name, factor)}, or correct its unit"
     )
 
 
@@ -126,7 +125,12 @@ def _as_unit(name: str, factor: float) -> str:
     for word, (si, of) in UNITS.items():
         if si == "rad" != word and 1 / NEAR < factor / of < NEAR:
             return f"{unit_lines({name: word})}, or correct the unit that it has"
+    return _as_factor(name, factor)
+
+
+def _as_factor(name: str, factor: float) -> str:
+    """What the TOML must say of a column that has to be multiplied."""
     return (
-        f"write {toml_key(name)} = {factor:.2g} under [factors] of the log's TOML, or correct the"
-        " factor that it has"
+        f"write {toml_key(name)} = {factor:.2g} under [factors] of the log's TOML, or multiply the"
+        " factor that it has by this one (it is an estimate; the true one is likely a round number)"
     )
