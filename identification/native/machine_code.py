@@ -10,7 +10,9 @@ those of two processes could be confused.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any
@@ -23,6 +25,7 @@ from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys
 from numba.core.typing.ctypes_utils import to_ctypes
 
+DEEPEST = 20_000  # calls inside calls; the catalogue of a robot with all kinds needs about 1000
 _ENGINES: list[Any] = []  # they own the code that bare pointers in MuJoCo lead to
 
 
@@ -41,6 +44,21 @@ class MachineCode:
     object_file: bytes
 
 
+@contextmanager
+def _deep_calls() -> Iterator[None]:
+    """Room for the calls of numba's compiler, which enters each effect of a chain from the last.
+
+    A robot with hinges and slides has so many effects that Python's usual limit is near.
+    """
+    usual = sys.getrecursionlimit()
+    sys.setrecursionlimit(max(usual, DEEPEST))
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(usual)
+
+
+@_deep_calls()
 def compile_callback(
     function: Callable[..., Any], signature: Any
 ) -> tuple[Any, MachineCode | None]:
