@@ -2,13 +2,15 @@
 
     total(s, row) = Σ_e  hook_e(s, p_e)          over the effects whose sizes are not all zero
 
-Each effect is a link of a chain of njit functions, so that the compiler sees straight code and no
-table. The order of the sum is that of the effects.
+Each effect is an njit function that adds its own to what is added already. Two neighbours make one
+such function, two of these the next, and so on: the compiler sees straight code and no table, and
+enters no more functions inside functions than a tree is high. The order of the sum is that of the
+effects.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from identification.native.decorators import internal
 from identification.native.element import Element, Function, Term
@@ -38,28 +40,53 @@ def total(element: Element, terms: Sequence[Term], hook: str) -> Function:
         address of the effects' parameters, states the address of the states of their own.
     """
     zero = element.hook(hook).zero
+    leaves = [
+        _leaf(function, term, element)
+        for term in terms
+        if (function := term.function(hook)) is not None
+    ]
+    if not leaves:
+
+        @internal
+        def nothing(s, row, states):  # type: ignore[no-untyped-def]
+            return zero
+
+        return nothing
+    add = _joined(leaves, _one_after_another)
 
     @internal
-    def nothing(s, row, states):  # type: ignore[no-untyped-def]
-        return zero
+    def summed(s, row, states):  # type: ignore[no-untyped-def]
+        return add(zero, s, row, states)
 
-    chain: Function = nothing
-    for term in terms:
-        function = term.function(hook)
-        if function is not None:
-            chain = _link(chain, function, term, element)
-    return chain
+    return summed
 
 
-def _link(rest: Function, function: Function, term: Term, element: Element) -> Function:
-    """One more effect on a chain of (s, row, states) functions."""
+def _joined(parts: Sequence[Function], join: Callable[[Function, Function], Function]) -> Function:
+    """One function of many, which run in their order: a balanced tree of pairs."""
+    if len(parts) == 1:
+        return parts[0]
+    middle = len(parts) // 2
+    return join(_joined(parts[:middle], join), _joined(parts[middle:], join))
+
+
+def _one_after_another(first: Function, second: Function) -> Function:
+    """Two functions (before, s, row, states) -> after as one."""
+
+    @internal
+    def both(before, s, row, states):  # type: ignore[no-untyped-def]
+        return second(first(before, s, row, states), s, row, states)
+
+    return both
+
+
+def _leaf(function: Function, term: Term, element: Element) -> Function:
+    """One effect as a function (before, s, row, states) -> before with its own added."""
     load, at, sizes = loader(len(term.names)), 8 * term.column, term.sizes
     if term.state:
         own, with_own = 8 * term.state, replacer(element.state, "x")
 
         @internal
-        def with_state(s, row, states):  # type: ignore[no-untyped-def]
-            before = rest(s, row, states)
+        def with_state(before, s, row, states):  # type: ignore[no-untyped-def]
             p = load(row + at)
             if is_absent(p, sizes):
                 return before
@@ -68,8 +95,7 @@ def _link(rest: Function, function: Function, term: Term, element: Element) -> F
         return with_state
 
     @internal
-    def stateless(s, row, states):  # type: ignore[no-untyped-def]
-        before = rest(s, row, states)
+    def stateless(before, s, row, states):  # type: ignore[no-untyped-def]
         p = load(row + at)
         if is_absent(p, sizes):
             return before
@@ -90,25 +116,40 @@ def rates(element: Element, terms: Sequence[Term], hook: str = "rate") -> Functi
         (s, row, states, out): writes the rate of the state at `states + 8 k` to `out + 8 k`.
     """
 
-    @internal
-    def nothing(s, row, states, out):  # type: ignore[no-untyped-def]
-        return None
-
-    def link(rest: Function, function: Function, term: Term) -> Function:
-        load, at, own = loader(len(term.names)), 8 * term.column, 8 * term.state
-        with_own = replacer(element.state, "x")
+    leaves = [
+        _rate(function, term, element)
+        for term in terms
+        if term.state and (function := term.function(hook)) is not None
+    ]
+    if not leaves:
 
         @internal
-        def more(s, row, states, out):  # type: ignore[no-untyped-def]
-            rest(s, row, states, out)
-            x = load_double(states + own)
-            store_double(out + own, function(with_own(s, (x,)), load(row + at)))
+        def nothing(s, row, states, out):  # type: ignore[no-untyped-def]
+            return None
 
-        return more
+        return nothing
+    return _joined(leaves, _both_rates)
 
-    chain: Function = nothing
-    for term in terms:
-        function = term.function(hook)
-        if term.state and function is not None:
-            chain = link(chain, function, term)
-    return chain
+
+def _both_rates(first: Function, second: Function) -> Function:
+    """Two functions (s, row, states, out) as one."""
+
+    @internal
+    def both(s, row, states, out):  # type: ignore[no-untyped-def]
+        first(s, row, states, out)
+        second(s, row, states, out)
+
+    return both
+
+
+def _rate(function: Function, term: Term, element: Element) -> Function:
+    """The rate of one effect's state as a function (s, row, states, out)."""
+    load, at, own = loader(len(term.names)), 8 * term.column, 8 * term.state
+    with_own = replacer(element.state, "x")
+
+    @internal
+    def rate(s, row, states, out):  # type: ignore[no-untyped-def]
+        x = load_double(states + own)
+        store_double(out + own, function(with_own(s, (x,)), load(row + at)))
+
+    return rate

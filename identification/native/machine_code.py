@@ -10,9 +10,7 @@ those of two processes could be confused.
 from __future__ import annotations
 
 import ctypes
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any
@@ -25,7 +23,6 @@ from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys
 from numba.core.typing.ctypes_utils import to_ctypes
 
-DEEPEST = 20_000  # calls inside calls; the catalogue of a robot with all kinds needs about 1000
 _ENGINES: list[Any] = []  # they own the code that bare pointers in MuJoCo lead to
 
 
@@ -44,21 +41,6 @@ class MachineCode:
     object_file: bytes
 
 
-@contextmanager
-def _deep_calls() -> Iterator[None]:
-    """Room for the calls of numba's compiler, which enters each effect of a chain from the last.
-
-    A robot with hinges and slides has so many effects that Python's usual limit is near.
-    """
-    usual = sys.getrecursionlimit()
-    sys.setrecursionlimit(max(usual, DEEPEST))
-    try:
-        yield
-    finally:
-        sys.setrecursionlimit(usual)
-
-
-@_deep_calls()
 def compile_callback(
     function: Callable[..., Any], signature: Any
 ) -> tuple[Any, MachineCode | None]:
