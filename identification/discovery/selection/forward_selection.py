@@ -41,6 +41,7 @@ from identification.discovery.scoring.significance import (
     select_plausible,
     select_significant,
 )
+from identification.discovery.selection.anew import begin_anew
 from identification.discovery.selection.kinds import improve_rivals
 from identification.discovery.selection.shapes import improve_shape
 from identification.discovery.task import DiscoveryTask
@@ -83,6 +84,8 @@ def select_effect(
     if refitted:
         best = improve_shape(task, model, refitted[0], scores)
         refitted = improve_rivals(task, best, refitted[1:])
+        if not model.candidates:
+            refitted = begin_anew(task, refitted, scores)
     rejected: list[RejectedEffect] = []
     unproven: FittedModel | None = None
     tried = len(refitted)
