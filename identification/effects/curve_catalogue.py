@@ -1,8 +1,9 @@
 """Curves drawn from the data, which explain what no listed law does; see `curve_laws`.
 
 A curve has eight sizes, so that a law that explains as much with fewer wins by its criterion. It
-acts on one joint, because each joint has a range of its own. What it depends on may be the position
-of a neighbour: a hose, a spring or a cable between two bodies pulls at one joint as another moves.
+acts on one joint, because each joint has a range of its own. What it depends on may be a neighbour:
+a hose, a spring or a cable between two bodies pulls at one joint by the position of another, and a
+belt or a motor that both joints turn rubs by its speed.
 """
 
 from __future__ import annotations
@@ -30,6 +31,10 @@ def curve_effects(g: Group) -> list[Effect]:
                    "force: some curve of the position of the joint before it"),
             _curve(g, laws.curve_behind, "f(q) of the joint behind it",
                    "force: some curve of the position of the joint behind it"),
+            _curve(g, laws.curve_speed_before, "f(v) of the joint before it, none at rest",
+                   "force: some curve of the speed of the joint before it"),
+            _curve(g, laws.curve_speed_behind, "f(v) of the joint behind it, none at rest",
+                   "force: some curve of the speed of the joint behind it"),
         ]  # fmt: skip
     if g.T > 0:
         out.append(_curve(g, laws.curve_time, "f(t)", "force: some curve of time"))

@@ -6,11 +6,11 @@
     of the load     x = f_u/f_top,            the same nodes, and f(0) = 0
     of position     x = (q - q_mid)/q_far,    nodes evenly from -1 to 1
     of time         x = 2 t/t_end - 1,        the same nodes
-    of a neighbour  x = (q - q_mid)/q_far of the joint before or behind it, the same nodes
+    of a neighbour  x of position or of speed, of the joint before or behind it, with its nodes
 
-A force that depends on speed or on the drive alone is none at rest or without the drive: what would
-be left is a constant force, which is an effect by itself. Nodes of speed are dense where frictions
-bend. Beyond the last node a curve keeps its value. Each c_k is the force at its node.
+A force that depends on a speed or on the drive alone is none at rest or without the drive: what
+would be left is a constant force, which is an effect by itself. Nodes of speed are dense where
+frictions bend. Beyond the last node a curve keeps its value. Each c_k is the force at its node.
 """
 
 from __future__ import annotations
@@ -42,10 +42,16 @@ def straight(x, c):  # type: ignore[no-untyped-def]
 
 
 @njit
+def _of_speed(v, c):  # type: ignore[no-untyped-def]
+    """The curve at a speed in units of the top speed."""
+    x = sqrt(abs(v))
+    return through_zero(x if v > 0.0 else -x, c)
+
+
+@njit
 def curve_speed(s, p):  # type: ignore[no-untyped-def]
     """f(sgn(v) √(|v|/v_top))."""
-    x = sqrt(abs(s.v) / s.v_top)
-    return through_zero(x if s.v > 0.0 else -x, p)
+    return _of_speed(s.v / s.v_top, p)
 
 
 @njit
@@ -70,6 +76,18 @@ def curve_before(s, p):  # type: ignore[no-untyped-def]
 def curve_behind(s, p):  # type: ignore[no-untyped-def]
     """f(x) of the joint behind it in the model; none where there is no such joint."""
     return straight(s.x_behind, p) if s.x_behind == s.x_behind else 0.0
+
+
+@njit
+def curve_speed_before(s, p):  # type: ignore[no-untyped-def]
+    """f(sgn(v) √(|v|/v_top)) of the joint before it in the model; none where there is none."""
+    return _of_speed(s.v_before, p) if s.v_before == s.v_before else 0.0
+
+
+@njit
+def curve_speed_behind(s, p):  # type: ignore[no-untyped-def]
+    """f(sgn(v) √(|v|/v_top)) of the joint behind it in the model; none where there is none."""
+    return _of_speed(s.v_behind, p) if s.v_behind == s.v_behind else 0.0
 
 
 @njit

@@ -36,11 +36,12 @@ STEPS_ALONE = 3.0  # where each is held by itself, although the inertia of one i
 #   sign: direction of the motion that friction resists, 1 or -1; 0 for a force
 #   what the records reach: q_mid, q_far: middle and half of the travel [rad or m]; v_top: top speed
 #   [rad/s or m/s]; f_top: largest force of its drives [N m or N]; t_end: duration [s]
-#   x_before, x_behind: (q - q_mid)/q_far of the joints before and behind it in the model; NaN where
-#   there is none whose records reach anything
+#   x_before, x_behind: (q - q_mid)/q_far of the joints before and behind it in the model, and
+#   v_before, v_behind: their v/v_top; NaN where there is none whose records reach anything
 Joint = namedtuple(
-    "Joint", "time q v f_u f_g sign q_mid q_far v_top f_top t_end x_before x_behind",
-    defaults=(0.0, 1.0, 1.0, 1.0, 1.0, np.nan, np.nan),
+    "Joint", "time q v f_u f_g sign q_mid q_far v_top f_top t_end x_before x_behind"
+    " v_before v_behind",
+    defaults=(0.0, 1.0, 1.0, 1.0, 1.0, np.nan, np.nan, np.nan, np.nan),
 )  # fmt: skip
 
 JOINT = Element(
@@ -153,16 +154,18 @@ def inertia(m, d, dof):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _position_of(m, d, j, other, row):  # type: ignore[no-untyped-def]
-    """(q - q_mid)/q_far of another joint, whose row stands as that of joint j; NaN without one."""
+def _neighbour(m, d, j, other, row):  # type: ignore[no-untyped-def]
+    """(q - q_mid)/q_far and v/v_top of another joint; NaN where it has no row as joint j has."""
     columns = word(m, M.nuser_jnt)
     if other < 0 or other >= word(m, M.njnt):
-        return np.nan
+        return np.nan, np.nan
     if load_constant(word(m, M.jnt_user) + 8 * columns * (other + 1) - 8) != TAG:
-        return np.nan
+        return np.nan, np.nan
     reach = row + 8 * (columns * (other - j) + REACH)
     q = double(d, D.qpos, integer(m, M.jnt_qposadr, other))
-    return (q - load_constant(reach)) / load_constant(reach + 8)
+    v = double(d, D.qvel, integer(m, M.jnt_dofadr, other))
+    x = (q - load_constant(reach)) / load_constant(reach + 8)
+    return x, v / load_constant(reach + 16)
 
 
 @inlined
@@ -170,11 +173,13 @@ def joint(m, d, j, row):  # type: ignore[no-untyped-def]
     """The state of joint j, as a force sees it; `row` is the address of its row."""
     q = double(d, D.qpos, integer(m, M.jnt_qposadr, j))
     v = double(d, D.qvel, integer(m, M.jnt_dofadr, j))
+    x_before, v_before = _neighbour(m, d, j, j - 1, row)
+    x_behind, v_behind = _neighbour(m, d, j, j + 1, row)
     return Joint(
         time=load_constant(d + 8 * D.time), q=q, v=v, f_u=drive_force(m, d, j, q, v),
         f_g=gravity_force(m, d, j), sign=0.0,
         q_mid=load_constant(row + 8 * REACH), q_far=load_constant(row + 8 * (REACH + 1)),
         v_top=load_constant(row + 8 * (REACH + 2)), f_top=load_constant(row + 8 * (REACH + 3)),
         t_end=load_constant(row + 8 * (REACH + 4)),
-        x_before=_position_of(m, d, j, j - 1, row), x_behind=_position_of(m, d, j, j + 1, row),
+        x_before=x_before, x_behind=x_behind, v_before=v_before, v_behind=v_behind,
     )  # fmt: skip

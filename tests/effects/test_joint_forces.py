@@ -12,6 +12,7 @@ from joint_cases import (
     arm,
     arm_log,
     forces,
+    reached,
     run,
     seen,
     share,
@@ -135,6 +136,10 @@ LAWS = [
     ("curve_before", CURVE, S._replace(x_behind=1.0), 0.0),
     ("curve_behind", CURVE, S._replace(x_before=0.0, x_behind=1.0), 8.0),
     ("curve_behind", CURVE, S._replace(x_before=0.0), 0.0),
+    ("curve_speed_before", CURVE, S._replace(v_before=0.25, v_behind=1.0), 6.0),
+    ("curve_speed_before", CURVE, S._replace(v_behind=1.0), 0.0),
+    ("curve_speed_behind", CURVE, S._replace(v_before=0.25, v_behind=-1.0), 4.0),
+    ("curve_speed_behind", CURVE, S._replace(v_before=0.25), 0.0),
     ("curve_time", CURVE, S._replace(t_end=2.0), 8.0),
     ("curve_time", CURVE, S._replace(time=1.0, t_end=2.0), 4.5),
     ("push", (3.0, 1.0, 0.9, 0.1), S, 0.0),
@@ -165,7 +170,7 @@ def test_on_an_arm_the_forces_are_those_of_qfrc_applied():
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_EULERDAMP
     ends = []
-    for fraction in (20, 40):  # Euler's error is of first order: two steps tell the limit
+    for fraction in (40, 80):  # Euler's error is of first order: two steps tell the limit
         model.opt.timestep = STEP / fraction
         ends.append(
             applied(plant, values, model, np.repeat(u[:-1], fraction, axis=0))[
@@ -200,7 +205,12 @@ def applied(plant, values, model, inputs):
             seen(plant, joint, data.qpos[j], data.qvel[j], drive[j], -still.qfrc_bias[j], data.time)
             for j, joint in enumerate(joints)
         ]
-        states = [states[0]._replace(x_behind=x[1]), states[1]._replace(x_before=x[0])]
+        tops = [reached(plant, joint)[2] for joint in joints]
+        v = [data.qvel[j] / top for j, top in enumerate(tops)]
+        states = [
+            states[0]._replace(x_behind=x[1], v_behind=v[1]),
+            states[1]._replace(x_before=x[0], v_before=v[0]),
+        ]
         more = np.array([force(s) for (force, _), s in zip(laws, states, strict=True)])
         g = M @ data.qvel / T + drive + data.qfrc_passive + more - data.qfrc_bias
         low, high = (

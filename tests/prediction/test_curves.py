@@ -10,7 +10,7 @@ from identification.effects.joint_plant import candidates
 from identification.prediction.discovery import discover_records
 
 CURVES = ("curve_speed", "curve_load", "curve_position")
-NEIGHBOURS = ("curve_before", "curve_behind")
+NEIGHBOURS = ("curve_before", "curve_behind", "curve_speed_before", "curve_speed_behind")
 
 
 def found(values, names, samples=260):
