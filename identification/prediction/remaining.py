@@ -37,16 +37,20 @@ def find_remaining(
         rejected: effects that were refitted and not proven.
         shifts: of records, of `identification.prediction.clocks`.
     """
-    out = []
+    out: list[Finding] = []
     if state.worse_fit is not None:
         worse = WorseFit(rise(state.begun, state.worse_fit))
         out.append(Finding(FindingKind.WORSE_FIT, worse))
     ratio = noise_ratio(state)
     is_left = ratio > 1 + state.task.options.min_gap_share
+    places: set[tuple[str, str]] = set()  # each is told once, as it did best
     for r in rejected if is_left else ():
         seen = r.prediction
         if seen.is_everywhere and seen.fall > 0 and seen.t > state.task.options.min_proof_t:
-            out.append(Finding(FindingKind.UNPROVEN_EFFECT, _unproven(r)))
+            unproven = _unproven(r)
+            if (unproven.name, unproven.where) not in places:
+                out.append(Finding(FindingKind.UNPROVEN_EFFECT, unproven))
+            places.add((unproven.name, unproven.where))
     if state.accepted and is_left:
         out.append(Finding(FindingKind.REMAINING_ERROR, RemainingError(ratio)))
     out += [Finding(FindingKind.DIFFERENT_RECORD, e) for e in different_records(state)]
