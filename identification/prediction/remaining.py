@@ -20,6 +20,8 @@ from identification.discovery.findings.records_evidence import (
     UnprovenEffect,
     WorseFit,
 )
+from identification.effects.neighbours import phrase_there
+from identification.model.predictor import Plant
 from identification.prediction.clocks import told_shifts
 from identification.prediction.result import (
     RefittedEffect,
@@ -47,7 +49,7 @@ def find_remaining(
     for r in rejected if is_left else ():
         seen = r.prediction
         if seen.is_everywhere and seen.fall > 0 and seen.t > state.task.options.min_proof_t:
-            unproven = _unproven(r)
+            unproven = _unproven(r, state.model.plant)
             if (unproven.name, unproven.where) not in places:
                 out.append(Finding(FindingKind.UNPROVEN_EFFECT, unproven))
             places.add((unproven.name, unproven.where))
@@ -92,8 +94,9 @@ def different_records(state: RecordsState) -> list[DifferentRecord]:
     return out
 
 
-def _unproven(r: RefittedEffect) -> UnprovenEffect:
+def _unproven(r: RefittedEffect, plant: Plant) -> UnprovenEffect:
     c = r.candidate
-    said = c.effect.phrase or c.effect.name.replace("_", " ")
     doubt = r.doubt or "chance"
-    return UnprovenEffect(c.effect.name, said, c.where, r.prediction.fall, r.prediction.t, doubt)
+    return UnprovenEffect(
+        c.effect.name, phrase_there(c, plant), c.where, r.prediction.fall, r.prediction.t, doubt
+    )

@@ -28,7 +28,7 @@ def kinds(monkeypatch, ratio, floor=4e-6, accepted=(), rejected=(DOUBTFUL,)):
     squares = ratio**2 * floor * np.array([0.5, 1.5])
     unseen = SimpleNamespace(at_horizon=(squares[:1], squares[1:]), floor=floor)
     state = SimpleNamespace(
-        worse_fit=None, accepted=accepted, model=SimpleNamespace(unseen=unseen),
+        worse_fit=None, accepted=accepted, model=SimpleNamespace(unseen=unseen, plant=None),
         task=SimpleNamespace(options=OPTIONS, records=("a", "b")),
     )  # fmt: skip
     return [f.kind for f in remaining.find_remaining(state, rejected, [SHIFT])]
