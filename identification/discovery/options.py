@@ -81,6 +81,12 @@ class DiscoveryOptions(PredictionOptions):
         "Blocks of the fitted samples whose scatter checks a score without the noise model.",
         "White 1980 for the test, judgement for the number", least=8,
     )  # fmt: skip
+    max_jumps: int = option(
+        3, "times",
+        "Largest number of times at which an output jumps and a jump of its sensor is tried; a log"
+        " with more of them has another fault.",
+        "judgement", least=1,
+    )  # fmt: skip
     size_factor: float = option(
         FARTHEST, "of the largest plausible size",
         "A size beyond this is not believed. The bounds of the parameters are at the default, so it"

@@ -84,6 +84,12 @@ class PredictionOptions(KalmanOptions):
         " torques are seldom better.",
         "judgement",
     )  # fmt: skip
+    told_clock_shift: float = option(
+        0.1, "of the sampling time",
+        "Over a horizon: a shift of a record's time stamps that is smaller than this, and not"
+        " beyond chance among the records, is not told in the text; the JSON has it.",
+        "judgement", most=1.0,
+    )  # fmt: skip
     told_step_shift: float = option(
         1.0, "std",
         "Over a horizon: a value that a quarter of the model's step would move by more is told;"

@@ -18,6 +18,7 @@ from identification.discovery.findings.robot_change import find_robot_change
 from identification.discovery.findings.structure import find_structure
 from identification.discovery.fitted_model import FittedModel, is_proven, score_candidates
 from identification.discovery.missing_forces import estimate_missing_forces
+from identification.discovery.once import listed_once
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import prove
 from identification.discovery.result import Discovery, Verdict
@@ -134,7 +135,7 @@ def conclude(state: SearchState) -> Discovery:
     refused = (
         RejectedEffect(n.candidate, n.parameters, n.gain, n.proof, n.outside) for n in unnamed
     )
-    rejected = (*refused, *state.rejected)
+    rejected = listed_once((*refused, *state.rejected))
     is_missing = verdict != "nothing missing"
     forces = estimate_missing_forces(nominal.refit, options) if is_missing else ()
     located = locate_error(nominal.refit, forces, options) if is_missing else ()

@@ -62,8 +62,13 @@ def unknown_number(name: str, effects: Sequence[Effect], is_free: bool = True) -
     own = next((e for e in effects if e.name == head), None)
     every = [n for e in effects for n in _numbers(e, is_free)]
     if own is None:
-        likely = (damping_of(name, effects) if is_free else None) or _meant(name, every)
-        return unknown_effect(f"effect in {name!r}:", head, effects, likely)
+        if is_free and (path := damping_of(name, effects)) is not None:
+            return InputError(
+                f"{name!r} is no number of an effect: viscous friction is a number that every joint"
+                f" of a model has; did you mean {path!r}?"
+            )
+        what = "effect" if head == name else f"effect in {name!r}:"
+        return unknown_effect(what, head, effects, _meant(name, every))
     numbers = _numbers(own, is_free)
     # of a robot with slides and hinges each kind has effects of its own
     plain = head.removeprefix(SLIDE)

@@ -22,18 +22,20 @@ def how_to_turn(
     Args:
         columns: of the log's file.
         factors: those that the log's TOML gives, by column; -1 is not written where one stands.
+            None where it is not known which it gives.
         instead: other columns that may be turned as well, such as ", or of force".
         renamed: whether these are the new names of columns.
     """
-    factors, cures = factors or {}, []
+    is_known, factors, cures = factors is not None, factors or {}, []
     if given := [n for n in columns if n in factors]:
         told = listed(f"{factors[n]:g} of {n}" for n in given)
         cures.append(f"turn the sign of the factor {told} that the log's TOML gives")
     if new := [n for n in columns if n not in factors]:
         told = lines_of([f"{toml_key(name)} = -1" for name in new])
         cures.append(f"write {told} under [factors] of the log's TOML")
-        if not given:
-            cures.append("or turn the sign that it has")
+        if not is_known:
+            its = f"{new[0]} already has a factor" if len(new) == 1 else "a factor already stands"
+            cures.append(f"or, if {its} there, change the sign of that factor instead")
     if not (new or instead):
         return cures[0]
     how = (", " if not given else ", and ").join(cures)
@@ -47,7 +49,10 @@ def how_to_rename(names: Mapping[str, str]) -> str:
     A file that already gives names there has other columns; so the names may also be changed there.
     """
     told = lines_of([f"{toml_key(old)} = {json.dumps(new)}" for old, new in names.items()])
-    return f" under [columns] of the log's TOML: write {told}, or change the names that it has"
+    return (
+        f" under [columns] of the log's TOML: write {told}, or change the names there if it"
+        " already gives these columns some"
+    )
 
 
 def how_to_exchange(a: str, b: str) -> str:

@@ -78,6 +78,28 @@ def told_shifts(
     return sorted(told, key=lambda s: -s.fall)
 
 
+def shown_shifts(
+    shifts: Sequence[ShiftedRecord], records: Sequence[Record], options: DiscoveryOptions
+) -> list[ShiftedRecord]:
+    """Those that a reader is told of: beyond chance among all records, or no small part of a step.
+
+    Args:
+        shifts: of `record_shifts`.
+        records: all of them.
+        options: what is beyond chance, and how small a part is.
+    """
+    least = {_called(r): options.told_clock_shift * r.log.sampling_time for r in records}
+    return [
+        s for s in shifts
+        if s.chance * len(records) < options.significance or abs(s.shift) >= least[s.record]
+    ]  # fmt: skip
+
+
+def _called(record: Record) -> str:
+    """How a record is called where its shift is told."""
+    return record.log.name + (" (fit)" if record.role == "fit" else "")
+
+
 def _alone(model: WindowModel, record: Record, horizon: float) -> WindowFit:
     """The windows of one record at the model's values, their states settled; nothing is free."""
     values = {**model.values, **model.own_values.get(record.log.name, {})}
@@ -102,7 +124,7 @@ def _told(
         return None
     t, freedom = abs(_shift(whole)) / std, degrees_of_freedom(whole)[0]
     return ShiftedRecord(
-        record=record.log.name + (" (fit)" if record.role == "fit" else ""),
+        record=_called(record),
         shift=_shift(whole), std=std, fall=float(1 - whole.cost / at.cost),
         chance=float(2 * student.sf(t, freedom)),
     )  # fmt: skip

@@ -20,6 +20,8 @@ from identification.discovery.findings.records_evidence import (
     UnprovenEffect,
     WorseFit,
 )
+from identification.effects.neighbours import phrase_there
+from identification.model.predictor import Plant
 from identification.prediction.clocks import told_shifts
 from identification.prediction.result import (
     RefittedEffect,
@@ -37,16 +39,20 @@ def find_remaining(
         rejected: effects that were refitted and not proven.
         shifts: of records, of `identification.prediction.clocks`.
     """
-    out = []
+    out: list[Finding] = []
     if state.worse_fit is not None:
         worse = WorseFit(rise(state.begun, state.worse_fit))
         out.append(Finding(FindingKind.WORSE_FIT, worse))
     ratio = noise_ratio(state)
     is_left = ratio > 1 + state.task.options.min_gap_share
+    places: set[tuple[str, str]] = set()  # each is told once, as it did best
     for r in rejected if is_left else ():
         seen = r.prediction
         if seen.is_everywhere and seen.fall > 0 and seen.t > state.task.options.min_proof_t:
-            out.append(Finding(FindingKind.UNPROVEN_EFFECT, _unproven(r)))
+            unproven = _unproven(r, state.model.plant)
+            if (unproven.name, unproven.where) not in places:
+                out.append(Finding(FindingKind.UNPROVEN_EFFECT, unproven))
+            places.add((unproven.name, unproven.where))
     if state.accepted and is_left:
         out.append(Finding(FindingKind.REMAINING_ERROR, RemainingError(ratio)))
     out += [Finding(FindingKind.DIFFERENT_RECORD, e) for e in different_records(state)]
@@ -88,8 +94,9 @@ def different_records(state: RecordsState) -> list[DifferentRecord]:
     return out
 
 
-def _unproven(r: RefittedEffect) -> UnprovenEffect:
+def _unproven(r: RefittedEffect, plant: Plant) -> UnprovenEffect:
     c = r.candidate
-    said = c.effect.phrase or c.effect.name.replace("_", " ")
     doubt = r.doubt or "chance"
-    return UnprovenEffect(c.effect.name, said, c.where, r.prediction.fall, r.prediction.t, doubt)
+    return UnprovenEffect(
+        c.effect.name, phrase_there(c, plant), c.where, r.prediction.fall, r.prediction.t, doubt
+    )

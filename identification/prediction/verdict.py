@@ -15,6 +15,7 @@ from scipy.stats import ttest_1samp
 
 from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import FindingKind
+from identification.discovery.once import listed_once
 from identification.discovery.options import DiscoveryOptions
 from identification.logs.log import Log
 from identification.logs.replay import REPLAYED, replayed_share
@@ -45,7 +46,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     """
     task, nominal, model = state.task, state.nominal, state.model
     options = task.options
-    rejected = tuple(_refitted(c.model, c, 0.0) for c in state.rejected)
+    rejected = listed_once([_refitted(c.model, c, 0.0) for c in state.rejected])
     shifts = record_shifts(task, model)
     findings = find_remaining(state, rejected, shifts)
     limit = options.left_confidence if findings else options.max_confidence
@@ -72,7 +73,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     ):
         verdict = "unknown effect"
     if verdict == "unknown effect":
-        rejected, named, model = (*(n.effect for n in named), *rejected), (), nominal
+        rejected, named, model = listed_once([*(n.effect for n in named), *rejected]), (), nominal
     floor = model.unseen.floor
     before, after = (float(np.mean(np.concatenate(m.unseen.at_horizon))) for m in (nominal, model))
     above = before - min(floor, after)

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from identification.effects.axes import Axis
 from identification.effects.curve_laws import NODES
 from identification.effects.effect import Candidate
 from identification.effects.jointed import JointPlant
+from identification.effects.neighbours import neighbour
 from identification.model.predictor import Plant
 from identification.quantities import held
 
@@ -53,7 +53,8 @@ def curve_nodes(candidate: Candidate, plant: Plant) -> Nodes:
         raise TypeError(f"a {type(plant).__name__} has no curves on joints")
     word = candidate.effect.name.rpartition("_")[2]
     joint = candidate.where.removeprefix("joint ")
-    axis = _axis(plant, joint, {"before": -1, "behind": 1}.get(word, 0))
+    name = neighbour(candidate, plant) or joint
+    axis = next(axis for axis in plant.axes if axis.joint == name)
     x, steps = "rad" if axis.kind == "hinge" else "m", np.arange(1, NODES // 2 + 1) / (NODES // 2)
     even, signed = np.linspace(-1.0, 1.0, NODES), np.concatenate([-steps, steps])
     if word == "speed":
@@ -71,10 +72,3 @@ def nodes_sentence(nodes: Nodes) -> str:
     """Where the nodes stand, in words."""
     values = ", ".join(held(float(v)) for v in nodes.at)
     return f"Its nodes c_1 to c_{NODES} stand at {values} {nodes.unit} ({nodes.reads})."
-
-
-def _axis(plant: JointPlant, joint: str, side: int) -> Axis:
-    """A joint, or the one before (-1) or behind (1) it in the model."""
-    model = plant.model
-    name = model.joint(int(model.joint(joint).id) + side).name if side else joint
-    return next(axis for axis in plant.axes if axis.joint == name)

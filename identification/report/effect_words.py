@@ -11,6 +11,8 @@ from identification.discovery.result import Discovery
 from identification.discovery.scoring.scores import Score
 from identification.discovery.scoring.significance import correct_p_value
 from identification.effects.effect import Candidate, Effect
+from identification.effects.neighbours import phrase_there
+from identification.model.predictor import Plant
 from identification.quantities import probability, quantity
 
 FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
@@ -19,6 +21,11 @@ FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
 def describe_effect(candidate: Candidate) -> str:
     """An effect and its place in words."""
     return f"{phrase(candidate.effect)}, {candidate.where}"
+
+
+def describe_there(candidate: Candidate, plant: Plant) -> str:
+    """An effect and its place in words, in which a neighbouring joint has its name."""
+    return f"{without_colon(phrase_there(candidate, plant))}, {candidate.where}"
 
 
 def phrase(effect: Effect) -> str:

@@ -9,7 +9,7 @@ from identification.logs.by_unit import relative
 from identification.prediction.records_fit import RecordsFit
 from identification.report.error_words import error_words, times_words
 from identification.report.scale_words import describe_scale
-from identification.report.step_words import step_sentences
+from identification.report.step_words import std_sentence, step_sentences
 from identification.report.untold_words import WEAK, cure, too_weak
 
 MUCH = 3.0  # times the noise floor, beyond which a fit is told to lack something
@@ -23,6 +23,8 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
     fit = found.model.fit
     said = _worse(found)
     said.append("The search converged." if fit.converged else "The search ran out of iterations.")
+    if steps := std_sentence(found.model):
+        said.append(steps)
     if bound := [n for n, at in zip(found.values, found.at_bound, strict=True) if at]:
         said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
     said += _blind(found) + _weak(found) + _unknown_std(found)

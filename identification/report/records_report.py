@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
+from identification.discovery.findings.records_evidence import ShiftedRecord
+from identification.prediction.clocks import shown_shifts
 from identification.prediction.result import RecordsDiscovery
 from identification.report.discovery_figures import gains_figure
 from identification.report.effect_words import describe_effect
@@ -14,8 +17,9 @@ from identification.report.law_section import law_sections
 from identification.report.page import Section, Table, save_figures, write_report
 from identification.report.records_finding_words import describe_shift
 from identification.report.records_text import best_scores, rejected_lines, steps_taken
-from identification.report.records_values import value_table
+from identification.report.records_values import value_table, value_words
 from identification.report.records_verdict import DIGITS, records_verdict
+from identification.report.step_words import std_sentence
 
 BEST = 10  # candidates shown
 
@@ -31,8 +35,8 @@ def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
         InputError: a file cannot be written.
     """
     shown = [_records(found), *law_sections(found), _candidates(found), _values(found)]
-    if found.shifts:
-        shown.append(_shifts(found))
+    if shifts := shown_shifts(found.shifts, found.records, found.options):
+        shown.append(_shifts(shifts))
     save_figures(shown, folder)
     names = ", ".join(r.log.name for r in found.records if r.role == "fit")
     return write_report(
@@ -74,16 +78,17 @@ def _candidates(found: RecordsDiscovery) -> Section:
 
 def _values(found: RecordsDiscovery) -> Section:
     head, rows = value_table(found)
+    steps = std_sentence(found.final, value_words(found), found.options)
     return Section(
         "Parameters",
         "Std by blocks of windows, whose errors need not be white; unknown where too few windows"
-        " tell of a value.",
+        f" tell of a value. {steps}".rstrip(),
         table=Table(head, tuple(rows)).last_first,
     )
 
 
-def _shifts(found: RecordsDiscovery) -> Section:
-    rows = tuple((s.record, describe_shift(s), 100 * s.fall) for s in found.shifts)
+def _shifts(shifts: Sequence[ShiftedRecord]) -> Section:
+    rows = tuple((s.record, describe_shift(s), 100 * s.fall) for s in shifts)
     return Section(
         "Shifts in time",
         "By how much the inputs of a record seem to act later or earlier than their time stamps"

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from identification.discovery.findings.records_evidence import ShiftedRecord
+from identification.prediction.clocks import shown_shifts
 from identification.prediction.result import RecordsDiscovery, RefittedEffect
 from identification.prediction.scores import WindowScore
-from identification.report.effect_words import describe_effect
+from identification.report.effect_words import describe_there
 from identification.report.error_words import pair_words
 from identification.report.records_finding_words import describe_shift
 from identification.report.records_values import text_table, value_table, value_words
 from identification.report.records_verdict import DIGITS, records_verdict
 from identification.report.refitted_words import describe_refitted
-from identification.report.step_words import step_sentences
+from identification.report.step_words import std_sentence, step_sentences
 
 SHOWN = 6  # candidates with the best scores that are listed
 
@@ -20,14 +22,18 @@ SHOWN = 6  # candidates with the best scores that are listed
 def records_text(found: RecordsDiscovery) -> str:
     """All of it, in paragraphs."""
     parts = ["\n".join(records_verdict(found)), "\n".join(_records(found))]
-    parts.append("\n".join(["fitted values:", *text_table(*value_table(found))]))
-    if found.shifts:
-        parts.append("\n".join(_shifts(found)))
+    fitted = ["fitted values:", *text_table(*value_table(found))]
+    if said := std_sentence(found.final, value_words(found), found.options):
+        fitted.append(said)
+    parts.append("\n".join(fitted))
+    if shifts := shown_shifts(found.shifts, found.records, found.options):
+        parts.append("\n".join(_shifts(shifts)))
     if found.rejected:
         lines = [f"  {said}" for said in rejected_lines(found)]
         parts.append("\n".join(["tried, and not proven on unseen data:", *lines]))
+    plant = found.nominal.plant
     scores = [
-        f"  {describe_effect(s.candidate)}: {100 * s.fall:z.0f} % of the fitted error, chance"
+        f"  {describe_there(s.candidate, plant)}: {100 * s.fall:z.0f} % of the fitted error, chance"
         f" {s.p_value:.2g}"
         for s in best_scores(found)[:SHOWN]
     ]
@@ -54,7 +60,7 @@ def rejected_lines(found: RecordsDiscovery) -> list[str]:
     each: dict[tuple[str, str], RefittedEffect] = {}
     for effect in found.rejected:
         each.setdefault(effect.candidate.key, effect)
-    return [describe_refitted(effect) for effect in each.values()]
+    return [describe_refitted(effect, found.nominal.plant) for effect in each.values()]
 
 
 def search_time(seconds: Mapping[str, float]) -> str:
@@ -62,12 +68,12 @@ def search_time(seconds: Mapping[str, float]) -> str:
     return f"The search took {sum(seconds.values()):.1f} s."
 
 
-def _shifts(found: RecordsDiscovery) -> list[str]:
+def _shifts(shifts: Sequence[ShiftedRecord]) -> list[str]:
     lines = [
         "by how much the inputs of a record seem to act later or earlier than their time stamps"
         " say, where both halves of it tell the same:"
     ]
-    for s in found.shifts:
+    for s in shifts:
         lines.append(f"  {s.record}: {describe_shift(s)}, {100 * s.fall:z.0f} % of its mean square")
     return lines
 

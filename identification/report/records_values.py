@@ -12,7 +12,7 @@ from identification.prediction.result import RecordsDiscovery
 from identification.quantities import quantity
 from identification.report.parameter_words import parameter_words
 
-NOT_TOLD = "(std not known)"  # too few windows tell of it
+NOT_TOLD = "(std not known, because too few windows tell of it)"
 
 
 def value_with_std(value: float, std: float, unit: str, like: float = 0.0) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery
 from identification.report.curve_nodes import curve_nodes, nodes_sentence
-from identification.report.effect_words import describe_effect, phrase
+from identification.report.effect_words import describe_there, phrase
 from identification.report.error_words import change_words, error_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.refitted_words import sizes_words
@@ -62,10 +62,13 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
     first = "Missing from the model" if named is found.named[0] else "Missing too"
     if found.verdict == "unlisted effect":
         first += ", in no catalogue and drawn from the data"
-    mine = f"{describe_effect(named.effect.candidate)}{_twin(named)}"
+    plant = found.nominal.plant
+    mine = f"{describe_there(named.effect.candidate, plant)}{_twin(named)}"
     sizes = sizes_words(named.effect)
     confidence = f"{100 * named.effect.confidence:.0f} %"
-    others = [f"{describe_effect(r.candidate)} ({100 * r.confidence:.0f} %)" for r in named.rivals]
+    others = [
+        f"{describe_there(r.candidate, plant)} ({100 * r.confidence:.0f} %)" for r in named.rivals
+    ]
     if named.one_of:
         said = (
             f"{first} is one of these, which these records do not surely tell apart:"
@@ -77,7 +80,7 @@ def _named(found: RecordsDiscovery, named: NamedByPrediction) -> str:
         said = f"{first}: {mine}, {sizes}; confidence {confidence}{compared}."
         said += f" Less likely: {', '.join(others)}." if others else ""
     if named.effect.candidate.effect.is_curve:
-        said += f" {nodes_sentence(curve_nodes(named.effect.candidate, found.nominal.plant))}"
+        said += f" {nodes_sentence(curve_nodes(named.effect.candidate, plant))}"
     said += _agreement(found, named)
     if named.disagrees:
         said += (

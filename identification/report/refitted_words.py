@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from identification.model.predictor import Plant
 from identification.prediction.result import RefittedEffect
 from identification.quantities import fall_words
-from identification.report.effect_words import describe_effect
+from identification.report.effect_words import describe_there
 from identification.report.records_finding_words import DOUBTS
 from identification.report.records_values import value_with_std
 
 
-def describe_refitted(effect: RefittedEffect) -> str:
-    """An effect with its sizes, and what it does for unseen records."""
+def describe_refitted(effect: RefittedEffect, plant: Plant) -> str:
+    """An effect of a robot with its sizes, and what it does for unseen records."""
     return (
-        f"{describe_effect(effect.candidate)}, {sizes_words(effect)}; the unseen mean"
+        f"{describe_there(effect.candidate, plant)}, {sizes_words(effect)}; the unseen mean"
         f" square error {fall_words(effect.prediction.fall)}, t = {effect.prediction.t:z.1f}"
         + (f"; {DOUBTS[effect.doubt]}" if effect.doubt else "")
     )

@@ -55,6 +55,34 @@ def step_sentences(
     ]
 
 
+def std_sentence(
+    model: WindowModel,
+    words: Mapping[str, str] | None = None,
+    options: DiscoveryOptions | None = None,
+) -> str:
+    """That the std leave out the error of the steps, where it is larger; "" where it is not.
+
+    It stands beside the std; `step_sentences` says by how much, and what to do.
+
+    Args:
+        model: as of `step_sentences`.
+        words: as of `step_sentences`.
+        options: as of `step_sentences`.
+    """
+    options = options or DiscoveryOptions()
+    names, words = model.fit.problem.names, words or {}
+    std = np.array([model.told_std[n] for n in names])
+    far = [*model.finer.far(names, std, options)]
+    if not far:
+        return ""
+    told = ", ".join(words.get(n, n) for n in far[:SHOWN])
+    more = f" and {len(far) - SHOWN} more" if len(far) > SHOWN else ""
+    return (
+        "The std leave out the error of the simulation's steps, which is more than"
+        f" {held(options.told_step_shift)} std for {told}{more}."
+    )
+
+
 def _changed(model: WindowModel, words: Mapping[str, str], options: DiscoveryOptions) -> list[str]:
     """What finer steps would do beyond what is told."""
     finer, std, said = model.finer, model.told_std, []

@@ -10,6 +10,9 @@ A current that a user keeps constant is right, and then the feedback brings the 
 90 robots as built with effects (worlds 32200 to 32289, 4 s, one current constant at 0 to 2 A) it
 left 0.36 of γ or more; where a current was logged as zero, it left 0.026 in the middle of 30. Two
 currents may stand still, and others may have the other sign: feedback of all motors tells which.
+
+One angle may be turned or scaled beside them. The cables tell so without a current
+(`inca_mj.twin.odd_angle`), and the currents are judged with the angle mended.
 """
 
 from __future__ import annotations
@@ -22,12 +25,12 @@ import numpy as np
 from identification import Log
 from identification.logs.cures import how_to_turn
 from identification.logs.names import listed
+from inca_mj.twin.bounds import BOUNDS
+from inca_mj.twin.cable_lengths import some
 from inca_mj.twin.followed_log import SETTLED, follow, shares_of
-from inca_mj.twin.other_currents import ASTRAY, NEARER, apart, is_right, likely_units
+from inca_mj.twin.odd_angle import mended_angle, odd_angle, odd_words
+from inca_mj.twin.other_currents import apart, is_right, likely_units
 from inca_mj.twin.twin import Twin
-
-MOST = 2  # currents that were not logged; the angles of the other drives judge
-CONSTANT = 0.01  # range of a current that stands still, of the median range of all
 
 
 def dead_current(plant: Twin, part: Log, predicted: np.ndarray) -> str | None:
@@ -38,32 +41,57 @@ def dead_current(plant: Twin, part: Log, predicted: np.ndarray) -> str | None:
         part: the first motion, n samples of all eight angles, which all move.
         predicted: the twin's angles under the logged currents, shape (n, 8) [rad].
     """
-    ranges, own = np.ptp(part.inputs, axis=0), apart(part, predicted)
-    still = np.flatnonzero(ranges <= CONSTANT * np.median(ranges)).tolist()
-    if own <= ASTRAY or not still:
+    ranges = np.ptp(part.inputs, axis=0)
+    still = np.flatnonzero(ranges <= BOUNDS.constant * np.median(ranges)).tolist()
+    if not still or apart(part, predicted) <= BOUNDS.astray:
         return None
     for factor in likely_units(part, predicted):
         scaled = replace(part, outputs=factor * part.outputs)
-        for dead, signs in _likely(plant, scaled, still):
-            read = replace(scaled, inputs=scaled.inputs * signs)
-            followed = follow(plant, read, dead)
-            if followed is None:
+        odd = odd_angle(plant, some(scaled.outputs))
+        for angle in (None,) if odd is None else (odd, None):
+            mended = scaled if angle is None else mended_angle(scaled, *angle)
+            own = apart(mended, predicted)
+            if own <= BOUNDS.astray:
                 continue
-            angles, names = np.delete(followed[1], dead, axis=1), part.output_names
-            others = replace(
-                part, outputs=np.delete(part.outputs, dead, axis=1), units={}, extras={},
-                output_names=tuple(n for k, n in enumerate(names) if k not in dead),
-            )  # fmt: skip
-            if apart(others, angles) < NEARER * own and is_right(others, angles):
-                return _said(part, dead, followed[0][SETTLED:, dead], signs)
+            for dead, signs in _likely(plant, mended, still):
+                currents = _missing(plant, mended, dead, signs, own)
+                if currents is not None:
+                    beside = "" if angle is None else f"; beside it, {odd_words(part, *angle)}"
+                    return _said(part, dead, currents, signs) + beside
     return None
+
+
+def _missing(
+    plant: Twin, log: Log, dead: list[int], signs: np.ndarray, own: float
+) -> np.ndarray | None:
+    """The currents that drives had, shape (n, drives) [A]; None if the others still do not fit.
+
+    Args:
+        plant: the twin.
+        log: n samples of angles that are believed.
+        dead: drives whose currents may be missing.
+        signs: of all currents, shape (8,).
+        own: γ of the log under its currents.
+    """
+    followed = follow(plant, replace(log, inputs=log.inputs * signs), dead)
+    if followed is None:
+        return None
+    angles, names = np.delete(followed[1], dead, axis=1), log.output_names
+    others = replace(
+        log, outputs=np.delete(log.outputs, dead, axis=1), units={}, extras={},
+        output_names=tuple(n for k, n in enumerate(names) if k not in dead),
+    )  # fmt: skip
+    if apart(others, angles) >= BOUNDS.nearer * own or not is_right(others, angles):
+        return None
+    currents: np.ndarray = followed[0][SETTLED:, dead]
+    return currents
 
 
 def _likely(plant: Twin, log: Log, still: list[int]) -> Iterator[tuple[list[int], np.ndarray]]:
     """Drives whose currents may be missing, each with the signs of all currents, shape (8,)."""
     right = np.ones(log.inputs.shape[1])
     yield from (([k], right) for k in still)
-    if 1 < len(still) <= MOST:
+    if 1 < len(still) <= BOUNDS.max_dead:
         yield still, right
     followed = follow(plant, log)
     if followed is None:
@@ -72,7 +100,7 @@ def _likely(plant: Twin, log: Log, still: list[int]) -> Iterator[tuple[list[int]
     signs[still] = 1.0
     if (signs < 0).any():
         yield from (([k], signs) for k in still)
-        if 1 < len(still) <= MOST:
+        if 1 < len(still) <= BOUNDS.max_dead:
             yield still, signs
 
 

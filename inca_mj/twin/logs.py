@@ -86,8 +86,9 @@ def _how_to_begin_at_zero(first: float, noise: float) -> str:
     if abs(first) > NOISE * noise:
         return "cut it where the robot rests and subtract its angles"
     return (
-        f"its noise is as large ({noise:.2g} rad), so that the angles may be in another unit:"
-        f" {unit_lines({'angle': 'deg'})}, or the unit that they have"
+        f"the noise of this angle is {noise:.2g} rad, far more than an encoder makes, so that the"
+        f" file is likely not in radians: {unit_lines({'angle': 'deg'})} if its angles are in"
+        " degrees, and else the unit that they are in"
     )
 
 

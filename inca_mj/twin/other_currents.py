@@ -28,16 +28,11 @@ from identification.logs.readings import Reading
 from identification.logs.units import UNITS
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.twin.angles_under import angles_under
+from inca_mj.twin.bounds import BOUNDS
 from inca_mj.twin.followed_log import follow, places_of
-from inca_mj.twin.other_wiring import RIGHT, alike
+from inca_mj.twin.other_wiring import alike
 from inca_mj.twin.rewired import Places, rewired
 from inca_mj.twin.twin import Twin
-
-ASTRAY = 0.02  # γ from which a log is looked at: it is √(2γ), a fifth of its motion, off the twin
-NEARER = 0.1  # of γ, that another reading must leave
-MOST = 2  # angles that are wrong beside a current; more free ones come near by chance
-NEARLY = 3.0  # times the least γ, of a reading that is as likely: often the mirror image
-FAR = 10.0  # times as far as the other angles is in another unit
 
 
 def other_currents(
@@ -52,7 +47,7 @@ def other_currents(
         longer: the log a little longer, with all eight angles; None where not all of them move.
     """
     own = apart(part, predicted)
-    if own <= ASTRAY:
+    if own <= BOUNDS.astray:
         return None
     for Q in () if longer is None else _followed(plant, longer, predicted):
         found = _nearest(plant, part, own, [Q], False)
@@ -79,17 +74,17 @@ def _nearest(
         if not np.isfinite(predicted).all() or not predicted.any(axis=0).all():
             continue
         P = _places_of_angles(part, predicted) if with_angles else np.eye(part.outputs.shape[1])
-        if np.sum(np.diag(P) != 1) > MOST:
+        if np.sum(np.diag(P) != 1) > BOUNDS.max_angles:
             continue
         reading = rewired(part, Places(P, Q))
         left = apart(reading.log, predicted)
-        if left < NEARER * own and is_right(reading.log, predicted):
+        if left < BOUNDS.nearer * own and is_right(reading.log, predicted):
             found.append((left, reading))
     if not found:
         return None
     (least, best), *rest = sorted(found, key=lambda each: each[0])
     before, after = (100 * max(0.0, 1 - γ) for γ in (own, least))
-    as_near = [reading.said for left, reading in rest if left < NEARLY * least]
+    as_near = [reading.said for left, reading in rest if left < BOUNDS.nearly * least]
     mirror = f" (or, since the robot is symmetric, {' or '.join(as_near)})" if as_near else ""
     said = f"explains {before:.0f} % of the motion, and {after:.0f} % {best.said}{mirror}"
     return best, f"{said}; {best.cure}"
@@ -147,7 +142,9 @@ def _places_of_angles(part: Log, predicted: np.ndarray) -> np.ndarray:
 
 def is_right(part: Log, predicted: np.ndarray) -> bool:
     """Whether every angle is as near to the twin's as one of a right log."""
-    return bool((1 - np.diag(alike(part.outputs - part.outputs[0], predicted)) <= RIGHT).all())
+    return bool(
+        (1 - np.diag(alike(part.outputs - part.outputs[0], predicted)) <= BOUNDS.right).all()
+    )
 
 
 def apart(part: Log, predicted: np.ndarray) -> float:
@@ -159,6 +156,8 @@ def apart(part: Log, predicted: np.ndarray) -> float:
     own, simulated = np.linalg.norm(y, axis=0), np.linalg.norm(predicted, axis=0)
     ratio = own / np.maximum(simulated, np.finfo(float).tiny)
     usual = np.median(ratio)
-    y = y * np.where(ratio > FAR * usual, usual / np.maximum(ratio, np.finfo(float).tiny), 1.0)
+    y = y * np.where(
+        ratio > BOUNDS.far * usual, usual / np.maximum(ratio, np.finfo(float).tiny), 1.0
+    )
     sizes = np.linalg.norm(y) * np.linalg.norm(simulated)
     return float(1 - np.sum(y * predicted) / sizes) if sizes > 0 else np.inf

@@ -19,10 +19,8 @@ from identification.logs.cures import unit_lines
 from identification.logs.names import listed
 from identification.logs.units import UNITS
 from identification.robot.same_units import NEAR
+from inca_mj.twin.bounds import BOUNDS
 from inca_mj.twin.other_wiring import alike
-
-UNIT = (0.2, 10.0)  # of the twin's motion; revolutions are at 0.12 to 0.19, degrees at 44 to 69
-ALIKE = 0.4  # ε of an angle with the twin's shape; of 65 right logs, all are below
 
 
 def other_unit(
@@ -40,11 +38,11 @@ def other_unit(
     """
     y = part.outputs - part.outputs[0]
     scales = np.abs((y * predicted).sum(0) / (predicted**2).sum(0))
-    scale, far = float(np.exp(np.mean(np.log(scales)))), np.flatnonzero(scales > UNIT[1])
-    of_all = not UNIT[0] < scale < UNIT[1]
+    scale, far = float(np.exp(np.mean(np.log(scales)))), np.flatnonzero(scales > BOUNDS.far)
+    of_all = not BOUNDS.little < scale < BOUNDS.far
     if not of_all and not len(far):
         return None
-    is_alike = bool((1 - np.diag(alike(y, predicted)) <= ALIKE).all())
+    is_alike = bool((1 - np.diag(alike(y, predicted)) <= BOUNDS.alike).all())
     if not is_alike and not len(far):
         return None
     if not is_alike and not wiring_is_right:
@@ -76,4 +74,6 @@ def _how_to_convert(columns: Sequence[str], scale: float) -> str:
     word = next(fitting, None)
     if word is None:
         return ""
-    return f": {unit_lines(dict.fromkeys(columns, word))}, or correct the unit that it has"
+    return (
+        f": {unit_lines(dict.fromkeys(columns, word))}, or correct the unit there if one is given"
+    )

@@ -12,8 +12,7 @@ from identification import Log
 from identification.logs.cures import how_to_rename, how_to_turn
 from identification.logs.names import listed
 from identification.logs.readings import Reading, misread, output_readings, turned
-
-RIGHT = 0.2  # ε of a right log; 61 of 65 worlds as built (20000 to 20124) are below, all below 0.4
+from inca_mj.twin.bounds import BOUNDS
 
 
 def other_wiring(part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None:
@@ -28,7 +27,7 @@ def other_wiring(part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None
         return 1 - np.diag(alike(other.outputs - other.outputs[0], predicted))
 
     def as_right(reading: Reading, left: np.ndarray) -> bool:
-        return bool((left <= RIGHT).all())
+        return bool((left <= BOUNDS.right).all())
 
     y = part.outputs - part.outputs[0]
     column = {n: n for n in (*part.output_names, *part.input_names)}
@@ -61,7 +60,9 @@ def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Readin
             new = [names[at[i]] for i in back]
             turn = f", and {how_to_turn(new, renamed=True)}" if back else ""
             changed = [k for k in every.tolist() if k in (*at[moved], *at[back])]
-            wrong = [k for k in changed if 1 - cosine[k, k] > RIGHT]  # others are right by a mirror
+            wrong = [
+                k for k in changed if 1 - cosine[k, k] > BOUNDS.right
+            ]  # others are right by a mirror
             if not wrong:
                 continue
             how = " and turned" if back else ""

@@ -20,15 +20,11 @@ from identification import Log
 from identification.logs.readings import Reading
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.twin.angles_under import angles_under
+from inca_mj.twin.bounds import BOUNDS
 from inca_mj.twin.cable_lengths import likely_orders, some, unreached_share
-from inca_mj.twin.other_currents import NEARLY, apart, is_right
+from inca_mj.twin.other_currents import apart, is_right
 from inca_mj.twin.rewired import Places, rewired
 from inca_mj.twin.twin import Twin
-
-MOST = 1000  # orders of which κ is computed; of 30 right logs, none was behind place 720
-SIMULATED = 16  # twice the eight that are alike
-CLOSER = 0.1  # of κ, that another order must leave
-NEARER = 1 / 3  # of γ
 
 
 def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None:
@@ -45,10 +41,10 @@ def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Readi
     """
     own, y = apart(part, predicted), some(part.outputs)
     share = float(unreached_share(plant, y[None])[0])
-    orders = likely_orders(plant, y, MOST)
+    orders = likely_orders(plant, y, BOUNDS.max_orders)
     shares = unreached_share(plant, np.moveaxis(y[:, orders], 1, 0))
-    first = np.argsort(shares, kind="stable")[:SIMULATED]
-    close = [k for k in first.tolist() if shares[k] <= CLOSER * share]
+    first = np.argsort(shares, kind="stable")[: BOUNDS.max_simulated]
+    close = [k for k in first.tolist() if shares[k] <= BOUNDS.closer * share]
     if not close:
         return None
     places = [np.eye(DRIVES)[orders[k]] for k in close]
@@ -59,11 +55,11 @@ def renamed_drives(plant: Twin, part: Log, predicted: np.ndarray) -> tuple[Readi
             continue
         reading = rewired(part, Places(P, P))
         left = apart(reading.log, angles)
-        if left <= NEARER * own and is_right(reading.log, angles):
+        if left <= BOUNDS.nearer_renamed * own and is_right(reading.log, angles):
             found.append((left, int(np.sum(orders[k] != np.arange(DRIVES))), k, reading))
     if not found:
         return None
-    as_near = [each for each in found if each[0] <= NEARLY * min(each[0] for each in found)]
+    as_near = [each for each in found if each[0] <= BOUNDS.nearly * min(each[0] for each in found)]
     left, _, k, reading = min(as_near, key=lambda each: (each[1], each[0]))
     before, after = (100 * max(0.0, 1 - γ) for γ in (own, left))
     moved = [str(m + 1) for m in np.flatnonzero(orders[k] != np.arange(DRIVES))]

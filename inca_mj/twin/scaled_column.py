@@ -18,21 +18,15 @@ from __future__ import annotations
 import numpy as np
 
 from identification import Log
-from identification.logs.cures import toml_key, unit_lines
-from identification.logs.units import UNITS
-from identification.robot.same_units import NEAR
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.twin.angles_under import angles_under
-from inca_mj.twin.cable_lengths import some, unreached_share
+from inca_mj.twin.bounds import BOUNDS
+from inca_mj.twin.cable_lengths import some
 from inca_mj.twin.followed_log import follow, shares_of
-from inca_mj.twin.other_currents import ASTRAY, NEARER, apart, is_right
-from inca_mj.twin.other_wiring import RIGHT, alike
+from inca_mj.twin.odd_angle import as_factor, odd_angle, scaled_words
+from inca_mj.twin.other_currents import apart, is_right
+from inca_mj.twin.other_wiring import alike
 from inca_mj.twin.twin import Twin
-
-BEYOND = 1.6  # factor from 1; revolutions are at 6.3, and a gear that was forgotten at 2 or more
-CLOSER = 0.1  # of κ, that a factor must leave
-FACTORS = np.geomspace(1 / 60, 60, 25)  # that are tried first: √2 apart, to degrees and back
-FINER = np.geomspace(1 / 1.4, 1.4, 25)  # around the best of them: 3 % apart
 
 
 def scaled_angle(plant: Twin, part: Log, predicted: np.ndarray) -> str | None:
@@ -43,36 +37,17 @@ def scaled_angle(plant: Twin, part: Log, predicted: np.ndarray) -> str | None:
         part: the first motion, n samples of all eight angles.
         predicted: the twin's angles, shape (n, 8) [rad].
     """
-    y = some(part.outputs)
-    own = float(unreached_share(plant, y[None])[0])
-    shares = np.stack([_shares(plant, y, k, FACTORS) for k in range(DRIVES)])
-    k, at = (int(i) for i in np.unravel_index(int(shares.argmin()), shares.shape))
-    finer = FACTORS[at] * FINER
-    shares = _shares(plant, y, k, finer)
-    factor, least = float(finer[shares.argmin()]), float(shares.min())
+    found = odd_angle(plant, some(part.outputs), (1.0,))
+    if found is None:
+        return None
+    k, factor = found
     moved = part.outputs - part.outputs[0]
     off = 1 - alike(moved, predicted)[k, k]
     sizes = np.linalg.norm(moved, axis=0) / np.linalg.norm(predicted, axis=0)
     proportion = factor * sizes[k] / np.median(np.delete(sizes, k))
-    if not (
-        least <= CLOSER * own
-        and not 1 / BEYOND < factor < BEYOND
-        and 1 / BEYOND < proportion < BEYOND
-        and off <= RIGHT
-    ):
+    if not 1 / BOUNDS.beyond < proportion < BOUNDS.beyond or off > BOUNDS.right:
         return None
-    name = part.output_names[k]
-    return (
-        f"{name} moves {1 / factor:.2g} times as far as the other angles say, with which it must"
-        f" fit the cables of one platform: {_as_unit(name, factor)}"
-    )
-
-
-def _shares(plant: Twin, y: np.ndarray, k: int, factors: np.ndarray) -> np.ndarray:
-    """κ of angles (n, 8) of which that of drive k is multiplied by each factor."""
-    scaled = np.repeat(y[None], len(factors), axis=0)
-    scaled[:, :, k] *= factors[:, None]
-    return unreached_share(plant, scaled)
+    return scaled_words(part.output_names[k], factor)
 
 
 def scaled_current(plant: Twin, part: Log, longer: Log, predicted: np.ndarray) -> str | None:
@@ -85,7 +60,7 @@ def scaled_current(plant: Twin, part: Log, longer: Log, predicted: np.ndarray) -
         predicted: the twin's angles under the logged currents, shape (n, 8) [rad].
     """
     own = apart(part, predicted)
-    if own <= ASTRAY:
+    if own <= BOUNDS.astray:
         return None
     tried = [each for log in (longer, part) if (each := _odd_one(plant, log)) is not None]
     if not tried:
@@ -96,13 +71,13 @@ def scaled_current(plant: Twin, part: Log, longer: Log, predicted: np.ndarray) -
     every = angles_under(plant, part, part.inputs * scales[:, None])
     left = [apart(part, angles) if np.isfinite(angles).all() else np.inf for angles in every]
     best = int(np.argmin(left))
-    if not (left[best] < NEARER * own and is_right(part, every[best])):
+    if not (left[best] < BOUNDS.nearer * own and is_right(part, every[best])):
         return None
     k, factor = tried[best]
     name = part.input_names[k]
     return (
         f"{name} is {1 / factor:.2g} times as large as the one that moves the robot so, and the"
-        f" other currents are not: {_as_factor(name, factor)}, or correct its unit"
+        f" other currents are not: {as_factor(name, factor)}, or correct its unit"
     )
 
 
@@ -117,20 +92,4 @@ def _odd_one(plant: Twin, log: Log) -> tuple[int, float] | None:
         return None
     k = int(np.abs(np.log(gain / usual)).argmax())
     factor = float(gain[k]) / usual
-    return None if 1 / BEYOND < factor < BEYOND else (k, factor)
-
-
-def _as_unit(name: str, factor: float) -> str:
-    """What the TOML must say of an angle that has to be multiplied."""
-    for word, (si, of) in UNITS.items():
-        if si == "rad" != word and 1 / NEAR < factor / of < NEAR:
-            return f"{unit_lines({name: word})}, or correct the unit that it has"
-    return _as_factor(name, factor)
-
-
-def _as_factor(name: str, factor: float) -> str:
-    """What the TOML must say of a column that has to be multiplied."""
-    return (
-        f"write {toml_key(name)} = {factor:.2g} under [factors] of the log's TOML, or multiply the"
-        " factor that it has by this one (it is an estimate; the true one is likely a round number)"
-    )
+    return None if 1 / BOUNDS.beyond < factor < BOUNDS.beyond else (k, factor)

@@ -25,10 +25,11 @@ from identification.logs.names import listed
 from identification.logs.readings import Reading
 from identification.robot.trust import trusted
 from inca_mj.twin.angles_under import angles_under
+from inca_mj.twin.bounds import BOUNDS
 from inca_mj.twin.cable_lengths import some, unreached_share
 from inca_mj.twin.dead_current import dead_current
 from inca_mj.twin.judged import JUDGED, overruled_by
-from inca_mj.twin.other_currents import ASTRAY, apart, other_currents
+from inca_mj.twin.other_currents import apart, other_currents
 from inca_mj.twin.other_unit import other_unit
 from inca_mj.twin.other_wiring import other_wiring
 from inca_mj.twin.renamed_drives import renamed_drives
@@ -38,7 +39,6 @@ from inca_mj.twin.twin import Twin
 LONGEST = 10.0  # [s] in which motion must begin
 MOTION = 0.05  # [rad] of the twin; a hundred times an encoder's noise
 BEGINNING = 2.0  # [s] from there; later even a good model has drifted
-AS_NEAR = 3.0  # times κ, of a reading that fits as well: the frame is symmetric, the start nearly
 DEAD = 1e-3  # of the twin's motion
 ADVICE = ", with which `inca compare` shows the log beside the twin"
 
@@ -103,10 +103,10 @@ def _other_wiring(
     if angles is not None and longer is not None and _tears(plant, part, angles[0].log):
         angles = None
     left = np.inf if angles is None else apart(angles[0].log, predicted)
-    if left <= ASTRAY:
+    if left <= BOUNDS.astray:
         return angles
     found = other_currents(plant, part, predicted, longer)
-    if found is None and longer is not None and apart(part, predicted) > ASTRAY:
+    if found is None and longer is not None and apart(part, predicted) > BOUNDS.astray:
         found = renamed_drives(plant, part, predicted)
     if found is None:
         return angles
@@ -117,7 +117,7 @@ def _other_wiring(
 def _tears(plant: Twin, part: Log, other: Log) -> bool:
     """Whether the angles of another reading belong to no poses, and those as they are read do."""
     own, new = unreached_share(plant, np.stack([some(log.outputs) for log in (part, other)]))
-    return bool(new > AS_NEAR * own)
+    return bool(new > BOUNDS.as_near * own)
 
 
 def _scaled(

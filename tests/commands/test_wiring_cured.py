@@ -132,7 +132,8 @@ def test_a_log_in_degrees_is_not_told_to_begin_elsewhere(tmp_path, capsys):
     path = written(mistaken(word="deg"), tmp_path)
     assert main(["film", str(path)]) == 2  # it draws a log as it is, however far it moves
     said = capsys.readouterr().err
-    assert "its noise is as large" in said
+    assert "rad, far more than an encoder makes, so that the file is likely not in radians" in said
+    assert "if its angles are in degrees, and else the unit that they are in" in said
     assert "subtract" not in said
     path.with_suffix(".toml").write_text(advised(said))
     np.testing.assert_allclose(read_inca_log(path).outputs, LOG.outputs, rtol=1e-9, atol=1e-12)

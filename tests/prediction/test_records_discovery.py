@@ -109,6 +109,20 @@ def test_shifts_of_records_stand_in_the_report(tmp_path):
         assert "-315" not in told
 
 
+def test_a_small_shift_that_may_be_chance_stands_in_the_json_alone(tmp_path):
+    """Two and a half std, a hundredth of a step: it is nothing to look after."""
+    answer = found()
+    name = answer.records[-1].log.name
+    small = ShiftedRecord(record=name, shift=52e-6, std=20e-6, fall=0.001, chance=0.02)
+    sure, large = replace(small, std=5e-6, chance=1e-6), replace(small, shift=0.02, std=0.008)
+    for shift, is_told in ((small, False), (sure, True), (large, True)):
+        answer = replace(answer, shifts=(shift,))
+        page = text_of(write_records_report(answer, tmp_path).read_text())
+        assert ("Shifts in time" in page) is is_told
+        assert ("later or earlier" in records_text(answer)) is is_told
+        assert records_to_json(answer)["shifts"][0]["shift"] == shift.shift
+
+
 def test_each_candidate_is_listed_once_and_in_words(tmp_path):
     answer = found()
     again = replace(

@@ -22,16 +22,16 @@ DOUBTFUL = SimpleNamespace(
 SHIFT = ShiftedRecord(record="a", shift=7e-4, std=1e-4, fall=0.06, chance=1e-4)
 
 
-def kinds(monkeypatch, ratio, floor=4e-6, accepted=()):
+def kinds(monkeypatch, ratio, floor=4e-6, accepted=(), rejected=(DOUBTFUL,)):
     """What is found where the rms on unseen windows is `ratio` times that of the noise."""
     monkeypatch.setattr(remaining, "different_records", lambda state: [])
     squares = ratio**2 * floor * np.array([0.5, 1.5])
     unseen = SimpleNamespace(at_horizon=(squares[:1], squares[1:]), floor=floor)
     state = SimpleNamespace(
-        worse_fit=None, accepted=accepted, model=SimpleNamespace(unseen=unseen),
+        worse_fit=None, accepted=accepted, model=SimpleNamespace(unseen=unseen, plant=None),
         task=SimpleNamespace(options=OPTIONS, records=("a", "b")),
     )  # fmt: skip
-    return [f.kind for f in remaining.find_remaining(state, [DOUBTFUL], [SHIFT])]
+    return [f.kind for f in remaining.find_remaining(state, rejected, [SHIFT])]
 
 
 @pytest.mark.parametrize("ratio", [0.9, 1.0, LEAST - 0.01])
@@ -45,6 +45,11 @@ def test_above_the_noise_a_doubt_and_a_shift_are_told(monkeypatch):
     assert kinds(monkeypatch, LEAST + 0.01) == doubts
     left = kinds(monkeypatch, LEAST + 0.01, accepted=("an effect",))
     assert left == [doubts[0], FindingKind.REMAINING_ERROR, doubts[1]]
+
+
+def test_an_effect_at_a_place_is_doubted_once(monkeypatch):
+    twice = kinds(monkeypatch, LEAST + 0.01, rejected=(DOUBTFUL, DOUBTFUL))
+    assert twice == [FindingKind.UNPROVEN_EFFECT, FindingKind.SHIFTED_RECORD]
 
 
 def test_sensors_without_noise_leave_all_to_be_explained():

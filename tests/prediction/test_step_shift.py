@@ -10,7 +10,8 @@ import pytest
 from identification import Log, fit
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction.step_shift import FINER, StepShift, step_shift
-from identification.report.step_words import step_sentences
+from identification.report.records_fit_verdict import records_fit_verdict
+from identification.report.step_words import std_sentence, step_sentences
 from identification.robot.file import read_robot_file
 from identification.robot.robot import robot_of
 
@@ -84,6 +85,20 @@ def test_it_is_said_where_it_exceeds_the_std(elbow):
         sentences = step_sentences(with_finer(coarse, values, error))
         assert bool(sentences) == bool(words)
         assert all(words in said for said in sentences)
+
+
+def test_beside_the_std_it_is_said_for_what_they_are_too_small(elbow):
+    model = elbow[0].model
+    std, names = np.array([*model.told_std.values()]), [*model.told_std]
+    first = np.where(np.arange(len(names)) == 0, 2.3, 0.4)
+    assert std_sentence(with_finer(model, first * std, 0.8), {names[0]: "the mass"}) == (
+        "The std leave out the error of the simulation's steps, which is more than 1 std for the"
+        " mass."
+    )
+    assert std_sentence(with_finer(model, 0.9 * std, 0.4)) == ""
+    assert std_sentence(with_finer(model, np.nan * std, np.nan)) == ""
+    said = records_fit_verdict(elbow[0])
+    assert said[1] == std_sentence(model)
 
 
 def with_finer(model, values, error):

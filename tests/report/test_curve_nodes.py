@@ -7,6 +7,7 @@ from joint_cases import arm, seen, share, slider
 from identification.effects.effect import Candidate
 from identification.model.plant import ModelPlant
 from identification.report.curve_nodes import curve_nodes, nodes_sentence
+from identification.report.effect_words import describe_there
 
 C = (1.0, -2.0, 3.0, -4.0, 5.0, -6.0, 7.0, -8.0)
 FIELD = {"speed": "v", "load": "f_u", "position": "q", "time": "time",
@@ -39,6 +40,20 @@ def test_a_curve_has_its_sizes_at_its_nodes(plant, effect, where):
     assert (neighbour or joint) in nodes.reads or nodes.reads == "time"
     assert np.isfinite(nodes.at).all()
     assert f"{nodes.unit} ({nodes.reads})" in nodes_sentence(nodes)
+
+
+@pytest.mark.parametrize(
+    ("name", "where", "said"),
+    [
+        ("curve_before", "joint elbow", "of the position of shoulder, the joint before it, joint"),
+        ("curve_behind", "joint shoulder", "of the position of elbow, the joint behind it, joint"),
+        ("curve_position", "joint elbow", "curve of position, joint elbow"),
+    ],
+)
+def test_a_neighbour_is_called_by_its_name(name, where, said):
+    plant = arm()
+    (effect,) = (e for e in plant.effects if e.name == name)
+    assert said in describe_there(Candidate(effect, where, {}), plant)
 
 
 def test_every_kind_of_curve_is_among_them():

@@ -144,6 +144,18 @@ def test_what_is_suggested_can_be_written(name, meant):
     assert listed == sorted(listed)
 
 
+@pytest.mark.parametrize(
+    ("name", "begin"),
+    [("viscous_friction", "'viscous_friction' is no number of an effect: viscous friction is"),
+     ("viscous_friction.d@x", "'viscous_friction.d@x' is no number of an effect: viscous"),
+     ("stiction", "unknown effect 'stiction'; did you mean"),
+     ("stiction@swing", "unknown effect in 'stiction@swing': 'stiction'; did you mean")],
+)  # fmt: skip
+def test_an_unknown_effect_is_told_once(name, begin):
+    crane = (Axis("swing", "hinge", 1.0, 1.0, 1.0), Axis("x", "slide", 1.0, 1.0, 1.0))
+    assert str(unknown_number(name, joint_effects(crane, TURNS))).startswith(begin)
+
+
 def test_what_cannot_be_fitted_is_suggested_under_fixed_alone():
     """A shape, such as the time of a jump, is no size; a user frees sizes."""
     effects = joint_effects((Axis("swing", "hinge", 1.0, 1.0, 1.0, duration=9.0),), TURNS)

@@ -18,8 +18,6 @@ from identification.effects.effect import Candidate
 from identification.logs.joined import records_of
 from identification.logs.log import Log
 
-MOST = 3  # times; a log with more jumps than that has another fault
-
 
 def find_outlier_times(
     innovations: np.ndarray, log: Log, apart: float, options: DiscoveryOptions
@@ -30,14 +28,14 @@ def find_outlier_times(
         innovations: in units of σ, shape (N, ny).
         log: whose samples they are.
         apart: outliers that are nearer than that are one [s].
-        options: what is beyond chance.
+        options: what is beyond chance, and how many are asked for.
     """
     size = np.abs(innovations).max(axis=1)
     time = np.concatenate([record.time - record.time[0] for _, record in records_of(log)])
     least = float(norm.isf(options.significance / (2 * innovations.size)))
     out: list[float] = []
     for k in np.argsort(-size):
-        if size[k] < least or len(out) == MOST:
+        if size[k] < least or len(out) == options.max_jumps:
             break
         if all(abs(time[k] - other) >= apart for other in out):
             out.append(float(time[k]))

@@ -1,0 +1,93 @@
+"""A current that was not logged beside an angle that is turned or of another scale: both are told.
+
+Each alone was told before, and together they hid each other.
+"""
+
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from advice import advised
+
+from identification import InputError, write_log
+from inca_mj.twin.bounds import WiringBounds
+from inca_mj.twin.cable_lengths import some
+from inca_mj.twin.logs import read_inca_log
+from inca_mj.twin.odd_angle import odd_angle
+from inca_mj.twin.twin import build_twin
+from inca_mj.twin.wiring import refuse_miswired
+
+LOG = read_inca_log(Path(__file__).parents[2] / "examples" / "log.csv").between(0.0, 4.0)
+
+
+@pytest.fixture(scope="module")
+def plant():
+    return build_twin()
+
+
+def wrong(dead, angle, factor):
+    """The log with a current of zero and an angle multiplied, by the number of their drive."""
+    every = np.arange(1, 9)
+    return replace(
+        LOG,
+        inputs=LOG.inputs * (every != dead),
+        outputs=LOG.outputs * np.where(every == angle, factor, 1.0),
+        units={},
+    )
+
+
+@pytest.mark.parametrize(
+    ("dead", "angle", "factor", "told"),
+    [
+        (4, 4, -1.0, "turn the sign of angle_4: write angle_4 = -1 under"),
+        (4, 5, -1.0, "turn the sign of angle_5: write angle_5 = -1 under"),
+        (7, 2, -1.0, "turn the sign of angle_2: write angle_2 = -1 under"),
+        (4, 5, 0.5, "angle_5 moves 0.5"),
+        (4, 4, 2.0, "angle_4 moves 2 times"),
+        (4, 1, 1 / (2 * np.pi), 'write angle_1 = "rev" under'),
+        (2, 2, 180 / np.pi, 'write angle_2 = "deg" under'),
+    ],
+)
+def test_both_are_told(plant, dead, angle, factor, told):
+    with pytest.raises(InputError, match=f"current_{dead} stands still at 0 A") as refused:
+        refuse_miswired(wrong(dead, angle, factor), plant)
+    assert told in str(refused.value)
+    assert "; beside it, angle_" in str(refused.value)
+
+
+def test_a_current_alone_is_told_alone(plant):
+    with pytest.raises(InputError, match="current_4 stands still") as refused:
+        refuse_miswired(wrong(4, 0, 1.0), plant)
+    assert "beside it" not in str(refused.value)
+
+
+def test_what_is_told_of_the_angle_mends_it(plant, tmp_path):
+    with pytest.raises(InputError) as refused:
+        refuse_miswired(wrong(7, 3, -1.0), plant)
+    path = tmp_path / "log.csv"
+    write_log(wrong(7, 3, -1.0), path)
+    path.with_suffix(".toml").write_text(advised(str(refused.value)))
+    mended = read_inca_log(path)
+    np.testing.assert_allclose(mended.outputs, LOG.outputs, rtol=1e-9, atol=1e-12)
+    refuse_miswired(replace(mended, inputs=LOG.inputs), plant)
+
+
+@pytest.mark.parametrize("factor", [-1.0, 0.5, -2.0, 180 / np.pi])
+@pytest.mark.parametrize("drive", [0, 7])
+def test_the_cables_tell_an_odd_angle_without_a_current(plant, drive, factor):
+    y = some(LOG.outputs)
+    assert odd_angle(plant, y) is None
+    found = odd_angle(plant, y * np.where(np.arange(8) == drive, factor, 1.0))
+    assert found is not None
+    assert found[0] == drive
+    assert found[1] * factor == pytest.approx(1.0, rel=0.1)
+
+
+@pytest.mark.parametrize("field", fields(WiringBounds), ids=lambda field: field.name)
+def test_every_bound_has_its_reason(field):
+    told = field.metadata
+    assert told["least"] <= field.default <= told["most"]
+    assert told["reason"].endswith(".")
+    assert told["unit"]
+    assert told["source"]
