@@ -1,4 +1,4 @@
-"""The neighbour of a joint whose position a curve is drawn over, by its name."""
+"""The neighbour of a joint, over whose position or speed a curve is drawn, by its name."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
 """Where the nodes of a curve stand that was drawn from the data: of what, and at which values.
 
-    speed           v = ±x² v_top               x = ¼, ½, ¾, 1, first the negative ones
+    speed           v = ±x² v_top               x = ¼, ½, ¾, 1, first the negative ones; also of a
+                                                neighbouring joint
     load            f_u = ±x f_top              the same
     position        q = q_mid + x q_far         x evenly from -1 to 1; also of a neighbouring joint
     time            t = (x + 1)/2 t_end         the same
@@ -21,13 +22,16 @@ from identification.effects.neighbours import neighbour
 from identification.model.predictor import Plant
 from identification.quantities import held
 
+# The longer ones first: the end of one is another.
+READS = ("speed_before", "speed_behind", "before", "behind", "position", "speed", "load", "time")
+
 
 @dataclass(frozen=True)
 class Nodes:
     """The nodes of a curve.
 
     Attributes:
-        depends_on: the last word of the curve's name, such as "position" or "before".
+        depends_on: the last words of the curve's name, such as "position" or "speed_before".
         reads: what it is drawn over, in words.
         unit: of that.
         at: its values at the nodes, shape (8,).
@@ -51,15 +55,15 @@ def curve_nodes(candidate: Candidate, plant: Plant) -> Nodes:
     """
     if not isinstance(plant, JointPlant):
         raise TypeError(f"a {type(plant).__name__} has no curves on joints")
-    word = candidate.effect.name.rpartition("_")[2]
+    word = next(w for w in READS if candidate.effect.name.endswith(f"_{w}"))
     joint = candidate.where.removeprefix("joint ")
     name = neighbour(candidate, plant) or joint
     axis = next(axis for axis in plant.axes if axis.joint == name)
     x, steps = "rad" if axis.kind == "hinge" else "m", np.arange(1, NODES // 2 + 1) / (NODES // 2)
     even, signed = np.linspace(-1.0, 1.0, NODES), np.concatenate([-steps, steps])
-    if word == "speed":
+    if word.startswith("speed"):
         at = np.sign(signed) * signed**2 * axis.speed
-        return Nodes(word, f"rate of {joint}", f"{x}/s", at)
+        return Nodes(word, f"rate of {axis.joint}", f"{x}/s", at)
     if word == "load":
         unit = "N m" if axis.kind == "hinge" else "N"
         return Nodes(word, f"force of the drives of {joint}", unit, signed * axis.force)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from joint_cases import arm, seen, share, slider
+from joint_cases import arm, reached, seen, share, slider
 
 from identification.effects.effect import Candidate
 from identification.model.plant import ModelPlant
@@ -11,8 +11,9 @@ from identification.report.effect_words import describe_there
 
 C = (1.0, -2.0, 3.0, -4.0, 5.0, -6.0, 7.0, -8.0)
 FIELD = {"speed": "v", "load": "f_u", "position": "q", "time": "time",
-         "before": "x_before", "behind": "x_behind"}  # fmt: skip
-ENDS = {("curve_before", "joint shoulder"), ("curve_behind", "joint elbow")}  # no such neighbour
+         "before": "x_before", "behind": "x_behind",
+         "speed_before": "v_before", "speed_behind": "v_behind"}  # fmt: skip
+ENDS = {("before", "joint shoulder"), ("behind", "joint elbow")}  # no such neighbour
 NEIGHBOUR = {"joint elbow": "shoulder", "joint shoulder": "elbow"}
 CASES = [
     (plant, effect, where)
@@ -20,8 +21,7 @@ CASES = [
     for effect in plant.effects
     if effect.is_curve
     for where in effect.places
-    if (effect.name, where)
-    not in {("curve_before", "joint shoulder"), ("curve_behind", "joint elbow")}
+    if (effect.name.rpartition("_")[2], where) not in ENDS
 ]
 
 
@@ -31,10 +31,14 @@ CASES = [
 def test_a_curve_has_its_sizes_at_its_nodes(plant, effect, where):
     nodes = curve_nodes(Candidate(effect, where, {}), plant)
     joint, field = where.removeprefix("joint "), FIELD[nodes.depends_on]
-    neighbour = NEIGHBOUR[where] if nodes.depends_on in ("before", "behind") else ""
+    beside = nodes.depends_on.endswith(("before", "behind"))
+    neighbour = NEIGHBOUR[where] if beside else ""
     (law,) = effect.hooks.values()
     for at, c in zip(nodes.at, C, strict=True):
-        x = share(plant, neighbour, at) if neighbour else at
+        x = at
+        if beside:
+            is_speed, top = nodes.depends_on.startswith("speed"), reached(plant, neighbour)[2]
+            x = at / top if is_speed else share(plant, neighbour, at)
         s = seen(plant, joint, 0.0, 0.0, 0.0, 0.0, 0.0)._replace(**{field: x})
         assert law.py_func(s, C) == pytest.approx(c, rel=1e-9)
     assert (neighbour or joint) in nodes.reads or nodes.reads == "time"
@@ -47,6 +51,7 @@ def test_a_curve_has_its_sizes_at_its_nodes(plant, effect, where):
     [
         ("curve_before", "joint elbow", "of the position of shoulder, the joint before it, joint"),
         ("curve_behind", "joint shoulder", "of the position of elbow, the joint behind it, joint"),
+        ("curve_speed_before", "joint elbow", "of the speed of shoulder, the joint before it,"),
         ("curve_position", "joint elbow", "curve of position, joint elbow"),
     ],
 )
@@ -57,7 +62,7 @@ def test_a_neighbour_is_called_by_its_name(name, where, said):
 
 
 def test_every_kind_of_curve_is_among_them():
-    assert {e.name.rpartition("_")[2] for _, e, _ in CASES} == {*FIELD}
+    assert {e.name.removeprefix("curve_") for _, e, _ in CASES} == {*FIELD}
 
 
 def test_a_robot_without_effects_on_joints_has_no_curves():
