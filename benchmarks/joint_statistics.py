@@ -63,6 +63,26 @@ def is_null(row: Row) -> bool:
     return bool(row["truth"]["effect"] == NULL)
 
 
+def is_unlisted(row: Row) -> bool:
+    """A force that is in no catalogue; rows from before such worlds say nothing of it."""
+    return bool(row["truth"].get("curve"))
+
+
+def is_law_named(row: Row) -> bool:
+    """A law is named, which is wrong where the force is in no catalogue."""
+    return any(not named["name"].startswith("curve_") for named in row["named"])
+
+
+def is_drawn(row: Row) -> bool:
+    """It is drawn as a curve of something at the right joint, and nothing is named."""
+    return bool(row["named"]) and not is_law_named(row) and is_placed(row)
+
+
+def is_drawn_over_its_cause(row: Row) -> bool:
+    """And the curve is over what the force depends on."""
+    return is_drawn(row) and first(row) == row["truth"]["curve"]
+
+
 def summary(rows: Sequence[Row]) -> dict[str, Any]:
     """Rates over all robots, and of each."""
     done = [r for r in rows if "verdict" in r]
@@ -74,10 +94,27 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
         "all": _rates(done),
         **{name: _rates([r for r in done if r["truth"]["robot"] == name]) for name in robots},
         "confusion": confusion(done),
+        "unlisted": {name: _rates_of_unlisted([r for r in done if r["truth"]["robot"] == name])
+                     for name in robots} | {"all": _rates_of_unlisted(done)},
+    }  # fmt: skip
+
+
+def _rates_of_unlisted(rows: Sequence[Row]) -> dict[str, Any]:
+    mine = [r for r in rows if is_unlisted(r)]
+    return {
+        "law_named": rate(mine, is_law_named),
+        "drawn": rate(mine, is_drawn),
+        "drawn_over_cause": rate(
+            [r for r in mine if r["truth"]["curve"] != "-"], is_drawn_over_its_cause
+        ),
+        "unknown": rate(mine, lambda r: r["verdict"] == "unknown effect"),
+        "missed": rate(mine, lambda r: r["verdict"] == "nothing missing"),
+        "worse_than_fit": rate(mine, is_worse),
     }
 
 
 def _rates(rows: Sequence[Row]) -> dict[str, Any]:
+    rows = [r for r in rows if not is_unlisted(r)]
     hidden = [r for r in rows if not is_null(r)]
     right = [r for r in hidden if is_right(r)]
     return {
@@ -111,6 +148,16 @@ ROWS = (
     ("null_silent", "no name where nothing is hidden, goal 95 %"),
     ("worse_than_fit", "the other record predicted worse than by `fit`, goal none"),
     ("fit_worse_than_written", "`fit` predicts it worse than the values it began with"),
+)
+
+
+UNLISTED_ROWS = (
+    ("law_named", "a law is named, which is wrong"),
+    ("drawn", "drawn as a curve at the right joint, and no law is named"),
+    ("drawn_over_cause", "and over what the force depends on, where a curve can draw it"),
+    ("unknown", '"unknown effect"'),
+    ("missed", '"nothing missing"'),
+    ("worse_than_fit", "the other record predicted worse than by `fit`"),
 )
 
 
@@ -155,4 +202,24 @@ def section(rows: Sequence[Row]) -> str:
     ]
     for true, counts in found["confusion"].items():
         lines.append(f"| {true} | " + ", ".join(f"{n} {k}" for k, n in counts.items()) + " |")
+    if found["unlisted"]["all"]["law_named"]["of"]:
+        lines += _unlisted_lines(found["unlisted"])
     return "\n".join(lines) + "\n"
+
+
+def _unlisted_lines(found: Mapping[str, Any]) -> list[str]:
+    """The part of the section on forces that are in no catalogue."""
+    columns = [n for n in found if found[n]["law_named"]["of"]]
+    lines = [
+        "",
+        "Forces that are in no catalogue (`benchmarks/joint_worlds/unlisted.py`): a place where",
+        "something catches (bump), a soft stop, a brake that acts from a speed on (fast), a torque",
+        "that follows the position (beside) or the speed (drag) of a neighbouring joint, and a",
+        "viscous friction that waves along the way (ripple), which no curve can draw.",
+        "",
+        "| | " + " | ".join(c.replace("_", " ") for c in columns) + " |",
+        "|---" * (len(columns) + 1) + "|",
+    ]
+    for key, words in UNLISTED_ROWS:
+        lines.append(f"| {words} | " + " | ".join(said(found[c][key]) for c in columns) + " |")
+    return lines

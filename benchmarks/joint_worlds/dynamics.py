@@ -11,6 +11,7 @@ from joint_worlds.laws import GIVE, dahl, force, held, largest, stretched
 from joint_worlds.pendulum import PENDULUM, pendulum
 from joint_worlds.robot import JointRobot
 from joint_worlds.two_link import TWO_LINK, two_link
+from joint_worlds.unlisted import unlisted
 
 ROBOTS: dict[str, JointRobot] = {r.name: r for r in (PENDULUM, CART, TWO_LINK, ARM)}
 
@@ -36,6 +37,8 @@ def accelerations(code, p, joints, q, v, q0, z, tau, M, c, g, a):  # type: ignor
         low = largest(joints[i], q[i], v[i], tau[i], g[i], -1.0)
         high = largest(joints[i], q[i], v[i], tau[i], g[i], 1.0)
         a[i] = tau[i] - c[i] - g[i] + force(joints[i], q[i], v[i])
+        o = i - 1 if i > 0 else q.size - 1 if q.size < 2 else 1
+        a[i] += unlisted(joints[i], q[i], v[i], q[o], v[o])
         if joints[i, GIVE] > 0.0:
             a[i] -= dahl(joints[i], z[i], q[i] - q0[i], low, high)
         elif low > 0.0 or high > 0.0:

@@ -39,7 +39,8 @@ def truth_of(world: World) -> dict[str, object]:
     """What a study compares answers with."""
     return {
         "robot": world.robot.name, "effect": world.effect, "names": list(world.names),
-        "joint": world.joint, "places": list(world.places), "size": world.size,
+        "joint": world.joint, "places": list(world.places), "curve": world.curve,
+        "size": world.size,
         "shape": world.shape, "ratio": world.ratio,
         "parameters": world.truth, "push": world.push,
         "references": [r.kind for r in world.records],

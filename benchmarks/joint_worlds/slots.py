@@ -20,7 +20,10 @@ DELAY, LAG, LIMIT, SAG = 21, 22, 23, 24
 SHIFT, SCALE, OFF_COS, OFF_SIN = 25, 26, 27, 28
 WEAK, ZERO = 29, 30  # a drive that weakens with its force; an offset of the angle
 GIVE = 31  # compliance of friction that gives before it slips
-SLOTS = 32
+# forces that are in no catalogue (`unlisted`)
+BUMP, BUMP_PLACE, BUMP_WIDTH, STOP, STOP_PLACE, FAST, FAST_SPEED = 32, 33, 34, 35, 36, 37, 38
+BESIDE, BESIDE_WAVES, BESIDE_PHASE, DRAG, RIPPLE, RIPPLE_WAVES = 39, 40, 41, 42, 43, 44
+SLOTS = 45
 
 
 def plain_joints(n: int) -> np.ndarray:

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from joint_worlds import slots as at
+from joint_worlds.catalogue import EVERY, NULL
 from joint_worlds.dynamics import ROBOTS, terms
-from joint_worlds.hidden import HIDDEN, NULL, Habits, Shape
+from joint_worlds.hidden import Habits, Shape
 from joint_worlds.motion import closed_loop
 from joint_worlds.reference import KINDS, reference
 from joint_worlds.robot import PRESLIDING, SPREAD, Free, JointRobot
@@ -41,9 +42,11 @@ class World:
     Attributes:
         robot: as the nominal model knows it.
         effect: name of what is hidden, or "nothing".
-        names: names that are right.
+        names: names that are right; none where the force is in no catalogue.
         joint: where it acts.
         places: words of which an answer names one if its place is right; none where it is clear.
+        curve: the name of the curve that draws a force which is in no catalogue, "-" where none
+            does; "" where the effect is listed, or there is none.
         size: of the effect, in the unit of its law.
         shape: what else was drawn of it.
         ratio: how much of it shows, in units of the sensors' noise.
@@ -58,6 +61,7 @@ class World:
     names: tuple[str, ...]
     joint: str
     places: tuple[str, ...]
+    curve: str
     size: float
     shape: Shape
     ratio: float
@@ -83,7 +87,7 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
 
     Args:
         name: of the robot.
-        effect: a name of `HIDDEN`, or "nothing".
+        effect: a name of `EVERY`, or "nothing".
         seed: of all that is drawn.
         duration: of a record [s].
 
@@ -92,7 +96,7 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
     """
     robot = ROBOTS[name]
     rng = np.random.default_rng([seed, robot.code, zlib.crc32(effect.encode())])
-    hidden = HIDDEN.get(effect)
+    hidden = EVERY.get(effect)
     known = hidden.known if hidden else ()
     free = tuple(f for f in robot.all_free if f.kind not in known)
     base = held_base(robot)
@@ -117,10 +121,12 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
         for _ in aims
     ]
     places: tuple[str, ...] = ()
+    curve = ""
     true, size, shape, shown, joint = base, 0.0, {}, 0.0, ""
     if hidden is not None:
         j = int(rng.choice(hidden.joints(robot)))
         joint, places = robot.joints[j], hidden.places(robot, j)
+        curve = hidden.drawn_as(j) or hidden.curve
         habits = Habits(
             float(np.abs(still[1][:, j]).max()), float(np.abs(still[0][:, 1, j]).max()),
             float(np.abs(still[0][:, 0, j]).max()), robot.coulomb[j], robot.damping[j],
@@ -148,7 +154,7 @@ def make_world(name: str, effect: str, seed: int, duration: float = 20.0) -> Wor
         raise UnseenError(f"{effect} of {robot.name}: its controller does not hold it") from None
     return World(
         robot=robot, effect=effect, names=hidden.names(robot) if hidden else (NULL,), joint=joint,
-        places=places,
+        places=places, curve=curve,
         size=size, shape=shape, ratio=shown, free=free, coulomb="coulomb" not in known,
         truth={f.name: float(base.p[f.number] if f.number is not None else base.joints[f.slot])
                for f in free},
@@ -171,7 +177,7 @@ def with_effect(
     robot: JointRobot, base: Numbers, effect: str, j: int, size: float, shape: Shape
 ) -> Numbers:
     """A robot's numbers with an effect on joint j; a body's mass where the effect is one."""
-    hidden, p, joints = HIDDEN[effect], base.p.copy(), base.joints.copy()
+    hidden, p, joints = EVERY[effect], base.p.copy(), base.joints.copy()
     if hidden.body == "payload":
         p[list(robot.payload)] = size * p[robot.link[0]]
     elif hidden.body == "link":

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from joint_worlds import slots as at
+from joint_worlds.catalogue import EVERY, effects_of
 from joint_worlds.dynamics import ROBOTS
 from joint_worlds.files import write_world
-from joint_worlds.hidden import HIDDEN, Habits, effects_of
+from joint_worlds.hidden import Habits
 from joint_worlds.motion import windows
 from joint_worlds.seen import logged
 from joint_worlds.world import LEAST, UnseenError, held_base, make_world, with_effect
@@ -13,7 +14,7 @@ from joint_worlds.world import LEAST, UnseenError, held_base, make_world, with_e
 from identification import read_robot
 
 ROBOT = ROBOTS["two_link"]
-HABITS = Habits(force=2.0, speed=3.0, travel=1.0, coulomb=0.2, damping=0.1, often=1.5)
+HABITS = Habits(force=2.0, speed=3.0, travel=0.6, coulomb=0.2, damping=0.1, often=1.5)
 
 
 def shown(robot, numbers):
@@ -27,13 +28,13 @@ def shown(robot, numbers):
 
 
 def names():
-    return [name for name in HIDDEN if HIDDEN[name].joints(ROBOT)]
+    return [name for name in EVERY if EVERY[name].joints(ROBOT)]
 
 
 @pytest.mark.parametrize("name", names())
 def test_size_zero_is_no_effect_and_more_size_is_more(name):
-    base, joint = held_base(ROBOT), HIDDEN[name].joints(ROBOT)[0]
-    hidden, rng = HIDDEN[name], np.random.default_rng(0)
+    base, joint = held_base(ROBOT), EVERY[name].joints(ROBOT)[0]
+    hidden, rng = EVERY[name], np.random.default_rng(0)
     if "coulomb" in hidden.known:
         base.joints[:, at.COULOMB] = 0.0
     shape = hidden.shape(HABITS, rng)
