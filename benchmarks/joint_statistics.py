@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 from identification.prediction.twins import LEVEL, TWINS
@@ -11,6 +12,8 @@ from identification.sweep.statistics import median, rate, said
 
 WORSE = 1.02  # of an error: two searches that end at the same minimum differ by less
 NULL = "nothing"
+BANDS = (0.0, 0.5, 0.8, 0.9, 1.0)  # of confidence; 0.85 is the most that is said of a name where
+# something is left, 0.95 else
 Row = Mapping[str, Any]
 
 
@@ -94,6 +97,7 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
         "all": _rates(done),
         **{name: _rates([r for r in done if r["truth"]["robot"] == name]) for name in robots},
         "confusion": confusion(done),
+        "reliability": reliability(done),
         "unlisted": {name: _rates_of_unlisted([r for r in done if r["truth"]["robot"] == name])
                      for name in robots} | {"all": _rates_of_unlisted(done)},
     }  # fmt: skip
@@ -137,6 +141,19 @@ def confusion(rows: Sequence[Row]) -> dict[str, dict[str, int]]:
     for row in rows:
         counts.setdefault(row["truth"]["effect"], Counter())[first(row)] += 1
     return {true: dict(counts[true].most_common()) for true in sorted(counts)}
+
+
+def reliability(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
+    """How many first names are right, by the confidence with which they are said.
+
+    A curve is no name. Where a force is in no catalogue every name is wrong.
+    """
+    named = [r for r in rows if r["named"] and not first(r).startswith("curve_")]
+    out = {}
+    for low, high in pairwise(BANDS):
+        mine = [r for r in named if low <= r["named"][0]["confidence"] < high]
+        out[f"{100 * low:.0f} to {100 * high:.0f} %"] = rate(mine, is_right)
+    return out
 
 
 ROWS = (
@@ -202,6 +219,8 @@ def section(rows: Sequence[Row]) -> str:
     ]
     for true, counts in found["confusion"].items():
         lines.append(f"| {true} | " + ", ".join(f"{n} {k}" for k, n in counts.items()) + " |")
+    lines += ["", "| confidence of the first name | right |", "|---|---|"]
+    lines += [f"| {band} | {said(share)} |" for band, share in found["reliability"].items()]
     if found["unlisted"]["all"]["law_named"]["of"]:
         lines += _unlisted_lines(found["unlisted"])
     return "\n".join(lines) + "\n"

@@ -51,7 +51,8 @@ def row(verdict, *named, curve="curve_speed"):
         "truth": {"robot": "cart", "effect": "fast", "names": [], "joint": "rail", "size": 1.0,
                   "places": ["rail"], "curve": curve, "parameters": {}},
         "verdict": verdict, "errors": {"fit": 2.0, "discover": 1.0, "written": 3.0},
-        "named": [{"name": n, "where": w, "one_of": False, "rivals": []} for n, w in named],
+        "named": [{"name": n, "where": w, "one_of": False, "rivals": [],
+                   "confidence": 0.85} for n, w in named],
         "processor_seconds": 1.0,
     }  # fmt: skip
 
@@ -71,4 +72,9 @@ def test_answers_are_counted_by_what_they_claim():
     assert counted == {"law_named": (2, 8), "drawn": (3, 8), "drawn_over_cause": (1, 7),
                        "unknown": (1, 8), "missed": (1, 8), "worse_than_fit": (0, 8)}  # fmt: skip
     assert found["all"]["right_first"]["of"] == 0  # they are no worlds with a name
+    assert found["reliability"]["80 to 90 %"] == {
+        **found["reliability"]["80 to 90 %"],
+        "hits": 0,
+        "of": 1,
+    }
     assert "| a law is named, which is wrong | 2 of 7 [8, 64 %] |" in section(rows)
