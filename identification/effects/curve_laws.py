@@ -1,12 +1,18 @@
 """The laws of curves: forces on a joint that are drawn from the data, where no listed law fits.
 
-    f(x) = Σ_k c_k Λ_k(x)             Λ_k: 1 at the node x_k, 0 at all others, straight between
+    f(x) = Σ_k c_k Λ_k(x)             Λ_k: 1 at the node x_k, 0 at all others
 
     of speed        x = sgn(v) √(|v|/v_top),  nodes at ±¼, ±½, ±¾, ±1, and f(0) = 0
     of the load     x = f_u/f_top,            the same nodes, and f(0) = 0
     of position     x = (q - q_mid)/q_far,    nodes evenly from -1 to 1
     of time         x = 2 t/t_end - 1,        the same nodes
     of a neighbour  x of position or of speed, of the joint before or behind it, with its nodes
+
+Between nodes of speed and of the load a curve is straight, because frictions bend sharply there;
+between others it is the natural cubic spline, for hoses and springs do not. On it, with h = x_{k+1}
+- x_k, u = (x - x_k)/h, w = 1 - u and the second derivatives s_k h²/6 = (G c)_k,
+
+    f = w c_k + u c_{k+1} + (w³ - w) s_k h²/6 + (u³ - u) s_{k+1} h²/6        (de Boor 1978, IV)
 
 A force that depends on a speed or on the drive alone is none at rest or without the drive: what
 would be left is a constant force, which is an effect by itself. Nodes of speed are dense where
@@ -17,9 +23,26 @@ from __future__ import annotations
 
 from math import sqrt
 
+import numpy as np
 from numba import njit
 
 NODES = 8
+
+
+def _bending() -> tuple[tuple[float, ...], ...]:
+    """G: of values at the nodes, s h²/6 of the natural cubic spline, which does not bend at ends.
+
+    s_{k-1} + 4 s_k + s_{k+1} = (6/h²) (c_{k-1} - 2 c_k + c_{k+1})
+    """
+    inner = range(1, NODES - 1)
+    A, B = np.eye(NODES), np.zeros((NODES, NODES))
+    for k in inner:
+        A[k, k - 1 : k + 2] = 1.0, 4.0, 1.0
+        B[k, k - 1 : k + 2] = 1.0, -2.0, 1.0
+    return tuple(map(tuple, np.linalg.solve(A, B).tolist()))
+
+
+BENDING = _bending()
 
 
 @njit
@@ -34,11 +57,16 @@ def through_zero(x, c):  # type: ignore[no-untyped-def]
 
 
 @njit
-def straight(x, c):  # type: ignore[no-untyped-def]
-    """The curve with eight nodes evenly from -1 to 1."""
+def smooth(x, c):  # type: ignore[no-untyped-def]
+    """The natural cubic spline with eight nodes evenly from -1 to 1."""
     z = min(7.0, max(0.0, 3.5 * (x + 1.0)))
     k = min(6, int(z))
-    return c[k] + (z - k) * (c[k + 1] - c[k])
+    u, first, second = z - k, 0.0, 0.0
+    w = 1.0 - u
+    for j in range(NODES):
+        first += BENDING[k][j] * c[j]
+        second += BENDING[k + 1][j] * c[j]
+    return w * c[k] + u * c[k + 1] + (w**3 - w) * first + (u**3 - u) * second
 
 
 @njit
@@ -63,19 +91,19 @@ def curve_load(s, p):  # type: ignore[no-untyped-def]
 @njit
 def curve_position(s, p):  # type: ignore[no-untyped-def]
     """f((q - q_mid)/q_far)."""
-    return straight((s.q - s.q_mid) / s.q_far, p)
+    return smooth((s.q - s.q_mid) / s.q_far, p)
 
 
 @njit
 def curve_before(s, p):  # type: ignore[no-untyped-def]
     """f(x) of the joint before it in the model; none where there is no such joint."""
-    return straight(s.x_before, p) if s.x_before == s.x_before else 0.0
+    return smooth(s.x_before, p) if s.x_before == s.x_before else 0.0
 
 
 @njit
 def curve_behind(s, p):  # type: ignore[no-untyped-def]
     """f(x) of the joint behind it in the model; none where there is no such joint."""
-    return straight(s.x_behind, p) if s.x_behind == s.x_behind else 0.0
+    return smooth(s.x_behind, p) if s.x_behind == s.x_behind else 0.0
 
 
 @njit
@@ -93,4 +121,4 @@ def curve_speed_behind(s, p):  # type: ignore[no-untyped-def]
 @njit
 def curve_time(s, p):  # type: ignore[no-untyped-def]
     """f(2 t/t_end - 1)."""
-    return straight(2.0 * s.time / s.t_end - 1.0, p)
+    return smooth(2.0 * s.time / s.t_end - 1.0, p)
