@@ -8,6 +8,11 @@ candidate to explain. So, once no candidate is left to add, the deviation become
 part, and from here on every part is kept within three std of the others. In the model without the
 effect their common value stays where the n other parts have it, but for the little by which the
 root is above one: else it moves towards the part that is off, and all others are off the other way.
+
+A part is no effect where holding it within bounds costs less than BIC asks of a parameter. To first
+order, σ_j being the std of x_j with its prior, that is
+
+    (|x_j - mean| - bound)² (1/σ_j² - 1/s_g²) < ln n
 """
 
 from __future__ import annotations
@@ -34,7 +39,7 @@ from identification.estimation.options import Progress
 
 
 def find_deviants(task: DiscoveryTask, model: FittedModel) -> tuple[Candidate, ...]:
-    """Effects of the parts that deviate by more than parts do, the farthest first.
+    """Effects of the parts that deviate by more than parts do and must do so, the farthest first.
 
     Args:
         task: with the nominal model, which knows the effect of each deviation.
@@ -43,6 +48,8 @@ def find_deviants(task: DiscoveryTask, model: FittedModel) -> tuple[Candidate, .
     nominal, values = task.nominal_model, model.refit.point.values
     has = {candidate.key for candidate in model.candidates}
     groups = nominal.grouped
+    known = dict(zip(model.refit.point.space.names, model.refit.std, strict=True))
+    least = np.log(len(model.refit.point.log))
     far: dict[tuple[str, str], float] = {}
     for name, std in zip(nominal.names, nominal.std, strict=True):
         at = nominal.deviants.get(name)
@@ -50,11 +57,12 @@ def find_deviants(task: DiscoveryTask, model: FittedModel) -> tuple[Candidate, .
             group = groups.get(name, "")
             beside = nominal.groups[group] if group in nominal.names else ()  # of a common value
             off = _distance(values[name], [values[n] for n in beside if n != name]) / std
-            if off > task.options.max_scatter:
+            beyond = (off - task.options.max_scatter) * std
+            if beyond > 0 and beyond**2 * (known[name] ** -2 - std**-2) > least:
                 far[at] = max(off, far.get(at, 0.0))
     effects = {effect.name: effect for effect in task.effects}
-    known = [at for at in sorted(far, key=lambda at: -far[at]) if at[0] in effects]
-    return tuple(Candidate(effects[name], where, {}) for name, where in known)
+    listed = [at for at in sorted(far, key=lambda at: -far[at]) if at[0] in effects]
+    return tuple(Candidate(effects[name], where, {}) for name, where in listed)
 
 
 def _distance(value: float, others: Sequence[float]) -> float:
@@ -74,7 +82,8 @@ def accept_deviants(
     """The model with all parts within bounds, and the effects of those that deviate farther.
 
     All of them become effects at once, where the fit with free parts has ended; then one after the
-    other is taken out again, the nearest first, and stays out where it is not needed.
+    other is taken out again, the nearest first, and stays out where it is not needed. The common
+    values are free again once all have been tried.
 
     Args:
         task: what is asked.
@@ -93,21 +102,30 @@ def accept_deviants(
     start = _as_effects(task.nominal_model, candidates, model.refit.point.values)
     best = try_fit(task, (*model.candidates, *candidates), start, model)
     kept: list[tuple[Candidate, Proof, float]] = []
-    parent = best
+    parent, bound = best, task
     for candidate in reversed(candidates):
-        parent = None if best is None else _take_out(task, (candidate,), best)
-        if best is None or parent is None:
+        if best is None:
+            return model, ()
+        tighter, values = _without(bound, (candidate,), best)
+        parent = _fit_without(tighter, (candidate,), values, best)
+        if parent is None:
             return model, ()
         proof = prove(parent.validation, best.validation, task.options)
         gain = best.negative_bic - parent.negative_bic
         progress(f"{candidate.effect.name}, {candidate.where}: deviates, gain {gain:z.0f}")
         if gain > 0 and is_confirmed(proof, task.options):
             kept.insert(0, (candidate, proof, gain))
-        elif kept or candidate is not candidates[0]:  # the common value is free again
-            best = try_fit(task, parent.candidates, parent.refit.point.values, parent)
-    if kept and [candidate for candidate, *_ in kept] != [*candidates[:1]]:
-        parent = _take_out(task, [candidate for candidate, *_ in kept], best)
-    if best is None or parent is None or not kept:
+        else:
+            best, bound = parent, tighter
+    out = [candidate for candidate, *_ in kept]
+    if not kept or best is None:
+        return model, ()
+    if bound is not task:
+        best = try_fit(task, best.candidates, best.refit.point.values, best)
+    if best is not None and (bound is not task or out != [*candidates[:1]]):
+        tighter, values = _without(task, out, best)
+        parent = _fit_without(tighter, out, values, best)
+    if best is None or parent is None:
         return model, ()
     accepted = []
     for candidate, proof, gain in kept:
@@ -117,16 +135,10 @@ def accept_deviants(
     return parent, tuple(accepted)
 
 
-def _take_out(
-    task: DiscoveryTask, candidates: Sequence[Candidate], model: FittedModel | None
-) -> FittedModel | None:
-    """The model without some effects, begun where their parts deviate as far as parts do.
-
-    A robot without a part that is off cannot be, and its fit wanders: where few steps leave it far
-    behind, it has no more. None where it cannot be simulated.
-    """
-    if model is None:
-        return None
+def _without(
+    task: DiscoveryTask, candidates: Sequence[Candidate], model: FittedModel
+) -> tuple[DiscoveryTask, dict[str, float]]:
+    """The task whose common values stay, and values where parts deviate as far as parts do."""
     nominal, values = task.nominal_model, dict(model.refit.point.values)
     std = dict(zip(nominal.names, nominal.std, strict=True))
     for candidate in candidates:
@@ -134,7 +146,18 @@ def _take_out(
         for size, name in zip(candidate.sizes, own, strict=True):
             far = task.options.max_scatter * std[name]
             values[name] = float(np.clip(values[name] + values.pop(size), -far, far))
-    task = _with_common_held(task, candidates, values)
+    return _with_common_held(task, candidates, values), values
+
+
+def _fit_without(
+    task: DiscoveryTask, candidates: Sequence[Candidate], values: Mapping[str, float],
+    model: FittedModel,
+) -> FittedModel | None:  # fmt: skip
+    """The model without some effects.
+
+    A robot without a part that is off cannot be, and its fit wanders: where few steps leave it far
+    behind, it has no more. None where it cannot be simulated.
+    """
     out = {candidate.key for candidate in candidates}
     rest = tuple(c for c in model.candidates if c.key not in out)
     few = try_fit(task, rest, values, model, FEW)

@@ -135,3 +135,40 @@ def test_where_the_robot_cannot_be_simulated_all_stays_as_it_was(monkeypatch):
     task, model = asked(**{"part.k": 6.0})
     monkeypatch.setattr(deviants, "try_fit", lambda *_, **__: None)
     assert accept_deviants(task, model, 8, print) == (model, ())
+
+
+@pytest.mark.parametrize(("share", "found"), [(1.05, ["spring"]), (0.95, [])])
+def test_a_part_that_may_as_well_be_within_its_bound_is_none(share, found):
+    """Held there it must cost more than BIC asks, of what the data and not the prior say of it."""
+    task, model = asked(**{"part.k": 6.0})
+    at = model.refit.point.space.names.index("part.k")
+    beyond = abs(model.refit.point.values["part.k"]) - OPTIONS.max_scatter * PARTS["part.k"]
+    of_data = share * np.log(len(model.refit.point.log)) / beyond**2
+    std = model.refit.std.copy()
+    std[at] = (of_data + PARTS["part.k"] ** -2) ** -0.5
+    unsure = replace(model, refit=replace(model.refit, std=std))
+    assert [c.effect.name for c in find_deviants(task, unsure)] == found
+
+
+def test_common_values_are_free_again_in_the_end(monkeypatch):
+    task, model = asked(**{"part.k": 6.0, "part.f": 0.02})
+    tight = np.array([*KNOWN, 0.3, 1e-3])  # so that the force is tried too, and not kept
+    task = replace(task, nominal_model=replace(task.nominal_model, std=tight))
+    held, try_fit = [], deviants.try_fit
+
+    def told(task, candidates, *arguments, **named):
+        held.append((len(candidates), "mass" in task.nominal_model.held))
+        return try_fit(task, candidates, *arguments, **named)
+
+    def hold(task, *_):
+        return replace(task, nominal_model=replace(task.nominal_model, held={"mass": (1.0, 3.0)}))
+
+    monkeypatch.setattr(deviants, "_with_common_held", hold)
+    monkeypatch.setattr(deviants, "try_fit", told)
+    parent, accepted = accept_deviants(task, model, 8, print)
+    assert names(accepted) == ["spring"]
+    assert parent.candidates == ()
+    ones = [is_held for count, is_held in held if count == 1]
+    assert ones[0]  # without the first
+    assert not ones[-1]  # and in the end
+    assert accepted[0].model.candidates == (accepted[0].candidate,)
