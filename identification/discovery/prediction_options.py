@@ -29,6 +29,18 @@ class PredictionOptions(KalmanOptions):
         " round; the best `max_refits` of them, and those near them, are refitted to all.",
         "judgement", least=1,
     )  # fmt: skip
+    max_curves: int = option(
+        3, "candidates",
+        "Over a horizon: largest number of curves of the data that are fitted in a round, beside"
+        " the laws: of speed, of position, and of one thing more.",
+        "judgement", least=1,
+    )  # fmt: skip
+    max_output_ratio: float = option(
+        1.5, "times its noise",
+        "Over a horizon: an output whose error is larger has something left, whatever the others"
+        " do; its noise, which its own differences tell, is known to a tenth or two.",
+        "judgement", least=1.0,
+    )  # fmt: skip
     max_scored: int = option(
         300, "candidates",
         "Over a horizon: more of them, which robots of several joints have, are scored on some of"

@@ -17,9 +17,9 @@ def list_contenders(
     """The few best scores that are beyond chance, the best shape of each effect at each place.
 
     They are fitted to some windows, and the best of them to all: a score is linear, and what is
-    right need not have the best one. The best curve of the data is among them
-    only where its criterion promises to be better than that of every law: a curve can imitate any
-    law of what it depends on.
+    right need not have the best one. Curves of the data are among them only where their criterion
+    promises to be better than that of every law: a curve can imitate any law of what it depends on.
+    Several of them are, because what a cause depends on need not have the best score either.
 
     Args:
         scores: of all candidates, the best first.
@@ -27,13 +27,13 @@ def list_contenders(
         errors: number of errors that count as a sample of the criterion.
     """
     laws = _best_few([s for s in scores if not s.candidate.effect.is_curve], scores, options)
-    curves = _best_few([s for s in scores if s.candidate.effect.is_curve], scores, options)[:1]
+    curves = _best_few([s for s in scores if s.candidate.effect.is_curve], scores, options)
 
     def promised(s: WindowScore) -> float:
         return errors * s.gain - len(s.size) * np.log(max(2, errors))
 
     best = max([promised(s) for s in laws], default=0.0)
-    return [*laws, *(s for s in curves if promised(s) > best)]
+    return [*laws, *[s for s in curves if promised(s) > best][: options.max_curves]]
 
 
 def _best_few(

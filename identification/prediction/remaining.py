@@ -2,7 +2,9 @@
 
 Where the error at the horizon is that of the sensors, nothing is left that an effect or a shift of
 a record could explain. Among many that are tried one gains by luck, so that such a doubt counts
-only where more than `min_gap_share` is left above the sensors' noise.
+only where more than `min_gap_share` is left above the sensors' noise. All outputs together say that
+least of one that errs while the others, which the nominal model predicts as well, do not: an output
+by itself counts where its error is more than `max_output_ratio` times its noise.
 """
 
 from __future__ import annotations
@@ -27,6 +29,7 @@ from identification.prediction.result import (
     RefittedEffect,
 )
 from identification.prediction.state import RecordsState, rise
+from identification.prediction.unseen import Unseen
 
 
 def find_remaining(
@@ -43,22 +46,37 @@ def find_remaining(
     if state.worse_fit is not None:
         worse = WorseFit(rise(state.begun, state.worse_fit))
         out.append(Finding(FindingKind.WORSE_FIT, worse))
-    ratio = noise_ratio(state)
-    is_left = ratio > 1 + state.task.options.min_gap_share
+    left = _error_left(state)
     places: set[tuple[str, str]] = set()  # each is told once, as it did best
-    for r in rejected if is_left else ():
+    for r in rejected if left else ():
         seen = r.prediction
         if seen.is_everywhere and seen.fall > 0 and seen.t > state.task.options.min_proof_t:
             unproven = _unproven(r, state.model.plant)
             if (unproven.name, unproven.where) not in places:
                 out.append(Finding(FindingKind.UNPROVEN_EFFECT, unproven))
             places.add((unproven.name, unproven.where))
-    if state.accepted and is_left:
-        out.append(Finding(FindingKind.REMAINING_ERROR, RemainingError(ratio)))
+    if state.accepted and left:
+        out.append(Finding(FindingKind.REMAINING_ERROR, left))
     out += [Finding(FindingKind.DIFFERENT_RECORD, e) for e in different_records(state)]
-    told = told_shifts(shifts, len(state.task.records), state.task.options) if is_left else ()
+    told = told_shifts(shifts, len(state.task.records), state.task.options) if left else ()
     out += [Finding(FindingKind.SHIFTED_RECORD, e) for e in told]
     return tuple(out)
+
+
+def _error_left(state: RecordsState) -> RemainingError | None:
+    """What is left above the sensors' noise; None where that makes it."""
+    options, ratio = state.task.options, noise_ratio(state)
+    names, ratios = state.task.records[0].log.output_names, output_ratios(state.model.unseen)
+    worst = int(np.argmax(ratios))
+    if len(names) > 1 and ratios[worst] > max(options.max_output_ratio, ratio):
+        return RemainingError(float(ratios[worst]), names[worst])
+    return RemainingError(ratio) if ratio > 1 + options.min_gap_share else None
+
+
+def output_ratios(unseen: Unseen) -> np.ndarray:
+    """Rms error of each output over that of its noise, zero where the noise is not known, (ny,)."""
+    squares, noise = np.concatenate(unseen.of_outputs).mean(axis=0), unseen.noise
+    return np.sqrt(np.divide(squares, noise, out=np.zeros_like(squares), where=noise > 0))
 
 
 def noise_ratio(state: RecordsState) -> float:

@@ -53,9 +53,11 @@ def _worse_fit(e: records_evidence.WorseFit) -> str:
 
 
 def _remaining_error(e: records_evidence.RemainingError) -> str:
+    of = f" of {e.output}" if e.output else ""
+    noise = "its sensor's noise" if e.output else "the sensors' noise"
     return (
-        f"an error on unseen data that is {e.noise_ratio:.3g} times the sensors' noise is left, and"
-        " no candidate explains it"
+        f"an error{of} on unseen data that is {e.noise_ratio:.3g} times {noise} is left, and no"
+        " candidate explains it"
     )
 
 

@@ -32,7 +32,7 @@ SAYS = {
     FindingKind.STRUCTURED_INPUT_ERROR: "follows the rate of its output, most of all on current_3",
     FindingKind.DOUBTFUL_EFFECT: "tau = 250 ± 100 µs (delay), explains",
     FindingKind.OVERSIZED_EFFECT: "tau = 0.300 s where 0.100 s is thought to be the most",
-    FindingKind.REMAINING_ERROR: "7.1 times the sensors' noise",
+    FindingKind.REMAINING_ERROR: "error of x on unseen data that is 7.1 times its sensor's noise",
     FindingKind.DIFFERENT_RECORD: "c.csv is predicted 4.2 times worse",
     FindingKind.SHIFTED_RECORD: "c.csv looks as if its inputs acted 14.0 ± 3.0 ms earlier than",
     FindingKind.WORSE_FIT: "worse than those of the model (mean square +796 %)",

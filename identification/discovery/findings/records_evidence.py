@@ -11,9 +11,12 @@ class RemainingError:
 
     Attributes:
         noise_ratio: its rms over that of the sensors' noise.
+        output: of which both are, the one whose error is the most times its noise; "" where they
+            are of all outputs together.
     """
 
     noise_ratio: float
+    output: str = ""
 
 
 @dataclass(frozen=True)
