@@ -35,6 +35,12 @@ class PredictionOptions(KalmanOptions):
         " the laws: of speed, of position, and of one thing more.",
         "judgement", least=1,
     )  # fmt: skip
+    drawn_share: float = option(
+        0.5, "of a fall of the mean square",
+        "Over a horizon: a law at whose joint a curve was found later is named where it still"
+        " explains more than this share of what it explained alone.",
+        "judgement", most=1.0,
+    )  # fmt: skip
     max_output_ratio: float = option(
         1.5, "times its noise",
         "Over a horizon: an output whose error is larger has something left, whatever the others"

@@ -12,7 +12,8 @@ from identification.prediction.unseen import Prediction
 
 AT_BOUND = 1e-6  # relative distance from a bound that is on it
 Doubt = Literal[
-    "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve"
+    "numbers", "chance", "lengths", "record", "little", "size", "bound", "exchange", "curve",
+    "drawn",
 ]  # fmt: skip
 
 
@@ -41,13 +42,17 @@ def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Dou
 def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
     """Whether a free size of the last effect is beyond its own std, where it has one.
 
-    It must be beyond what steps of the simulation err by too.
+    It must be beyond what steps of the simulation err by too. The nodes of a curve go together, and
+    with a free level or slope beside it each of them may be unknown where the curve is not: of it
+    the evidence speaks, which pays for every node.
     """
     std, values, c = model.std, model.fit.values, model.candidates[-1]
     least = {n: s.smallest for n, s in zip(c.sizes, c.effect.sizes, strict=True)}
     own = [n for n in model.fit.problem.names if n.partition(" [")[0] in c.free]
+    times = 0.0 if c.effect.is_curve else options.min_proof_t
     return not own or any(
-        abs(values[n]) > max(options.min_proof_t * std[n], least[n.partition(" [")[0]]) for n in own
+        abs(values[n]) > max(times * std[n] if times else 0.0, least[n.partition(" [")[0]])
+        for n in own
     )
 
 

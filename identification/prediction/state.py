@@ -19,11 +19,13 @@ from identification.errors import InputError
 from identification.estimation.options import Progress
 from identification.prediction.beside_curves import without_laws_beside_curves
 from identification.prediction.blocks import count_blocks
+from identification.prediction.drawn_laws import without_drawn_laws
 from identification.prediction.exchange import exchanged, without_contradicted
 from identification.prediction.extension import with_fitting_steps
 from identification.prediction.idle_places import without_idle_places
 from identification.prediction.model import WindowModel
 from identification.prediction.nominal_fit import as_begun, fit_nominal
+from identification.prediction.one_curve import with_one_curve
 from identification.prediction.proof import find_doubt
 from identification.prediction.records import Record
 from identification.prediction.rivals import find_rivals, prune
@@ -213,10 +215,12 @@ def _pruned(state: RecordsState, progress: Progress) -> RecordsState:
     model, accepted = without_idle_places(model, [state.accepted[k] for k in keep], *rest)
     others = {a.candidate.key: state.alternatives[k] for a, k in zip(accepted, keep, strict=True)}
     base, confirm = task.nominal_model, task.confirm
+    model, accepted, several = with_one_curve(model, accepted, base, task.effects, *rest[1:])
     model, accepted, lost = without_laws_beside_curves(model, accepted, base, confirm, progress)
+    model, accepted, drawn = without_drawn_laws(model, accepted, *rest)
     return replace(
-        state, model=model, accepted=accepted, rejected=(*lost, *state.rejected),
-        alternatives=tuple(others[a.candidate.key] for a in accepted),
+        state, model=model, accepted=accepted, rejected=(*several, *drawn, *lost, *state.rejected),
+        alternatives=tuple(others.get(a.candidate.key, ()) for a in accepted),
     )  # fmt: skip
 
 

@@ -21,6 +21,7 @@ DOUBTS = {
     " something else",
     "exchange": "where the other records are fitted instead, it predicts a record worse, or all of"
     " them on average",
+    "drawn": "a curve of the data at the same joint does the same, and more",
     "curve": "it was found beside a curve of the data, which leaves what its nodes cannot draw",
 }
 

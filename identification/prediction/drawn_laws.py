@@ -1,0 +1,72 @@
+"""Laws whose work a curve of the data does, which was found later at the same joint.
+
+    m: mean square on unseen records          m_1 - m_2: what the law explained when it was found
+                                              m_3 - m_4: what it explains beside the curve
+
+A cause that is in no catalogue is first explained by its nearest neighbour, as well as that can,
+and then a curve draws what is left. The two together are one unlisted force, and no name: the curve
+alone does what the law did. Where m_3 - m_4 is less than `drawn_share` of m_1 - m_2, the law is
+told and not named. A law whose cause is another one than the curve's explains as much as before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
+from identification.estimation.options import Progress
+from identification.prediction.extension import refitted
+from identification.prediction.model import WindowModel
+from identification.prediction.records import Record
+from identification.prediction.selection import Contender
+
+ON_JOINTS = {"force", "friction"}  # hooks of what a curve, which is a force, may do as well
+
+
+def without_drawn_laws(
+    model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
+    confirm: Sequence[Record], options: DiscoveryOptions, progress: Progress,
+) -> tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]:  # fmt: skip
+    """The model without laws that a later curve at their joint makes needless.
+
+    Args:
+        model: with all of the accepted effects.
+        accepted: in their order.
+        nominal_model: the other free parameters, and the horizon.
+        confirm: records that no fit may see.
+        options: which share of its work a law must keep.
+        progress: is told which laws are left out.
+
+    Returns:
+        The model, the effects that it keeps, and those that it lost, which are in doubt.
+    """
+    kept, lost = [*accepted], []
+    for k, law in enumerate(accepted):
+        places = [c.candidate.where for c in accepted[k + 1 :] if c.candidate.effect.is_curve]
+        effect = law.candidate.effect
+        if effect.is_curve or law.candidate.where not in places or not {*effect.hooks} <= ON_JOINTS:
+            continue
+        rest = [c for c in model.candidates if c.key != law.candidate.key]
+        without = refitted(model, rest, nominal_model, confirm)
+        if without is None:
+            continue
+        beside = _mean_square(without) - _mean_square(model)
+        if beside < options.drawn_share * _explained(law):
+            progress(f"{effect.name}, {law.candidate.where}: a curve does the same, and more")
+            model, kept = without, [a for a in kept if a is not law]
+            lost.append(replace(law, doubt="drawn"))
+    return model, tuple(kept), tuple(lost)
+
+
+def _mean_square(model: WindowModel) -> float:
+    return float(np.mean(np.concatenate(model.unseen.at_horizon)))
+
+
+def _explained(law: Contender) -> float:
+    """By how much the mean square fell when the law was found: m_2 F/(1 - F)."""
+    after, fall = _mean_square(law.model), law.prediction.fall
+    return after * fall / (1 - fall)

@@ -1,0 +1,85 @@
+"""One curve of the data instead of several laws that were found at one joint.
+
+A cause that is in no catalogue may be put together from laws: a place where something catches, from
+a friction that differs by direction and a cogging. If one curve, in the place of all laws at the
+joint, has more evidence for it than they have, their cause is unlisted: they are told and not
+named. Laws that are there have the evidence of their few numbers, which a curve has not.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+from identification.discovery.nominal_model import NominalModel
+from identification.discovery.options import DiscoveryOptions
+from identification.effects.effect import Effect
+from identification.errors import InputError
+from identification.estimation.options import Progress
+from identification.prediction.contenders import count_numbers
+from identification.prediction.drawn_laws import ON_JOINTS
+from identification.prediction.evidence import all_gains, count_windows, evidence
+from identification.prediction.extension import refitted
+from identification.prediction.model import WindowModel
+from identification.prediction.records import Record
+from identification.prediction.screening import score_all
+from identification.prediction.selection import Contender, refit_contenders
+
+
+def with_one_curve(
+    model: WindowModel, accepted: Sequence[Contender], nominal_model: NominalModel,
+    effects: Sequence[Effect], confirm: Sequence[Record], options: DiscoveryOptions,
+    progress: Progress,
+) -> tuple[WindowModel, tuple[Contender, ...], tuple[Contender, ...]]:  # fmt: skip
+    """The model with a curve in the place of several laws at a joint, where that has more evidence.
+
+    Args:
+        model: with all of the accepted effects.
+        accepted: in their order.
+        nominal_model: the other free parameters, and the horizon.
+        effects: the candidates, curves among them.
+        confirm: records that no fit may see.
+        options: all judgement constants.
+        progress: is told what is tried.
+
+    Returns:
+        The model, the effects that it has, and those that it lost, which are in doubt.
+    """
+    curves, lost = [e for e in effects if e.is_curve], []
+    for where in _joints_of_several(accepted):
+        laws = [a for a in accepted if a.candidate.where == where and _is_law(a)]
+        out = {a.candidate.key for a in laws}
+        rest = [c for c in model.candidates if c.key not in out]
+        bare = refitted(model, rest, nominal_model, confirm)
+        if bare is None:
+            continue
+        scores = [s for s in score_all(bare, curves, options) if s.candidate.where == where]
+        horizon = float(nominal_model.horizon or 0.0)
+        try:
+            parent, tried = refit_contenders(bare, scores, horizon, confirm, options, progress)
+        except InputError:
+            continue
+        windows, outputs = count_windows(parent), len(parent.scale)
+        numbers = sum(count_numbers(a.candidate) for a in laws)
+        theirs = evidence([all_gains(parent, model)], [numbers], windows, outputs)[0, 0]
+        if tried and tried[0].is_proven and tried[0].criterion > theirs:
+            best = tried[0]
+            progress(f"{best.candidate.effect.name}, {where}: does what {len(laws)} laws do")
+            model = best.model
+            accepted = [*(a for a in accepted if a not in laws), best]
+            lost += [replace(a, doubt="drawn") for a in laws]
+    return model, tuple(accepted), tuple(lost)
+
+
+def _joints_of_several(accepted: Sequence[Contender]) -> list[str]:
+    """Joints at which several laws and no curve were accepted."""
+    curves = {a.candidate.where for a in accepted if a.candidate.effect.is_curve}
+    count = Counter(a.candidate.where for a in accepted if _is_law(a))
+    return [where for where, n in count.items() if n > 1 and where not in curves]
+
+
+def _is_law(a: Contender) -> bool:
+    """Whether it is a law of a force, which a curve may be as well."""
+    effect = a.candidate.effect
+    return not effect.is_curve and bool(effect.hooks) and {*effect.hooks} <= ON_JOINTS
