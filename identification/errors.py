@@ -124,6 +124,8 @@ def unknown_name(
     if len(names) > LISTED:
         shown = sorted(get_close_matches(name, names, n=NEAREST, cutoff=0.0))
         rest = f" and {len(names) - len(shown)} more"
+    if any("," in n for n in shown):
+        shown = [repr(n) for n in shown]
     return InputError(f"unknown {what} {name!r};{hint} known: {', '.join(shown)}{rest}")
 
 

@@ -14,6 +14,7 @@ from uuid import uuid4
 from identification.errors import InputError
 
 _BY_HAND = 2**20  # bytes
+_ALIKE = 0.75  # share of letters of a file that may be meant
 _SAID = 120  # letters of another library's message
 MAX_BYTES = 512 * 2**20  # hours at 1 kHz; more would fill the memory before it failed
 
@@ -117,8 +118,8 @@ def read_toml(path: Path, what: str = "TOML file") -> dict[str, Any]:
 def _missing(path: Path) -> str:
     if not path.parent.is_dir():
         return f"no such folder: {path.parent}; check the path of {path.name}"
-    near = get_close_matches(path.name, [f.name for f in path.parent.iterdir()], n=3)
-    hint = f"did you mean {', '.join(near)}" if near else "check its name and folder"
+    near = get_close_matches(path.name, [f.name for f in path.parent.iterdir()], n=3, cutoff=_ALIKE)
+    hint = f"did you mean {' or '.join(near)}?" if near else "check its name and folder"
     return f"no such file: {path}; {hint}"
 
 

@@ -68,7 +68,13 @@ def unknown_number(name: str, effects: Sequence[Effect], is_free: bool = True) -
                 f" of a model has; did you mean {path!r}?"
             )
         what = "effect" if head == name else f"effect in {name!r}:"
-        return unknown_effect(what, head, effects, _meant(name, every))
+        error = unknown_effect(what, head, effects, _meant(name, every))
+        if not is_free or head != name:
+            return error
+        return InputError(
+            f"{error}; a parameter of the model itself has a path, such as joint/NAME.damping or"
+            " body/NAME.mass"
+        )
     numbers = _numbers(own, is_free)
     # of a robot with slides and hinges each kind has effects of its own
     plain = head.removeprefix(SLIDE)

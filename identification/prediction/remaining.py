@@ -31,6 +31,8 @@ from identification.prediction.result import (
 from identification.prediction.state import RecordsState, rise
 from identification.prediction.unseen import Unseen
 
+FEWEST = 3  # records: of two nobody knows which one is different
+
 
 def find_remaining(
     state: RecordsState, rejected: Sequence[RefittedEffect], shifts: Sequence[ShiftedRecord]
@@ -102,7 +104,9 @@ def different_records(state: RecordsState) -> list[DifferentRecord]:
         errors[f"{r.log.name} (fit)"] = np.log(
             np.mean((e / scale) ** 2, axis=(1, 2)) + unseen.floor
         )
-    out = []
+    out: list[DifferentRecord] = []
+    if len(errors) < FEWEST:
+        return out
     for name, mine in errors.items():
         rest = np.concatenate([e for n, e in errors.items() if n != name])
         ratio = float(np.exp((mine.mean() - rest.mean()) / 2))

@@ -28,18 +28,23 @@ from identification.logs.names import listed
 from inca_mj.twin.bounds import BOUNDS
 from inca_mj.twin.cable_lengths import some
 from inca_mj.twin.followed_log import SETTLED, follow, shares_of
-from inca_mj.twin.odd_angle import mended_angle, odd_angle, odd_words
+from inca_mj.twin.odd_angle import is_turned, mended_angle, odd_angle, odd_words
 from inca_mj.twin.other_currents import apart, is_right, likely_units
 from inca_mj.twin.twin import Twin
 
 
-def dead_current(plant: Twin, part: Log, predicted: np.ndarray) -> str | None:
+def dead_current(
+    plant: Twin, part: Log, predicted: np.ndarray
+) -> tuple[str, tuple[str, ...]] | None:
     """Which logged current stands still, by what that is told, and the cure; None if none does.
 
     Args:
         plant: the twin.
         part: the first motion, n samples of all eight angles, which all move.
         predicted: the twin's angles under the logged currents, shape (n, 8) [rad].
+
+    Returns:
+        The sentence, and what it judges, words of `JUDGED`.
     """
     ranges = np.ptp(part.inputs, axis=0)
     still = np.flatnonzero(ranges <= BOUNDS.constant * np.median(ranges)).tolist()
@@ -56,8 +61,11 @@ def dead_current(plant: Twin, part: Log, predicted: np.ndarray) -> str | None:
             for dead, signs in _likely(plant, mended, still):
                 currents = _missing(plant, mended, dead, signs, own)
                 if currents is not None:
-                    beside = "" if angle is None else f"; beside it, {odd_words(part, *angle)}"
-                    return _said(part, dead, currents, signs) + beside
+                    said = _said(part, dead, currents, signs)
+                    if angle is None:
+                        return said, ("sensors",)
+                    other = "wiring" if is_turned(angle[1]) else "units"
+                    return f"{said}; beside it, {odd_words(part, *angle)}", ("sensors", other)
     return None
 
 

@@ -60,7 +60,7 @@ def mended_angle(log: Log, k: int, factor: float) -> Log:
         factor: of `odd_angle`, without unit.
     """
     scale = np.ones(DRIVES)
-    scale[k] = -1.0 if _is_turned(factor) else factor
+    scale[k] = -1.0 if is_turned(factor) else factor
     return replace(log, outputs=log.outputs * scale)
 
 
@@ -73,7 +73,7 @@ def odd_words(log: Log, k: int, factor: float) -> str:
         factor: of `odd_angle`, without unit.
     """
     name = log.output_names[k]
-    if not _is_turned(factor):
+    if not is_turned(factor):
         return scaled_words(name, factor)
     return (
         f"{name} fits the cables of one platform, as the other angles say, only with the other"
@@ -111,7 +111,7 @@ def _as_unit(name: str, factor: float) -> str:
     return as_factor(name, factor)
 
 
-def _is_turned(factor: float) -> bool:
+def is_turned(factor: float) -> bool:
     """Whether a factor is one of the sign and of nothing else."""
     return 1 / BOUNDS.beyond < -factor < BOUNDS.beyond
 

@@ -70,9 +70,9 @@ def refuse_miswired(log: Log, plant: Twin, trust: Sequence[str] = ()) -> None:
         return
     every, longer = bool(moves.all()), _longer(log, part)
     part, predicted = _with_outputs(part, moves), predicted[:, moves]
-    dead = dead_current(plant, part, predicted) if every and "sensors" not in overruled else None
-    if dead is not None:
-        raise InputError(f"log {log.name!r}: {dead}{overruled_by('sensors')}{ADVICE}")
+    dead = dead_current(plant, part, predicted) if every else None
+    if dead is not None and {*dead[1]} - overruled:
+        raise InputError(f"log {log.name!r}: {dead[0]}{overruled_by(*dead[1])}{ADVICE}")
     wiring = None
     if "wiring" not in overruled:
         wiring = _other_wiring(plant, part, predicted, longer if every else None)

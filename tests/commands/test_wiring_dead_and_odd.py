@@ -62,6 +62,14 @@ def test_a_current_alone_is_told_alone(plant):
     assert "beside it" not in str(refused.value)
 
 
+@pytest.mark.parametrize(("factor", "word"), [(-1.0, "wiring"), (0.5, "units")])
+def test_both_must_be_overruled(plant, factor, word):
+    log = wrong(4, 5, factor)
+    with pytest.raises(InputError, match=f"write --trust sensors {word}, with which"):
+        refuse_miswired(log, plant, ("sensors",))
+    refuse_miswired(log, plant, ("sensors", word))
+
+
 def test_what_is_told_of_the_angle_mends_it(plant, tmp_path):
     with pytest.raises(InputError) as refused:
         refuse_miswired(wrong(7, 3, -1.0), plant)
