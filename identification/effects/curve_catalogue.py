@@ -3,7 +3,8 @@
 A curve has eight sizes, so that a law that explains as much with fewer wins by its criterion. It
 acts on one joint, because each joint has a range of its own. What it depends on may be a neighbour:
 a hose, a spring or a cable between two bodies pulls at one joint by the position of another, and a
-belt or a motor that both joints turn rubs by its speed.
+belt or a motor that both joints turn rubs by its speed. It may be as strong as the drives: a soft
+stop holds them.
 """
 
 from __future__ import annotations
@@ -49,4 +50,4 @@ def _curve(g: Group, law: Function, said: str, phrase: str) -> Effect:
 
 
 def _size(g: Group, k: int) -> Size:
-    return g.size(f"c_{k}", 0.3 * g.F, g.f, f"force at node {k}")
+    return g.size(f"c_{k}", g.F, g.f, f"force at node {k}")
