@@ -20,6 +20,8 @@ def put_into(*columns: int, **named: int) -> Put:
 
 
 def wave(cos: int, sin: int, waves: int) -> Put:
+    """Writes cosine and sine of the drawn phase, and how many waves where that has a column."""
+
     def put(joint: np.ndarray, size: float, shape: Shape) -> None:
         joint[cos], joint[sin] = size * np.cos(shape["phase"]), size * np.sin(shape["phase"])
         if waves >= 0:
@@ -40,10 +42,12 @@ def signed(put: Put) -> Put:
 
 
 def sign(habits: Habits, rng: Rng) -> Shape:
+    """Either sign."""
     return {"sign": float(rng.choice([-1.0, 1.0]))}
 
 
 def peak(habits: Habits, rng: Rng) -> Shape:
+    """Speed [rad/s or m/s] and power of a Stribeck peak."""
     return {"v_s": habits.speed * float(np.exp(rng.uniform(np.log(0.03), np.log(0.2)))),
             "p": float(rng.uniform(1.0, 2.0))}  # fmt: skip
 
@@ -64,15 +68,18 @@ def wave_of(habits: Habits, rng: Rng) -> Shape:
 
 
 def bump(habits: Habits, rng: Rng) -> Shape:
+    """Place and width of a bump within the travel [rad or m]."""
     return {**sign(habits, rng), "place": float(habits.travel * rng.uniform(-0.5, 0.5)),
             "width": float(habits.travel * rng.uniform(0.15, 0.4))}  # fmt: skip
 
 
 def stop(habits: Habits, rng: Rng) -> Shape:
+    """Where a soft stop begins, from the middle [rad or m]."""
     return {"place": float(habits.travel * rng.uniform(0.4, 0.7))}
 
 
 def fast(habits: Habits, rng: Rng) -> Shape:
+    """The speed from which a brake acts [rad/s or m/s]."""
     return {"speed": float(habits.speed * rng.uniform(0.2, 0.5))}
 
 
@@ -82,4 +89,5 @@ def beside(habits: Habits, rng: Rng) -> Shape:
 
 
 def ripple(habits: Habits, rng: Rng) -> Shape:
+    """One to three periods in the whole travel [1/rad or 1/m]."""
     return {"waves": float(np.pi / habits.travel * rng.uniform(1.0, 3.0))}

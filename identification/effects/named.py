@@ -69,11 +69,11 @@ def unknown_number(name: str, effects: Sequence[Effect], is_free: bool = True) -
             )
         what = "effect" if head == name else f"effect in {name!r}:"
         error = unknown_effect(what, head, effects, _meant(name, every))
-        if not is_free or head != name:
+        if not is_free or head != name or head in USUAL:
             return error
         return InputError(
-            f"{error}; a parameter of the model itself has a path, such as joint/NAME.damping or"
-            " body/NAME.mass"
+            f"{name!r} is neither a path into the model, such as joint/NAME.damping, nor a number"
+            f" of an effect: {error}"
         )
     numbers = _numbers(own, is_free)
     # of a robot with slides and hinges each kind has effects of its own
