@@ -18,6 +18,7 @@ from identification.logs.sampling import (
     check_time,
     rows_between,
     sampling_time,
+    snapped,
 )
 from identification.logs.units import check_si
 
@@ -29,7 +30,8 @@ class Log:
     """One experiment: n samples of nu inputs and ny outputs; nothing in it can be changed.
 
     Attributes:
-        time: time stamps (n,) [s], evenly spaced.
+        time: time stamps (n,) [s], evenly spaced; stamps that are even to their digits are put on
+            the grid that they round.
         inputs: what was commanded, shape (n, nu), each column in its unit.
         outputs: what was measured, shape (n, ny), each column in its unit.
         input_names: names of the actuators (nu).
@@ -82,6 +84,9 @@ class Log:
         put("factors", MappingProxyType(dict(self.factors)))
         put("splits", MappingProxyType({k: (a, b) for k, (a, b) in self.splits.items()}))
         self._check()
+        # A part is judged by its own stamps, which may be fewer and printed with more digits than
+        # those of the whole; on the grid itself every part of an even log is even.
+        put("time", _frozen(snapped(self.time)))
 
     def _check(self) -> None:
         """Refuse values that the class does not admit."""

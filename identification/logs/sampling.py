@@ -51,6 +51,19 @@ def rows_between(time: FloatArray, start: float, end: float) -> tuple[int, int]:
     return int(first), int(last)
 
 
+def snapped(time: FloatArray) -> FloatArray:
+    """Returns the regular grid next to stamps that `check_time` accepts, shape (n,) [s].
+
+    Stamps that are a regular grid already, but for the rounding of a float, stay as they are.
+    """
+    step = (float(time[-1]) - float(time[0])) / (len(time) - 1)
+    off = np.abs(time - grid(time[0], step, len(time)))
+    # Four roundings: of the stamp, of the step, of the product k h, and of their sum.
+    if np.all(off <= 4 * np.spacing(np.abs(time).max())):
+        return time
+    return grid(time[0], sampling_time(time), len(time))
+
+
 def check_time(
     time: FloatArray, place: Callable[[int], str], declared: float | None = None
 ) -> None:
