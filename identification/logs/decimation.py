@@ -3,9 +3,10 @@
     u(t) = Σ_k c_k φ_k(t),     c = argmin ∫ (u_logged(t) - u(t))² dt
 
 φ_k are the basis functions of the new hold. For "zoh" they are boxes between samples, and c_k is
-the mean. For "foh" they are the hat functions of straight lines, which also keep the first moment
-of the input between two samples. The outputs are not filtered: a filter would delay the outputs
-against the inputs, and a fit would find this delay.
+the mean. For "foh" they are the hat functions of straight lines; c_k is a weighted mean over the
+samples on both sides of the stamp, which also keeps the first moment of the input between two
+samples, so that nothing is shifted in time. The outputs are not filtered: a mean would take away
+from their curvature, and from the inputs another part.
 """
 
 from __future__ import annotations
@@ -21,28 +22,32 @@ from identification.logs.log import Log
 
 
 def decimate(log: Log, every: int, hold: Literal["zoh", "foh"] = "foh") -> Log:
-    """Every n-th sample of a log whose inputs were held between samples.
+    """Returns every n-th sample of a log, with inputs that do the same work between them.
 
     Args:
-        log: a log of hold "zoh"; its extras are sampled in the same way as its outputs.
+        log: its inputs are held (hold "zoh") or straight lines between samples ("foh"); its extras
+            are sampled in the same way as its outputs.
         every: n.
         hold: the hold of the new inputs.
 
     Raises:
-        InputError: the hold of the log is not "zoh", or fewer than 3 samples are left.
+        InputError: fewer than 3 samples are left.
     """
     n = (len(log) - 1) // every if every >= 1 else 0
-    if n < 2 or log.hold != "zoh":
+    if n < 2:
         raise InputError(
-            f"every {every}-th of {len(log)} samples of hold {log.hold!r} makes no log; take fewer"
-            " away, from a log of hold 'zoh'"
+            f"every {every}-th of {len(log)} samples makes no log of 3 samples; take fewer away"
         )
     rows = slice(0, n * every + 1, every)
-    boxes = log.inputs[: n * every].reshape(n, every, -1)
+    first = log.inputs[: n * every].reshape(n, every, -1)  # inputs where the short steps begin
+    last = first  # and where they end: the same, where they are held
+    if log.hold == "foh":
+        last = log.inputs[1 : n * every + 1].reshape(n, every, -1)
     if hold == "zoh":
-        inputs = np.concatenate([boxes.mean(axis=1), log.inputs[n * every][None]])
+        means = ((first + last) / 2).mean(axis=1)
+        inputs = np.concatenate([means, log.inputs[n * every][None]])
     else:
-        inputs = _lines(boxes)
+        inputs = _lines(first, last)
     return replace(
         log,
         time=log.time[rows],
@@ -53,13 +58,22 @@ def decimate(log: Log, every: int, hold: Literal["zoh", "foh"] = "foh") -> Log:
     )
 
 
-def _lines(boxes: np.ndarray) -> np.ndarray:
-    """Corners of the straight lines nearest to held inputs (n, every, nu), shape (n + 1, nu)."""
-    n, every, nu = boxes.shape
-    rise = (np.arange(every) + 0.5) / every  # mean of the rising half of a hat over each box
+def _lines(first: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """Computes the corners of the straight lines nearest to inputs, shape (n + 1, nu).
+
+    Args:
+        first: inputs where each of the `every` short steps of a long one begins, shape
+            (n, every, nu).
+        last: inputs where it ends; between both they are a straight line.
+    """
+    n, every, nu = first.shape
+    middle = (np.arange(every) + 0.5) / every  # of each short step, on the rising half of a hat
+    mean, rise = (first + last) / 2, (last - first) / (12 * every)
     b = np.zeros((n + 1, nu))
-    b[:-1] += np.einsum("i,kiu->ku", 1 - rise, boxes) / every
-    b[1:] += np.einsum("i,kiu->ku", rise, boxes) / every
+    # The integral of the product of two straight lines is that of their means, and a twelfth of
+    # the product of their rises.
+    b[:-1] += (np.einsum("i,kiu->ku", 1 - middle, mean) - rise.sum(axis=1)) / every
+    b[1:] += (np.einsum("i,kiu->ku", middle, mean) + rise.sum(axis=1)) / every
     diagonal = np.full(n + 1, 2 / 3)
     diagonal[[0, -1]] = 1 / 3
     return solveh_banded(np.vstack([np.full(n + 1, 1 / 6), diagonal]), b)

@@ -82,18 +82,13 @@ def refuse_milliseconds(model: mujoco.MjModel, file: RobotFile, log: Log, path: 
 
 
 def refuse_every(file: RobotFile, log: Log) -> None:
-    """Refuse to thin a log whose parts would become too short, or whose hold is not "zoh".
+    """Refuse to thin a log whose parts would become too short.
 
     Raises:
-        InputError: one of the two is the case.
+        InputError: they would.
     """
     if file.every == 1:
         return
-    if log.hold != "zoh":
-        raise InputError(
-            f"every in {file.path} thins logs of hold 'zoh', and log {log.name!r} is of hold"
-            f" {log.hold!r}; leave every out"
-        )
     if not _left(log, file.every):
         largest = max((n for n in range(1, len(log)) if _left(log, n)), default=1)
         raise InputError(

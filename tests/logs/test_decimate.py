@@ -61,5 +61,41 @@ def test_what_makes_no_log_is_refused():
     for every in (0, 600):
         with pytest.raises(InputError, match="makes no log"):
             decimate(LOG, every)
-    with pytest.raises(InputError, match="hold 'foh'"):
-        decimate(decimate(LOG, 2), 2)
+
+
+def lines_of(u, every=7, hold="foh"):
+    n = len(u)
+    log = Log(time=T * np.arange(n), inputs=u[:, None], outputs=np.arange(n)[:, None],
+              input_names=("u",), output_names=("y",), hold="foh")  # fmt: skip
+    return decimate(log, every, hold)
+
+
+def test_straight_lines_between_samples_stay_what_they_are():
+    t = np.arange(106) * T
+    few = lines_of(3 - 40 * t)
+    assert few.hold == "foh"
+    np.testing.assert_allclose(few.inputs[:, 0], 3 - 40 * few.time, atol=1e-12)
+    corners = np.interp(t, t[::7], np.random.default_rng(1).standard_normal(16))
+    np.testing.assert_allclose(lines_of(corners).inputs[:, 0], corners[::7], atol=1e-12)
+    np.testing.assert_array_equal(few.outputs[:, 0], np.arange(0, 106, 7))
+
+
+@pytest.mark.parametrize("every", [2, 5])
+def test_lines_that_are_thinned_do_the_same_work_at_the_same_time(every):
+    rng = np.random.default_rng(every)
+    u = np.where((np.arange(401) > 150) & (np.arange(401) < 260), rng.standard_normal(401), 0)
+    few = lines_of(u, every)
+    fine = np.linspace(0, 400 * T, 400 * 60 + 1)
+    was = np.interp(fine, np.arange(401) * T, u)
+    found = np.interp(fine, few.time, few.inputs[:, 0])
+    for moment in (np.ones_like(fine), fine, np.interp(fine, few.time, np.eye(len(few))[40])):
+        assert np.trapezoid((found - was) * moment, fine) == pytest.approx(0, abs=2e-6)
+    held = lines_of(u, every, "zoh").inputs[:-1, 0]
+    assert held.sum() * every * T == pytest.approx(np.trapezoid(u, dx=T), rel=1e-12)
+
+
+def test_noise_above_the_new_rate_is_not_folded_into_slow_waves():
+    # Every other sample of this wave has one sign: without means it would look like a constant.
+    u = np.cos(np.pi * np.arange(601))
+    assert np.abs(lines_of(u, 2).inputs[5:-5]).max() < 0.05
+    assert np.abs(u[::2]).min() == 1.0
