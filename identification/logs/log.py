@@ -42,6 +42,8 @@ class Log:
         notes: remarks of its author.
         hold: the input between samples: "zoh" keeps the last value, "foh" draws a straight line.
         remarks: what was changed when it was read from a file, a sentence each.
+        gaps: where nothing was measured and samples are made up that may be wrong: begin and end of
+            each [s]; windows that touch one are left out.
         factors: what its TOML multiplied columns with beside their units, by column.
         splits: named parts [start, end) [s], such as estimation and validation.
         values: values of a robot's parameters that hold in this log alone, by name, such as a
@@ -69,6 +71,7 @@ class Log:
     begun: float = 0.0
     remarks: tuple[str, ...] = ()
     factors: Mapping[str, float] = field(default_factory=dict)
+    gaps: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
         def put(attribute: str, value: object) -> None:

@@ -18,7 +18,7 @@ from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible, check_possible
 from identification.logs.read_csv import parse_csv
 from identification.logs.read_mat import parse_mat
-from identification.logs.resampling import even_out
+from identification.logs.resampling import Even, even_out
 from identification.logs.sampling import FloatArray, check_time, grid
 from identification.logs.sidecar import Sidecar, read_sidecar
 from identification.logs.table import Table, check_columns, check_finite, check_stamps, renamed
@@ -93,9 +93,10 @@ def read_log(
     si, factors = conversions(table, sidecar, {**units, "time": "s"})
     table = converted(table, sidecar, factors)
     remarks: tuple[str, ...] = ()
+    gaps: tuple[tuple[float, float], ...] = ()
     if lenient and not _is_even(table, sidecar):
-        table, remark = _evened(table, inputs, sidecar)
-        remarks = (remark,)
+        table, even = _evened(table, inputs, sidecar)
+        remarks, gaps = (even.sentence,), even.gaps
     check_finite(table)
     time = table["time"]
     check_time(time, table.place, sidecar.sampling_time)
@@ -118,6 +119,7 @@ def read_log(
         splits=sidecar.splits,
         values=sidecar.values,
         remarks=remarks,
+        gaps=gaps,
         factors={n: f for n in table.names if (f := lookup(sidecar.factors, n)) is not None},
     )
 
@@ -131,8 +133,8 @@ def _is_even(table: Table, sidecar: Sidecar) -> bool:
     return True
 
 
-def _evened(table: Table, inputs: Sequence[str], sidecar: Sidecar) -> tuple[Table, str]:
-    """A table on an even grid, and what was done to it."""
+def _evened(table: Table, inputs: Sequence[str], sidecar: Sidecar) -> tuple[Table, Even]:
+    """Returns a table on an even grid, and what was done to it."""
     check_stamps(table)
     names = [n for n in table.names if n != "time"]
     even = even_out(
@@ -140,7 +142,7 @@ def _evened(table: Table, inputs: Sequence[str], sidecar: Sidecar) -> tuple[Tabl
         sidecar.sampling_time,
     )  # fmt: skip
     data = np.column_stack([even.time, *(even.channels[n] for n in names)])
-    return Table(table.path, ("time", *names), data, _grid_place(table.path)), even.sentence
+    return Table(table.path, ("time", *names), data, _grid_place(table.path)), even
 
 
 def _grid_place(path: Path) -> Callable[[int], str]:

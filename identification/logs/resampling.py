@@ -5,10 +5,8 @@
     u_k   hold "zoh": mean of the held input over [t_k, t_k + h), so that it does the same work
           hold "foh": the straight line between the nearest samples, at t_k
 
-Each channel has the rows in which it is finite; of equal stamps the last row counts. A gap of n
-intervals is bridged if the log itself says that this is harmless: where the samples are there, the
-middle of n intervals is compared with the straight line across them. An error below the noise, or
-below a hundredth of the motion, changes no fit.
+Each channel has the rows in which it is finite; of equal stamps the last row counts. What stands
+in a gap is made up; `identification.logs.gaps` says where this does harm.
 """
 
 from __future__ import annotations
@@ -20,14 +18,10 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from identification.errors import InputError
+from identification.logs.gaps import Channel, Gap, find_gaps, find_pauses
 from identification.logs.names import quoted
-from identification.logs.noise import noise_floor
 from identification.logs.sampling import MIN_ROWS, FloatArray, grid
 
-ALLOWED = 0.01  # of a channel's motion, that the bridge of a gap may err by
-CLEAR = 2.0  # std of its noise, that it may err by
-HELD = 10.0  # intervals that an input may stay away and count as held, if it comes every interval
-MOST = 0.05  # of the log, that one gap may be: beyond it the rest of the log is no witness
 EVEN = 1e-3  # of an interval, by which even stamps may differ
 ROUND = 0.02  # of the rate, by which it may be rounded: any rate near the samples' own would do
 
@@ -40,20 +34,13 @@ class Even:
         time: stamps of the grid, shape (n,) [s].
         channels: by name, shape (n,), each in a unit of its own.
         sentence: what was done.
+        gaps: where nothing was measured, and what was made up may be wrong: begin and end [s].
     """
 
     time: FloatArray
     channels: Mapping[str, FloatArray]
     sentence: str
-
-
-@dataclass(frozen=True)
-class _Channel:
-    """The samples of one channel, stamps (m,) [s] increasing."""
-
-    name: str
-    time: FloatArray
-    values: FloatArray
+    gaps: tuple[tuple[float, float], ...]
 
 
 def even_out(
@@ -101,15 +88,14 @@ def even_out(
     # An input that usually comes with every sample was not held where it did not come.
     names = {c.name for c in timed}
     steady = [c for c in own if c.name not in names and np.median(np.diff(c.time)) < 1.5 * h]
-    for c in timed:
-        _refuse_gap(name, c, out[c.name], h)
-    for c in steady:
-        _refuse_pause(name, c, h)
+    gaps = [gap for c in timed for gap in find_gaps(name, c, out[c.name], h)]
+    gaps += [gap for c in steady for gap in find_pauses(name, c, n, h)]
     why = _why(time, channels)
-    return Even(t, out, _sentence(name, why, [*timed, *steady], t, h))
+    said = _sentence(name, why, [*timed, *steady], t, h) + _gaps_sentence(gaps)
+    return Even(t, out, said, tuple(dict.fromkeys((gap.begin, gap.end) for gap in gaps)))
 
 
-def _samples(log: str, name: str, time: FloatArray, values: FloatArray) -> _Channel:
+def _samples(log: str, name: str, time: FloatArray, values: FloatArray) -> Channel:
     """The rows of a channel in which it is finite, the last of equal stamps."""
     rows = np.flatnonzero(np.isfinite(values))
     rows = rows[np.append(np.diff(time[rows]) > 0, True)] if rows.size else rows
@@ -119,7 +105,7 @@ def _samples(log: str, name: str, time: FloatArray, values: FloatArray) -> _Chan
             f"column {quoted(name)} of log {log!r} has {has} and needs {MIN_ROWS};"
             " leave it out, or record again"
         )
-    return _Channel(name, time[rows], values[rows])
+    return Channel(name, time[rows], values[rows])
 
 
 def _round(interval: float) -> float:
@@ -129,51 +115,19 @@ def _round(interval: float) -> float:
     return 1 / next((r for r in rounded if abs(r - rate) <= ROUND * rate), rate)
 
 
-def _held(c: _Channel, t: FloatArray, h: float) -> FloatArray:
+def _held(c: Channel, t: FloatArray, h: float) -> FloatArray:
     """Means of a held input over the intervals of a grid."""
     stamps = np.append(c.time, max(t[-1] + h, c.time[-1]) + h)
     work = np.concatenate([[0.0], np.cumsum(c.values * np.diff(stamps))])
     return np.asarray((np.interp(t + h, stamps, work) - np.interp(t, stamps, work)) / h)
 
 
-def _smooth(c: _Channel, t: FloatArray) -> FloatArray:
+def _smooth(c: Channel, t: FloatArray) -> FloatArray:
     """An output on a grid, by cubics that keep its rises and falls."""
     # A rate is a harmonic mean of slopes, (w_1 + w_2) / (w_1/m_1 + w_2/m_2): a slope of 1e-318
     # makes the sum infinite and the mean zero, as it should be.
     with np.errstate(over="ignore"):
         return np.asarray(PchipInterpolator(c.time, c.values)(t))
-
-
-def _refuse_pause(log: str, c: _Channel, h: float) -> None:
-    """Refuse an input that stays away for long though it usually comes with every sample."""
-    gaps = np.diff(c.time)
-    k = int(np.argmax(gaps))
-    if gaps[k] > HELD * h:
-        raise InputError(
-            f"log {log!r} has no {c.name} for {gaps[k]:.3g} s from {c.time[k]:.6g} s, though it"
-            " usually comes with every sample; fill it in, or cut the log there"
-        )
-
-
-def _refuse_gap(log: str, c: _Channel, y: FloatArray, h: float) -> None:
-    """Refuse a gap that a line would bridge badly, by what it does elsewhere in the log."""
-    gaps = np.diff(c.time)
-    k = int(np.argmax(gaps))
-    n = round(float(gaps[k]) / h)
-    if n <= 1:
-        return
-    noise = float(noise_floor(y[:, None])[0])
-    error, allowed = np.inf, max(ALLOWED * float(np.ptp(y)), CLEAR * noise)
-    if n <= max(2, MOST * len(y)):
-        m = n // 2
-        line = y[:-n] + m / n * (y[n:] - y[:-n])
-        error = float(np.sqrt(np.mean((y[m : len(y) - n + m] - line) ** 2)))
-    if error > allowed:
-        errs = f"errs by {error:.2g} elsewhere" if np.isfinite(error) else "says nothing"
-        raise InputError(
-            f"log {log!r} has no {c.name} for {gaps[k]:.3g} s from {c.time[k]:.6g} s, and a line"
-            f" across so much {errs} (allowed: {allowed:.2g}); cut the log there"
-        )
 
 
 def _why(time: FloatArray, channels: Mapping[str, FloatArray]) -> str:
@@ -185,7 +139,20 @@ def _why(time: FloatArray, channels: Mapping[str, FloatArray]) -> str:
     return "is uneven in time" + (f", with {empty} empty cells," if empty else "")
 
 
-def _sentence(log: str, why: str, timed: Sequence[_Channel], t: FloatArray, h: float) -> str:
+def _gaps_sentence(gaps: Sequence[Gap]) -> str:
+    """Tells of the gaps over which what was made up may be wrong; "" where there is none."""
+    if not gaps:
+        return ""
+    worst = max(gaps, key=lambda gap: gap.end - gap.begin)
+    spans = len({(gap.begin, gap.end) for gap in gaps})
+    many = "1 gap is" if spans == 1 else f"{spans} gaps are"
+    return (
+        f" {many} too wide to be bridged ({'the widest ' if spans > 1 else ''}{worst.why});"
+        " windows of a horizon that touch a gap are left out, if gaps are not trusted."
+    )
+
+
+def _sentence(log: str, why: str, timed: Sequence[Channel], t: FloatArray, h: float) -> str:
     made, widest, at = 0, 0.0, 0.0
     for c in timed:
         near = np.clip(np.searchsorted(c.time, t), 1, len(c.time) - 1)

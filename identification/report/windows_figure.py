@@ -12,6 +12,7 @@ from identification.logs.log import Log
 from identification.model.predictor import Plant
 from identification.report.style import INK, SERIES, STYLE, literal
 from identification.windows.window_error import window_error
+from identification.windows.windows import windows
 
 
 def windows_figure(
@@ -33,10 +34,10 @@ def windows_figure(
     unit = log.units.get(name, "")
     errors = {label: window_error(plant, log, length, values)[..., 0]
               for label, values in models.items()}  # fmt: skip
-    shape = next(iter(errors.values())).shape
-    rows = shape[0] * shape[1]
-    t, y = log.time[:rows].reshape(shape), log.outputs[:rows, 0].reshape(shape)
-    gap = np.full((shape[0], 1), np.nan)  # between windows
+    cut = windows(log, length)
+    rows = cut.starts[:, None] + np.arange(cut.outputs.shape[1])
+    t, y = log.time[rows], cut.outputs[..., 0]
+    gap = np.full((len(rows), 1), np.nan)  # between windows
     with matplotlib.rc_context(STYLE):
         figure = Figure((7.5, 4.5), layout="constrained")
         upper, lower = figure.subplots(2, sharex=True)

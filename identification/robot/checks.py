@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco
@@ -79,6 +80,31 @@ def refuse_milliseconds(model: mujoco.MjModel, file: RobotFile, log: Log, path: 
             f" the model a timestep of {h / MOST_STEPS:g} s or more, or write trust = ["
             f'"time"] into {file.path}'
         )
+
+
+def with_judged_gaps(file: RobotFile, log: Log) -> Log:
+    """Returns a log whose gaps cost what touches them; without gaps where they are trusted.
+
+    A free run is refused, because it cannot begin anew behind a gap as a window does.
+
+    Raises:
+        InputError: there is a gap that cannot be bridged, and no horizon.
+    """
+    if not log.gaps:
+        return log
+    if "gaps" in file.trust:
+        return replace(log, gaps=())
+    if file.horizon is not None:
+        return log
+    begin, end = max(log.gaps, key=lambda gap: gap[1] - gap[0])
+    several = "s" if len(log.gaps) > 1 else ""
+    its = "the widest of them is" if several else "it is"
+    raise InputError(
+        f"log {log.name!r} has {len(log.gaps)} gap{several} that a free run cannot bridge; {its}"
+        f" {end - begin:.3g} s long, from {begin:.6g} s. Write a horizon into {file.path}, such as"
+        " horizon = 0.2 (in seconds), over which only the windows that touch a gap are left out, or"
+        ' trust = ["gaps"] to take what is made up there as measured'
+    )
 
 
 def refuse_every(file: RobotFile, log: Log) -> None:

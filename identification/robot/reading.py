@@ -10,6 +10,7 @@ from identification.effects.axes import axes
 from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.robot.absurd_start import refuse_absurd_start
+from identification.robot.checks import with_judged_gaps
 from identification.robot.file import RobotFile, read_robot_file
 from identification.robot.free_inertias import inertias_sentence
 from identification.robot.other_spread import with_spread
@@ -112,4 +113,4 @@ def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
 
 
 def _log(file: RobotFile, log: str | Path | Log) -> Log:
-    return log if isinstance(log, Log) else read_robot_log(file, log)
+    return with_judged_gaps(file, log if isinstance(log, Log) else read_robot_log(file, log))

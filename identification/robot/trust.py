@@ -8,6 +8,7 @@ from typing import Any
 from identification.errors import unknown_name
 
 TRUST = {  # what a user may know better than a check
+    "gaps": "what is made up across a gap counts as measured",
     "sensors": "a sensor that repeats one value is not frozen",
     "start": "simulations begin where the model does, also where the log begins elsewhere",
     "steps": "the model's steps are fine enough",

@@ -44,4 +44,7 @@ def joined(logs: Sequence[Log], length: float, name: str = "joined") -> Log:
     u = np.concatenate([cut.inputs.reshape(-1, first.inputs.shape[1]) for cut in cuts])
     y = np.concatenate([cut.outputs.reshape(-1, first.outputs.shape[1]) for cut in cuts])
     time = first.sampling_time * np.arange(len(u), dtype=float)
-    return replace(first, time=time, inputs=u, outputs=y, extras={}, name=name, splits={})
+    # The windows that touch a gap are not among these.
+    return replace(
+        first, time=time, inputs=u, outputs=y, extras={}, name=name, splits={}, gaps=()
+    )  # fmt: skip

@@ -31,7 +31,9 @@ LEAST = 1e-3  # smallest s_j, as a share of the largest motion in its field
 
 @dataclass(frozen=True)
 class Windows:
-    """A log in W windows of L samples; a remainder shorter than a window is left out.
+    """A log in W windows of L samples.
+
+    A remainder shorter than a window is left out, and so are windows that touch a gap of the log.
 
     Attributes:
         inputs: shape (W, L, nu).
@@ -52,7 +54,8 @@ def windows(log: Log, length: float) -> Windows:
     """Split a log into windows of a length [s].
 
     Raises:
-        InputError: a window has fewer than 3 samples, or the log is shorter than one.
+        InputError: a window has fewer than 3 samples, the log is shorter than one, or each of them
+            touches a gap of the log.
     """
     samples = round(length / log.sampling_time) if np.isfinite(length) else 0
     if samples < 3 or samples > len(log):
@@ -61,6 +64,15 @@ def windows(log: Log, length: float) -> Windows:
             f" {log.sampling_time:g} s; take 3 samples or more, and no more than the log has"
         )
     starts = samples * np.arange(len(log) // samples)
+    # The step before a window and the one behind it count: rates are taken from neighbours.
+    h, begin, end = log.sampling_time, log.time[starts], log.time[starts + samples - 1]
+    touched = [(begin < b + h) & (end > a - h) for a, b in log.gaps]
+    starts = starts[~np.any(touched, axis=0)] if touched else starts
+    if not starts.size:
+        raise InputError(
+            f"each window of {length:g} s of log {log.name!r} touches one of its {len(log.gaps)}"
+            " gaps, in which nothing was measured; take a shorter horizon, or record again"
+        )
     rows = starts[:, None] + np.arange(samples)
     return Windows(log.inputs[rows], log.outputs[rows], starts)
 

@@ -70,12 +70,32 @@ def test_a_gap_is_bridged_only_where_the_log_says_that_this_is_harmless(refusal)
     t = 0.01 * np.arange(1000)
     slow, fast = {"y": np.sin(t)}, {"y": np.sin(20 * t)}
     keep = (t < 4) | (t > 4.2)
-    assert even(t[keep], {n: x[keep] for n, x in slow.items()}).sentence
-    text = refusal(even, t[keep], {n: x[keep] for n, x in fast.items()})
-    assert "has no y for 0.22 s from 3.99 s" in text
-    assert "cut the log there" in text
+    assert not even(t[keep], {n: x[keep] for n, x in slow.items()}).gaps
+    found = even(t[keep], {n: x[keep] for n, x in fast.items()})
+    assert found.gaps == (pytest.approx((3.99, 4.21)),)
+    assert "1 gap is too wide to be bridged (no y for 0.22 s from 3.99 s" in found.sentence
+    assert "windows of a horizon that touch a gap are left out" in found.sentence
     wide = (t < 3) | (t > 6)
-    assert "says nothing" in refusal(even, t[wide], {n: x[wide] for n, x in slow.items()})
+    text = refusal(even, t[wide], {n: x[wide] for n, x in slow.items()})
+    assert "no y for 3.02 s from 2.99 s, more than 5 % of it, and says nothing" in text
+    assert "as two logs" in text
+
+
+def test_every_gap_is_told_once_though_two_channels_have_it():
+    t = 0.01 * np.arange(2000)
+    keep = ~np.isin(np.arange(2000), [300, 301, 302, 1500, 1501])
+    both = {"y": np.sin(40 * t), "z": np.cos(40 * t)}
+    found = even(t[keep], {n: x[keep] for n, x in both.items()})
+    assert found.gaps == (pytest.approx((2.99, 3.03)), pytest.approx((14.99, 15.02)))
+    assert "2 gaps are too wide to be bridged (the widest no" in found.sentence
+
+
+def test_a_gap_of_a_joint_that_only_flickers_by_a_step_of_its_encoder_is_bridged():
+    # Most differences are zero, so that the noise floor is zero too.
+    t = 0.01 * np.arange(2000)
+    flicker = 1e-3 * (RNG.random(2000) < 0.02)
+    keep = ~np.isin(np.arange(2000), [700, 701])
+    assert not even(t[keep], {"y": np.sin(t)[keep], "z": 0.3 + flicker[keep]}).gaps
 
 
 def test_time_that_goes_back_and_channels_that_do_not_overlap_are_refused(refusal):
@@ -122,3 +142,11 @@ def test_an_input_that_stays_away_is_refused_though_the_outputs_go_on(refusal):
     u = np.where((t > 3) & (t < 3.6), np.nan, np.sign(np.sin(5 * t)))
     said = refusal(even_out, "log", t, {"u": u, "q": np.sin(t)}, ["u"], "zoh")
     assert "no u for 0.6" in said
+
+
+def test_a_pause_of_an_input_that_comes_with_every_sample_is_a_gap():
+    t = 0.01 * np.arange(4000)
+    u = np.where((t > 3) & (t < 3.3), np.nan, np.sign(np.sin(5 * t)))
+    found = even(t, {"u": u, "q": np.sin(t)})
+    assert found.gaps == (pytest.approx((3.0, 3.3), abs=1e-6),)
+    assert "usually comes with every sample" in found.sentence

@@ -1,0 +1,117 @@
+"""Gaps of a log: where nothing was measured, and where what is made up there does harm.
+
+A gap of n intervals is bridged if the log itself says that this is harmless: where the samples are
+there, the middle of n intervals is compared with the straight line across them. An error below the
+noise, below a step of the encoder, or below a hundredth of the motion, changes no fit. Another gap
+costs what touches it: over a horizon those windows are left out (`identification.windows.windows`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.logs.noise import noise_floor
+from identification.logs.sampling import FloatArray
+
+ALLOWED = 0.01  # of a channel's motion, that the bridge of a gap may err by
+CLEAR = 2.0  # std of its noise, that it may err by
+HELD = 10.0  # intervals that an input may stay away and count as held, if it comes every interval
+MOST = 0.05  # of the log, that one gap may be: beyond it the rest of the log is no witness
+
+
+@dataclass(frozen=True)
+class Channel:
+    """The samples of one channel, stamps (m,) [s] increasing."""
+
+    name: str
+    time: FloatArray
+    values: FloatArray
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A gap over which what is made up may be wrong.
+
+    Attributes:
+        begin: the last stamp before it [s].
+        end: the first stamp behind it [s].
+        why: what is missing, and how far a bridge of it errs, in words.
+    """
+
+    begin: float
+    end: float
+    why: str
+
+
+def find_gaps(log: str, c: Channel, y: FloatArray, h: float) -> Iterator[Gap]:
+    """Finds the gaps that a straight line would bridge badly, by what it does elsewhere in the log.
+
+    Args:
+        log: name of the log.
+        c: a channel that comes with every sample.
+        y: the channel on the grid, shape (n,).
+        h: step of the grid [s].
+
+    Raises:
+        InputError: a gap is so long that the log says nothing of its bridge.
+    """
+    intervals = np.rint(np.diff(c.time) / h).astype(int)
+    wide = np.flatnonzero(intervals > 1)
+    if not wide.size:
+        return
+    _refuse_longest(log, c, len(y), h)
+    steps = np.abs(np.diff(c.values))
+    encoder = float(steps[steps > 0].min(initial=np.inf)) if steps.any() else 0.0
+    noise = float(noise_floor(y[:, None])[0])
+    allowed = max(ALLOWED * float(np.ptp(y)), CLEAR * noise, encoder)
+    errors = {n: _bridging_error(y, n) for n in np.unique(intervals[wide]).tolist()}
+    for k in wide.tolist():
+        error = errors[int(intervals[k])]
+        if error > allowed:
+            errs = f"a line across so much errs by {error:.2g} elsewhere (allowed: {allowed:.2g})"
+            yield Gap(float(c.time[k]), float(c.time[k + 1]), f"{_missing(c, k)}, and {errs}")
+
+
+def find_pauses(log: str, c: Channel, n: int, h: float) -> Iterator[Gap]:
+    """Finds where a held input stays away for long though it usually comes with every sample.
+
+    Args:
+        log: name of the log.
+        c: the input.
+        n: samples of the grid.
+        h: its step [s].
+
+    Raises:
+        InputError: it stays away for too large a part of the log.
+    """
+    for k in np.flatnonzero(np.diff(c.time) > HELD * h).tolist():
+        _refuse_longest(log, c, n, h)
+        yield Gap(float(c.time[k]), float(c.time[k + 1]),
+                  f"{_missing(c, k)}, though it usually comes with every sample")  # fmt: skip
+
+
+def _bridging_error(y: FloatArray, n: int) -> float:
+    """Computes the rms error of lines across n intervals in their middle."""
+    m = n // 2
+    line = y[:-n] + m / n * (y[n:] - y[:-n])
+    return float(np.sqrt(np.mean((y[m : len(y) - n + m] - line) ** 2)))
+
+
+def _missing(c: Channel, k: int) -> str:
+    return f"no {c.name} for {c.time[k + 1] - c.time[k]:.3g} s from {c.time[k]:.6g} s"
+
+
+def _refuse_longest(log: str, c: Channel, n: int, h: float) -> None:
+    """Refuse a channel whose longest gap is too large a part of a log of n samples."""
+    gaps = np.diff(c.time)
+    k = int(np.argmax(gaps))
+    if round(float(gaps[k]) / h) > max(2, MOST * n):
+        raise InputError(
+            f"log {log!r} has {_missing(c, k)}, more than {100 * MOST:g} % of it, and says nothing"
+            " of what was there; save the rows before the gap and those behind it as two logs, and"
+            " give both or the longer one"
+        )

@@ -1,0 +1,74 @@
+"""A few dropped samples cost the windows that touch them, and not the log."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pendulum_robot import TOML, make_folder, measured
+from records_cases import record
+
+from identification import InputError, fit, read_robot, write_log
+from identification.logs.decimation import decimate
+from identification.report.windows_figure import windows_figure
+from identification.windows.windows import windows
+
+DROPPED = range(60, 76)  # while the drive turns the pendulum round
+
+
+@pytest.fixture
+def path(tmp_path):
+    make_folder(tmp_path)
+    log = write_log(measured(1, samples=600), tmp_path / "log.csv")
+    assert log is None
+    lines = (tmp_path / "log.csv").read_text().splitlines(keepends=True)
+    header = next(k for k, line in enumerate(lines) if line.startswith("time"))
+    kept = [x for k, x in enumerate(lines) if k - header - 1 not in DROPPED]
+    (tmp_path / "log.csv").write_text("".join(kept))
+    return tmp_path / "robot.toml"
+
+
+def test_over_a_horizon_the_fit_is_right_and_a_sentence_tells_the_gap(path):
+    robot = read_robot(path, path.with_name("log.csv"))
+    assert robot.log.gaps == (pytest.approx((0.59, 0.76)),)
+    (said,) = (r for r in robot.remarks if "gap" in r)
+    assert "1 gap is too wide to be bridged (no angle for 0.17 s from 0.59 s" in said
+    found = fit(robot)
+    for name, value in (("J", 2e-3), ("d", 0.02)):
+        assert found.values[name] == pytest.approx(value, rel=0.01)
+    # Half of 600 samples are fitted, in windows of 20; [0.4, 0.6) and [0.6, 0.8) touch the gap.
+    (part,) = found.found.model.fit.problem.parts
+    assert part.cut.starts.tolist() == [0, 20, *range(80, 300, 20)]
+    assert windows_figure(robot.plant, robot.log, 0.2, {"J": {}})
+
+
+def test_a_free_run_says_what_to_write(path, refusal):
+    path.write_text(TOML.replace("horizon = 0.2", ""))
+    said = refusal(read_robot, path, path.with_name("log.csv"))
+    assert "has 1 gap that a free run cannot bridge; it is 0.17 s long, from 0.59 s" in said
+    assert "horizon = 0.2" in said
+    assert read_robot(path, path.with_name("log.csv"), trust=["gaps"]).log.gaps == ()
+
+
+@given(
+    gaps=st.lists(st.tuples(st.floats(0, 5), st.floats(0, 0.4)), max_size=4),
+    length=st.floats(0.1, 0.5),
+    every=st.integers(1, 3),
+)
+def test_windows_are_those_of_a_whole_log_that_keep_clear_of_its_gaps(gaps, length, every):
+    whole = decimate(record(3), every)
+    log = replace(whole, gaps=tuple((a, a + b) for a, b in gaps)).between(0.3, 4.5)
+    every_one, h = windows(whole.between(0.3, 4.5), length), log.sampling_time
+    samples = every_one.outputs.shape[1]
+    clear = [
+        all(log.time[s] >= b + h or log.time[s + samples - 1] <= a - h for a, b in log.gaps)
+        for s in every_one.starts
+    ]
+    if not any(clear):
+        with pytest.raises(InputError, match="touches one of its"):
+            windows(log, length)
+        return
+    found = windows(log, length)
+    np.testing.assert_array_equal(found.starts, every_one.starts[clear])
+    np.testing.assert_array_equal(found.outputs, every_one.outputs[clear])
