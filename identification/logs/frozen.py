@@ -14,7 +14,42 @@ from identification.logs.log import Log
 FEWEST = 50  # a frozen output repeats at least so many samples
 SHARE = 0.2  # and at least this share of the log
 AS_BEFORE = 0.5  # of the std before; a signal that still varies by as much counts as moving
+ROUNDED = 1e-6  # of its width, below which a difference is rounding and no step of an encoder
+FEW = 0.1  # of the differences may be smaller than a step
 STEPS = 3  # that the encoder crosses in the `FEWEST` samples before it freezes
+
+
+def stands_still(y: np.ndarray) -> bool:
+    """Returns whether a channel, shape (n,), moves by no more than `STEPS` steps of its encoder."""
+    width, steps = np.ptp(y), np.abs(np.diff(y))
+    crossed = steps[steps > ROUNDED * width]
+    if not crossed.size:
+        return bool(width == 0)
+    # A few steps are smaller where a gap was bridged.
+    return bool(width <= STEPS * np.quantile(crossed, FEW))
+
+
+def still_sentence(log: Log) -> str | None:
+    """Tells of outputs that stand still in all of a log; None where there is none.
+
+    It is no refusal: a joint may be braked, or its friction may hold it against its drive.
+
+    Args:
+        log: what was measured.
+    """
+    told = []
+    for name, y in zip(log.output_names, log.outputs.T, strict=True):
+        if stands_still(y):
+            within = f" (within {width:.2g})" if (width := float(np.ptp(y))) else ""
+            told.append(f"{name} is {np.median(y):.4g} {log.units.get(name, '')}".rstrip() + within)
+    if not told:
+        return None
+    one = len(told) == 1
+    return (
+        f"In all of log {log.name!r} {' and '.join(told)}: {'a joint' if one else 'joints'} that"
+        f" stood still, or {'a dead sensor' if one else 'dead sensors'}. What is dead belongs out"
+        " of the outputs of the robot's file."
+    )
 
 
 def refuse_frozen(

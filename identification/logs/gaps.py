@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError
+from identification.logs.frozen import stands_still
 from identification.logs.noise import noise_floor
 from identification.logs.sampling import FloatArray
 
@@ -61,7 +62,7 @@ def find_gaps(log: str, c: Channel, y: FloatArray, h: float) -> Iterator[Gap]:
     """
     intervals = np.rint(np.diff(c.time) / h).astype(int)
     wide = np.flatnonzero(intervals > 1)
-    if not wide.size:
+    if not wide.size or stands_still(c.values):
         return
     _refuse_longest(log, c, len(y), h)
     steps = np.abs(np.diff(c.values))

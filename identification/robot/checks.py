@@ -8,6 +8,7 @@ from pathlib import Path
 import mujoco
 
 from identification.errors import InputError
+from identification.logs.frozen import still_sentence
 from identification.logs.log import Log
 from identification.logs.sampling import MIN_ROWS, rows_between
 from identification.robot.file import RobotFile
@@ -97,12 +98,14 @@ def with_judged_gaps(file: RobotFile, log: Log) -> Log:
     if file.horizon is not None:
         return log
     begin, end = max(log.gaps, key=lambda gap: gap[1] - gap[0])
-    several = "s" if len(log.gaps) > 1 else ""
-    its = "the widest of them is" if several else "it is"
+    several = len(log.gaps) > 1
+    still = still_sentence(log)
     raise InputError(
-        f"log {log.name!r} has {len(log.gaps)} gap{several} that a free run cannot bridge; {its}"
-        f" {end - begin:.3g} s long, from {begin:.6g} s. Write a horizon into {file.path}, such as"
-        " horizon = 0.2 (in seconds), over which only the windows that touch a gap are left out, or"
+        (f"{still} Besides, " if still else "")
+        + f"log {log.name!r} has {len(log.gaps)} gap{'s' * several} that a free run cannot bridge;"
+        f" {'the widest of them' if several else 'it'} is {end - begin:.3g} s long, from"
+        f" {begin:.6g} s. Write a horizon into {file.path}, such as horizon = 0.2 (in seconds),"
+        " over which only the windows that touch a gap are left out, or"
         ' trust = ["gaps"] to take what is made up there as measured'
     )
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from identification.effects.axes import axes
 from identification.errors import InputError, refuse_kind
+from identification.logs.frozen import still_sentence
 from identification.logs.log import Log
 from identification.robot.absurd_start import refuse_absurd_start
 from identification.robot.checks import with_judged_gaps
@@ -108,8 +109,9 @@ def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
     else:  # each window begins where it was measured
         begun = [unused_sentence(file, own, robot.log)]
     inertias = inertias_sentence(file)
+    still = (still_sentence(log) for log in logs)
     resampled = (remark for log in logs for remark in log.remarks)
-    return tuple(filter(None, (*robot.remarks, inertias, *resampled, *begun)))
+    return tuple(filter(None, (*robot.remarks, inertias, *still, *resampled, *begun)))
 
 
 def _log(file: RobotFile, log: str | Path | Log) -> Log:
