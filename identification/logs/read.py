@@ -21,6 +21,7 @@ from identification.logs.read_mat import parse_mat
 from identification.logs.resampling import Even, even_out
 from identification.logs.sampling import FloatArray, check_time, grid
 from identification.logs.sidecar import Sidecar, read_sidecar
+from identification.logs.stamps import wanted_columns, with_time
 from identification.logs.table import Table, check_columns, check_finite, check_stamps, renamed
 from identification.logs.units import check_si
 
@@ -83,20 +84,29 @@ def read_log(
             " robots of read_robot have; leave them out"
         )
     table = _read_table(raw, path, inputs, outputs, optional, sidecar, lenient)
-    for key, named in (("units", ("time", *columns)), ("factors", columns)):
-        check_keys(f"column under {key!r} in {sidecar.file_of(key)}:", getattr(sidecar, key), named)
-    table = renamed(table, sidecar)
+    for key in ("units", "factors"):
+        check_keys(
+            f"column under {key!r} in {sidecar.file_of(key)}:",
+            getattr(sidecar, key),
+            ("time", *columns),
+        )
+    if sidecar.factors.get("time", 1.0) < 0:
+        raise InputError(
+            f"the factor of time under 'factors' in {sidecar.file_of('factors')} is negative, and"
+            " time goes on; write a positive one, such as 1e-9 for ns"
+        )
+    table, remark = with_time(renamed(table, sidecar), sidecar)
+    remarks = (remark,) if remark else ()
     if "time" not in table.names and sidecar.sampling_time:
         table = _with_time(table, sidecar.sampling_time)
     check_columns(table, ("time", *inputs, *outputs), optional, sidecar, named_in)
 
     si, factors = conversions(table, sidecar, {**units, "time": "s"})
     table = converted(table, sidecar, factors)
-    remarks: tuple[str, ...] = ()
     gaps: tuple[tuple[float, float], ...] = ()
     if lenient and not _is_even(table, sidecar):
         table, even = _evened(table, inputs, sidecar)
-        remarks, gaps = (even.sentence,), even.gaps
+        remarks, gaps = (*remarks, even.sentence), even.gaps
     check_finite(table)
     time = table["time"]
     check_time(time, table.place, sidecar.sampling_time)
@@ -120,7 +130,11 @@ def read_log(
         values=sidecar.values,
         remarks=remarks,
         gaps=gaps,
-        factors={n: f for n in table.names if (f := lookup(sidecar.factors, n)) is not None},
+        factors={
+            n: f
+            for n in table.names
+            if n != "time" and (f := lookup(sidecar.factors, n)) is not None
+        },
     )
 
 
@@ -159,10 +173,9 @@ def _read_table(
     lenient: bool,
 ) -> Table:
     if path.suffix.lower() == ".csv":
-        columns = {"time", *inputs, *outputs, *optional}
-        renaming = {old for old, new in sidecar.columns.items() if new in columns}
-        wanted = columns - {*sidecar.columns} | renaming
-        return parse_csv(raw, path, sidecar.header, wanted if lenient else None)
+        wanted = wanted_columns({"time", *inputs, *outputs, *optional}, sidecar)
+        stamps = {"time", *(old for old, new in sidecar.columns.items() if new == "time")}
+        return parse_csv(raw, path, sidecar.header, wanted if lenient else None, stamps)
     if path.suffix.lower() == ".mat":
         return parse_mat(raw, path, inputs, outputs, optional)
     raise InputError(f"{path} is neither .csv nor .mat; export the log as one of these")

@@ -6,7 +6,7 @@ cell by cell, to say which line is wrong.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from identification.errors import InputError, repeated
 from identification.logs.names import listed, quoted
 from identification.logs.sampling import FloatArray
+from identification.logs.stamps import WHOLE, exact_stamps
 from identification.logs.table import Table
 
 _WRONG_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
@@ -23,7 +24,11 @@ SKIP = "skip"  # name of a column without a header that nobody needs
 
 
 def parse_csv(
-    raw: bytes, path: Path, header: Sequence[str] = (), wanted: Collection[str] | None = None
+    raw: bytes,
+    path: Path,
+    header: Sequence[str] = (),
+    wanted: Callable[[Sequence[str]], Collection[str]] | None = None,
+    stamps: Collection[str] = ("time",),
 ) -> Table:
     """The table in a CSV file.
 
@@ -34,8 +39,9 @@ def parse_csv(
         path: where it is, for messages.
         header: names of the columns of a file that has none, in their order; where it has one,
             they replace it.
-        wanted: columns to read; their empty cells are NaN, and the others are left out. All
-            columns, and no empty cells, when None.
+        wanted: says which of the columns of a file to read; their empty cells are NaN, and the
+            others are left out. All columns, and no empty cells, when None.
+        stamps: columns whose numbers count less the first one, where a float cannot hold them.
 
     Raises:
         InputError: it is empty, not text, not separated by commas, has rows of different lengths,
@@ -48,10 +54,12 @@ def parse_csv(
     if start is None:
         raise InputError(f"{path} is empty; it needs a header row and one row for each sample")
     first = lines[filled[start]]
-    numbers = all(_is_number(cell) for cell in first.split(","))
     names = _given(header, first, path) if header else _header(first, filled[start] + 1, path)
+    cells = zip(names, first.split(","), strict=True)
+    numbers = all(_is_number(cell) for name, cell in cells if name != SKIP)
     rows = filled[start + (0 if header and numbers else 1) :]
-    keep = [k for k, n in enumerate(names) if n != SKIP and (wanted is None or n in wanted)]
+    asked = names if wanted is None else wanted(names)
+    keep = [k for k, n in enumerate(names) if n != SKIP and n in asked]
     if wanted is None and not header:
         keep = [*range(len(names))]
     twice = repeated([names[k] for k in keep])
@@ -64,6 +72,10 @@ def parse_csv(
     data = _numbers([lines[k] for k in rows], rows, names, path, keep, wanted is not None)
     left = tuple(n for k, n in enumerate(names) if k not in keep)
     kept = tuple(names[k] for k in keep)
+    for k, column in enumerate(keep):
+        # Beyond WHOLE a float lost digits that the file has.
+        if names[column] in stamps and WHOLE <= np.abs(data[:, k]).max() < np.inf:
+            data[:, k] = exact_stamps([lines[row].split(",")[column] for row in rows])
     return Table(path, kept, data, lambda row: _place(rows[row], path), left)
 
 

@@ -57,11 +57,15 @@ def snapped(time: FloatArray) -> FloatArray:
     Stamps that are a regular grid already, but for the rounding of a float, stay as they are.
     """
     step = (float(time[-1]) - float(time[0])) / (len(time) - 1)
-    off = np.abs(time - grid(time[0], step, len(time)))
-    # Four roundings: of the stamp, of the step, of the product k h, and of their sum.
-    if np.all(off <= 4 * np.spacing(np.abs(time).max())):
+    off, least = np.abs(time - grid(time[0], step, len(time))), _float_resolution(time)
+    if np.all(off <= least) and least <= 0.5 * _JITTER * step:
         return time
     return grid(time[0], sampling_time(time), len(time))
+
+
+def _float_resolution(time: FloatArray) -> float:
+    """Returns how far floats leave a grid [s]: a stamp, the step, k h and their sum are rounded."""
+    return 4.0 * float(np.spacing(np.abs(time).max()))
 
 
 def check_time(
@@ -103,7 +107,7 @@ def _check_even(time: FloatArray, place: Callable[[int], str], declared: float |
     off = np.abs(time - grid(time[0], step, len(time)))
     forgiven = _ROUNDING_DECLARED if declared else _ROUNDING
     rounding = min(_printed_resolution(time), forgiven * step)
-    if np.all(off <= _JITTER * step + rounding + np.spacing(np.abs(time).max())):
+    if np.all(off <= _JITTER * step + rounding + _float_resolution(time)):
         return
     steps = np.diff(time)
     usual, jump = float(np.median(steps)), int(np.argmax(steps)) + 1

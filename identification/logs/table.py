@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from identification.errors import InputError, repeated, unknown_name
+from identification.logs.cures import toml_key
 from identification.logs.names import listed, quoted
 from identification.logs.sampling import FloatArray
 from identification.logs.sidecar import Sidecar
@@ -83,14 +84,15 @@ def check_columns(
     good = [*needed, *optional]
     unknown = [n for n in table.names if n not in good]
     missing = [n for n in needed if n not in table.names]
+    if missing and missing[0] == "time":
+        raise InputError(_without_time(table, missing, sidecar))
     if missing:
         close = get_close_matches(missing[0], (*unknown, *table.left), n=1)
         slip = f" (is {missing[0]} its column {quoted(close[0])}?)" if close else ""
-        time = ", or give sampling_time" if "time" in missing else ""
-        where = sidecar.path if time or named_in is None else named_in
+        where = sidecar.path if named_in is None else named_in
         raise InputError(
             f"{table.path} lacks {_columns(missing)}{slip}; it has {listed(table.all_names)};"
-            f" correct its names or map them under [columns]{time} in {where}"
+            f" correct its names or map them under [columns] in {where}"
         )
     if unknown:
         close = get_close_matches(unknown[0], good, n=1)
@@ -99,6 +101,23 @@ def check_columns(
             f"{table.path} has unknown {_columns(unknown)}{slip}; good names are {listed(good)}; "
             f"remove the others or list them under 'ignore' in {sidecar.path}"
         )
+
+
+def _without_time(table: Table, missing: Sequence[str], sidecar: Sidecar) -> str:
+    """Says what to write where no column is called time, as that of the likely column."""
+    names = [*table.left, *table.names]
+    likely = [
+        *get_close_matches("time", names, n=1),
+        *(n for n in names if "time" in n.lower() or "stamp" in n.lower() or n.lower() == "t"),
+    ]
+    called = likely[0] if likely else "stamp"
+    which = f"if {quoted(called)} is it" if likely else "if it is called stamp"
+    return (
+        f"{table.path} lacks {_columns(missing)}; it has {listed(table.all_names)}; the column of"
+        f' time is named in the log\'s TOML: {which}, write {toml_key(called)} = "time" under'
+        f' [columns] in {sidecar.path}, with time = "ns" under [units] there where its numbers'
+        " are in ns, or else give sampling_time there"
+    )
 
 
 def _columns(names: Sequence[str]) -> str:

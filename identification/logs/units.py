@@ -12,6 +12,7 @@ UNITS: dict[str, tuple[str, float]] = {
     "s": ("s", 1.0),
     "ms": ("s", 1e-3),
     "us": ("s", 1e-6),
+    "ns": ("s", 1e-9),
     "A": ("A", 1.0),
     "mA": ("A", 1e-3),
     "V": ("V", 1.0),

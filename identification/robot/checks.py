@@ -11,9 +11,10 @@ from identification.errors import InputError
 from identification.logs.frozen import still_sentence
 from identification.logs.log import Log
 from identification.logs.sampling import MIN_ROWS, rows_between
+from identification.logs.units import units_that_fit
 from identification.robot.file import RobotFile
 
-MOST_STEPS = 100.0  # of the model in a sample; with more, time is most often in ms
+MOST_STEPS = 100.0  # of the model in a sample; with more, time is most often in ms, us or ns
 
 
 def refuse_same_stem(file: RobotFile, log: Path) -> None:
@@ -75,10 +76,11 @@ def refuse_milliseconds(model: mujoco.MjModel, file: RobotFile, log: Log, path: 
     """
     h, step = log.sampling_time, float(model.opt.timestep)
     if h > MOST_STEPS * step and "time" not in file.trust:
+        unit = next(iter(units_that_fit("s", h, MOST_STEPS * step)), "ms")
         raise InputError(
             f"{path} is sampled every {h:g} s, {h / step:.0f} steps of {file.model}; is its time in"
-            f' ms? then write time = "ms" under [units] in {path.with_suffix(".toml")}, else give'
-            f" the model a timestep of {h / MOST_STEPS:g} s or more, or write trust = ["
+            f' {unit}? then write time = "{unit}" under [units] in {path.with_suffix(".toml")},'
+            f" else give the model a timestep of {h / MOST_STEPS:g} s or more, or write trust = ["
             f'"time"] into {file.path}'
         )
 

@@ -18,6 +18,7 @@ from identification.effects.joint_catalogue import TURNS
 from identification.effects.joint_plant import JointPlant, candidates, joint_plant
 from identification.effects.named import unknown_effect
 from identification.errors import InputError, told_of, unknown_name
+from identification.logs.cures import toml_key
 from identification.logs.decimation import decimate
 from identification.logs.log import Log
 from identification.logs.read import read_log
@@ -136,6 +137,13 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
         n: unit_of(model, f"{field}[{i}]") for n, (field, i) in zip(outputs, places, strict=True)
     }
     for name in file.columns:
+        if name == "time":
+            raise InputError(
+                f"[columns] in {file.path} names columns of actuators and sensors; the column of"
+                f" time is named in the log's TOML, the other way round: write"
+                f' {toml_key(file.columns[name])} = "time" under [columns] in'
+                f" {Path(path).with_suffix('.toml')}, or under [log.columns] in {file.path}"
+            )
         if name not in (*inputs, *outputs):
             raise unknown_name(f"actuator or sensor under columns in {file.path}:", name,
                                (*inputs, *outputs))  # fmt: skip

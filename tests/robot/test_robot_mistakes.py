@@ -52,7 +52,7 @@ from identification.robot.robot import read_robot_log
             "is no number of an effect; it is joint/slide.damping in",
         ),
         (("= [", "= {"), "is not TOML"),
-        (("free", "trust = ['wirring']\nfree"), "did you mean 'wiring'? known: sensors, start"),
+        (("free", "trust = ['wirring']\nfree"), "did you mean 'wiring'? known: gaps, sensors"),
         (("[columns]", "[start]\n'qpos[0]' = 0.1\n[columns]"), "under [start] and frees it"),
         (("[columns]", "[start]\n'qpos[7]' = 0.1\n[columns]"), "qpos has 1 entries"),
         (
@@ -177,7 +177,7 @@ def test_how_much_a_log_may_be_thinned_is_told(folder, capsys):
     assert len(read_robot_log(read_robot_file(path), folder / "plain.csv")) == 6
     (folder / "lines.toml").write_text('hold = "foh"')
     (folder / "lines.csv").write_text((folder / "plain.csv").read_text())
-    assert "leave every out" in refused(capsys, "fit", path, folder / "lines.csv")
+    assert len(read_robot_log(read_robot_file(path), folder / "lines.csv")) == 6
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,157 @@
+"""Stamps as recorders write them: nanoseconds since 1970, or seconds and nanoseconds apart."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from joint_cases import SLIDER
+from robot_cases import TOML, simulated
+
+from identification import InputError, read_log, read_robot
+from identification.logs.stamps import exact_stamps
+
+N = 400
+EPOCH = 1_691_234_567_123_456_789  # [ns]
+STEP = 4_000_000  # [ns]
+
+
+def put(csv, header, row, sidecar=""):
+    path = csv(header + "\n" + "".join(row(k) + "\n" for k in range(N)))
+    path.with_suffix(".toml").write_text(sidecar)
+    return path
+
+
+def read(path):
+    return read_log(path, ["u"], ["y"], lenient=True)
+
+
+def even(path):
+    log = read(path)
+    np.testing.assert_allclose(log.time, 4e-3 * np.arange(N), rtol=0, atol=1e-9)
+    np.testing.assert_array_equal(log.outputs[:, 0], np.arange(N))
+    return log
+
+
+@given(
+    first=st.integers(2**53, 2**63),
+    steps=st.lists(st.integers(0, 2**52), min_size=2, max_size=9),
+    form=st.sampled_from(["{}", "+{}", " {} ", "{}.0"]),
+)
+def test_large_stamps_lose_no_digit(first, steps, form):
+    stamps = [first, *(first + k for k in steps)]
+    found = exact_stamps([form.format(k) for k in stamps])
+    assert found.tolist() == [k - first for k in stamps]
+
+
+@pytest.mark.parametrize("said", ['[units]\ntime = "ns"', "[factors]\ntime = 1e-9"])
+def test_nanoseconds_since_1970(csv, said):
+    columns = '[columns]\n"%time" = "time"\n'
+    rows = lambda k: f"{EPOCH + k * STEP},name,{k},1"  # noqa: E731
+    log = even(put(csv, "%time,frame,y,u", rows, columns + said))
+    assert not log.factors
+    assert log.sampling_time == 4e-3
+
+
+def test_small_stamps_keep_their_beginning(csv):
+    rows = lambda k: f"{5_000_000_000 + k * STEP},{k},1"  # noqa: E731
+    log = read(put(csv, "time,y,u", rows, 'units.time = "ns"'))
+    assert log.time[0] == 5.0
+    assert log.sampling_time == 4e-3
+
+
+@pytest.mark.parametrize(
+    ("names", "sidecar"),
+    [
+        (("header.stamp.sec", "header.stamp.nanosec"), ""),
+        (("field.header.stamp.secs", "field.header.stamp.nsecs"), ""),
+        (("/imu/header/stamp/Sec", "/imu/header/stamp/NanoSec"), ""),
+        (("sec", "nanosec"), ""),
+        (("s", "rest"), '[columns]\ns = "time.sec"\nrest = "time.nanosec"'),
+        (None, 'columns = ["time.sec", "time.nanosec", "skip", "y", "u"]'),
+    ],
+)
+def test_seconds_and_nanoseconds_in_two_columns(csv, names, sidecar):
+    def row(k):
+        sec, nanosec = divmod(EPOCH + k * STEP, 10**9)
+        return f"{sec},{nanosec},base_link,{k},1"
+
+    path = put(csv, ",".join([*(names or ()), "frame", "y", "u"]), row, sidecar)
+    if names is None:
+        path.write_text(path.read_text().split("\n", 1)[1])
+    log = even(path)
+    told = [r for r in log.remarks if "[s] +" in r]
+    assert told == ([] if sidecar else [f"Time of log 'log' is {names[0]} [s] + {names[1]} [ns]."])
+
+
+def test_two_clocks_are_to_be_chosen_from(csv, refusal):
+    header = "a.sec,a.nanosec,b.sec,b.nanosec,y,u"
+    path = put(csv, header, lambda k: f"0,{k * STEP},7,{k * STEP},{k},1")
+    said = refusal(read, path)
+    assert "a.sec with a.nanosec or b.sec with b.nanosec" in said
+    assert '"a.sec" = "time.sec" and "a.nanosec" = "time.nanosec"' in said
+    path.with_suffix(".toml").write_text(
+        '[columns]\n"b.sec" = "time.sec"\n"b.nanosec" = "time.nanosec"'
+    )
+    assert read(path).time[0] == 7.0
+    path.with_suffix(".toml").write_text("sampling_time = 0.004")
+    assert read(path).time[0] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("cells", "sidecar", "words"),
+    [
+        ("1.5,{}", "", ["line 2", "column sec: 1.5 is no whole number"]),
+        (",{}", "", ["line 2", "column sec: nan is no whole number"]),
+        ("1,{}", 'units.time = "ns"', ["gives time under 'units'", "sec [s] and nanosec [ns]"]),
+        ("1,{}", "factors.time = 2.0", ["gives time under 'factors'", "leave it out there"]),
+        ("1,{}", "factors.time = -1", ["the factor of time", "is negative"]),
+    ],
+)
+def test_bad_stamps(csv, refusal, cells, sidecar, words):
+    path = put(csv, "sec,nanosec,y,u", lambda k: cells.format(k * STEP) + f",{k},1", sidecar)
+    said = refusal(read, path)
+    for word in words:
+        assert word in said
+
+
+@pytest.mark.parametrize(
+    ("column", "line"),
+    [("%time", '"%time" = "time"'), ("Stamp_ros", 'Stamp_ros = "time"'), ("t", 't = "time"')],
+)
+def test_a_log_without_a_column_time_is_told_the_line_and_the_file(csv, refusal, column, line):
+    path = put(csv, f"{column},y,u", lambda k: f"{k},{k},1")
+    said = refusal(read, path)
+    assert f"write {line} under [columns] in {path.with_suffix('.toml')}" in said
+    path.with_suffix(".toml").write_text(f"[columns]\n{line}")
+    assert len(read(path)) == N
+
+
+@pytest.mark.parametrize(("unit", "per_second"), [("ms", 1e3), ("us", 1e6), ("ns", 1e9)])
+def test_the_unit_of_time_that_is_told_is_the_one_that_repairs_it(tmp_path, unit, per_second):
+    (tmp_path / "slider.xml").write_text(SLIDER)
+    robot = tmp_path / "robot.toml"
+    robot.write_text(TOML)
+    log = simulated({}, 200)
+    u, y = log.inputs[:, 0].tolist(), log.outputs[:, 0].tolist()
+    rows = [
+        f"{EPOCH // 10**3 + round(k * log.sampling_time * per_second)},{a},{b}"
+        for k, (a, b) in enumerate(zip(u, y, strict=True))
+    ]
+    name = log.input_names[0]
+    path = tmp_path / "slow.csv"
+    path.write_text("\n".join([f"time,{name},x", *rows]))
+    with pytest.raises(InputError, match=f"is its time in {unit}.*slow.toml"):
+        read_robot(robot, path)
+    path.with_suffix(".toml").write_text(f"units.time = {json.dumps(unit)}")
+    assert read_robot(robot, path).log.sampling_time == pytest.approx(0.01, rel=1e-4)
+
+
+def test_a_column_of_time_in_the_robot_s_file_is_told_its_place(tmp_path, refusal):
+    (tmp_path / "slider.xml").write_text(SLIDER)
+    robot, path = tmp_path / "robot.toml", tmp_path / "log.csv"
+    robot.write_text(TOML.replace("[columns]", '[columns]\ntime = "%time"'))
+    path.write_text("%time,force,x\n")
+    said = refusal(read_robot, robot, path)
+    assert f'write "%time" = "time" under [columns] in {tmp_path / "log.toml"}' in said
