@@ -16,6 +16,7 @@ from identification.logs.conversion import conversions, converted
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible, check_possible
+from identification.logs.publishers import refuse_second_publisher
 from identification.logs.read_csv import parse_csv
 from identification.logs.read_mat import parse_mat
 from identification.logs.resampling import Even, even_out
@@ -39,6 +40,7 @@ def read_log(
     lenient: bool = False,
     said: Mapping[str, Any] | None = None,
     overrule: str = "",
+    trust_rows: bool = False,
 ) -> Log:
     """Read a log; columns may stand in any order, and a file that cannot be right is refused.
 
@@ -60,6 +62,8 @@ def read_log(
             remarks say.
         said: keys of the sidecar that hold where it does not say otherwise.
         overrule: how a user may overrule `limits` and `rates`, for their messages.
+        trust_rows: whether rows that look like those of a second publisher are read; else they are
+            refused where `lenient`.
 
     Returns:
         The log in SI units, named after the file.
@@ -104,6 +108,11 @@ def read_log(
     si, factors = conversions(table, sidecar, {**units, "time": "s"})
     table = converted(table, sidecar, factors)
     gaps: tuple[tuple[float, float], ...] = ()
+    if lenient:
+        check_stamps(table)
+        if not trust_rows:
+            cure = f', or write trust = ["rows"] into {named_in}' if named_in else ""
+            refuse_second_publisher(table, inputs, outputs, si, cure)
     if lenient and not _is_even(table, sidecar):
         table, even = _evened(table, inputs, sidecar)
         remarks, gaps = (*remarks, even.sentence), even.gaps
@@ -149,7 +158,6 @@ def _is_even(table: Table, sidecar: Sidecar) -> bool:
 
 def _evened(table: Table, inputs: Sequence[str], sidecar: Sidecar) -> tuple[Table, Even]:
     """Returns a table on an even grid, and what was done to it."""
-    check_stamps(table)
     names = [n for n in table.names if n != "time"]
     even = even_out(
         table.path.stem, table["time"], {n: table[n] for n in names}, inputs, sidecar.hold,

@@ -151,7 +151,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     log = read_log(
         path, [own[n] for n in inputs], [own[n] for n in outputs],
         units={own[n]: u for n, u in units.items()}, named_in=file.path,
-        lenient=True, said=file.log,
+        lenient=True, said=file.log, trust_rows="rows" in file.trust,
     )  # fmt: skip
     refuse_milliseconds(model, file, log, Path(path))
     refuse_every(file, log)

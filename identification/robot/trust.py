@@ -9,6 +9,7 @@ from identification.errors import unknown_name
 
 TRUST = {  # what a user may know better than a check
     "gaps": "what is made up across a gap counts as measured",
+    "rows": "all rows are of this robot, also those with one stamp and those of zeros",
     "sensors": "a sensor that repeats one value is not frozen",
     "start": "simulations begin where the model does, also where the log begins elsewhere",
     "steps": "the model's steps are fine enough",

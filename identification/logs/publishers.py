@@ -1,0 +1,138 @@
+"""Rows of a second publisher between those of a robot: two rows with one stamp, and rows of zeros.
+
+A joint that is watched moves by at most m between rows. It cannot be at two places at one time
+that are farther apart than that, and it cannot go from far away to zero and back within a sample.
+Only positions are judged so: a rate may jump, and so may a command. What is smaller than the noise,
+a few steps of an encoder or a hundredth of the motion is not judged, because it changes no fit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import product
+
+import numpy as np
+
+from identification.errors import InputError
+from identification.logs.frozen import STEPS
+from identification.logs.gaps import ALLOWED
+from identification.logs.noise import noise_floor
+from identification.logs.sampling import FloatArray
+from identification.logs.table import Table
+
+BEYOND = 2.0  # times the farthest motion between rows, from which a distance contradicts it
+NOISE = 10.0  # std of the noise, which two samples of 10^6 do not differ by
+FEWEST = 4  # rows, or stamps, that show how a joint moves
+USUAL = 1.5  # of the usual interval: rows so near each other have none missing between them
+SINGLE = 2.5  # of the usual interval, that two rows with one between them are apart
+VARIED = 4.0  # times the farthest motion, that the places vary by from which it goes to zero
+RATES = ("rad/s", "m/s")
+
+
+def refuse_second_publisher(
+    table: Table,
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    units: Mapping[str, str],
+    overrule: str,
+) -> None:
+    """Refuse rows that are not of the robot whose other rows the log has.
+
+    Args:
+        table: columns in SI; NaN where nothing stands, and finite stamps.
+        inputs: which of them are inputs.
+        outputs: which of them are outputs.
+        units: SI unit by column, where known.
+        overrule: how a user may overrule this, for the message.
+
+    Raises:
+        InputError: two rows with one stamp contradict each other, or rows are zero in all columns
+            between rows that are far from it.
+    """
+    positions = [name for name in outputs if units.get(name) not in RATES]
+    for name in positions:
+        _refuse_twice(table, name, units.get(name, ""), overrule)
+    zero = np.flatnonzero(_zero_rows(table, inputs, outputs))
+    if zero.size:
+        for name in positions:
+            _refuse_zeros(table, name, zero, units.get(name, ""), overrule)
+
+
+def _refuse_twice(table: Table, name: str, unit: str, overrule: str) -> None:
+    """Refuse two rows with one stamp between which an output goes farther than it ever moves."""
+    rows, x, t = _seen(table, name)
+    same = np.flatnonzero(np.diff(t) == 0)
+    first = np.flatnonzero(np.append(True, np.diff(t) != 0))
+    if not same.size or len(first) < FEWEST:
+        return
+    last = np.append(first[1:], len(x)) - 1
+    # Whatever rows of three stamps in a row are chosen, the joint moves at least so far.
+    ends = [np.minimum.reduceat(x, first), np.maximum.reduceat(x, first)]
+    least = [np.ptp([a[:-2], b[1:-1], c[2:]], axis=0) for a, b, c in product(ends, repeat=3)]
+    moved = float(np.min(least, axis=0).max())
+    noise = min(float(noise_floor(y[:, None])[0]) for y in (*ends, x[first], x[last]))
+    allowed = max(BEYOND * moved, NOISE * noise, STEPS * _encoder(x), ALLOWED * float(np.ptp(x)))
+    bad = same[np.abs(x[same + 1] - x[same]) > allowed]
+    if bad.size:
+        k = int(bad[0])
+        raise InputError(
+            f"{table.place(int(rows[k + 1]))}: there are two rows with one stamp, {t[k]:.9g} s, and"
+            f" they contradict each other: {name} is {x[k]:.4g} and {x[k + 1]:.4g} {unit}".rstrip()
+            + f", though it moves by {moved:.2g} at most between such stamps"
+            f"{_more(len(bad), 'pair')}; keep the rows of one publisher{overrule}"
+        )
+
+
+def _refuse_zeros(table: Table, name: str, zero: np.ndarray, unit: str, overrule: str) -> None:
+    """Refuse rows of zeros, for which an output would have to go far and back in no time."""
+    rows, x, t = _seen(table, name)
+    kept = np.flatnonzero(~np.isin(rows, zero))
+    if len(kept) < FEWEST:
+        return
+    moved = float(np.abs(np.diff(x[kept])).max())
+    usual = float(np.median(np.diff(t[kept])))
+    far = max(BEYOND * moved, STEPS * _encoder(x), ALLOWED * float(np.ptp(x)))
+    after = np.searchsorted(kept, np.flatnonzero(np.isin(rows, zero)))
+    inside = (after > 0) & (after < len(kept))
+    between = np.flatnonzero(np.isin(rows, zero))[inside]
+    before, behind = kept[after[inside] - 1], kept[after[inside]]
+    apart = np.minimum(np.abs(x[before]), np.abs(x[behind])) > far
+    lasting = t[behind] - t[before]
+    # A robot may step to zero and rest for a sample, always from the same few places.
+    places = np.concatenate([x[before[apart]], x[behind[apart]]])
+    is_varied = bool(places.size) and float(np.ptp(places)) > VARIED * moved
+    bad = between[apart & (lasting <= (SINGLE if is_varied else USUAL) * usual)]
+    if bad.size:
+        k = int(np.flatnonzero(between == bad[0])[0])
+        raise InputError(
+            f"{table.place(int(rows[bad[0]]))} is zero in all columns, as of a second publisher:"
+            f" {name} is {x[before[k]]:.4g} before it and {x[behind[k]]:.4g} {unit}".rstrip()
+            + f" behind it, and moves by {moved:.2g} at most between other rows"
+            f"{_more(len(bad), 'row', zero)}; drop such rows{overrule}"
+        )
+
+
+def _seen(table: Table, name: str) -> tuple[np.ndarray, FloatArray, FloatArray]:
+    """The rows in which a column has a number, these numbers, and their stamps."""
+    rows = np.flatnonzero(np.isfinite(table[name]))
+    return rows, table[name][rows], table["time"][rows]
+
+
+def _zero_rows(table: Table, inputs: Sequence[str], outputs: Sequence[str]) -> np.ndarray:
+    """Rows in which all that stands there is zero, and an output stands there, shape (n,)."""
+    cells = np.column_stack([table[name] for name in (*inputs, *outputs)])
+    empty = np.isnan(cells)
+    return np.asarray((empty | (cells == 0)).all(axis=1) & ~empty[:, len(inputs) :].all(axis=1))
+
+
+def _encoder(x: FloatArray) -> float:
+    """The smallest difference of two samples in a row that is not zero."""
+    steps = np.abs(np.diff(x))
+    return float(steps[steps > 0].min()) if steps.any() else 0.0
+
+
+def _more(count: int, what: str, rows: np.ndarray | None = None) -> str:
+    """Says how many such rows there are, and whether they come regularly."""
+    steps = set() if rows is None else set(np.diff(rows).tolist())
+    each = f", each {steps.pop()}th row of the log" if len(steps) == 1 and steps != {1} else ""
+    return f" ({count} such {what}s{each})" if count > 1 else ""
