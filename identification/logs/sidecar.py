@@ -6,8 +6,10 @@ notes = "third run, warm motors"
 ignore = ["temperature"]            # columns of the file to leave out
 [units]                             # by column or by group; SI where not given
 current = "mA"
+time = "ns"                         # stamps beyond 2^53 count less the first one
 [columns]                           # column of the file = name it should have
 q1 = "angle_1"                      # or, of a file without a header, columns = ["time", "skip", …]
+stamp_s = "time.sec"                # two columns that make the time, with "time.nanosec"
 [factors]                           # by column or by group: what its numbers are multiplied with
 angle_2 = -1                        # turns a sign; a factor comes on top of the unit
 [splits]                            # [start, end) [s]
