@@ -23,6 +23,7 @@ from identification.logs.table import Table
 BEYOND = 2.0  # times the farthest motion between rows, from which a distance contradicts it
 NOISE = 10.0  # std of the noise, which two samples of 10^6 do not differ by
 FEWEST = 4  # rows, or stamps, that show how a joint moves
+SAME = 1e-3  # of the mean interval: stamps so near each other are one, as they are printed
 USUAL = 1.5  # of the usual interval: rows so near each other have none missing between them
 SINGLE = 2.5  # of the usual interval, that two rows with one between them are apart
 VARIED = 4.0  # times the farthest motion, that the places vary by from which it goes to zero
@@ -61,8 +62,10 @@ def refuse_second_publisher(
 def _refuse_twice(table: Table, name: str, unit: str, overrule: str) -> None:
     """Refuse two rows with one stamp between which an output goes farther than it ever moves."""
     rows, x, t = _seen(table, name)
-    same = np.flatnonzero(np.diff(t) == 0)
-    first = np.flatnonzero(np.append(True, np.diff(t) != 0))
+    if len(t) < FEWEST:
+        return
+    is_same = np.abs(np.diff(t)) <= SAME * (t[-1] - t[0]) / (len(t) - 1)
+    same, first = np.flatnonzero(is_same), np.flatnonzero(np.append(True, ~is_same))
     if not same.size or len(first) < FEWEST:
         return
     last = np.append(first[1:], len(x)) - 1

@@ -63,10 +63,12 @@ def test_zeros_in_place_of_samples(refusal, k):
     assert f"each {k}th row" in refusal(judge, t, u, q)
 
 
-def test_two_publishers_that_always_differ(refusal):
+@pytest.mark.parametrize("later", [0.0, 1e-17, 1e-6])
+def test_two_publishers_that_always_differ(refusal, later):
     t, u, q = motion()
     twice = [np.repeat(x, 2) for x in (t, u, q)]
     twice[2][1::2] *= -1
+    twice[0][1::2] += later
     assert "two rows with one stamp" in refusal(judge, *twice)
 
 
