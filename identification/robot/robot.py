@@ -7,7 +7,6 @@ from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import mujoco
 import numpy as np
 
 from identification.discovery.nominal_model import NominalModel
@@ -21,9 +20,11 @@ from identification.errors import InputError, told_of, unknown_name
 from identification.logs.decimation import decimate
 from identification.logs.log import Log
 from identification.logs.read import read_log
+from identification.logs.table import MissingColumnsError
 from identification.model.plant import start_place
 from identification.model.predictor import output_columns
 from identification.robot.checks import (
+    outputs_of,
     refuse_every,
     refuse_milliseconds,
     refuse_same_stem,
@@ -122,14 +123,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     model = robot_spec(file)[0].compile()
     refuse_unnamed(model, file)
     inputs = tuple(model.actuator(i).name for i in range(model.nu))
-    sensors = {model.sensor(i).name: int(model.sensor_type[i]) for i in range(model.nsensor)}
-    positions = (n for n, t in sensors.items() if t == int(mujoco.mjtSensor.mjSENS_JOINTPOS))
-    outputs = file.outputs or tuple(positions)
-    if not (inputs and outputs):
-        raise InputError(
-            f"{file.model} has {len(inputs)} actuators and {len(sensors)} sensors; it needs an"
-            " actuator for every input and a jointpos or jointvel sensor for every output"
-        )
+    outputs = outputs_of(model, file)
     with told_of(f"outputs in {file.path}") if file.outputs else nullcontext():
         places = output_columns(model, outputs)
     units = {
@@ -140,11 +134,21 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
             raise unknown_name(f"actuator or sensor under columns in {file.path}:", name,
                                (*inputs, *outputs))  # fmt: skip
     own = {name: file.columns.get(name, name) for name in (*inputs, *outputs)}
-    log = read_log(
-        path, [own[n] for n in inputs], [own[n] for n in outputs],
-        units={own[n]: u for n, u in units.items()}, named_in=file.path,
-        lenient=True, said=file.log,
-    )  # fmt: skip
+    try:
+        log = read_log(
+            path, [own[n] for n in inputs], [own[n] for n in outputs],
+            units={own[n]: u for n, u in units.items()}, named_in=file.path,
+            lenient=True, said=file.log,
+        )  # fmt: skip
+    except MissingColumnsError as error:
+        there = [f'"{n}"' for n in outputs if own[n] not in error.missing]
+        measured = {*error.missing} <= {own[n] for n in outputs}
+        if file.outputs or not (there and measured):
+            raise
+        raise InputError(
+            f"{error}; or, where these are not measured, write outputs = [{', '.join(there)}] into"
+            f" {file.path}"
+        ) from error
     refuse_milliseconds(model, file, log, Path(path))
     refuse_every(file, log)
     given = {n: u for n in inputs if (u := log.units.get(own[n]))}
