@@ -19,6 +19,7 @@ KINDS = {
 }
 DOF = ("damping", "armature", "frictionloss")  # of a joint, kept per degree of freedom
 _MORE = {"joint": DOF, "body": ("spread",), "actuator": ("kp", "kv")}  # beside the arrays
+_JOINT = int(mujoco.mjtTrn.mjTRN_JOINT)
 _ON_A_BODY = ("joint", "site", "geom")
 # What MuJoCo computes of other numbers: nobody gives it, and to write it is in vain.
 _COMPUTED = ("aabb", "acc0", "invweight0", "length0", "lengthrange", "rbound", "subtreemass")
@@ -98,7 +99,7 @@ def _with_that_name(
 
 
 def _around(model: mujoco.MjModel, kind: str, row: int, attribute: str) -> Iterator[str]:
-    """Paths to the same attribute of an object's body, or of the joints of a body."""
+    """Paths to the same attribute of an object's body, of a body's joints, or a joint's drives."""
     if kind in _ON_A_BODY and attribute in attributes(model, "body"):
         body = int(getattr(model, f"{prefix(kind)}bodyid")[row])
         if name := names_of(model, "body")[body]:
@@ -107,6 +108,11 @@ def _around(model: mujoco.MjModel, kind: str, row: int, attribute: str) -> Itera
         joints = names_of(model, "joint")
         yield from (f"joint/{joints[j]}.{attribute}" for j in range(model.njnt)
                     if model.jnt_bodyid[j] == row and joints[j])  # fmt: skip
+    if kind == "joint" and attribute in attributes(model, "actuator"):
+        drives = names_of(model, "actuator")
+        yield from (f"actuator/{drives[i]}.{attribute}" for i in range(len(drives))
+                    if model.actuator_trntype[i] == _JOINT and model.actuator_trnid[i, 0] == row
+                    and drives[i])  # fmt: skip
 
 
 def _meant(paths: Iterator[str]) -> str:

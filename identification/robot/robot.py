@@ -37,6 +37,7 @@ from identification.robot.model_units import unit_of
 from identification.robot.own_values import refuse_impossible, value_parameters
 from identification.robot.parameters import free_parameter, measured_start
 from identification.robot.start import refuse_start, start_of
+from identification.robot.unmeasured import refuse_unmeasured
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,7 @@ class Robot:
         others: further logs that are fitted together with `log`.
         remarks: what was taken for granted when its files were read, a sentence each.
         mean: means of these priors by name, in the parameters' units.
+        touches: one sentence on what touches along its logs; "" where nothing does.
     """
 
     file: RobotFile
@@ -63,6 +65,7 @@ class Robot:
     others: tuple[Log, ...] = ()
     remarks: tuple[str, ...] = ()
     mean: Mapping[str, float] = field(default_factory=dict)
+    touches: str = ""
 
     @property
     def nominal_model(self) -> NominalModel:
@@ -164,12 +167,14 @@ def robot_of(
     """Compile a robot for a log, for others that are fitted together with it, and for records.
 
     Raises:
-        InputError: a name, a path, a joint or an effect is unknown, or a value is missing.
+        InputError: a name, a path, a joint or an effect is unknown, a value is missing, or no
+            sensor measures a free or ball joint.
     """
     spec, said = robot_spec(file)
     said += with_step(spec, [log, *others, *records])
     model = spec.copy().compile()
     refuse_start(file, model)
+    refuse_unmeasured(file, model, log)
     known = reach([axes(model, each, file.trust) for each in (log, *others)])
     for joint in file.joints:
         if joint not in {a.joint for a in known}:

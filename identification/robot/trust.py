@@ -8,6 +8,8 @@ from typing import Any
 from identification.errors import unknown_name
 
 TRUST = {  # what a user may know better than a check
+    "contacts": "geoms that touch all along the log are meant to",
+    "joints": "free and ball joints that no sensor measures begin where the model does",
     "sensors": "a sensor that repeats one value is not frozen",
     "start": "simulations begin where the model does, also where the log begins elsewhere",
     "steps": "the model's steps are fine enough",

@@ -33,6 +33,8 @@ UNNAMED = mujoco.MjModel.from_xml_string(
         ("geom/box.mass", "; or did you mean 'body/trolley.mass'?"),
         ("joint/pivot.mass", "; or did you mean 'body/jib.mass'?"),
         ("body/jib.damping", "; or did you mean 'joint/pivot.damping'?"),
+        ("joint/pivot.gear", "; or did you mean 'actuator/pivot.gear'?"),
+        ("joint/pivot.kp", "; or did you mean 'actuator/pivot.kp'?"),
         ("geom/jib.mass", "unknown geom 'jib'; known: box; or did you mean 'body/jib.mass'?"),
         ("body/pivot.mass", "known: jib, trolley, world; or did you mean 'body/jib.mass'?"),
         ("joint/jib.damping", "known: pivot, rail; or did you mean 'joint/pivot.damping'?"),
