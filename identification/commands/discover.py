@@ -51,7 +51,7 @@ class Discover(OnRobot):
         from identification.report.discovery_text import discovery_text
         from identification.robot.confirmation import confirm
         from identification.robot.discovery import discover
-        from identification.robot.reading import wrong_start
+        from identification.robot.reading import doubtful
         from identification.robot.repetition import find_repetitions
         from identification.robot.write import write_robot
 
@@ -60,7 +60,7 @@ class Discover(OnRobot):
             return self._keep_records(robot, found)
         pairs = confirm(robot, found)
         repeated = find_repetitions(robot)
-        told = [*wrong_start(robot), *map(str, (*pairs, *repeated))]
+        told = [*doubtful(robot), *map(str, (*pairs, *repeated))]
         record: dict[str, Any] = _with_repetitions(discovery_to_json(found), repeated)
         record = {**record, "confirm": [vars(c) for c in pairs], "remarks": list(robot.remarks)}
         if self.output.json:
@@ -90,22 +90,24 @@ class Discover(OnRobot):
         from identification.report.records_json import records_to_json
         from identification.report.records_report import write_records_report
         from identification.report.records_text import records_text
+        from identification.robot.reading import doubtful
         from identification.robot.repetition import find_repetitions
         from identification.robot.write import write_robot
 
         repeated = find_repetitions(robot)
+        told = [*doubtful(robot), *map(str, repeated)]
         record = _with_repetitions(records_to_json(found), repeated)
         record["remarks"] = list(robot.remarks)
         if self.output.json:
             say_json(record)
         else:
-            say("\n".join([records_text(found), *map(str, repeated)]))
+            say("\n".join([records_text(found), *told]))
         if self.output.out is not None:
             with whole_folder(self.output.out) as out:
                 values, own = found.final.values, found.final.own_values
                 write_robot(robot, values, out / "robot.toml", self.output.out, own_values=own)
                 write_result(out / "result.json", self, record)
-                self._draw(partial(write_records_report, found, out))
+                self._draw(partial(write_records_report, found, out, told))
         return 0
 
     def _draw(self, write: Callable[[], object]) -> None:

@@ -62,6 +62,14 @@ def renamed(table: Table, sidecar: Sidecar) -> Table:
     return replace(table, names=names, data=table.data[:, keep])
 
 
+class MissingColumnsError(InputError):
+    """A log lacks columns, whose names are its `missing`."""
+
+    def __init__(self, message: object = "", missing: Sequence[str] = ()) -> None:
+        super().__init__(message)
+        self.missing = tuple(missing)
+
+
 def check_columns(
     table: Table,
     needed: Sequence[str],
@@ -79,6 +87,7 @@ def check_columns(
         named_in: another file whose [columns] say what is needed; the sidecar when None.
 
     Raises:
+        MissingColumnsError: a column is missing.
         InputError: a column is missing or unknown; the likely correct name is suggested.
     """
     good = [*needed, *optional]
@@ -90,9 +99,10 @@ def check_columns(
         close = get_close_matches(missing[0], (*unknown, *table.left), n=1)
         slip = f" (is {missing[0]} its column {quoted(close[0])}?)" if close else ""
         where = sidecar.path if named_in is None else named_in
-        raise InputError(
+        raise MissingColumnsError(
             f"{table.path} lacks {_columns(missing)}{slip}; it has {listed(table.all_names)};"
-            f" correct its names or map them under [columns] in {where}"
+            f" correct its names or map them under [columns] in {where}",
+            missing,
         )
     if unknown:
         close = get_close_matches(unknown[0], good, n=1)

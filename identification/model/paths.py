@@ -15,17 +15,16 @@ import mujoco
 import numpy as np
 
 from identification.errors import InputError, unknown_name
+from identification.model.path_names import (
+    DOF,
+    KINDS,
+    names_of,
+    prefix,
+    unknown_attribute,
+    unknown_object,
+)
 
 _PATH = re.compile(r"(?P<kind>\w+)/(?P<name>[^.]+)\.(?P<attribute>\w+)(\[(?P<column>\d+)\])?")
-_KINDS = {
-    "body": ("nbody", mujoco.mjtObj.mjOBJ_BODY),
-    "joint": ("njnt", mujoco.mjtObj.mjOBJ_JOINT),
-    "site": ("nsite", mujoco.mjtObj.mjOBJ_SITE),
-    "geom": ("ngeom", mujoco.mjtObj.mjOBJ_GEOM),
-    "tendon": ("ntendon", mujoco.mjtObj.mjOBJ_TENDON),
-    "actuator": ("nactuator", mujoco.mjtObj.mjOBJ_ACTUATOR),
-}
-_DOF = ("damping", "armature", "frictionloss")  # of a joint, kept per degree of freedom
 
 
 @dataclass(frozen=True)
@@ -61,19 +60,17 @@ def resolve(model: mujoco.MjModel, path: str) -> Slot:
             " e.g. joint/slider.damping"
         )
     kind, attribute = match["kind"], match["attribute"]
-    if kind not in _KINDS:
-        raise unknown_name("kind of object", kind, _KINDS)
-    count, kind_id = _KINDS[kind]
-    names = [mujoco.mj_id2name(model, kind_id, i) or "" for i in range(getattr(model, count))]
-    ids = [i for i, name in enumerate(names) if fnmatchcase(name, match["name"])]
+    if kind not in KINDS:
+        raise unknown_name("kind of object", kind, KINDS)
+    ids = [i for i, n in enumerate(names_of(model, kind)) if fnmatchcase(n, match["name"])]
     if not ids:
-        raise unknown_name(kind, match["name"], (n for n in names if n))
-    field = f"{'jnt' if kind == 'joint' else kind}_{attribute}"
-    if kind == "joint" and attribute in _DOF:
+        raise unknown_object(model, kind, match["name"], attribute)
+    field = f"{prefix(kind)}{attribute}"
+    if kind == "joint" and attribute in DOF:
         field, ids = f"dof_{attribute}", [int(model.jnt_dofadr[i]) for i in ids]
     array = getattr(model, field, None)
     if not isinstance(array, np.ndarray):
-        raise InputError(f"{path!r}: MuJoCo's model has no {field}; see mjModel in its manual")
+        raise unknown_attribute(model, kind, ids[0], attribute)
     column = None if match["column"] is None else int(match["column"])
     width = array.shape[1] if array.ndim == 2 else None
     if (column is None) != (width is None) or (width is not None and column >= width):

@@ -2,6 +2,7 @@
 
     θ_j -> mjModel entry              where = "joint/slide.damping", "body/cart.mass", …
     θ_j -> spread of a body's mass     where = "body/link.spread[0]" (identification.model.spread)
+    θ_j -> gain of a servo             where = "actuator/servo.kp" (identification.model.servo)
     θ_j -> entry of x₀                where = "qpos[0]", "qvel[3]", "act[1]"
     c θ_j -> any of these             ties = (("joint/other.damping", c), …)
     (1 + θ_k) times any of these      where = "deviation", ties = (("joint/other.damping", 1),)
@@ -27,6 +28,7 @@ from identification.model.parameter import DEVIATION, ParameterSet
 from identification.model.paths import Slot, resolve, write
 from identification.model.predictor import Numbers
 from identification.model.rollout import State
+from identification.model.servo import parts, refuse_half
 from identification.model.spread import refuse_both, spread_place, with_spreads
 
 _START = re.compile(r"(?P<field>qpos|qvel|act)\[(?P<index>\d+)\]")
@@ -44,8 +46,8 @@ class ModelPlant:
         start: the initial state; the model's own (qpos0, at rest) when None.
 
     Raises:
-        InputError: a path names nothing in the model, or what the model does not read, or two
-            parameters name the same path.
+        InputError: a path names nothing in the model, or what the model does not read, or one of
+            two numbers that are one gain of a servo, or two parameters name the same path.
     """
 
     model: mujoco.MjModel
@@ -55,14 +57,17 @@ class ModelPlant:
     def __post_init__(self) -> None:
         model, state = copy.copy(self.model), self.start or own_start(self.model)
         start = {f: np.array(getattr(state, f), float).ravel() for f in ("qpos", "qvel", "act")}
-        paths = [path for p in self.parameters for path, _ in p.places]
+        written = [(p.name, part) for p in self.parameters for path, _ in p.places
+                   for part, _ in parts(model, path)]  # fmt: skip
+        paths = [path for _, path in written]
         twice = next((path for path in paths if paths.count(path) > 1), None)
         if twice is not None:
-            names = [p.name for p in self.parameters for path, _ in p.places if path == twice]
+            names = [name for name, path in written if path == twice]
             raise InputError(
                 f"{' and '.join(names)} all go to {twice!r}; give each parameter a place of its own"
             )
         refuse_both(paths, model)
+        refuse_half(model, written)
         spread: dict[tuple[int, int], np.ndarray] = {}
         for parameter in self.parameters:
             for path, factor in parameter.places:
@@ -71,9 +76,10 @@ class ModelPlant:
                 if of_body is not None:
                     spread[of_body] = np.array([value])
                 elif place is None:
-                    slot = resolve(model, path)
-                    refuse_unread(self.model, parameter.name, slot, path)
-                    write(model, slot, value)
+                    for part, sign in parts(self.model, path):
+                        slot = resolve(model, part)
+                        refuse_unread(self.model, parameter.name, slot, path)
+                        write(model, slot, sign * value)
                 else:
                     start[place[0]][place[1]] = value
         for slot, inertia in with_spreads(model, spread, 1):
@@ -106,7 +112,8 @@ class ModelPlant:
             if of_body is not None:
                 spread[of_body] = column
             elif place is None:
-                numbers.append((resolve(self.model, path), column))
+                each = parts(self.model, path)
+                numbers += [(resolve(self.model, part), sign * column) for part, sign in each]
             else:
                 rows[place[0]][:, place[1]] = column
         return State(**rows), [*numbers, *with_spreads(self.model, spread, len(values))]

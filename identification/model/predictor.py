@@ -186,6 +186,12 @@ class Predictor:
         return self.plant.outputs(*self._every(values), self.log.output_names, readings)
 
 
+def sensor_word(model: mujoco.MjModel, i: int) -> str:
+    """Returns what MJCF calls the kind of a sensor, with its article, such as "a framequat"."""
+    word = mujoco.mjtSensor(int(model.sensor_type[i])).name.removeprefix("mjSENS_").lower()
+    return f"a{'n' * (word[0] in 'aeiou')} {word}"
+
+
 def output_columns(model: mujoco.MjModel, names: Sequence[str]) -> list[tuple[str, int]]:
     """Where each output stands in the state: its field (qpos or qvel) and index.
 
@@ -205,8 +211,8 @@ def output_columns(model: mujoco.MjModel, names: Sequence[str]) -> list[tuple[st
         field, address = fields.get(int(model.sensor_type[sensors[name]]), (None, None))
         if field is None or address is None:
             raise InputError(
-                f"sensor {name!r} is no joint position or rate; an output must be a jointpos or"
-                " jointvel sensor"
+                f"sensor {name!r} is {sensor_word(model, sensors[name])}; outputs are jointpos or"
+                " jointvel sensors"
             )
         columns.append((field, int(address[model.sensor_objid[sensors[name]]])))
     return columns

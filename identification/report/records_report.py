@@ -24,12 +24,15 @@ from identification.report.step_words import std_sentence
 BEST = 10  # candidates shown
 
 
-def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
+def write_records_report(
+    found: RecordsDiscovery, folder: Path, sentences: Sequence[str] = ()
+) -> Path:
     """Write report.html and its figures into a folder; returns the path of the page.
 
     Args:
         found: the discovery.
         folder: exists.
+        sentences: that follow the verdict.
 
     Raises:
         InputError: a file cannot be written.
@@ -40,7 +43,8 @@ def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
     save_figures(shown, folder)
     names = ", ".join(r.log.name for r in found.records if r.role == "fit")
     return write_report(
-        folder / "report.html", f"{names}: what the model lacks", records_verdict(found), shown,
+        folder / "report.html", f"{names}: what the model lacks",
+        [*records_verdict(found), *sentences], shown,
         good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
         data=[r.log.name for r in found.records],
     )  # fmt: skip

@@ -22,8 +22,8 @@ import mujoco
 
 from identification.errors import InputError, repeated, told_of
 from identification.model.parameter import DEVIATION, Parameter
-from identification.model.paths import read, resolve
 from identification.model.plant import start_place
+from identification.model.servo import value_of
 from identification.model.spread import spread_place
 from identification.robot.file_checks import Kinds, check_table, texts
 
@@ -103,7 +103,7 @@ class Alike:
                 f"{path!r} is an entry of the state; give paths to numbers of the model, such as"
                 ' "joint/elbow.damping"'
             )
-        value = read(model, resolve(model, path))
+        value = value_of(model, path)
         if value > 0:
             return value
         raise InputError(

@@ -12,8 +12,10 @@ from identification.logs.frozen import still_sentence
 from identification.logs.log import Log
 from identification.logs.sampling import MIN_ROWS, rows_between
 from identification.logs.units import units_that_fit
+from identification.model.predictor import sensor_word
 from identification.robot.file import RobotFile
 
+FEW = 3  # sensors that a message tells
 MOST_STEPS = 100.0  # of the model in a sample; with more, time is most often in ms, us or ns
 
 
@@ -47,6 +49,42 @@ def refuse_unnamed(model: mujoco.MjModel, file: RobotFile) -> None:
                 f"{what} {i} of {file.model}, counted from 0, has no name; give it one, such as the"
                 " name of its column in the log"
             )
+
+
+def outputs_of(model: mujoco.MjModel, file: RobotFile) -> tuple[str, ...]:
+    """Returns the sensors that a log has: those that the file names, or all joint positions.
+
+    Args:
+        model: of the robot.
+        file: the robot's.
+
+    Raises:
+        InputError: the model has no actuator, or no sensor of a joint's position and the file names
+            no outputs.
+    """
+    sensors = {model.sensor(i).name: sensor_word(model, i) for i in range(model.nsensor)}
+    outputs = file.outputs or tuple(n for n, kind in sensors.items() if kind == "a jointpos")
+    if outputs and model.nu:
+        return outputs
+    if outputs or not sensors:
+        lacks = "actuator" if outputs else "sensor"
+        raise InputError(
+            f"{file.model} has no {lacks}; it needs an actuator for every input and a jointpos or"
+            " jointvel sensor for every output"
+        )
+    rates = ", ".join(f'"{n}"' for n, kind in sensors.items() if kind == "a jointvel" and n)
+    if rates:
+        raise InputError(
+            f"{file.model} has no jointpos sensor, and {file.path} names no outputs; write outputs"
+            f" = [{rates}] into {file.path}"
+        )
+    of, rest = f" of {file.model}", [*sensors.items()]
+    kinds = [f"{n!r}{of * (k == 0)} is {kind}" for k, (n, kind) in enumerate(rest[:FEW])]
+    more = f" and {len(rest) - FEW} more are of such kinds" if len(rest) > FEW else ""
+    raise InputError(
+        f"sensor {', '.join(kinds)}{more}; outputs are jointpos or jointvel sensors, so give the"
+        " model one for each measured joint"
+    )
 
 
 def refuse_unlike(file: RobotFile, log: Log) -> None:

@@ -11,7 +11,7 @@ from identification.report.records_fit_json import records_fit_to_json
 from identification.robot.fitting import RobotFit
 from identification.robot.free_inertias import impossible_sentence
 from identification.robot.no_better import no_better
-from identification.robot.reading import wrong_start
+from identification.robot.reading import doubtful
 from identification.robot.record_error import Confirmation
 from identification.robot.repetition import find_repetitions
 
@@ -36,7 +36,7 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     first = int(
         result.is_worse or result.stopped
     )  # then nothing else of the verdict matters as much
-    far = [*wrong_start(result.robot), *no_better(result, confirmed or result.unseen), *far]
+    far = [*doubtful(result.robot), *no_better(result, confirmed or result.unseen), *far]
     if no_body := impossible_sentence(result.robot, result.shared):
         far.append(no_body)
     verdict = [*record["verdict"][:first], *far, *record["verdict"][first:], *map(str, said)]

@@ -21,9 +21,10 @@ from identification.errors import InputError, told_of
 from identification.logs.dimension import refuse_other_unit
 from identification.logs.log import Log
 from identification.model.parameter import Parameter
-from identification.model.paths import Slot, read, resolve
+from identification.model.paths import Slot, resolve
 from identification.model.plant import own_start, start_place
 from identification.model.predictor import output_columns
+from identification.model.servo import value_of
 from identification.model.spread import spread_place, spreads
 from identification.robot.alike import Alike
 from identification.robot.file import RobotFile
@@ -32,7 +33,9 @@ from identification.robot.start import CLEAR, measured_begin
 
 KNOWN = 0.3  # std of the prior unless given: relative if positive, else of the plausible size
 SURE = 0.01  # of a joint's motion in the log: std of the prior of a start that was measured
-POSITIVE = ("mass", "inertia", "spread", "damping", "armature", "stiffness", "frictionloss")
+POSITIVE = (
+    "mass", "inertia", "spread", "damping", "armature", "stiffness", "frictionloss", "kp", "kv",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -172,9 +175,7 @@ def _in_model(
         return Parameter(name=name, **{**fields, **given}), moved
     of_body = spread_place(path, model)
     value = (
-        read(model, resolve(model, path))
-        if of_body is None
-        else float(spreads(model, of_body[0])[of_body[1]])
+        value_of(model, path) if of_body is None else float(spreads(model, of_body[0])[of_body[1]])
     )
     attribute = path.rpartition(".")[2].partition("[")[0]
     scale = abs(value) or 1.0

@@ -23,6 +23,8 @@ from identification.robot.start_words import (
     unused_sentence,
 )
 from identification.robot.step_error import refuse_coarse_steps
+from identification.robot.touch_words import refuse_touching, told_of_touches, touch_sentence
+from identification.robot.touching import find_touches, is_contradicted
 from identification.robot.trust import trusted
 from identification.robot.wiring import refuse_miswired
 
@@ -48,9 +50,10 @@ def read_robot(
             no deviations from their common values, or the path of a TOML with such tables.
 
     Raises:
-        InputError: a file cannot be what it should be, a name is unknown, a sensor froze, the
-            model's steps are too coarse for the log's noise, or another unit, sign or order of a
-            log's columns would explain it far better.
+        InputError: a file cannot be what it should be, a name is unknown, a sensor froze, no
+            sensor measures a free or ball joint, bodies touch all along logs which contradict this,
+            the model's steps are too coarse for the log's noise, or another unit, sign or order of
+            a log's columns would explain it far better.
         DivergenceError: the model cannot be simulated.
     """
     refuse_kind(path, (str, Path), "read_robot takes the path of a robot's TOML")
@@ -64,13 +67,19 @@ def read_robot(
         _log(file, each) for each in ([log] if isinstance(log, str | Path | Log) else log)
     )
     robot = robot_of(file, first, others, records)
-    refuse_coarse_steps(robot)
-    refuse_absurd_start(robot)
-    for record in records:
-        axes(robot.plant.model, record, file.trust)  # a sensor that froze is refused
     every = (robot.log, *robot.others, *records)
-    for measured in every:
-        refuse_miswired(robot, measured)
+    touches = find_touches(robot, every)
+    refuse_touching(robot, every, touches)  # no step is short enough for a body inside another
+    contradicted = is_contradicted(robot, every, touches)
+    said = touch_sentence(robot, every, touches, contradicted)
+    with told_of_touches(said if contradicted else ""):
+        refuse_coarse_steps(robot)
+        refuse_absurd_start(robot)
+        for record in records:
+            axes(robot.plant.model, record, file.trust)  # a sensor that froze is refused
+        for measured in every:
+            refuse_miswired(robot, measured)
+    robot = replace(robot, touches=said)
     return replace(robot, remarks=_remarks(robot, every))
 
 
@@ -87,18 +96,19 @@ def _refuse_records(records: object, of: str) -> None:
         refuse_kind(each, (str, Path, Log), what)
 
 
-def wrong_start(robot: Robot) -> list[str]:
-    """A sentence where a free run of the robot's log begins elsewhere than the log does.
+def doubtful(robot: Robot) -> list[str]:
+    """Returns sentences of the remarks on which a result depends, to stand beside it.
 
-    A remark says it at length; it stands beside the result in short, which depends on it.
+    They say that a free run of the robot's log begins elsewhere than the log does, in short, and
+    that geoms of the model touch.
 
     Args:
         robot: the result of `read_robot`.
     """
-    if robot.file.horizon is not None:
-        return []
-    said = made_up_sentence(robot.file, robot.plant.model, robot.log)
-    return [] if said is None else [said]
+    said = None
+    if robot.file.horizon is None:
+        said = made_up_sentence(robot.file, robot.plant.model, robot.log)
+    return [*filter(None, (said, robot.touches))]
 
 
 def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
@@ -111,7 +121,8 @@ def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
     inertias = inertias_sentence(file)
     still = (still_sentence(log) for log in logs)
     resampled = (remark for log in logs for remark in log.remarks)
-    return tuple(filter(None, (*robot.remarks, inertias, *still, *resampled, *begun)))
+    of_logs = (*still, *resampled, *begun, robot.touches)
+    return tuple(filter(None, (*robot.remarks, inertias, *of_logs)))
 
 
 def _log(file: RobotFile, log: str | Path | Log) -> Log:

@@ -7,7 +7,6 @@ from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import mujoco
 import numpy as np
 
 from identification.discovery.nominal_model import NominalModel
@@ -22,9 +21,11 @@ from identification.logs.cures import toml_key
 from identification.logs.decimation import decimate
 from identification.logs.log import Log
 from identification.logs.read import read_log
+from identification.logs.table import MissingColumnsError
 from identification.model.plant import start_place
 from identification.model.predictor import output_columns
 from identification.robot.checks import (
+    outputs_of,
     refuse_every,
     refuse_milliseconds,
     refuse_same_stem,
@@ -37,6 +38,7 @@ from identification.robot.model_units import unit_of
 from identification.robot.own_values import refuse_impossible, value_parameters
 from identification.robot.parameters import free_parameter, measured_start
 from identification.robot.start import refuse_start, start_of
+from identification.robot.unmeasured import refuse_unmeasured
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,7 @@ class Robot:
         others: further logs that are fitted together with `log`.
         remarks: what was taken for granted when its files were read, a sentence each.
         mean: means of these priors by name, in the parameters' units.
+        touches: one sentence on what touches along its logs; "" where nothing does.
     """
 
     file: RobotFile
@@ -63,6 +66,7 @@ class Robot:
     others: tuple[Log, ...] = ()
     remarks: tuple[str, ...] = ()
     mean: Mapping[str, float] = field(default_factory=dict)
+    touches: str = ""
 
     @property
     def nominal_model(self) -> NominalModel:
@@ -123,14 +127,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     model = robot_spec(file)[0].compile()
     refuse_unnamed(model, file)
     inputs = tuple(model.actuator(i).name for i in range(model.nu))
-    sensors = {model.sensor(i).name: int(model.sensor_type[i]) for i in range(model.nsensor)}
-    positions = (n for n, t in sensors.items() if t == int(mujoco.mjtSensor.mjSENS_JOINTPOS))
-    outputs = file.outputs or tuple(positions)
-    if not (inputs and outputs):
-        raise InputError(
-            f"{file.model} has {len(inputs)} actuators and {len(sensors)} sensors; it needs an"
-            " actuator for every input and a jointpos or jointvel sensor for every output"
-        )
+    outputs = outputs_of(model, file)
     with told_of(f"outputs in {file.path}") if file.outputs else nullcontext():
         places = output_columns(model, outputs)
     units = {
@@ -148,11 +145,21 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
             raise unknown_name(f"actuator or sensor under columns in {file.path}:", name,
                                (*inputs, *outputs))  # fmt: skip
     own = {name: file.columns.get(name, name) for name in (*inputs, *outputs)}
-    log = read_log(
-        path, [own[n] for n in inputs], [own[n] for n in outputs],
-        units={own[n]: u for n, u in units.items()}, named_in=file.path,
-        lenient=True, said=file.log, trust_rows="rows" in file.trust,
-    )  # fmt: skip
+    try:
+        log = read_log(
+            path, [own[n] for n in inputs], [own[n] for n in outputs],
+            units={own[n]: u for n, u in units.items()}, named_in=file.path,
+            lenient=True, said=file.log, trust_rows="rows" in file.trust,
+        )  # fmt: skip
+    except MissingColumnsError as error:
+        there = [f'"{n}"' for n in outputs if own[n] not in error.missing]
+        measured = {*error.missing} <= {own[n] for n in outputs}
+        if file.outputs or not (there and measured):
+            raise
+        raise InputError(
+            f"{error}; or, where these are not measured, write outputs = [{', '.join(there)}] into"
+            f" {file.path}"
+        ) from error
     refuse_milliseconds(model, file, log, Path(path))
     refuse_every(file, log)
     given = {n: u for n in inputs if (u := log.units.get(own[n]))}
@@ -168,12 +175,14 @@ def robot_of(
     """Compile a robot for a log, for others that are fitted together with it, and for records.
 
     Raises:
-        InputError: a name, a path, a joint or an effect is unknown, or a value is missing.
+        InputError: a name, a path, a joint or an effect is unknown, a value is missing, or no
+            sensor measures a free or ball joint.
     """
     spec, said = robot_spec(file)
     said += with_step(spec, [log, *others, *records])
     model = spec.copy().compile()
     refuse_start(file, model)
+    refuse_unmeasured(file, model, log)
     known = reach([axes(model, each, file.trust) for each in (log, *others)])
     for joint in file.joints:
         if joint not in {a.joint for a in known}:

@@ -71,13 +71,13 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
     }  # fmt: skip
     read = [r for word, kind in kinds.items() if word not in file.trust for r in kind]
     column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
-    lengths = [s * log.duration for s in LENGTHS] if file.horizon is None else [file.horizon]
+    lengths = lengths_of(robot, log)
     balance = _Balance(plant.model, log)
     if "units" not in file.trust and (cure := different_units(plant.model, log, column)):
         raise InputError(f'log {log.name!r}: {cure}, or write trust = ["units"] into {file.path}')
     is_explained = False
     for length in lengths:
-        own = _unexplained(plant, length, log)
+        own = unexplained(plant, length, log)
         if own is None:
             continue
         if not (own > UNEXPLAINED).any():
@@ -85,7 +85,7 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
             continue
         bad = own > UNEXPLAINED
         readings = chain(*(r(log, bad, column) for r in read))
-        explain = partial(_unexplained, plant, length)
+        explain = partial(unexplained, plant, length)
         found = misread(log, own, readings, explain, balance.confirms)
         if found is None and "wiring" not in file.trust and balance.contradicts:
             units = () if "units" in file.trust else turned_units(log, bad, column, wanted)
@@ -146,19 +146,35 @@ def _promising(
     if log.duration < 2 * FEW_WINDOWS * length:
         yield from readings
         return
-    own = _unexplained(plant, length, log, FEW_WINDOWS)
+    own = unexplained(plant, length, log, FEW_WINDOWS)
     for reading in readings:
-        left, k = _unexplained(plant, length, reading.log, FEW_WINDOWS), list(reading.columns)
+        left, k = unexplained(plant, length, reading.log, FEW_WINDOWS), list(reading.columns)
         if own is None or left is None:
             continue
         if (left[k] < np.minimum(EXPLAINED, NEARER * MARGIN * own[k])).all():
             yield reading
 
 
-def _unexplained(
+def lengths_of(robot: Robot, log: Log) -> list[float]:
+    """Returns the lengths of windows of a log over which a robot's model is judged [s]."""
+    horizon = robot.file.horizon
+    return [share * log.duration for share in LENGTHS] if horizon is None else [horizon]
+
+
+def unexplained(
     plant: JointPlant, length: float, log: Log, most: int = MOST_WINDOWS
 ) -> np.ndarray | None:
-    """ε of each output, shape (ny,); None where nothing can be simulated so."""
+    """Returns the share of each output that a model leaves unexplained, ε of shape (ny,).
+
+    Args:
+        plant: the model, as it begins in the log.
+        length: of the windows [s].
+        log: what was measured.
+        most: windows, spread over the log.
+
+    Returns:
+        None where nothing can be simulated so.
+    """
     if not MIN_ROWS * log.sampling_time <= length <= log.duration:
         return None  # too short to tell, and whoever fits it will say so
     try:

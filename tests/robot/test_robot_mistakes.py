@@ -52,7 +52,7 @@ from identification.robot.robot import read_robot_log
             "is no number of an effect; it is joint/slide.damping in",
         ),
         (("= [", "= {"), "is not TOML"),
-        (("free", "trust = ['wirring']\nfree"), "did you mean 'wiring'? known: gaps, rows"),
+        (("free", "trust = ['wirring']\nfree"), "did you mean 'wiring'? known: contacts, gaps"),
         (("[columns]", "[start]\n'qpos[0]' = 0.1\n[columns]"), "under [start] and frees it"),
         (("[columns]", "[start]\n'qpos[7]' = 0.1\n[columns]"), "qpos has 1 entries"),
         (

@@ -41,7 +41,7 @@ def under(table, line):
     [
         ((FREE, "'joint/slid.damping'"), "free in DIR/bad.toml", "did you mean 'slide'"),
         ((FREE, "'bod/cart.mass'"), "free in DIR/bad.toml", "did you mean 'body'"),
-        ((FREE, "'joint/slide.dampin'"), "free in DIR/bad.toml", "no jnt_dampin"),
+        ((FREE, "'joint/slide.dampin'"), "free in DIR/bad.toml", "did you mean 'damping'?"),
         ((FREE, "'damping'"), "free in DIR/bad.toml", "write kind/name.attribute"),
         ((FREE, "'body/cart.inertia'"), "free in DIR/bad.toml", "write one as [0]"),
         ((FREE, "'qpos[9]'"), "free in DIR/bad.toml", "has 1 entries"),

@@ -1,0 +1,121 @@
+"""Which objects and attributes a model has for paths, and what a path that has none may mean."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError, unknown_name
+
+KINDS = {
+    "body": ("nbody", mujoco.mjtObj.mjOBJ_BODY),
+    "joint": ("njnt", mujoco.mjtObj.mjOBJ_JOINT),
+    "site": ("nsite", mujoco.mjtObj.mjOBJ_SITE),
+    "geom": ("ngeom", mujoco.mjtObj.mjOBJ_GEOM),
+    "tendon": ("ntendon", mujoco.mjtObj.mjOBJ_TENDON),
+    "actuator": ("nactuator", mujoco.mjtObj.mjOBJ_ACTUATOR),
+}
+DOF = ("damping", "armature", "frictionloss")  # of a joint, kept per degree of freedom
+_MORE = {"joint": DOF, "body": ("spread",), "actuator": ("kp", "kv")}  # beside the arrays
+_JOINT = int(mujoco.mjtTrn.mjTRN_JOINT)
+_ON_A_BODY = ("joint", "site", "geom")
+# What MuJoCo computes of other numbers: nobody gives it, and to write it is in vain.
+_COMPUTED = ("aabb", "acc0", "invweight0", "length0", "lengthrange", "rbound", "subtreemass")
+
+
+def prefix(kind: str) -> str:
+    """Returns what the arrays of mjModel on a kind of object begin with."""
+    return "jnt_" if kind == "joint" else f"{kind}_"
+
+
+def names_of(model: mujoco.MjModel, kind: str) -> list[str]:
+    """Returns the names of all objects of a kind in the model's order, "" of those without one."""
+    count, kind_id = KINDS[kind]
+    return [mujoco.mj_id2name(model, kind_id, i) or "" for i in range(getattr(model, count))]
+
+
+def attributes(model: mujoco.MjModel, kind: str) -> tuple[str, ...]:
+    """Returns the attributes that a path may name of a kind of object, by their names in MJCF."""
+    start = prefix(kind)
+    arrays = (
+        name.removeprefix(start)
+        for name in dir(model)
+        if name.startswith(start)
+        and isinstance(array := getattr(model, name), np.ndarray)
+        and array.dtype.kind == "f"
+    )
+    own = {name for name in arrays if name not in _COMPUTED}
+    return tuple(sorted({*own, *_MORE.get(kind, ())}))
+
+
+def unknown_object(model: mujoco.MjModel, kind: str, name: str, attribute: str) -> InputError:
+    """Returns the error for a path to an object that a model does not have.
+
+    Args:
+        model: as it was compiled.
+        kind: of the object.
+        name: of it, as the path has it.
+        attribute: of the path.
+    """
+    named = sorted(filter(None, names_of(model, kind)))
+    meant = _meant(_with_that_name(model, name, attribute, besides=kind))
+    if named:
+        error = unknown_name(kind, name, named)
+        return InputError(f"{error}{'; or' if meant else ''}{meant}")
+    if getattr(model, KINDS[kind][0]):
+        why, cure = f"no {kind} of the model has a name", f"give it one to free its {attribute}"
+    else:
+        why, cure = f"the model has no {kind}", "free a number that it has"
+    return InputError(f"unknown {kind} {name!r}: {why};{meant or f' {cure}'}")
+
+
+def unknown_attribute(model: mujoco.MjModel, kind: str, row: int, attribute: str) -> InputError:
+    """Returns the error for a path to an attribute that a kind of object does not have.
+
+    Args:
+        model: as it was compiled.
+        kind: of the object.
+        row: index of the object.
+        attribute: of the path.
+    """
+    meant = _meant(_around(model, kind, row, attribute))
+    error = unknown_name(f"attribute of a {kind}", attribute, attributes(model, kind))
+    return InputError(f"{error}{'; or' if meant else ''}{meant}")
+
+
+def _with_that_name(
+    model: mujoco.MjModel, name: str, attribute: str, besides: str
+) -> Iterator[str]:
+    """Paths to the same attribute of objects of other kinds that have the same name."""
+    for kind in KINDS:
+        if kind != besides and name in names_of(model, kind) and name:
+            if attribute in attributes(model, kind):
+                yield f"{kind}/{name}.{attribute}"
+            else:
+                row = names_of(model, kind).index(name)
+                yield from _around(model, kind, row, attribute)
+
+
+def _around(model: mujoco.MjModel, kind: str, row: int, attribute: str) -> Iterator[str]:
+    """Paths to the same attribute of an object's body, of a body's joints, or a joint's drives."""
+    if kind in _ON_A_BODY and attribute in attributes(model, "body"):
+        body = int(getattr(model, f"{prefix(kind)}bodyid")[row])
+        if name := names_of(model, "body")[body]:
+            yield f"body/{name}.{attribute}"
+    if kind == "body" and attribute in attributes(model, "joint"):
+        joints = names_of(model, "joint")
+        yield from (f"joint/{joints[j]}.{attribute}" for j in range(model.njnt)
+                    if model.jnt_bodyid[j] == row and joints[j])  # fmt: skip
+    if kind == "joint" and attribute in attributes(model, "actuator"):
+        drives = names_of(model, "actuator")
+        yield from (f"actuator/{drives[i]}.{attribute}" for i in range(len(drives))
+                    if model.actuator_trntype[i] == _JOINT and model.actuator_trnid[i, 0] == row
+                    and drives[i])  # fmt: skip
+
+
+def _meant(paths: Iterator[str]) -> str:
+    """The question that offers other paths; "" where there are none."""
+    found = [repr(path) for path in dict.fromkeys(paths)]
+    return f" did you mean {' or '.join(found)}?" if found else ""

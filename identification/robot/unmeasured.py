@@ -1,0 +1,112 @@
+"""Free and ball joints that move what a log measures, and whose own pose no sensor of it measures.
+
+A simulation begins with such a joint where the model's file has it, at rest, and so does each
+window of a horizon. A base with a free joint then falls, and a search takes what the fall does for
+a force that is missing. Hinges and slides can be measured; sensors of a pose are no outputs today.
+"""
+
+from __future__ import annotations
+
+import re
+
+import mujoco
+import numpy as np
+
+from identification.errors import InputError
+from identification.files import MODEL, read_bytes
+from identification.logs.log import Log
+from identification.model.predictor import output_columns
+from identification.robot.file import RobotFile
+
+_WORDS = {int(mujoco.mjtJoint.mjJNT_FREE): "free", int(mujoco.mjtJoint.mjJNT_BALL): "ball"}
+_WELD = int(mujoco.mjtEq.mjEQ_WELD)
+_TIED = (_WELD, int(mujoco.mjtEq.mjEQ_CONNECT))  # equalities between bodies or sites
+_SITE = int(mujoco.mjtObj.mjOBJ_SITE)
+
+
+def refuse_unmeasured(file: RobotFile, model: mujoco.MjModel, log: Log) -> None:
+    """Refuse a model with a free or ball joint that moves what a log measures.
+
+    Args:
+        file: the robot's.
+        model: with the log's sensors.
+        log: what was measured.
+
+    Raises:
+        InputError: there is such a joint, nothing welds it to the world, and the file does not
+            trust its joints.
+    """
+    if "joints" in file.trust:
+        return
+    felt = felt_trees(model, log)
+    for j in np.flatnonzero(np.isin(model.jnt_type, [*_WORDS])):
+        body = int(model.jnt_bodyid[j])
+        if int(model.body_treeid[body]) not in felt or _is_welded(model, body):
+            continue
+        raise _refusal(file, model, log, int(j))
+
+
+def _refusal(file: RobotFile, model: mujoco.MjModel, log: Log, j: int) -> InputError:
+    """The error for joint j."""
+    kind, joint, body = (
+        _WORDS[int(model.jnt_type[j])],
+        model.joint(j).name,
+        int(model.jnt_bodyid[j]),
+    )
+    name = model.body(body).name or f"number {body}"
+    begin = "the simulation" if file.horizon is None else f"each window of {file.horizon:g} s"
+    falls = kind == "free" and bool(model.opt.gravity.any())
+    cure = f"weld {name} if it is fixed: delete the {kind} joint{_line(file, kind)}"
+    if kind == "ball":
+        cure += "; write hinges whose angles the log measures in its place if it turns"
+    return InputError(
+        f"{file.model} has a {kind} joint{f' {joint!r}' * bool(joint)} of body {name}, whose pose"
+        f" no sensor of log {log.name!r} measures, so that {begin} begins with it where the model"
+        f" has it, at rest, and it {'falls' if falls else 'moves freely'} from there; {cure}; or"
+        f' write trust = ["joints"] into {file.path} if it truly begins so'
+    )
+
+
+def felt_trees(model: mujoco.MjModel, log: Log) -> set[int]:
+    """Returns the kinematic trees that move what a log measures, by MuJoCo's numbers.
+
+    These are the trees of the measured joints, and those that equalities or tendons tie to them.
+
+    Args:
+        model: with the log's sensors.
+        log: what was measured.
+    """
+    felt = set()
+    for field, i in output_columns(model, log.output_names):
+        dof = i if field == "qvel" else int(model.jnt_dofadr[model.jnt_qposadr == i][0])
+        felt.add(int(model.dof_treeid[dof]))
+    ties = [{*map(int, trees)} - {-1} for trees in model.tendon_treeid]
+    ties += [{int(model.body_treeid[b]) for b in _bodies(model, e)} - {-1}
+             for e in np.flatnonzero(np.isin(model.eq_type, _TIED))]  # fmt: skip
+    while more := [tie for tie in ties if tie & felt and tie - felt]:
+        felt |= more[0]
+    return felt
+
+
+def _is_welded(model: mujoco.MjModel, body: int) -> bool:
+    """Whether an equality welds a body to one that does not move."""
+    return any(
+        {int(model.body_weldid[b]) for b in _bodies(model, e)} == {int(model.body_weldid[body]), 0}
+        for e in np.flatnonzero((model.eq_type == _WELD) & model.eq_active0.astype(bool))
+    )
+
+
+def _bodies(model: mujoco.MjModel, equality: np.integer) -> tuple[int, int]:
+    """The two bodies that an equality between bodies or sites ties to each other."""
+    a, b = int(model.eq_obj1id[equality]), int(model.eq_obj2id[equality])
+    if int(model.eq_objtype[equality]) == _SITE:
+        return int(model.site_bodyid[a]), int(model.site_bodyid[b])
+    return a, b
+
+
+def _line(file: RobotFile, kind: str) -> str:
+    """Where the model's file has a joint of a kind; the line where it has one alone."""
+    wanted = rf"type\s*=\s*[\"']{kind}[\"']" + ("|<freejoint" if kind == "free" else "")
+    text = read_bytes(file.model, what=MODEL).decode(errors="replace")
+    lines = [n for n, line in enumerate(text.splitlines(), 1) for _ in re.findall(wanted, line)]
+    return f" in line {lines[0]} of {file.model.name}" if len(lines) == 1 else ""
