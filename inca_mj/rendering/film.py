@@ -6,7 +6,7 @@ enlarges how far it is from the simulated one (`inca_mj.rendering.difference`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -151,7 +151,7 @@ def stills(
     return paths
 
 
-def _in_turn(begin: Callable[[float], Begun], times: Sequence[float]) -> Iterator[np.ndarray]:
+def _in_turn(begin: Callable[[float], Begun], times: Iterable[float]) -> Iterator[np.ndarray]:
     """The frames of some times, each of which is drawn while the one before is written."""
     waiting: Begun | None = None
     for time in times:
