@@ -68,4 +68,5 @@ system-packages:
 
 %/.complete: %/.locked pyproject.toml
 	@$*/bin/python $(INSTALL) --editable .
+	@$*/bin/python -m compileall -qq identification inca_mj  # see scripts/environment.sh
 	@touch $@

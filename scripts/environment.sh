@@ -36,5 +36,15 @@ rm -rf "$folder"
 # containers: then every start would compile the same sources again, which takes longer than all
 # else. So the bytecode of the packages that commands import is written here.
 MUJOCO_GL=disable PYTHONDONTWRITEBYTECODE= "$folder/bin/python" -c '
-import mujoco.batch, mujoco.introspect.structs, numba, scipy.optimize, scipy.signal, scipy.stats, tyro
-numba.njit(lambda x: x)(0)  # it imports the rest of numba'
+import io
+import imageio_ffmpeg, jinja2, mujoco.batch, mujoco.introspect.structs, numba, tqdm, tyro, typeguard
+import PIL.ImageDraw, PIL.ImageFont
+import scipy.interpolate, scipy.optimize, scipy.signal, scipy.spatial.transform, scipy.stats
+from matplotlib.figure import Figure
+numba.njit(lambda x: x)(0)  # it imports the rest of numba
+for form in ("png", "svg"):  # and these the rest of matplotlib
+    figure = Figure(layout="constrained")
+    figure.subplots().plot([0, 1], label="a line")
+    figure.legend()
+    figure.savefig(io.BytesIO(), format=form)
+jinja2.Environment(autoescape=True).from_string("{{ a }}").render(a=1)'

@@ -15,7 +15,6 @@ from dataclasses import replace
 from typing import Literal
 
 import numpy as np
-from scipy.linalg import solveh_banded
 
 from identification.errors import InputError
 from identification.logs.log import Log
@@ -76,4 +75,6 @@ def _lines(first: np.ndarray, last: np.ndarray) -> np.ndarray:
     b[1:] += (np.einsum("i,kiu->ku", middle, mean) + rise.sum(axis=1)) / every
     diagonal = np.full(n + 1, 2 / 3)
     diagonal[[0, -1]] = 1 / 3
+    from scipy.linalg import solveh_banded  # slow to import
+
     return solveh_banded(np.vstack([np.full(n + 1, 1 / 6), diagonal]), b)

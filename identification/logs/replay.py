@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.signal import fftconvolve
 
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
@@ -54,6 +53,8 @@ def replayed_share(fitted: Sequence[Log], log: Log) -> float:
 
 def _least(block: np.ndarray, piece: np.ndarray) -> float:
     """min_s Σ ‖block - piece_s‖² over all places s in a piece, each about its own mean."""
+    from scipy.signal import fftconvolve  # slow to import
+
     size = len(block)
     pairs = zip(piece.T, block.T, strict=True)
     across = np.sum([fftconvolve(p, b[::-1], "valid") for p, b in pairs], axis=0)

@@ -15,7 +15,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from identification.errors import InputError
 from identification.logs.gaps import Channel, Gap, find_gaps, find_pauses
@@ -127,6 +126,8 @@ def _smooth(c: Channel, t: FloatArray) -> FloatArray:
     # A rate is a harmonic mean of slopes, (w_1 + w_2) / (w_1/m_1 + w_2/m_2): a slope of 1e-318
     # makes the sum infinite and the mean zero, as it should be.
     with np.errstate(over="ignore"):
+        from scipy.interpolate import PchipInterpolator  # slow to import
+
         return np.asarray(PchipInterpolator(c.time, c.values)(t))
 
 

@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import isfinite
+from typing import TYPE_CHECKING
 
-from identification.discovery.effect_results import NamedEffect, Outside, Proof, RejectedEffect
-from identification.discovery.options import DiscoveryOptions
-from identification.discovery.result import Discovery
-from identification.discovery.scoring.scores import Score
-from identification.discovery.scoring.significance import correct_p_value
-from identification.effects.effect import Candidate, Effect
 from identification.effects.neighbours import phrase_there
-from identification.model.predictor import Plant
 from identification.quantities import probability, quantity
+
+if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model alone
+    from identification.discovery.effect_results import (
+        NamedEffect,
+        Outside,
+        Proof,
+        RejectedEffect,
+    )
+    from identification.discovery.options import DiscoveryOptions
+    from identification.discovery.result import Discovery
+    from identification.discovery.scoring.scores import Score
+    from identification.effects.effect import Candidate, Effect
+    from identification.model.predictor import Plant
 
 FEW = 0.01  # a chance above it is told as a share, and not as a power of ten
 
@@ -69,6 +76,8 @@ def describe_rejected(found: Discovery) -> tuple[str, list[str]]:
 
 
 def _describe_next(scores: Sequence[Score], options: DiscoveryOptions) -> str:
+    from identification.discovery.scoring.significance import correct_p_value
+
     best = max(scores, key=lambda s: s.gain)
     luck = correct_p_value(best, len(scores))
     why = f"chance {luck:.2g} that one of {len(scores)} does as well by luck"

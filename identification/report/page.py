@@ -126,13 +126,14 @@ def write_report(
 
 def save_figures(sections: Iterable[Section], folder: Path) -> list[Path]:
     """Write the figures of some sections as PNG, named by their captions."""
-    from identification.report.style import save_png
+    from identification.report.style import save_png, settle
 
-    return [
-        save_png(figure, folder / f"{re.sub('[^a-z0-9]+', '-', caption.lower()).strip('-')}.png")
-        for section in sections
-        for caption, figure in section.figures
-    ]
+    paths = []
+    for caption, figure in (each for section in sections for each in section.figures):
+        settle(figure)  # a report shows it too
+        name = re.sub("[^a-z0-9]+", "-", caption.lower()).strip("-")
+        paths.append(save_png(figure, folder / f"{name}.png"))
+    return paths
 
 
 def _section(section: Section, number: int) -> dict[str, Any]:

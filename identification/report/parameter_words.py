@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from identification.discovery.result import Discovery
-from identification.effects.effect import Effect
-from identification.model.parameter import Parameter
-from identification.report.effect_words import phrase
+if TYPE_CHECKING:
+    from identification.discovery.result import Discovery
+    from identification.effects.effect import Effect
+    from identification.model.parameter import Parameter
 
 
 def describe_parameter(parameter: Parameter) -> str:
@@ -39,6 +40,8 @@ def parameter_words(
         parameters: of a robot.
         effects: those whose parameters may be among them; a size is said with its place.
     """
+    from identification.report.effect_words import phrase
+
     words = {p.name: describe_parameter(p) for p in parameters}
     for effect in effects:
         what = phrase(effect)

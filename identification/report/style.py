@@ -42,6 +42,17 @@ def literal(text: str) -> str:
     return text.replace("$", r"\$")
 
 
+def settle(figure: Figure) -> None:
+    """Place the parts of a figure for good.
+
+    It would be done anew for each file that shows the figure, and takes as long as drawing it.
+    """
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+        figure.set_layout_engine(None)
+
+
 def save_png(figure: Figure, path: str | Path, dpi: float = 150) -> Path:
     """Write a figure as PNG, whole or not at all.
 

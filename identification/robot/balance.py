@@ -17,7 +17,6 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from scipy.optimize import lsq_linear
 
 from identification.engine import quiet
 from identification.logs.log import Log
@@ -90,6 +89,8 @@ def unbalanced_share(
     norm = np.linalg.norm(flat, axis=0)
     used = norm > 1e-9 * norm.max()
     b = (force / size).ravel()
+    from scipy.optimize import lsq_linear  # slow to import
+
     x = lsq_linear(
         flat[:, used] / norm[used], b, (low[used] * norm[used], high[used] * norm[used])
     ).x

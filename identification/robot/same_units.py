@@ -15,7 +15,6 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 
 from identification.logs.log import Log
 from identification.logs.units import UNITS
@@ -95,7 +94,8 @@ def _pairs(model: mujoco.MjModel, log: Log) -> Iterator[Pair]:
 def _of_rate(log: Log, y: np.ndarray, v: np.ndarray) -> float:
     """b of a position and a rate, shape (n,) each."""
     edges = np.linspace(0, len(y) - 1, min(PIECES, len(y) // 2) + 1).round().astype(int)
-    summed = cumulative_trapezoid(v, dx=log.sampling_time, initial=0.0)
+    means = (v[1:] + v[:-1]) / 2
+    summed = np.concatenate([[0.0], np.cumsum(means * log.sampling_time)])
     return _slope(np.diff(summed[edges]), np.diff(y[edges]))
 
 

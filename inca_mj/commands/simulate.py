@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
-from identification.commands.common import Output, conclude, table
+from identification.commands.common import Output, conclude, output_field, table
+from identification.commands.places import refuse_place
 from inca_mj.commands.common import SavedRobot, do_not_draw
 
 if TYPE_CHECKING:
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from inca_mj.twin.run import Run
     from inca_mj.twin.twin import Twin
 
+
+USUAL_PLACE = Path("out/simulate")
 
 OneOf = Annotated[Literal["trial", "simulation"] | None, tyro.conf.arg(metavar="trial|simulation")]
 
@@ -32,7 +35,9 @@ class FigureRobot(SavedRobot):
 
 @dataclass(frozen=True)
 class Simulate:
-    """Run the twin and write log.csv (states and tensions), run.npz, figures and a report.
+    """Run the twin and write log.csv (states and tensions) and run.npz into out/simulate.
+
+    With --out they are written there, with figures and a report.
 
     Examples:
         inca simulate --input prbs --duration 5 --out out/prbs
@@ -54,9 +59,7 @@ class Simulate:
     force_at: Annotated[tuple[float, float, float], tyro.conf.arg(metavar="X Y Z")] = (0, 0, 0)
     """The point b_G where the force acts, in the platform's frame [m]."""
     robot: Annotated[FigureRobot, tyro.conf.OmitArgPrefixes] = field(default_factory=FigureRobot)
-    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = field(
-        default_factory=lambda: Output(out=Path("out/simulate"))
-    )
+    output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
     def run(self) -> int:
         """Simulate, write, say."""
@@ -64,6 +67,7 @@ class Simulate:
         from inca_mj.twin.run import simulate
 
         now = self._resolved()
+        refuse_place(now)
         currents, sampling_time, hold = now._currents()
         robot = now._twin(sampling_time)
         result = simulate(robot, currents, sampling_time, hold_kind=hold)
@@ -74,11 +78,14 @@ class Simulate:
             "tension_max": float(result.tension.max()),
             "position_end": result.position[-1].tolist(),
         }
-        text = _text(result)
-        if self.output.out is not None:
-            files = "log.csv, run.npz, figures, model.xml and report.html"
-            text += f"\n{files} are in {self.output.out}"
-        conclude(now, summary, text, partial(keep, result, now._notes()))
+        # Figures take longer than a short run, so that they are drawn where they are asked for.
+        is_drawn = self.output.out is not None or self.figure is not None
+        files = "log.csv, run.npz and model.xml are in"
+        if is_drawn:
+            files = "log.csv, run.npz, figures, model.xml and report.html are in"
+        more = "" if is_drawn else "; --out DIR adds figures and a report"
+        text = f"{_text(result)}\n{files} {now.output.out}{more}"
+        conclude(now, summary, text, partial(keep, result, now._notes(), is_drawn))
         return 0
 
     def _resolved(self) -> Simulate:
@@ -90,9 +97,12 @@ class Simulate:
         from identification.errors import InputError
         from inca_mj.workflows.thesis_figures import figure_settings
 
+        output = replace(self.output, out=self.output.out or USUAL_PLACE)
         if self.figure is None:
             robot = replace(self.robot, set=self.robot.set or "trial")
-            return replace(self, input=self._input(), duration=self._seconds(), robot=robot)
+            return replace(
+                self, input=self._input(), duration=self._seconds(), robot=robot, output=output
+            )
         needs = figure_settings(self.figure)
         for name, given, right in (
             ("--input", self.input, needs.input),
@@ -107,7 +117,7 @@ class Simulate:
         if self.robot.model is not None:
             raise InputError("--figure is of the thesis' robot; leave out --model, or --figure")
         robot = replace(self.robot, set=needs.set)
-        return replace(self, input=needs.input, duration=needs.duration, robot=robot)
+        return replace(self, input=needs.input, duration=needs.duration, robot=robot, output=output)
 
     def _twin(self, sampling_time: float) -> Twin:
         """The robot, with the force on it.
@@ -175,17 +185,20 @@ def _text(result: Run) -> str:
     )
 
 
-def keep(result: Run, notes: str, out: Path) -> None:
-    """Write log, run, model, figures and the report into a folder."""
+def keep(result: Run, notes: str, is_drawn: bool, out: Path) -> None:
+    """Write log, run and model into a folder, with figures and a report where they are drawn."""
     from identification import write_log
-    from identification.report.page import save_figures, write_report
-    from inca_mj.report.sections import model_section, run_section
     from inca_mj.twin.logs import run_to_log
     from inca_mj.twin.run import save_run
 
     write_log(run_to_log(result, notes=f"simulated by inca simulate: {notes}"), out / "log.csv")
     save_run(result, out / "run.npz")
     result.twin.save(out / "model.xml")
+    if not is_drawn:
+        return
+    from identification.report.page import save_figures, write_report
+    from inca_mj.report.sections import model_section, run_section
+
     sections = [run_section(result), model_section(result.twin)]
     save_figures(sections, out)
     write_report(

@@ -11,12 +11,15 @@ from __future__ import annotations
 import numpy as np
 
 from identification.errors import InputError
-from inca_mj.kinematics.forward import find
-from inca_mj.kinematics.inverse_geometry import cables
-from inca_mj.kinematics.rotations import euler_of, rotation
+from inca_mj.kinematics.forward import FAR, find
+from inca_mj.kinematics.inverse_geometry import cables, cables_at
+from inca_mj.kinematics.jacobians import jacobian
+from inca_mj.kinematics.rotations import euler_of, rotation, turn
 from inca_mj.robot.geometry import DRIVES, Geometry
 
 FINE = 1e-7  # last step of a search that has ended [m, rad]
+STRIDE = 16  # samples of which one is searched for in turn; those behind it begin at its pose
+TURNS = 8  # steps of the samples between: three are usual, and who needs more is searched in turn
 LOST = 1.0  # by which exchanged or turned angles still miss no length, in a frame of 3 m [m]
 
 
@@ -38,14 +41,70 @@ def poses_with_stiff_cables(
         InputError: no pose has nearly such cable lengths.
     """
     position, turned = np.array(start[:3], float), rotation(*start[3:])
-    at_rest, _ = cables(position, turned, geometry)
-    poses, σ = np.empty((len(angles), 6)), np.ones(DRIVES)
-    for k, lengths in enumerate(at_rest - R * angles):
-        position, turned, last = find(lengths, geometry, (position, turned), σ, tolerance=FINE)
-        if last >= FINE:  # the search took all its steps, as it would at each sample that follows
-            _refuse_lost(cables(position, turned, geometry)[0] - lengths, k)
-        poses[k] = np.concatenate([position, euler_of(turned)])
-    return poses
+    lengths = cables(position, turned, geometry)[0] - R * np.asarray(angles)
+    begin, samples = (position, turned), range(0, len(lengths), STRIDE)
+    in_turn = []
+    for k in samples:
+        begin = _searched(lengths, k, begin, geometry)
+        in_turn.append(begin)
+    blocks = np.arange(len(lengths)) // STRIDE
+    positions = np.array([p for p, _ in in_turn]).reshape(-1, 3)[blocks]
+    rotations = np.array([r for _, r in in_turn]).reshape(-1, 3, 3)[blocks]
+    for k in _settle(lengths, positions, rotations, geometry):
+        before = max(k - 1, 0)
+        begin = positions[before], rotations[before]
+        positions[k], rotations[k] = _searched(lengths, k, begin, geometry)
+    return np.hstack([positions, euler_of(rotations)])
+
+
+def _searched(
+    lengths: np.ndarray, k: int, begin: tuple[np.ndarray, np.ndarray], geometry: Geometry
+) -> tuple[np.ndarray, np.ndarray]:
+    """Position and rotation of sample k, by the search that may halve its steps."""
+    position, turned, last = find(lengths[k], geometry, begin, np.ones(DRIVES), tolerance=FINE)
+    if last >= FINE:  # the search took all its steps, as it would at each sample that follows
+        _refuse_lost(cables(position, turned, geometry)[0] - lengths[k], k)
+    return position, turned
+
+
+def _settle(
+    lengths: np.ndarray, positions: np.ndarray, rotations: np.ndarray, geometry: Geometry
+) -> list[int]:
+    """Take the steps of `find` for all samples at once, in place, none of them halved.
+
+    Args:
+        lengths: of the cables, shape (N, 8) [m].
+        positions: where each sample begins, and then ends, shape (N, 3) [m].
+        rotations: the same, shape (N, 3, 3).
+        geometry: exit points and connectors.
+
+    Returns:
+        The samples that such steps do not bring to an end; they keep where they began.
+    """
+    rows = np.arange(len(lengths))
+    at, turned = positions.copy(), rotations.copy()
+    there = cables_at(at, turned, geometry)
+    error = lengths - there.lengths
+    good = np.abs(error).max(axis=1, initial=0.0) <= FAR
+    lost = [*rows[~good].tolist()]
+    rows, error = rows[good], error[good]
+    L = jacobian(there)[good]
+    for _ in range(TURNS):
+        if not len(rows):
+            break
+        step = (np.linalg.pinv(L, rcond=1e-12) @ error[..., None])[..., 0]
+        last = np.abs(step).max(axis=1)
+        at[rows] += step[:, :3]
+        turned[rows] = turn(step[:, 3:]) @ turned[rows]
+        there = cables_at(at[rows], turned[rows], geometry)
+        new = lengths[rows] - there.lengths
+        lower = (last < FINE) | (np.sum(new**2, axis=1) <= np.sum(error**2, axis=1))
+        lost += rows[~lower].tolist()
+        ended = lower & (last < FINE)
+        positions[rows[ended]], rotations[rows[ended]] = at[rows[ended]], turned[rows[ended]]
+        on = lower & ~ended
+        rows, error, L = rows[on], new[on], jacobian(there)[on]
+    return sorted([*lost, *rows.tolist()])
 
 
 def _refuse_lost(missed: np.ndarray, sample: int) -> None:

@@ -6,7 +6,7 @@ enlarges how far it is from the simulated one (`inca_mj.rendering.difference`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +17,7 @@ from identification.progress import counted
 from inca_mj.rendering.checks import refuse_speed
 from inca_mj.rendering.encoder import encoder
 from inca_mj.rendering.scene import Scene, Source, make_scene
-from inca_mj.rendering.stage import Look, stage
+from inca_mj.rendering.stage import Begun, Look, stage
 from inca_mj.rendering.trace import MAGNIFY
 
 Progress = Callable[[int, int], None]  # frames done, frames in all
@@ -87,12 +87,12 @@ def film(
     # The small part of a frame keeps the last one when the division is not exact.
     times = begin + np.arange(int((end - begin) * fps / speed + 1e-6) + 1) * speed / fps
     with (
-        stage(scenes, look) as frame,
+        stage(scenes, look) as begin_frame,
         whole_file(path) as draft,
         encoder(draft, size, fps) as send,
     ):
-        for done, time in enumerate(counted(times, "frames", len(times)), 1):
-            drawn = frame(time)
+        frames = counted(_in_turn(begin_frame, times), "frames", len(times))
+        for done, drawn in enumerate(frames, 1):
             send(drawn)
             if picture is not None and done == (len(times) + 1) // 2:
                 with whole_file(picture) as other:
@@ -141,14 +141,26 @@ def stills(
     look = Look(camera=camera, size=size, plots=plots, titles=titles, magnify=magnify)
     scenes, paths = _scenes(source, beside, None), []
     begin, end = common_time(scenes)
-    with stage(scenes, look) as frame:
+    with stage(scenes, look) as begin_frame:
         for time in times:
             if not begin <= time <= end:
                 raise InputError(f"no picture at {time:g} s: the run is of [{begin:g}, {end:g}] s")
             paths.append(Path(folder) / f"{camera}_{time:.2f}s.png")
             with whole_file(paths[-1]) as draft:
-                Image.fromarray(frame(time)).save(draft)
+                Image.fromarray(begin_frame(time)()).save(draft)
     return paths
+
+
+def _in_turn(begin: Callable[[float], Begun], times: Iterable[float]) -> Iterator[np.ndarray]:
+    """The frames of some times, each of which is drawn while the one before is written."""
+    waiting: Begun | None = None
+    for time in times:
+        begun = begin(time)
+        if waiting is not None:
+            yield waiting()
+        waiting = begun
+    if waiting is not None:
+        yield waiting()
 
 
 def common_time(scenes: Sequence[Scene]) -> tuple[float, float]:

@@ -11,9 +11,10 @@ import ctypes.util
 import os
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from identification.errors import GraphicsError
 
@@ -87,6 +88,34 @@ def renderer(model: mujoco.MjModel, width: int, height: int) -> Iterator[mujoco.
         raise GraphicsError(_failed[0]) from error
     with made:
         yield made
+
+
+@contextmanager
+def drawing_thread() -> Iterator[Executor]:
+    """A thread in which a renderer may live: one of its own where OpenGL needs no window.
+
+    Windows belong to the main thread (GLFW), so that what would draw in them draws here at once.
+
+    Raises:
+        GraphicsError: nothing can be drawn here.
+    """
+    if choose_backend() not in _LIBRARIES:
+        yield _ThisThread()
+        return
+    with ThreadPoolExecutor(1, thread_name_prefix="drawing") as thread:
+        yield thread
+
+
+class _ThisThread(Executor):
+    """Calls each function where it is submitted."""
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **named: Any) -> Future[Any]:
+        done: Future[Any] = Future()
+        try:
+            done.set_result(function(*args, **named))
+        except Exception as error:  # as a thread would hand it over
+            done.set_exception(error)
+        return done
 
 
 def _display() -> bool:

@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import mujoco
 import numpy as np
-from PIL import Image, ImageChops, ImageDraw, ImageFilter
+from PIL import Image, ImageDraw
 from scipy.spatial import ConvexHull, QhullError
 
 from inca_mj.rendering.overlay import Eye
@@ -22,6 +22,8 @@ _CIRCLE = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 _SPHERE, _CAPSULE = int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_CAPSULE)
 _FINER = 3  # times as many pixels are drawn, so that edges are smooth
 _DASH, _GAP = 7.0, 6.0  # of a broken line [px of 480 rows]
+
+Box = tuple[int, int, int, int]  # left, top, right, bottom [px]
 
 
 @dataclass(frozen=True)
@@ -75,10 +77,10 @@ def draw_outline(picture: np.ndarray, outline: Outline, colour: str, width: floa
     """
     image = Image.fromarray(picture)
     mask = Image.new("L", image.size)
-    pen = ImageDraw.Draw(mask)
+    pen, thick = ImageDraw.Draw(mask), max(1, round(width / 2))
     for corners in outline.cables:
-        for part in _broken(corners, max(1.0, image.size[1] / 480)):
-            pen.line([*map(tuple, part.tolist())], fill=170, width=max(1, round(width / 2)))
+        for dash in _dashes(corners, max(1.0, image.size[1] / 480), image.size):
+            pen.line(dash, fill=170, width=thick)
     image.paste(colour, (0, 0), mask)
     for box, edge in _edges(outline.shapes, image.size, width):
         image.paste(colour, box, edge)
@@ -87,23 +89,58 @@ def draw_outline(picture: np.ndarray, outline: Outline, colour: str, width: floa
 
 def _edges(
     shapes: Sequence[np.ndarray], size: tuple[int, int], width: float
-) -> Iterator[tuple[tuple[int, int, int, int], Image.Image]]:
-    """The line round all shapes together, and the part of the picture in which it lies [px]."""
-    if not shapes:
-        return
-    corners, room = np.vstack(shapes), round(width) + 2
-    low = np.clip(np.floor(corners.min(axis=0)) - room, 0, size).astype(int)
-    high = np.clip(np.ceil(corners.max(axis=0)) + room, 0, size).astype(int)
-    if not (low < high).all():
-        return
-    fine = Image.new("L", tuple((_FINER * (high - low)).tolist()))
-    pen = ImageDraw.Draw(fine)
+) -> Iterator[tuple[Box, Image.Image]]:
+    """The line round all shapes together, in parts: where in the picture each lies [px], and it."""
+    room, reach = round(width) + 2, max(1, round(_FINER * width / 2))
+    for (left, top, right, bottom), inside in _groups(shapes, size, room):
+        fine = Image.new("L", (_FINER * (right - left), _FINER * (bottom - top)))
+        pen = ImageDraw.Draw(fine)
+        for shape in inside:
+            pen.polygon([*map(tuple, (_FINER * (shape - (left, top))).tolist())], fill=255)
+        pixels = np.asarray(fine)
+        edge = _extreme(np.maximum, pixels, reach) - _extreme(np.minimum, pixels, reach)
+        yield (left, top, right, bottom), Image.fromarray(edge).reduce(_FINER)
+
+
+def _groups(
+    shapes: Sequence[np.ndarray], size: tuple[int, int], room: int
+) -> list[tuple[Box, list[np.ndarray]]]:
+    """Shapes whose boxes meet, `room` pixels round them included, with the box of each group.
+
+    The marks of the drums stand in all corners of a picture: one box would be all of it.
+    """
+    groups: list[tuple[Box, list[np.ndarray]]] = []
     for shape in shapes:
-        pen.polygon([*map(tuple, (_FINER * (shape - low)).tolist())], fill=255)
-    wider = fine.filter(ImageFilter.MaxFilter(2 * max(1, round(_FINER * width / 2)) + 1))
-    narrower = fine.filter(ImageFilter.MinFilter(2 * max(1, round(_FINER * width / 2)) + 1))
-    edge = ImageChops.subtract(wider, narrower).reduce(_FINER)
-    yield (int(low[0]), int(low[1]), int(high[0]), int(high[1])), edge
+        low = np.clip(np.floor(shape.min(axis=0)) - room, 0, size).astype(int)
+        high = np.clip(np.ceil(shape.max(axis=0)) + room, 0, size).astype(int)
+        if not (low < high).all():
+            continue
+        box, inside = (*low.tolist(), *high.tolist()), [shape]
+        while meeting := [group for group in groups if _meet(group[0], box)]:
+            groups = [group for group in groups if not _meet(group[0], box)]
+            boxes = [box, *(other for other, _ in meeting)]
+            box = (*map(min, *(b[:2] for b in boxes)), *map(max, *(b[2:] for b in boxes)))
+            inside += [one for _, shapes_of_it in meeting for one in shapes_of_it]
+        groups.append((box, inside))
+    return groups
+
+
+def _meet(one: Box, other: Box) -> bool:
+    return (
+        one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
+    )  # fmt: skip
+
+
+def _extreme(of: np.ufunc, pixels: np.ndarray, reach: int) -> np.ndarray:
+    """The largest or the least pixel of the square round each, `reach` to every side."""
+    for axis in (0, 1):
+        line = np.moveaxis(pixels, axis, 0)
+        out = line.copy()
+        for k in range(1, reach + 1):
+            of(out[k:], line[:-k], out=out[k:])
+            of(out[:-k], line[k:], out=out[:-k])
+        pixels = np.moveaxis(out, 0, axis)
+    return pixels
 
 
 def _round(model: mujoco.MjModel, data: mujoco.MjData, i: int, eye: Eye) -> np.ndarray:
@@ -124,12 +161,16 @@ def _hull(corners: np.ndarray) -> np.ndarray:
         return corners
 
 
-def _broken(corners: np.ndarray, scale: float) -> list[np.ndarray]:
-    """The dashes of a line through corners (K, 2), each of shape (2, 2)."""
+def _dashes(corners: np.ndarray, scale: float, size: tuple[int, int]) -> list[list[float]]:
+    """The dashes of a line through corners (K, 2) that are in the picture: x, y, x, y of each."""
     out = []
     for a, b in pairwise(corners):
         length = float(np.linalg.norm(b - a))
+        if not length > 0:
+            continue
         begins = np.arange(0.0, length, (_DASH + _GAP) * scale)
-        for s in begins if length > 0 else ():
-            out.append(a + np.array([[s], [min(s + _DASH * scale, length)]]) / length * (b - a))
+        ends = np.minimum(begins + _DASH * scale, length)
+        parts = a + np.stack([begins, ends], 1)[..., None] / length * (b - a)
+        beyond = (parts < -_DASH * scale) | (parts > np.array(size) + _DASH * scale)
+        out += parts[~beyond.all(axis=1).any(axis=1)].reshape(-1, 4).tolist()
     return out

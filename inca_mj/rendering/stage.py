@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 
@@ -14,7 +15,7 @@ from inca_mj.rendering.colours import TensionScale, tension_scale
 from inca_mj.rendering.difference import Difference, common_factor
 from inca_mj.rendering.ghost import ghost_difference, ghost_errors, ghost_positions
 from inca_mj.rendering.panel import Panel
-from inca_mj.rendering.picture import BACKGROUND, Layout, Lettering, layout, paste
+from inca_mj.rendering.picture import BACKGROUND, Box, Layout, Lettering, layout, paste
 from inca_mj.rendering.scene import Scene
 from inca_mj.rendering.trace import Trace, trace_of
 from inca_mj.rendering.view import View, view
@@ -55,10 +56,14 @@ class Look:
         refuse_magnify(self.magnify)
 
 
-@contextmanager
-def stage(scenes: Sequence[Scene], look: Look) -> Iterator[Callable[[float], np.ndarray]]:
-    """A function from a time [s] to the frame, shape (height, width, 3) of bytes.
+Begun = Callable[[], np.ndarray]  # waits for a frame, shape (height, width, 3) of bytes
 
+
+@contextmanager
+def stage(scenes: Sequence[Scene], look: Look) -> Iterator[Callable[[float], Begun]]:
+    """A function that begins the frame of a time [s], and returns what waits for it.
+
+    All views of a frame are drawn side by side, and the next frame may begin before one is had.
     Pictures of two scenes stand side by side, with one scale of the tensions, and their close views
     draw the difference from the measured robot larger, by one factor.
 
@@ -85,7 +90,12 @@ def stage(scenes: Sequence[Scene], look: Look) -> Iterator[Callable[[float], np.
             views.enter_context(_stage(scene, off, times, size, look, plots, scale, title))
             for scene, off, title in zip(scenes, each, titles, strict=True)
         ]
-        yield lambda time: np.hstack([one.frame(time) for one in stages])
+
+        def begin(time: float) -> Begun:
+            begun = [one.begin(time) for one in stages]
+            return lambda: np.hstack([end() for end in begun])
+
+        yield begin
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,21 +115,28 @@ class _Stage:
     lettering: Lettering
     canvas: np.ndarray
 
-    def frame(self, time: float) -> np.ndarray:
-        """The picture at a time [s], shape (height, width, 3) of bytes."""
-        run, frame = self.run, self.canvas.copy()
+    def begin(self, time: float) -> Begun:
+        """Begin the picture at a time [s]; the result waits for it and puts it together."""
+        run = self.run
         qpos = _between(run.time, run.qpos, time)
         ghost = None if self.ghost is None else _between(run.time, self.ghost, time)
         colours = self.scale(_between(run.time, run.tension, time))
-        thickness = max(1.0, len(frame) / _THIN)
+        thickness = max(1.0, len(self.canvas) / _THIN)
         lines = () if self.trace is None else self.trace.lines(time, thickness)
-        paste(frame, self.boxes.scene, self.scene.draw(qpos, colours, ghost, lines))
+        drawn = [(self.boxes.scene, self.scene.begin(qpos, colours, ghost, lines))]
         if self.handle is not None and self.boxes.handle is not None:
             near = None if self.near is None else _between(run.time, self.near, time)
-            paste(frame, self.boxes.handle, self.handle.draw(qpos, colours, near, lines))
+            drawn.append((self.boxes.handle, self.handle.begin(qpos, colours, near, lines)))
+        return lambda: self._frame(time, drawn)
+
+    def _frame(self, time: float, drawn: Sequence[tuple[Box, Future[np.ndarray]]]) -> np.ndarray:
+        """The picture of which the views are being drawn."""
+        frame = self.canvas.copy()
+        for box, picture in drawn:
+            paste(frame, box, picture.result())
         if self.panel is not None and self.boxes.plots is not None:
             paste(frame, self.boxes.plots, self.panel.at(time))
-        off = None if self.errors is None else _between(run.time, self.errors, time)
+        off = None if self.errors is None else _between(self.run.time, self.errors, time)
         distance = None if self.trace is None else self.trace.distance(time)
         self.lettering.write(frame, time, distance, off)
         return frame

@@ -1,10 +1,15 @@
-"""One camera's picture of the robot, with the measured one as an outline over it."""
+"""One camera's picture of the robot, with the measured one as an outline over it.
+
+Views of one frame are drawn side by side. A context of OpenGL belongs to the thread that made it,
+so a view has a thread of its own, in which its renderer is made, draws and is freed.
+"""
 
 from __future__ import annotations
 
 import copy
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from concurrent.futures import Executor, Future
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from math import atan, degrees, radians, tan
 
@@ -13,7 +18,7 @@ import numpy as np
 
 from identification.errors import unknown_name
 from identification.report.style import MEASURED
-from inca_mj.rendering.graphics import renderer
+from inca_mj.rendering.graphics import drawing_thread, renderer
 from inca_mj.rendering.outline import draw_outline, outline_of
 from inca_mj.rendering.overlay import Eye, Line, overlay
 
@@ -26,13 +31,33 @@ _WIDE = 1.15  # width to height that a camera is made for
 
 @dataclass(frozen=True)
 class View:
-    """A renderer with a model of its own, whose cables it may colour and thicken."""
+    """A renderer with a model of its own, whose cables it may colour and thicken.
+
+    Attributes:
+        camera: its name in the model.
+        model: with the cables as they are drawn.
+        robot: the simulated robot, as it was drawn last.
+        ghost: the measured one.
+        draws: the renderer, which only `thread` may use.
+        thread: draws one picture after the other.
+    """
 
     camera: str
     model: mujoco.MjModel
     robot: mujoco.MjData
     ghost: mujoco.MjData
     draws: mujoco.Renderer
+    thread: Executor
+
+    def begin(
+        self,
+        qpos: np.ndarray,
+        colours: np.ndarray,
+        ghost: np.ndarray | None,
+        lines: Sequence[Line] = (),
+    ) -> Future[np.ndarray]:
+        """Begin to draw a picture, in the thread of the view; the arguments are those of `draw`."""
+        return self.thread.submit(self._draw, qpos, colours, ghost, lines)
 
     def draw(
         self,
@@ -50,6 +75,15 @@ class View:
                 it; not drawn when None.
             lines: drawn over the picture, so that the platform does not hide where it should be.
         """
+        return self.begin(qpos, colours, ghost, lines).result()
+
+    def _draw(
+        self,
+        qpos: np.ndarray,
+        colours: np.ndarray,
+        ghost: np.ndarray | None,
+        lines: Sequence[Line],
+    ) -> np.ndarray:
         self.model.tendon_rgba[:] = colours
         _place(self.model, self.robot, qpos)
         self.draws.update_scene(self.robot, self.camera)
@@ -97,8 +131,11 @@ def view(
     number = own.camera(camera).id
     narrow = max(1.0, _WIDE * height / width)
     own.cam_fovy[number] = 2 * degrees(atan(narrow * tan(radians(own.cam_fovy[number]) / 2)))
-    with renderer(own, width, height) as draws:
-        yield View(camera, own, mujoco.MjData(own), mujoco.MjData(own), draws)
+    with drawing_thread() as thread, ExitStack() as opened:
+        made = ExitStack()
+        opened.callback(lambda: thread.submit(made.close).result())
+        draws = thread.submit(made.enter_context, renderer(own, width, height)).result()
+        yield View(camera, own, mujoco.MjData(own), mujoco.MjData(own), draws, thread)
 
 
 def _place(model: mujoco.MjModel, data: mujoco.MjData, qpos: np.ndarray) -> None:

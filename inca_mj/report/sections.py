@@ -7,16 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from identification.estimation.metrics import mean_fit
-from identification.report.compare_figure import compare_figure
 from identification.report.page import Section, Table
 from identification.report.parameter_words import parameter_words
-from inca_mj.report.figures import crosscheck_figure, simulation_figures
-from inca_mj.twin.run import Run
-from inca_mj.twin.twin import Twin
-from inca_mj.workflows.comparison import Comparison
 
 if TYPE_CHECKING:
+    from inca_mj.twin.run import Run
+    from inca_mj.twin.twin import Twin
     from inca_mj.verification import CrossCheck
+    from inca_mj.workflows.comparison import Comparison
 
 
 def compare_verdict(result: Comparison) -> list[str]:
@@ -40,6 +38,8 @@ def compare_verdict(result: Comparison) -> list[str]:
 
 def compare_section(result: Comparison) -> Section:
     """Measured and simulated angles, as MATLAB's `compare` shows them."""
+    from identification.report.compare_figure import compare_figure
+
     log = result.log
     figure = compare_figure(
         log.time, log.outputs, result.run.motor_angle, result.fit_percent, log.output_names, "rad"
@@ -63,6 +63,8 @@ def compare_section(result: Comparison) -> Section:
 
 def run_section(run: Run) -> Section:
     """The currents, and the four pictures of the thesis' Figure 2.16."""
+    from inca_mj.report.figures import simulation_figures
+
     return Section(
         "What the robot does",
         f"{len(run.time)} samples; the least tension is {run.tension.min():.2f} N, the largest"
@@ -73,6 +75,8 @@ def run_section(run: Run) -> Section:
 
 def crosscheck_section(result: CrossCheck) -> Section:
     """Two models of one robot that share no code."""
+    from inca_mj.report.figures import crosscheck_figure
+
     keys = ("max_angle_error", "max_position_error", "max_tension_error")
     return Section(
         "Two independent models of one robot",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,9 +10,10 @@ from identification.estimation.information import Information, determinable
 from identification.quantities import finite_or_none
 from identification.report.page import Section, Table
 from identification.report.untold_words import unresolved_words, untold
-from inca_mj.report.figures_information import std_figure
-from inca_mj.workflows.bench import Tried
-from inca_mj.workflows.excitation import Design
+
+if TYPE_CHECKING:
+    from inca_mj.workflows.bench import Tried
+    from inca_mj.workflows.excitation import Design
 
 WEAK = 0.5  # a value with a larger relative std says little
 
@@ -90,6 +91,8 @@ def information_json(found: Information) -> dict[str, Any]:
 
 def information_section(found: Information, about: str) -> Section:
     """Least std of each parameter, if the others are unknown and if they are known."""
+    from inca_mj.report.figures_information import std_figure
+
     order = [found.names.index(name) for name in found.ranking]
     std, alone = found.std, found.conditional
     return Section(
@@ -177,6 +180,8 @@ def _row(tried: Tried) -> tuple[object, ...]:
 
 def design_section(result: Design) -> Section:
     """The designed input compared with the thesis' PRBS, and a table of standard inputs."""
+    from inca_mj.report.figures_information import std_figure
+
     names = result.best.found.names[: result.best.found.asked]
     stds = {"thesis' PRBS": result.prbs.found.std, "designed": result.best.found.std}
     recipe = ", ".join(f"{k} {v:.3g}" for k, v in result.settings.items())

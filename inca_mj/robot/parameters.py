@@ -92,6 +92,7 @@ _SIMULATION = ParameterSet(
 _TRIAL = {"lambda": 25000.0, "b": 8.0, "J": 8e-5, "b_v": 2e-4, "K_t": 0.08}
 
 SETS = ("simulation", "trial")
+UNKNOWN = ("lambda", "b", "J", "b_v", "b_c", "beta")  # "arbitrary" or re-estimated in the thesis
 
 
 def parameter_set(name: str = "trial", values: Mapping[str, float] | None = None) -> ParameterSet:

@@ -24,6 +24,7 @@ from identification import Log
 from identification.engine import quiet
 from identification.model.rollout import hold, substeps
 from inca_mj.robot.geometry import DRIVES
+from inca_mj.twin.assignment import assigned
 from inca_mj.twin.twin import Twin
 
 BANDWIDTH = 40.0  # Ω of the feedback [rad/s]; 80 makes more of the encoders' noise
@@ -75,10 +76,8 @@ def places_of(log: Log, currents: np.ndarray) -> np.ndarray:
     Returns:
         Entry k, m is 1 or -1 where column m is the current of drive k with this sign, and else 0.
     """
-    from scipy.optimize import linear_sum_assignment  # slow to import
-
     W = shares_of(log, currents)
-    k, m = linear_sum_assignment(-np.abs(W))
+    k, m = np.arange(len(W)), assigned(np.abs(W))
     places = np.zeros_like(W)
     places[k, m] = np.where(W[k, m] < 0, -1.0, 1.0)
     return places

@@ -28,6 +28,7 @@ from identification.logs.readings import Reading
 from identification.logs.units import UNITS
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.twin.angles_under import angles_under
+from inca_mj.twin.assignment import assigned
 from inca_mj.twin.bounds import BOUNDS
 from inca_mj.twin.followed_log import follow, places_of
 from inca_mj.twin.other_wiring import alike
@@ -131,10 +132,8 @@ def _single() -> Iterator[np.ndarray]:
 
 def _places_of_angles(part: Log, predicted: np.ndarray) -> np.ndarray:
     """P that brings the angles nearest to the twin's, by the cosines between them."""
-    from scipy.optimize import linear_sum_assignment  # slow to import
-
     cosine = alike(predicted, part.outputs - part.outputs[0])
-    k, m = linear_sum_assignment(-np.abs(cosine))
+    k, m = np.arange(len(cosine)), assigned(np.abs(cosine))
     P = np.zeros_like(cosine)
     P[k, m] = np.where(cosine[k, m] < 0, -1.0, 1.0)
     return P

@@ -12,6 +12,7 @@ from identification import Log
 from identification.logs.cures import how_to_rename, how_to_turn
 from identification.logs.names import listed
 from identification.logs.readings import Reading, misread, output_readings, turned
+from inca_mj.twin.assignment import assigned
 from inca_mj.twin.bounds import BOUNDS
 
 
@@ -44,12 +45,10 @@ def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Readin
         outputs = turned(part.outputs, back)
         yield Reading(replace(part, outputs=outputs), back, "with the other sign",
                       how_to_turn([names[k] for k in back], part.factors))  # fmt: skip
-    from scipy.optimize import linear_sum_assignment  # slow to import
-
     every = np.arange(y.shape[1])
     cosine = alike(y, predicted)
     for likeness in (cosine, np.abs(cosine)):  # whatever the signs, in the second
-        _, at = linear_sum_assignment(1 - likeness)
+        at = assigned(likeness)
         moved = np.flatnonzero(at != every).tolist()
         back = np.flatnonzero(cosine[every, at] < 0).tolist() if likeness is not cosine else []
         if len(moved) > 2 or (moved and back):

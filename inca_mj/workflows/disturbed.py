@@ -12,12 +12,13 @@ from identification.kalman.estimate import estimate_innovations
 from identification.model.parameter import ParameterSet
 from identification.windows.window_estimate import estimate_windows
 from inca_mj.robot.geometry import INCA, Geometry
+from inca_mj.robot.parameters import UNKNOWN
 from inca_mj.robot.step import TIMESTEP
 from inca_mj.twin.logs import POSE
 from inca_mj.twin.twin import build_twin
 from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import timestep_for
-from inca_mj.workflows.identification import MECHANICS, UNKNOWN, Identification
+from inca_mj.workflows.identification import MECHANICS, Identification
 
 FIRST = 4  # windows of the free run that gives the starting values of the search
 

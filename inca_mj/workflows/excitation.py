@@ -18,10 +18,10 @@ import numpy as np
 from identification.errors import InputError, refuse_negative
 from identification.estimation.information import determinable
 from identification.progress import counted
+from inca_mj.robot.parameters import UNKNOWN
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import Twin, build_twin
 from inca_mj.workflows.bench import SAMPLING, Bench, Tried, standard_inputs
-from inca_mj.workflows.identification import UNKNOWN
 from inca_mj.workflows.limits import Limits
 from inca_mj.workflows.recipes import Recipe, changed, draw
 from inca_mj.workflows.sensitivity import DURATION, NOISE

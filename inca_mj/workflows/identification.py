@@ -22,6 +22,7 @@ from identification.kalman.estimate import InnovationsFit
 from identification.model.parameter import ParameterSet
 from identification.windows.window_estimate import WindowEstimate
 from inca_mj.robot.geometry import INCA, Geometry
+from inca_mj.robot.parameters import UNKNOWN
 from inca_mj.robot.step import TIMESTEP
 from inca_mj.twin.logs import POSE
 from inca_mj.twin.twin import build_twin
@@ -29,7 +30,6 @@ from inca_mj.twin.wiring import refuse_miswired
 from inca_mj.workflows.comparison import timestep_for
 
 MECHANICS = ("R", "R_s", "k_s", "lambda", "b", "J", "b_v", "b_c", "beta", "K_t", "m")
-UNKNOWN = ("lambda", "b", "J", "b_v", "b_c", "beta")  # "arbitrary" or re-estimated in the thesis
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,11 +11,11 @@ from identification.estimation.experiment import information
 from identification.model.parameter import ParameterSet
 from inca_mj.robot.geometry import INCA, Geometry
 from inca_mj.robot.inputs import make_input
+from inca_mj.robot.parameters import UNKNOWN
 from inca_mj.robot.step import TIMESTEP
 from inca_mj.twin.logs import ANGLES, POSE
 from inca_mj.twin.twin import build_twin
 from inca_mj.workflows.comparison import timestep_for
-from inca_mj.workflows.identification import UNKNOWN
 
 NOISE = 6.7e-4  # std of an encoder of 4000 counts a turn and its 0.5 mrad of noise [rad]
 DURATION = 5.0  # of the PRBS that is used without a log [s]

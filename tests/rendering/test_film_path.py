@@ -83,7 +83,8 @@ def test_a_point_is_drawn_where_mujoco_draws_a_ball(short_run, camera):
             point, np.eye(3).ravel(), np.array([0, 1, 0, 1.0]),
         )  # fmt: skip
         scene.ngeom += 1
-        changed = np.abs(seen.draws.render().astype(int) - without).max(axis=2) > 60
+        with_ball = seen.thread.submit(seen.draws.render).result()
+        changed = np.abs(with_ball.astype(int) - without).max(axis=2) > 60
         ((column, row),) = seen.eye().pixels(point[None], (200, 150))
     rows, columns = np.nonzero(changed)
     assert len(rows) > 10

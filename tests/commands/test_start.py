@@ -1,0 +1,66 @@
+"""A command imports what it needs, and draws what it is asked for."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from inca_mj.cli import main
+from inca_mj.files import example_path
+
+WATCHED = """
+import json, sys
+from inca_mj.cli import main
+assert main(sys.argv[1:]) == 0
+sys.stderr.write(json.dumps(sorted(sys.modules)))
+"""
+SLOW = ("matplotlib", "scipy.stats", "scipy.optimize", "scipy.interpolate", "jinja2")
+SEARCH = "identification.discovery.search"
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("simulate", "--duration", "0.05"),
+        ("compare", str(example_path())),
+        ("sensitivity", "--duration", "0.05", "--free", "b_v"),
+    ],
+)
+def test_a_command_that_draws_nothing_imports_neither_figures_nor_the_search(tmp_path, command):
+    done = subprocess.run(
+        [sys.executable, "-c", WATCHED, *command, "--quiet"],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=True,
+    )
+    modules = json.loads(done.stderr)
+    assert "mujoco" in modules
+    assert not {*SLOW, SEARCH} & {*modules}
+
+
+def test_a_run_is_kept_always_and_drawn_where_a_folder_is_given(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["simulate", "--duration", "0.05"]) == 0
+    said = capsys.readouterr().out
+    usual = {"log.csv", "log.toml", "model.xml", "result.json", "run.npz"}
+    kept = {p.name for p in (tmp_path / "out" / "simulate").glob("[!.]*")}
+    assert kept == usual
+    assert "--out DIR adds figures and a report" in said
+    assert main(["simulate", "--duration", "0.05", "--out", "drawn"]) == 0
+    drawn = {p.name for p in (tmp_path / "drawn").iterdir()}
+    assert usual < drawn
+    assert "report.html" in drawn
+    assert [name for name in drawn if name.endswith(".png")]
+
+
+def test_the_usual_folder_of_a_run_is_refused_where_it_holds_other_files(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "out" / "simulate").mkdir(parents=True)
+    (tmp_path / "out" / "simulate" / "notes.txt").write_text("mine")
+    assert main(["simulate", "--duration", "0.05"]) == 2
+    assert "notes.txt" in capsys.readouterr().err
+    assert [p.name for p in (tmp_path / "out" / "simulate").iterdir()] == ["notes.txt"]
