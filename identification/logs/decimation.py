@@ -38,7 +38,7 @@ def decimate(log: Log, every: int, hold: Literal["zoh", "foh"] = "foh") -> Log:
             " away, from a log of hold 'zoh'"
         )
     rows = slice(0, n * every + 1, every)
-    boxes = log.inputs[: n * every].reshape(n, every, -1)
+    boxes = log.inputs[: n * every].reshape(n, every, log.inputs.shape[1])
     if hold == "zoh":
         inputs = np.concatenate([boxes.mean(axis=1), log.inputs[n * every][None]])
     else:

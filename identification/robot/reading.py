@@ -12,6 +12,7 @@ from identification.logs.log import Log
 from identification.robot.absurd_start import refuse_absurd_start
 from identification.robot.file import RobotFile, read_robot_file
 from identification.robot.free_inertias import inertias_sentence
+from identification.robot.free_swing import without_untold
 from identification.robot.other_spread import with_spread
 from identification.robot.robot import Robot, read_robot_log, robot_of
 from identification.robot.start_words import (
@@ -61,7 +62,7 @@ def read_robot(
     first, *others = (
         _log(file, each) for each in ([log] if isinstance(log, str | Path | Log) else log)
     )
-    robot = robot_of(file, first, others, records)
+    robot = without_untold(robot_of(file, first, others, records))
     refuse_coarse_steps(robot)
     refuse_absurd_start(robot)
     for record in records:

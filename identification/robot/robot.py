@@ -125,10 +125,10 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     sensors = {model.sensor(i).name: int(model.sensor_type[i]) for i in range(model.nsensor)}
     positions = (n for n, t in sensors.items() if t == int(mujoco.mjtSensor.mjSENS_JOINTPOS))
     outputs = file.outputs or tuple(positions)
-    if not (inputs and outputs):
+    if not outputs:  # without an actuator the log is one of a free swing
         raise InputError(
-            f"{file.model} has {len(inputs)} actuators and {len(sensors)} sensors; it needs an"
-            " actuator for every input and a jointpos or jointvel sensor for every output"
+            f"{file.model} has {len(inputs)} actuators and {len(sensors)} sensors; it needs a"
+            " jointpos or jointvel sensor for every output, and an actuator for every input"
         )
     with told_of(f"outputs in {file.path}") if file.outputs else nullcontext():
         places = output_columns(model, outputs)
@@ -172,7 +172,9 @@ def robot_of(
             where = f"measured joint under effects.joints in {file.path}:"
             raise unknown_name(where, joint, (a.joint for a in known))
     known = tuple(a for a in known if not file.joints or a.joint in file.joints)
-    effects = all_effects(spec, known, log, file.turns or TURNS)
+    # A free swing that is fitted together with driven logs says nothing of what inputs do.
+    driven = next((each for each in (log, *others) if each.inputs.any()), log)
+    effects = all_effects(spec, known, driven, file.turns or TURNS)
     for name in file.only:
         if name not in {e.name for e in effects}:
             where = f"effect under effects.only in {file.path}:"
