@@ -44,6 +44,12 @@ from identification.robot.balance import unbalanced_share
 from identification.robot.robot import Robot
 from identification.robot.same_units import different_units
 from identification.robot.scale import rescaled, wanted_units
+from identification.robot.turned_inputs import (
+    all_inputs_turned,
+    decided_by_forces,
+    plant_of_reading,
+    with_turned_ranges,
+)
 from identification.windows.window_error import first_error
 from identification.windows.windows import spread, windows
 
@@ -71,6 +77,9 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
     }  # fmt: skip
     read = [r for word, kind in kinds.items() if word not in file.trust for r in kind]
     column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
+    together = partial(all_inputs_turned, model=plant.model, file=file)
+    if "wiring" not in file.trust and len(log.input_names) > 1:
+        read.append(together)
     lengths = [s * log.duration for s in LENGTHS] if file.horizon is None else [file.horizon]
     balance = _Balance(plant.model, log)
     if "units" not in file.trust and (cure := different_units(plant.model, log, column)):
@@ -84,8 +93,8 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
             is_explained = True
             continue
         bad = own > UNEXPLAINED
+        explain = partial(_of_reading, plant, length, log)
         readings = chain(*(r(log, bad, column) for r in read))
-        explain = partial(_unexplained, plant, length)
         found = misread(log, own, readings, explain, balance.confirms)
         if found is None and "wiring" not in file.trust and balance.contradicts:
             units = () if "units" in file.trust else turned_units(log, bad, column, wanted)
@@ -94,6 +103,12 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
             both = chain(units, *(pair(log, bad, column) for pair in pairs))
             near = _promising(plant, length, log, both)
             found = misread(log, own, near, explain, balance.confirms)
+            for reading in together(log, bad, column) if found is None else ():
+                left = explain(reading.log)
+                if left is None or not (left[bad] < NEARER * own[bad]).all():
+                    continue
+                if said := decided_by_forces(reading, plant.model, balance.own, log):
+                    found = reading, said
         if found is not None:
             raise _refusal(robot, log, *found)
     # The gain of a drive that wants a position is a guess, and its force with it.
@@ -134,7 +149,9 @@ class _Balance:
         k = list(reading.columns)
         if self.own is None:
             return bool((left[k] < UNEXPLAINED).all())
-        other = unbalanced_share(self.model, reading.log)
+        other = unbalanced_share(
+            with_turned_ranges(self.model, self.log, reading.log), reading.log
+        )
         # Together, because a joint without a drive looks the same from both sides.
         return other is not None and bool(other[k].sum() < NEARER * self.own[k].sum())
 
@@ -148,11 +165,19 @@ def _promising(
         return
     own = _unexplained(plant, length, log, FEW_WINDOWS)
     for reading in readings:
-        left, k = _unexplained(plant, length, reading.log, FEW_WINDOWS), list(reading.columns)
+        left = _of_reading(plant, length, log, reading.log, FEW_WINDOWS)
+        k = list(reading.columns)
         if own is None or left is None:
             continue
         if (left[k] < np.minimum(EXPLAINED, NEARER * MARGIN * own[k])).all():
             yield reading
+
+
+def _of_reading(
+    plant: JointPlant, length: float, log: Log, other: Log, most: int = MOST_WINDOWS
+) -> np.ndarray | None:
+    """ε of another reading of a log; see `_unexplained`."""
+    return _unexplained(plant_of_reading(plant, log, other), length, other, most)
 
 
 def _unexplained(
