@@ -133,8 +133,6 @@ def fit_noise(
             tried = [at(noise.scaled(f)) for f in factors]
             return [level for level in tried if level.input_std <= largest]
 
-        if not plant.B.shape[2]:  # a free swing without drives has no inputs that could err
-            return at(Noise(0.0, time))
         found: list[NoiseLevel] = []
         if near is not None and near.noise.ratio:
             found = believed(near.noise, AROUND[:2])

@@ -24,6 +24,7 @@ from identification.logs.cures import how_to_turn
 from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.logs.readings import NEARER, UNEXPLAINED, Reading, turned
+from identification.quantities import held
 from identification.robot.balance import unbalanced_share
 from identification.robot.file import RobotFile
 
@@ -53,7 +54,7 @@ def all_inputs_turned(
 def decided_by_forces(
     reading: Reading, model: mujoco.MjModel, own: np.ndarray | None, log: Log
 ) -> str | None:
-    """Says how much of the drives' forces is explained as they are read and with other signs.
+    """Says how much less of the drives' forces is unexplained with other signs.
 
     Args:
         reading: the other sign of all inputs.
@@ -62,17 +63,17 @@ def decided_by_forces(
         log: as it is read.
 
     Returns:
-        None where forces explain the log as it is read, or do not explain it far better otherwise.
+        None where forces do not explain the log with other signs, or not far better.
     """
-    if own is None or not (own > UNEXPLAINED).any():
+    if own is None:
         return None
     left = unbalanced_share(with_turned_ranges(model, log, reading.log), reading.log)
     if left is None or (left > UNEXPLAINED).any() or left.sum() > NEARER * own.sum():
         return None
-    before, after = (100 * max(0.0, 1 - float(eta.max())) for eta in (own, left))
+    times = held(float(own.sum() / max(left.sum(), np.finfo(float).tiny)))
     return (
-        f"explains {before:.0f} % of the forces of the drives, whatever payload and friction it"
-        f" has, and {after:.0f} % {reading.said}; {reading.cure}"
+        f"leaves {times} times as much of the drives' forces unexplained as it would"
+        f" {reading.said}, whatever payload, gravity and friction it has; {reading.cure}"
     )
 
 
@@ -109,7 +110,7 @@ def _cure(log: Log, column: Mapping[str, str], model: mujoco.MjModel, file: Robo
     gears: dict[str, list[str]] = {}
     for i, name in enumerate(names):
         gear = model.actuator_gear[i]
-        entries = gear[: int(np.flatnonzero(gear).max(initial=0)) + 1]
+        entries = gear[: int(np.flatnonzero(gear).max(initial=0)) + 1] + 0.0
         gears.setdefault(" ".join(f"{-x:g}" for x in entries), []).append(name)
     lines = listed(f'gear="{gear}" for {listed(of)}' for gear, of in gears.items())
     tendons = (model.actuator_trntype[: len(names)] == int(mujoco.mjtTrn.mjTRN_TENDON)).any()

@@ -52,7 +52,9 @@ def swing(xml, start, samples, h=0.02, noise=3e-4, force=0.0):
 def robot(folder, xml, log, free, more=""):
     """The path of a robot's file, and that of its log."""
     (folder / "robot.xml").write_text(xml)
-    (folder / "robot.toml").write_text(f'model = "robot.xml"\nfree = {free}\n{more}'.replace("'", '"'))
+    (folder / "robot.toml").write_text(
+        f'model = "robot.xml"\nfree = {free}\n{more}'.replace("'", '"')
+    )
     write_log(log, folder / "log.csv")
     return folder / "robot.toml", folder / "log.csv"
 
@@ -81,8 +83,9 @@ def test_what_only_an_input_would_show_is_told_and_the_rest_is_fitted(tmp_path, 
     paths = robot(tmp_path, spring(motor=motor, damping=1.5), log, ["joint/x.damping", gear],
                   horizon)  # fmt: skip
     read = read_robot(*paths)
-    assert f"No input moves in 'log', and a free swing does not tell {gear}: it keeps its value." in (
-        read.remarks
+    assert (
+        f"No input moves in 'log', and a free swing does not tell {gear}: it keeps its value."
+        in (read.remarks)
     )
     assert fit(read).values == {"joint/x.damping": pytest.approx(0.6, rel=0.02)}
     (tmp_path / "robot.toml").write_text(f'model = "robot.xml"\nfree = ["{gear}"]\n{horizon}')
@@ -108,7 +111,9 @@ def test_a_constant_input_is_fitted_with_the_gear_that_it_tells(tmp_path):
     assert found.values[gear] == pytest.approx(2.0, rel=0.01)
 
 
-@pytest.mark.parametrize(("horizon", "words"), [("", fit_verdict), ("horizon = 1.0", records_fit_verdict)])
+@pytest.mark.parametrize(
+    ("horizon", "words"), [("", fit_verdict), ("horizon = 1.0", records_fit_verdict)]
+)
 def test_ratios_alone_are_told_of_masses_springs_and_friction(tmp_path, horizon, words):
     free = ["body/cart.mass", "joint/x.damping", "joint/x.stiffness"]
     paths = robot(tmp_path, spring(damping=0.9), swing(spring(), 0.2, 400), free, horizon)
@@ -137,7 +142,9 @@ def test_a_search_names_the_hidden_coulomb_friction(tmp_path, motor, horizon, ca
     assert not of_inputs & {e.name for e in read_robot(*paths).candidates}
     out = tmp_path / "found"
     assert main(["discover", *map(str, paths), "--out", str(out), "--json"]) == 0
-    assert [e["name"] for e in json.loads(capsys.readouterr().out)["effects"]] == ["coulomb_friction"]
+    assert [e["name"] for e in json.loads(capsys.readouterr().out)["effects"]] == [
+        "coulomb_friction"
+    ]
     assert json.loads((out / "result.json").read_text())["effects"]
 
 
