@@ -1,6 +1,6 @@
 """Forces on the joints by tendons that a motion of the joints stretches, all samples at once.
 
-    F = J_tᵀ L̇,   J_tᵀ sign L̇,   J_tᵀ k (L - L_0)      of the damping 1, the friction 1, and a spring
+    F = J_tᵀ L̇,   J_tᵀ sign L̇,   J_tᵀ k (L - L_0)    of damping 1, friction 1, and a spring
 
 L: length of a tendon, J_t: its derivatives by the joints. Each is what a drive has to bring.
 """

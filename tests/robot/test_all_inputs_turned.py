@@ -126,9 +126,7 @@ def test_all_outputs_turned_are_told_and_not_taken_for_inputs_where_gravity_tell
     tilted = ARM.replace("<option timestep", '<option gravity="4 0 -8.9" timestep')
     log = tracked(mujoco.MjModel.from_xml_string(tilted), MOTION[ARM])
     said = refused(*robot(tmp_path, tilted, replace(log, outputs=-log.outputs), "horizon = 0.2"))
-    assert "turn the sign of q1 and q2: write q1 = -1 and q2 = -1" in said.replace(
-        "q1, q2", "q1 and q2"
-    )
+    assert "turn the sign of q1, q2: write q1 = -1 and q2 = -1 (a line each)" in said
     assert "or of" not in said
 
 
