@@ -51,7 +51,7 @@ def drives(log: Log) -> tuple[Drive, ...]:
 
 
 def input_effects(drives: Sequence[Drive]) -> tuple[Effect, ...]:
-    """Returns all candidates of some inputs, of one unit, in the order in which an input passes them.
+    """Returns all candidates of inputs of one unit, in the order in which an input passes them.
 
     What an amplifier limits is what its loop is asked for, so that a limit comes before a lag.
     A free swing has no input that moves, and so no candidate of an input.

@@ -128,6 +128,8 @@ def _kernels(w: int, h: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _filtered(signals: np.ndarray, kernel: np.ndarray) -> np.ndarray:
     """Σ_i kernel_i y_{k+i} of columns (n, m), where the kernel fits."""
+    if not signals.shape[1]:  # of a free swing: it has samples, and no inputs
+        return np.zeros((max(0, len(signals) - len(kernel) + 1), 0))
     return np.stack([np.correlate(y, kernel, "valid") for y in signals.T], axis=1)
 
 

@@ -135,8 +135,8 @@ def _of_outputs(
     if bad.all() and log.inputs.any():
         of_outputs = replace(log, outputs=-log.outputs)
         of_inputs = replace(log, inputs=-log.inputs)
-        each = [explain(other) for other in (of_outputs, of_inputs)]
-        is_mirrored = all(e is not None for e in each) and np.allclose(*each, rtol=SAME)
+        one, other = explain(of_outputs), explain(of_inputs)
+        is_mirrored = one is not None and other is not None and np.allclose(one, other, rtol=SAME)
     yield from output_readings(log, bad, column, is_mirrored)
 
 

@@ -153,6 +153,15 @@ def test_logs_without_inputs_are_thinned_and_held_in_both_ways():
         assert hold(log.inputs, 3, kind).shape == (300, 0)
 
 
+def test_a_free_swing_in_degrees_is_refused_with_the_unit_to_write(tmp_path):
+    xml = DOUBLE.format(a=0.05, b=0.03)
+    log = swing(xml, (0.6, -0.4), 300)
+    log = replace(log, outputs=np.rad2deg(log.outputs), units={})
+    paths = robot(tmp_path, xml, log, ["joint/a.damping"], "horizon = 0.5")
+    with pytest.raises(InputError, match='"deg"'):
+        read_robot(*paths)
+
+
 def test_a_free_swing_beside_a_driven_log_leaves_its_candidates_to_the_driven_one(tmp_path):
     motor = MOTOR.format(gear=2)
     still = swing(spring(motor=motor), 0.2, 200)
