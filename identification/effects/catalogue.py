@@ -25,9 +25,6 @@ def all_effects(
         axes: its joints whose effects are sought.
         log: names its sensors, and its inputs say what is plausible of them.
         turns: see `joint_effects`.
-
-    Raises:
-        InputError: no input moves.
     """
     own = spec.copy().compile()
     return (

@@ -76,7 +76,7 @@ def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = 
         predictor: plant and log.
         values: shape (p,), in the parameters' units.
         forces: degrees of freedom; where given, B is the effect of generalised forces on them
-            instead of the effect of the inputs.
+            instead of the effect of the inputs. All of them where the log has no inputs.
 
     Raises:
         DivergenceError: the simulation left the finite numbers.
@@ -124,6 +124,8 @@ def linearise_along(
         forces: degrees of freedom, as above.
     """
     F, G = state_derivatives(along)
+    if not forces and not predictor.log.inputs.shape[1]:
+        forces = range(along.model.nv)  # what disturbs a free swing, for it has no inputs
     if forces:
         G = along.average(force_derivatives(along, list(forces)))
     C = np.zeros((predictor.log.outputs.shape[1], F.shape[1]))

@@ -50,8 +50,9 @@ class Point:
 
     @property
     def motion(self) -> float:
-        """Std of the logged inputs over time, rms of all."""
-        return float(np.sqrt(np.mean(np.var(self.log.inputs, axis=0))))
+        """Returns the std of the logged inputs over time, rms of all; 0 where there are none."""
+        inputs = self.log.inputs
+        return float(np.sqrt(np.mean(np.var(inputs, axis=0)))) if inputs.size else 0.0
 
     @property
     def values(self) -> dict[str, float]:

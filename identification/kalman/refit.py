@@ -137,7 +137,7 @@ def descend(
     Returns:
         Whether the search ended before it had used all steps.
     """
-    believed = np.inf if is_near else options.allowed_input_error * point.motion
+    believed = np.inf if is_near else largest_input_error(point, options)
     level = estimate_noise(point, prior, options, near, largest=believed)
     yield point, level
     for fine in (True,) if is_near else (False, True):
@@ -208,10 +208,18 @@ def _is_refuted(problem: Problem, options: KalmanOptions) -> bool:
     Its likelihood is then no guide.
     """
     point = problem.point
-    if problem.level.input_std <= options.allowed_input_error * point.motion:
+    if problem.level.input_std <= largest_input_error(point, options):
         return False
     white = innovation_tests(problem.remaining_innovations, point.log.sampling_time)
     return white.is_correlated(options)
+
+
+def largest_input_error(point: Point, options: KalmanOptions) -> float:
+    """Returns the largest error of the inputs that is believed, in the inputs' unit.
+
+    Where no input moves there is nothing to compare it with, and any is believed.
+    """
+    return options.allowed_input_error * point.motion if point.motion > 0 else np.inf
 
 
 def _rms(point: Point) -> float:

@@ -38,10 +38,11 @@ def decimate(log: Log, every: int, hold: Literal["zoh", "foh"] = "foh") -> Log:
             f"every {every}-th of {len(log)} samples makes no log of 3 samples; take fewer away"
         )
     rows = slice(0, n * every + 1, every)
-    first = log.inputs[: n * every].reshape(n, every, -1)  # inputs where the short steps begin
+    shape = n, every, log.inputs.shape[1]  # a log of a free swing has no inputs
+    first = log.inputs[: n * every].reshape(shape)  # inputs where the short steps begin
     last = first  # and where they end: the same, where they are held
     if log.hold == "foh":
-        last = log.inputs[1 : n * every + 1].reshape(n, every, -1)
+        last = log.inputs[1 : n * every + 1].reshape(shape)
     if hold == "zoh":
         means = ((first + last) / 2).mean(axis=1)
         inputs = np.concatenate([means, log.inputs[n * every][None]])

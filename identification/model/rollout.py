@@ -89,7 +89,8 @@ def hold(inputs: np.ndarray, n: int, kind: str = "zoh") -> np.ndarray:
     weight = ((np.arange(n) + 0.5) / n)[:, None]
     before, after = inputs[..., :-1, None, :], inputs[..., 1:, None, :]
     held = (1 - weight) * before + weight * after
-    return np.asarray(held.reshape(*inputs.shape[:-2], -1, inputs.shape[-1]))
+    steps = n * (inputs.shape[-2] - 1)  # said, because a log without inputs has nothing to count
+    return np.asarray(held.reshape(*inputs.shape[:-2], steps, inputs.shape[-1]))
 
 
 def without_sensors(model: mujoco.MjModel) -> mujoco.MjModel:

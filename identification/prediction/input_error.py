@@ -32,6 +32,8 @@ def needed_input_error(fit: WindowFit, floor: float) -> float:
     inputs = np.concatenate([p.predictor.log.inputs for p in fit.problem.parts])
     size = np.sqrt(np.mean(inputs**2, axis=0))
     moving = np.flatnonzero(size > 0)
+    if not len(moving):  # in a free swing, no error of the inputs is a share of their size
+        return np.inf
     left, felt = 0.0, 0.0
     for k, (part, d, t) in enumerate(zip(fit.problem.parts, fit.moves, fit.tangents, strict=True)):
         q = fit.q[fit.problem.unknowns.columns(k)]

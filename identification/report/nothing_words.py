@@ -37,6 +37,11 @@ def _unlogged(found: Discovery) -> str:
     """The errors of the inputs that are part of the noise, and on which the verdict rests."""
     level, log = found.final.level, found.log
     (alone,) = error_words([sensors(found)], "")
+    if not log.inputs.any():
+        return (
+            f" The sensors alone make {alone}; the rest is what unlogged forces on the joints do,"
+            f" for {level.noise.time:.2g} s at a time. If surely none act, something is missing."
+        )
     size = quantity(level.input_std, unit=log.units.get(log.input_names[0], ""))
     return (
         f" The sensors alone make {alone}; the rest is what inputs do that err by {size} rms"

@@ -10,7 +10,7 @@ from identification.prediction.records_fit import RecordsFit
 from identification.report.error_words import error_words, times_words
 from identification.report.scale_words import describe_scale
 from identification.report.step_words import std_sentence, step_sentences
-from identification.report.untold_words import WEAK, cure, too_weak
+from identification.report.untold_words import WEAK, cure, scale_of_forces, too_weak
 
 MUCH = 3.0  # times the noise floor, beyond which a fit is told to lack something
 
@@ -54,7 +54,7 @@ def _blind(found: RecordsFit) -> list[str]:
             out.append(
                 f"The windows tell less along ({moved}) than was known before the fit; what does"
                 " not change along it is known. Fix one of these, or record a motion that tells"
-                " them apart."
+                f" them apart.{scale_of_forces([r.log for r in found.records if r.role == 'fit'])}"
             )
         else:
             out.append(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf, isfinite
+
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery
 from identification.report.curve_nodes import curve_nodes, nodes_sentence
 from identification.report.effect_words import describe_there, phrase
@@ -46,8 +48,17 @@ def _nothing(found: RecordsDiscovery) -> str:
         )
     return (
         f"No effect is named: {tried}. It is {over}, {ratio:.2g} times the {noise} that the sensors"
-        f" make. Either the inputs err by {100 * found.input_error:.2g} % of their rms, or"
-        " something is missing that no candidate explains."
+        f" make. {_either(found)}"
+    )
+
+
+def _either(found: RecordsDiscovery) -> str:
+    """Says what else than an effect may make the error: the inputs, where any input moves."""
+    if not isfinite(found.input_error):
+        return "No input moves that could err: something is missing that no candidate explains."
+    return (
+        f"Either the inputs err by {100 * found.input_error:.2g} % of their rms, or something is"
+        " missing that no candidate explains."
     )
 
 
@@ -55,6 +66,8 @@ def _rest(found: RecordsDiscovery) -> str:
     """How far the inputs would have to err to make what the sensors do not."""
     if found.input_error < NO_ERROR:
         return " The sensors alone would make it."
+    if not isfinite(found.input_error):
+        return ""
     return f" Inputs that err by {100 * found.input_error:.2g} % of their rms would make the rest."
 
 
@@ -139,7 +152,8 @@ def _unknown(found: RecordsDiscovery) -> str:
     before, noise = _left(found)
     percent = f"{100 * found.input_error:.2g}"
     needed = f"; inputs would have to err by {percent} % of their rms to make that"
-    needed = needed if found.input_error > 0 else ""  # the fitted windows leave no more than noise
+    if not 0 < found.input_error < inf:  # no more than noise is left, or no input moves
+        needed = ""
     return (
         "Something is missing that none of the known effects surely explains: the fitted model is"
         f" {before} off over {found.horizon:g} s on unseen data, where the sensors make"

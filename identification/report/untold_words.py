@@ -15,6 +15,7 @@ from identification.report.parameter_words import parameter_words
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
     from identification.estimation.identifiability import Identifiability
+    from identification.logs.log import Log
     from identification.windows.window_estimate import WindowEstimate
 
 WEAK = 0.5  # of its value: the std of a value that is not worth its digits
@@ -29,7 +30,11 @@ def identifiable_sentences(fit: Fit) -> list[str]:
         relative = fit.std / np.where(fit.estimate.space.logarithmic, np.abs(values), np.inf)
         weak = [n for n, r in zip(found.names, relative, strict=True) if r > WEAK]
         said = f"All {len(found.names)} directions of the parameters are felt by the outputs."
-        return [f"{said} {too_weak(weak, 'noise')}" if weak else said]
+        if not weak:
+            return [said]
+        traded = _traded(weak, found)
+        why = scale_of_forces([fit.estimate.predictor.log]) if traded else ""
+        return [f"{said} {too_weak(weak, 'noise')}{traded}{why}"]
     felt = f"{found.rank} of {len(found.names)} directions are felt"
     sentences = []
     if found.symmetries:
@@ -42,6 +47,8 @@ def identifiable_sentences(fit: Fit) -> list[str]:
             f"Of {' and '.join(combination.exponents)} only {combination} can be known from this"
             f" log: {told}{error}; fix one of them."
         )
+    if any(len(s.powers) > 1 for s in found.symmetries):
+        sentences += filter(None, [scale_of_forces([fit.estimate.predictor.log]).strip()])
     if k := len(found.unresolved):
         count = f"{k} more" if found.symmetries else f"{felt}; {k}"
         sentences.append(f"{count} {'are' if k > 1 else 'is'}{unresolved_words(found)}")
@@ -96,16 +103,33 @@ def weak_sentences(found: WindowEstimate) -> list[str]:
             if k and s > WEAK * abs(v) and v > 0]  # fmt: skip
     if not weak:
         return []
-    felt = found.found.directions[: found.found.rank]
-    at = [names.index(n) for n in weak]
+    return [f"{too_weak(weak, 'noise')}{_traded(weak, found.found)} {cure(weak)}"]
+
+
+def _traded(weak: Sequence[str], found: Identifiability) -> str:
+    """Says along which direction weak parameters trade off with others; empty where with none."""
+    felt = found.directions[: found.rank]
+    at = [found.names.index(n) for n in weak]
     share = np.linalg.norm(felt[:, at], axis=1)  # of each direction that lies in the weak ones
-    direction = felt[np.argmax(share / found.found.strengths[: len(felt)])]
-    words, said = in_words(direction, names), too_weak(weak, "noise")
-    if "," in words and len(weak) > 1:
-        said += f" They trade off along ({words}): what does not change along it is known."
-    elif "," in words:
-        said += f" It trades off along ({words}): what does not change along it is known."
-    return [f"{said} {cure(weak)}"]
+    words = in_words(felt[np.argmax(share / found.strengths[: len(felt)])], found.names)
+    if "," not in words:
+        return ""
+    which = "They trade" if len(weak) > 1 else "It trades"
+    return f" {which} off along ({words}): what does not change along it is known."
+
+
+def scale_of_forces(logs: Sequence[Log]) -> str:
+    """Says why a free swing leaves parameters that trade off; empty where an input moves.
+
+    Args:
+        logs: those that were fitted.
+    """
+    if any(log.inputs.any() for log in logs):
+        return ""
+    return (
+        " No input moves, so that nothing sets how large forces are: a free swing tells masses,"
+        " inertias, frictions and stiffnesses by their ratios only."
+    )
 
 
 def too_weak(names: Sequence[str], what: str) -> str:

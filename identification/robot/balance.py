@@ -23,6 +23,7 @@ from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.predictor import output_columns
 from identification.robot.moving import follow_bodies, inertial_force, point_force, weights
+from identification.robot.tendon_forces import tendon_forces
 
 FACTOR = 4.0  # that a mass, an inertia or a stiffness may be off; more is a matter of units
 PAYLOAD = 1.0  # largest, of the mass of all that moves
@@ -72,7 +73,7 @@ def unbalanced_share(
     """
     columns = output_columns(model, log.output_names)
     at = {i: k for k, (field, i) in enumerate(columns) if field == "qpos"}
-    plain = np.isin(model.jnt_type, SCALAR).all() and not (model.neq or model.na or model.ntendon)
+    plain = np.isin(model.jnt_type, SCALAR).all() and not (model.neq or model.na)
     if not plain or sorted(at) != [*range(model.nq)]:
         return None
     freedom = freedom or Freedom()
@@ -128,6 +129,8 @@ def _kernels(w: int, h: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _filtered(signals: np.ndarray, kernel: np.ndarray) -> np.ndarray:
     """Σ_i kernel_i y_{k+i} of columns (n, m), where the kernel fits."""
+    if not signals.shape[1]:  # of a free swing: it has samples, and no inputs
+        return np.zeros((max(0, len(signals) - len(kernel) + 1), 0))
     return np.stack([np.correlate(y, kernel, "valid") for y in signals.T], axis=1)
 
 
@@ -157,6 +160,8 @@ def _columns(
               for j in range(nv) if model.dof_armature[j]]  # fmt: skip
     stiff = [(motion.q - model.qpos_spring) * (model.jnt_stiffness * (np.arange(nv) == j))
              for j in range(nv) if model.jnt_stiffness[j]]  # fmt: skip
+    resisting, springs = tendon_forces(model, motion.q, motion.v)
+    stiff += springs
     points = [np.zeros(3)]
     points += [s * far * reach * e for far in FAR for s in (-1, 1) for e in np.eye(3)]
     payload = [point_force(bodies[b], p) for b in outer for p in points]
@@ -165,6 +170,7 @@ def _columns(
     each = [np.where(np.arange(nv) == j, x, 0.0)
             for j in range(nv) for x in (motion.v, np.sign(motion.v),
                                          *([motion.q] if freedom.has_springs else []))]  # fmt: skip
+    each += resisting
     level = [np.broadcast_to(np.arange(nv) == j, (n, nv)).astype(float) for j in range(nv)]
     most = max(PAYLOAD * float(model.body_mass[moving].sum()), least)
     low, high = [], []

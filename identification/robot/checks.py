@@ -59,18 +59,16 @@ def outputs_of(model: mujoco.MjModel, file: RobotFile) -> tuple[str, ...]:
         file: the robot's.
 
     Raises:
-        InputError: the model has no actuator, or no sensor of a joint's position and the file names
-            no outputs.
+        InputError: the model has no sensor of a joint's position, and the file names no outputs.
     """
     sensors = {model.sensor(i).name: sensor_word(model, i) for i in range(model.nsensor)}
     outputs = file.outputs or tuple(n for n, kind in sensors.items() if kind == "a jointpos")
-    if outputs and model.nu:
+    if outputs:
         return outputs
-    if outputs or not sensors:
-        lacks = "actuator" if outputs else "sensor"
+    if not sensors:
         raise InputError(
-            f"{file.model} has no {lacks}; it needs an actuator for every input and a jointpos or"
-            " jointvel sensor for every output"
+            f"{file.model} has no sensor; it needs a jointpos or jointvel sensor for every output,"
+            " and an actuator for every input"
         )
     rates = ", ".join(f'"{n}"' for n, kind in sensors.items() if kind == "a jointvel" and n)
     if rates:

@@ -14,6 +14,7 @@ from identification.robot.absurd_start import refuse_absurd_start
 from identification.robot.checks import with_judged_gaps
 from identification.robot.file import RobotFile, read_robot_file
 from identification.robot.free_inertias import inertias_sentence
+from identification.robot.free_swing import without_untold
 from identification.robot.other_spread import with_spread
 from identification.robot.robot import Robot, read_robot_log, robot_of
 from identification.robot.start_words import (
@@ -66,7 +67,7 @@ def read_robot(
     first, *others = (
         _log(file, each) for each in ([log] if isinstance(log, str | Path | Log) else log)
     )
-    robot = robot_of(file, first, others, records)
+    robot = without_untold(robot_of(file, first, others, records))
     every = (robot.log, *robot.others, *records)
     touches = find_touches(robot, every)
     refuse_touching(robot, every, touches)  # no step is short enough for a body inside another

@@ -127,7 +127,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     model = robot_spec(file)[0].compile()
     refuse_unnamed(model, file)
     inputs = tuple(model.actuator(i).name for i in range(model.nu))
-    outputs = outputs_of(model, file)
+    outputs = outputs_of(model, file)  # without an actuator the log is one of a free swing
     with told_of(f"outputs in {file.path}") if file.outputs else nullcontext():
         places = output_columns(model, outputs)
     units = {
@@ -189,7 +189,9 @@ def robot_of(
             where = f"measured joint under effects.joints in {file.path}:"
             raise unknown_name(where, joint, (a.joint for a in known))
     known = tuple(a for a in known if not file.joints or a.joint in file.joints)
-    effects = all_effects(spec, known, log, file.turns or TURNS)
+    # A free swing that is fitted together with driven logs says nothing of what inputs do.
+    driven = next((each for each in (log, *others) if each.inputs.any()), log)
+    effects = all_effects(spec, known, driven, file.turns or TURNS)
     for name in file.only:
         if name not in {e.name for e in effects}:
             where = f"effect under effects.only in {file.path}:"

@@ -15,8 +15,8 @@ drives is refused without any simulation (`identification.robot.scale`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import chain
 
@@ -31,6 +31,7 @@ from identification.logs.log import Log
 from identification.logs.readings import (
     EXPLAINED,
     NEARER,
+    SAME,
     UNEXPLAINED,
     Reading,
     input_readings,
@@ -43,7 +44,13 @@ from identification.logs.sampling import MIN_ROWS
 from identification.robot.balance import unbalanced_share
 from identification.robot.robot import Robot
 from identification.robot.same_units import different_units
-from identification.robot.scale import rescaled, wanted_units
+from identification.robot.scale import NEEDED, rescaled, wanted_units
+from identification.robot.turned_inputs import (
+    all_inputs_turned,
+    decided_by_forces,
+    plant_of_reading,
+    with_turned_ranges,
+)
 from identification.windows.window_error import first_error
 from identification.windows.windows import spread, windows
 
@@ -65,17 +72,14 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
     """
     file, plant = robot.file, robot.plant_of(log)
     wanted = wanted_units(plant.model, log)
-    kinds: dict[str, tuple[Callable[..., Iterable[Reading]], ...]] = {
-        "units": (factor_readings, partial(unit_readings, wanted=wanted)),
-        "wiring": (output_readings, input_readings),
-    }  # fmt: skip
-    read = [r for word, kind in kinds.items() if word not in file.trust for r in kind]
     column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
+    together = partial(all_inputs_turned, model=plant.model, file=file)
+    is_judged = "wiring" not in file.trust
     lengths = lengths_of(robot, log)
     balance = _Balance(plant.model, log)
     if "units" not in file.trust and (cure := different_units(plant.model, log, column)):
         raise InputError(f'log {log.name!r}: {cure}, or write trust = ["units"] into {file.path}')
-    is_explained = False
+    is_explained = is_nearer = False
     for length in lengths:
         own = unexplained(plant, length, log)
         if own is None:
@@ -84,23 +88,56 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
             is_explained = True
             continue
         bad = own > UNEXPLAINED
+        explain = partial(_of_reading, plant, length, log)
+        kinds: dict[str, tuple[Callable[..., Iterable[Reading]], ...]] = {
+            "units": (factor_readings, partial(unit_readings, wanted=wanted)),
+            "wiring": (partial(_of_outputs, explain), input_readings,
+                       *([together] if len(log.input_names) > 1 else [])),
+        }  # fmt: skip
+        read = (r for word, kind in kinds.items() if word not in file.trust for r in kind)
         readings = chain(*(r(log, bad, column) for r in read))
-        explain = partial(unexplained, plant, length)
         found = misread(log, own, readings, explain, balance.confirms)
-        if found is None and "wiring" not in file.trust and balance.contradicts:
+        if found is None and is_judged and balance.contradicts:
             units = () if "units" in file.trust else turned_units(log, bad, column, wanted)
             # Over the shorter windows only: an exchange is seen in both, and these are many.
             pairs = (two_turns, turned_exchanges) if length == lengths[0] else ()
             both = chain(units, *(pair(log, bad, column) for pair in pairs))
             near = _promising(plant, length, log, both)
             found = misread(log, own, near, explain, balance.confirms)
+        if is_judged:
+            turns = (explain(reading.log) for reading in together(log, bad, column))
+            is_nearer |= any(e is not None and (e[bad] < NEARER * own[bad]).all() for e in turns)
         if found is not None:
             raise _refusal(robot, log, *found)
+    if is_judged and not is_explained and (is_nearer or balance.excludes):
+        for reading in together(log, np.ones(log.outputs.shape[1], bool), column):
+            if said := decided_by_forces(reading, plant.model, balance.own, log):
+                raise _refusal(robot, log, reading, said)
     # The gain of a drive that wants a position is a guess, and its force with it.
     if not (is_explained or wanted or "units" in file.trust):
-        found = rescaled(plant.model, log, column, "wiring" not in file.trust)
+        found = rescaled(plant.model, log, column, is_judged)
         if found is not None:
             raise _refusal(robot, log, *found)
+
+
+def _of_outputs(
+    explain: Callable[[Log], np.ndarray | None],
+    log: Log,
+    bad: np.ndarray,
+    column: Mapping[str, str],
+) -> Iterator[Reading]:
+    """Yields other signs and places of outputs, and says where inputs may be turned as well.
+
+    All outputs turned look as all inputs turned where nothing, such as gravity, has a direction of
+    its own. Whether it has is seen by trying both.
+    """
+    is_mirrored = False
+    if bad.all() and log.inputs.any():
+        of_outputs = replace(log, outputs=-log.outputs)
+        of_inputs = replace(log, inputs=-log.inputs)
+        one, other = explain(of_outputs), explain(of_inputs)
+        is_mirrored = one is not None and other is not None and np.allclose(one, other, rtol=SAME)
+    yield from output_readings(log, bad, column, is_mirrored)
 
 
 def _refusal(robot: Robot, log: Log, reading: Reading, said: str) -> InputError:
@@ -129,12 +166,17 @@ class _Balance:
         """Whether forces do not explain the log as it is read, or say nothing of it."""
         return self.own is None or bool((self.own > UNEXPLAINED).any())
 
+    @property
+    def excludes(self) -> bool:
+        """Whether forces cannot be those of the log as it is read, whatever the model lacks."""
+        return self.own is not None and bool((self.own > NEEDED).any())
+
     def confirms(self, reading: Reading, left: np.ndarray) -> bool:
         """Whether forces speak for a reading that leaves ε (ny,)."""
         k = list(reading.columns)
         if self.own is None:
             return bool((left[k] < UNEXPLAINED).all())
-        other = unbalanced_share(self.model, reading.log)
+        other = unbalanced_share(with_turned_ranges(self.model, self.log, reading.log), reading.log)
         # Together, because a joint without a drive looks the same from both sides.
         return other is not None and bool(other[k].sum() < NEARER * self.own[k].sum())
 
@@ -148,7 +190,8 @@ def _promising(
         return
     own = unexplained(plant, length, log, FEW_WINDOWS)
     for reading in readings:
-        left, k = unexplained(plant, length, reading.log, FEW_WINDOWS), list(reading.columns)
+        left = _of_reading(plant, length, log, reading.log, FEW_WINDOWS)
+        k = list(reading.columns)
         if own is None or left is None:
             continue
         if (left[k] < np.minimum(EXPLAINED, NEARER * MARGIN * own[k])).all():
@@ -159,6 +202,13 @@ def lengths_of(robot: Robot, log: Log) -> list[float]:
     """Returns the lengths of windows of a log over which a robot's model is judged [s]."""
     horizon = robot.file.horizon
     return [share * log.duration for share in LENGTHS] if horizon is None else [horizon]
+
+
+def _of_reading(
+    plant: JointPlant, length: float, log: Log, other: Log, most: int = MOST_WINDOWS
+) -> np.ndarray | None:
+    """ε of another reading of a log; see `unexplained`."""
+    return unexplained(plant_of_reading(plant, log, other), length, other, most)
 
 
 def unexplained(

@@ -144,7 +144,8 @@ class Shooting:
                                (len(values), len(held) + 1, held.shape[1]))  # fmt: skip
         steps = np.arange((cut.inputs.shape[1] - 1) * every + 1)
         rows = every * cut.starts[:, None] + steps
-        return made[:, rows].reshape(-1, len(steps), held.shape[1]), every, "zoh"
+        each = made[:, rows].reshape(len(values) * len(rows), len(steps), held.shape[1])
+        return each, every, "zoh"
 
 
 def rough(plant: Plant) -> mujoco.MjModel:
@@ -178,7 +179,7 @@ def slower(
     n = round(other.opt.timestep / model.opt.timestep)
     if n == 1 or every == 1:
         return inputs, every
-    steps = inputs[:, :-1].reshape(len(inputs), -1, n, inputs.shape[2])
+    steps = inputs[:, :-1].reshape(len(inputs), (inputs.shape[1] - 1) // n, n, inputs.shape[2])
     return np.concatenate([steps.mean(axis=2), inputs[:, -1:]], axis=1), every // n
 
 

@@ -94,13 +94,13 @@ def find_input_error(validation: Validation, options: DiscoveryOptions) -> tuple
 
 @lru_cache(maxsize=4)  # the model that is tested for structure is often judged again at the end
 def fit_families(validation: Validation, options: DiscoveryOptions) -> tuple[FamilyFit, ...]:
-    """How well each family predicts; none where the noise model has no error of the inputs.
+    """How well each family predicts; none where there is no error of the inputs, or no input.
 
     Args:
         validation: the prediction of the whole log by a fitted model.
         options: the numbers of knots and blocks.
     """
-    if not validation.filter.A.size:
+    if not (validation.filter.A.size and validation.log.inputs.shape[1]):
         return ()
     fit = validation.refit
     try:

@@ -26,6 +26,8 @@ def find_input_hold(fit: Refit, options: DiscoveryOptions) -> tuple[Finding, ...
         options: how much smaller the error has to be.
     """
     point = fit.point
+    if not point.log.inputs.any():  # of a free swing, which no hold changes
+        return ()
     other = HOLDS[1 - HOLDS.index(point.log.hold)]
     predictor = replace(point.predictor, log=replace(point.log, hold=other))
     try:

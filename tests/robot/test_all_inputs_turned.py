@@ -1,0 +1,163 @@
+"""All inputs turned at once are told, with what to write; no right log is refused for them."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+from test_right_logs import ARM, MOTION, PENDULUM, nothing, payload, robot, tracked
+
+from identification import InputError, Log
+from identification.robot.balance import unbalanced_share
+from identification.robot.robot import read_robot_log
+from identification.robot.tendon_forces import tendon_forces
+from identification.robot.wiring import refuse_miswired
+
+HEAD = '<mujoco><compiler autolimits="true"/><option timestep="0.0025" integrator="RK4"{}/>'
+WINCHES = (
+    HEAD.format("")
+    + """<worldbody><site name="p1" pos="-1.2 0 2.5"/><site name="p2" pos="1 0 2.3"/>
+<body name="load" pos="0 0 1"><joint name="x" type="slide" axis="1 0 0" damping="0.5"/>
+<joint name="z" type="slide" axis="0 0 1" damping="0.5"/>
+<inertial pos="0 0 0" mass="7" diaginertia="0.01 0.01 0.01"/>
+<site name="a1" pos="-0.1 0 0.05"/><site name="a2" pos="0.1 0 0.05"/></body></worldbody>
+<tendon><spatial name="c1" damping="3"><site site="p1"/><site site="a1"/></spatial>
+<spatial name="c2" damping="3"><site site="p2"/><site site="a2"/></spatial></tendon>
+<actuator><motor name="T1" tendon="c1" gear="{0}" ctrlrange="{2}"/>
+<motor name="T2" tendon="c2" gear="{1}" ctrlrange="{2}"/></actuator>
+<sensor><jointpos name="x" joint="x"/><jointpos name="z" joint="z"/></sensor></mujoco>"""
+)
+WEIGHTLESS = (
+    HEAD.format(' gravity="0 0 0"')
+    + """<worldbody><body><joint name="q1" axis="0 0 1" damping="0.3"/>
+<inertial pos="0.2 0 0" mass="2" diaginertia="0.03 0.03 0.03"/>
+<body pos="0.4 0 0"><joint name="q2" axis="0 0 1" damping="0.1"/>
+<inertial pos="0.15 0 0" mass="1" diaginertia="0.01 0.01 0.01"/></body></body></worldbody>
+<actuator><motor name="u1" joint="q1"/><motor name="u2" joint="q2"/></actuator>
+<sensor><jointpos name="q1" joint="q1"/><jointpos name="q2" joint="q2"/></sensor></mujoco>"""
+)
+MOTION = {**MOTION, WEIGHTLESS: ((0.6, 0.4, 0.0), (0.9, 0.7, 0.0))}
+
+
+def winches(first=-1.0, second=-1.0, span="0 400"):
+    return WINCHES.format(f"{first:g}", f"{second:g}", span)
+
+
+def hung(mass, speed=1.0, gears=(1.0, 1.0), samples=500, seed=2):
+    """A log of a load that two cables hold and move, with their tensions [N] over the gears."""
+    model = mujoco.MjModel.from_xml_string(winches())
+    model.body_mass[1] = mass
+    data = mujoco.MjData(model)
+    mujoco.mj_setConst(model, data)
+    mujoco.mj_forward(model, data)
+    u, y, hold = np.zeros((samples, 2)), np.zeros((samples, 2)), np.zeros(2)
+    a, w = np.array([0.25, 0.2]), 2 * np.pi * speed * np.array([0.4, 0.55])
+    for k in range(samples):
+        t = 0.01 * k
+        y[k] = data.qpos
+        off, rate = a * np.sin(w * t) - data.qpos, a * w * np.cos(w * t) - data.qvel
+        hold += 0.6 * mass * off
+        force = mass * (60 * off + 12 * rate) + hold + [0, mass * 9.81]
+        ways = [(data.site(f"a{i}").xpos - data.site(f"p{i}").xpos)[[0, 2]] for i in (1, 2)]
+        J = np.array([way / np.linalg.norm(way) for way in ways])
+        u[k] = data.ctrl[:] = np.clip(np.linalg.solve(-J.T, force), 1, 400)
+        mujoco.mj_step(model, data, 4)
+    y += 3e-4 * np.random.default_rng(seed).standard_normal(y.shape)
+    return Log(time=0.01 * np.arange(samples), inputs=u / gears, outputs=y,
+               input_names=["T1", "T2"], output_names=["x", "z"])  # fmt: skip
+
+
+def refused(own, log):
+    with pytest.raises(InputError) as caught:
+        refuse_miswired(own, log)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("horizon", ["", "horizon = 0.3"])
+@pytest.mark.parametrize("mass", [5.0, 7.0, 10.0])
+def test_winches_that_push_are_refused_whatever_hangs_from_them(tmp_path, mass, horizon):
+    said = refused(*robot(tmp_path, winches(1, 2.5), hung(mass, gears=(1, 2.5)), horizon))
+    assert "with the other sign of all inputs" in said
+    assert 'write gear="-1" for T1, gear="-2.5" for T2 into' in said
+    assert "pushes its ends apart where it is positive" in said
+    assert "[factors]" not in said  # the range of the motors would cut such inputs to zero
+    assert 'or write trust = ["wiring"] into' in said
+
+
+def test_where_ranges_allow_it_the_log_may_be_turned_and_that_mends_it(tmp_path):
+    own, log = robot(tmp_path, winches(1, 1, "-400 400"), hung(9.0), "horizon = 0.3")
+    said = refused(own, log)
+    assert 'write gear="-1" for T1, T2 into' in said
+    assert "write T1 = -1 and T2 = -1 (a line each) under [factors] of the log's TOML" in said
+    (tmp_path / "log.toml").write_text("[factors]\nT1 = -1\nT2 = -1\n")
+    refuse_miswired(own, read_robot_log(own.file, tmp_path / "log.csv"))
+    refuse_miswired(replace(own, file=replace(own.file, trust=("wiring",))), log)
+
+
+def test_forces_alone_tell_where_a_gear_is_of_the_wrong_size_too(tmp_path):
+    said = refused(*robot(tmp_path, winches(1, 2.5), hung(7.0), "horizon = 0.3"))
+    assert 'write gear="-1" for T1, gear="-2.5" for T2 into' in said
+
+
+@pytest.mark.parametrize("speed", [1.0, 0.2])
+@pytest.mark.parametrize("mass", [4.0, 12.0])
+def test_winches_that_pull_are_not_refused_whatever_hangs_from_them(tmp_path, mass, speed):
+    refuse_miswired(*robot(tmp_path, winches(), hung(mass, speed), "horizon = 0.3"))
+
+
+def test_one_winch_that_pushes_is_told_by_its_name(tmp_path):
+    said = refused(*robot(tmp_path, winches(-1, 1), hung(7.0), "horizon = 0.3"))
+    assert "turn the sign of T2" in said
+
+
+@pytest.mark.parametrize("world", [nothing, payload])
+@pytest.mark.parametrize("xml", [PENDULUM, ARM], ids=["pendulum", "arm"])
+def test_all_motors_of_joints_turned_are_told(tmp_path, xml, world):
+    truth = mujoco.MjModel.from_xml_string(xml)
+    world(truth)
+    log = tracked(truth, MOTION[xml])
+    own, read = robot(tmp_path, xml, replace(log, inputs=-log.inputs), "horizon = 0.2")
+    said = refused(own, read)
+    assert all(name in said for name in log.input_names)
+    assert "[factors]" in said
+
+
+def test_all_outputs_turned_are_told_and_not_taken_for_inputs_where_gravity_tells(tmp_path):
+    tilted = ARM.replace("<option timestep", '<option gravity="4 0 -8.9" timestep')
+    log = tracked(mujoco.MjModel.from_xml_string(tilted), MOTION[ARM])
+    said = refused(*robot(tmp_path, tilted, replace(log, outputs=-log.outputs), "horizon = 0.2"))
+    assert "turn the sign of q1, q2: write q1 = -1 and q2 = -1 (a line each)" in said
+    assert "or of" not in said
+
+
+@pytest.mark.parametrize("turned", ["inputs", "outputs"])
+def test_without_gravity_both_are_told_because_none_can_tell_them_apart(tmp_path, turned):
+    log = tracked(mujoco.MjModel.from_xml_string(WEIGHTLESS), MOTION[WEIGHTLESS])
+    refuse_miswired(*robot(tmp_path, WEIGHTLESS, log, "horizon = 0.2"))
+    wrong = replace(log, **{turned: -getattr(log, turned)})
+    said = refused(*robot(tmp_path, WEIGHTLESS, wrong, "horizon = 0.2"))
+    assert "turn the sign of q1, q2, or of u1, u2" in said
+    both = replace(log, inputs=-log.inputs, outputs=-log.outputs)
+    refuse_miswired(*robot(tmp_path, WEIGHTLESS, both, "horizon = 0.2"))
+
+
+def test_the_balance_of_a_robot_with_tendons_holds_for_its_own_motion():
+    """η vanishes for a log of the model itself, and not for inputs with the other sign."""
+    log, model = hung(7.0), mujoco.MjModel.from_xml_string(winches(span="-400 400"))
+    assert unbalanced_share(model, log).max() < 0.02
+    assert unbalanced_share(model, replace(log, inputs=-log.inputs)).min() > 0.5
+
+
+def test_forces_of_tendons_are_those_of_the_engine():
+    xml = winches().replace('damping="3"', 'damping="3" stiffness="20" springlength="1.5"')
+    model = mujoco.MjModel.from_xml_string(xml)
+    rng, data = np.random.default_rng(0), mujoco.MjData(model)
+    q, v = 0.2 * rng.standard_normal((5, 2)), rng.standard_normal((5, 2))
+    resisting, springs = tendon_forces(model, q, v)
+    assert len(resisting) == 4
+    for k in range(5):
+        data.qpos, data.qvel = q[k], v[k]
+        mujoco.mj_forward(model, data)
+        damped = 3 * (resisting[0][k] + resisting[2][k]) + 0.5 * v[k]  # of tendons and of joints
+        np.testing.assert_allclose(damped, -data.qfrc_damper, atol=1e-9)
+        np.testing.assert_allclose(springs[0][k] + springs[1][k], -data.qfrc_spring, atol=1e-9)

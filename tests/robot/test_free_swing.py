@@ -1,0 +1,171 @@
+"""A free swing, or a drop test, is fitted: no input moves, or the model has no actuator at all."""
+
+import json
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+
+from identification import Log, fit, read_robot, write_log
+from identification.__main__ import main
+from identification.errors import InputError
+from identification.logs.decimation import decimate
+from identification.model.rollout import hold
+from identification.report.fit_verdict import fit_verdict
+from identification.report.records_fit_verdict import records_fit_verdict
+
+DOUBLE = """<mujoco model="double"><option timestep="0.005" integrator="RK4"/>
+<worldbody><body name="upper" pos="0 0 2"><joint name="a" axis="0 1 0" damping="{a}"/>
+<inertial pos="0 0 -0.3" mass="1.2" diaginertia="0.02 0.02 0.01"/>
+<body name="lower" pos="0 0 -0.6"><joint name="b" axis="0 1 0" damping="{b}"/>
+<inertial pos="0 0 -0.2" mass="0.5" diaginertia="0.005 0.005 0.002"/></body></body></worldbody>
+<sensor><jointpos name="a" joint="a"/><jointpos name="b" joint="b"/></sensor></mujoco>"""
+SPRING = """<mujoco model="spring"><option timestep="0.005" integrator="RK4"/>
+<worldbody><body name="cart"><joint name="x" type="slide" axis="1 0 0" damping="{damping}"
+stiffness="{stiffness}" frictionloss="{friction}"/>
+<inertial pos="0 0 0" mass="{mass}" diaginertia="0.01 0.01 0.01"/></body></worldbody>{motor}
+<sensor><jointpos name="x" joint="x"/></sensor></mujoco>"""
+MOTOR = '<actuator><motor name="push" joint="x" gear="{gear}"/></actuator>'
+TRUE = {"damping": 0.6, "stiffness": 30.0, "friction": 0.0, "mass": 2.0, "motor": ""}
+
+
+def swing(xml, start, samples, h=0.02, noise=3e-4, force=0.0):
+    """A log of a motion from a start, with no input or with a constant one."""
+    model = mujoco.MjModel.from_xml_string(xml)
+    data = mujoco.MjData(model)
+    data.qpos[:], data.ctrl[:] = start, force
+    y = np.empty((samples, model.nq))
+    for k in range(samples):
+        y[k] = data.qpos
+        mujoco.mj_step(model, data, round(h / model.opt.timestep))
+    y += noise * np.random.default_rng(4).standard_normal(y.shape)
+    return Log(
+        time=h * np.arange(samples),
+        inputs=np.full((samples, model.nu), force),
+        outputs=y,
+        input_names=[model.actuator(i).name for i in range(model.nu)],
+        output_names=[model.sensor(i).name for i in range(model.nsensor)],
+    )
+
+
+def robot(folder, xml, log, free, more=""):
+    """The path of a robot's file, and that of its log."""
+    (folder / "robot.xml").write_text(xml)
+    content = f'model = "robot.xml"\nfree = {json.dumps(free)}\n{more}'
+    (folder / "robot.toml").write_text(content)
+    write_log(log, folder / "log.csv")
+    return folder / "robot.toml", folder / "log.csv"
+
+
+def spring(**values):
+    return SPRING.format(**{**TRUE, **values})
+
+
+@pytest.mark.parametrize("horizon", ["", "horizon = 1.0"])
+def test_a_double_pendulum_without_actuators_tells_its_dampings(tmp_path, horizon):
+    log = swing(DOUBLE.format(a=0.05, b=0.03), (0.6, -0.4), 500)
+    assert log.inputs.shape == (500, 0)
+    paths = robot(tmp_path, DOUBLE.format(a=0.1, b=0.02), log,
+                  ["joint/a.damping", "joint/b.damping"], horizon)  # fmt: skip
+    found = fit(read_robot(*paths))
+    assert found.converged
+    assert found.values["joint/a.damping"] == pytest.approx(0.05, rel=0.02)
+    assert found.values["joint/b.damping"] == pytest.approx(0.03, rel=0.02)
+
+
+@pytest.mark.parametrize("horizon", ["", "horizon = 1.0"])
+def test_what_only_an_input_would_show_is_told_and_the_rest_is_fitted(tmp_path, horizon):
+    motor = MOTOR.format(gear=3)
+    log = swing(spring(motor=motor), 0.2, 400)
+    gear = "actuator/push.gear[0]"
+    paths = robot(tmp_path, spring(motor=motor, damping=1.5), log, ["joint/x.damping", gear],
+                  horizon)  # fmt: skip
+    read = read_robot(*paths)
+    assert (
+        f"No input moves in 'log', and a free swing does not tell {gear}: it keeps its value."
+        in (read.remarks)
+    )
+    assert fit(read).values == {"joint/x.damping": pytest.approx(0.6, rel=0.02)}
+    (tmp_path / "robot.toml").write_text(f'model = "robot.xml"\nfree = ["{gear}"]\n{horizon}')
+    with pytest.raises(InputError, match=r"does not tell actuator/push.gear\[0\]; free what it"):
+        read_robot(*paths)
+
+
+def test_what_no_input_would_show_either_is_refused_as_in_any_log(tmp_path):
+    motor = MOTOR.format(gear=3)
+    still = '<body name="still" pos="0 1 0"><geom size="0.1" contype="0" conaffinity="0"/></body>'
+    xml = spring(motor=motor).replace("<worldbody>", f"<worldbody>{still}")
+    paths = robot(tmp_path, xml, swing(xml, 0.2, 400), ["joint/x.damping", "body/still.mass"])
+    with pytest.raises(InputError, match=r"body/still\.mass has no effect on x"):
+        fit(read_robot(*paths))
+
+
+def test_a_constant_input_is_fitted_with_the_gear_that_it_tells(tmp_path):
+    motor = MOTOR.format(gear=2)
+    log = swing(spring(motor=motor), 0.2, 400, force=1.5)
+    gear = "actuator/push.gear[0]"
+    paths = robot(tmp_path, spring(motor=MOTOR.format(gear=3)), log, ["joint/x.damping", gear])
+    found = fit(read_robot(*paths))
+    assert found.values[gear] == pytest.approx(2.0, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("horizon", "words"), [("", fit_verdict), ("horizon = 1.0", records_fit_verdict)]
+)
+def test_ratios_alone_are_told_of_masses_springs_and_friction(tmp_path, horizon, words):
+    free = ["body/cart.mass", "joint/x.damping", "joint/x.stiffness"]
+    paths = robot(tmp_path, spring(damping=0.9), swing(spring(), 0.2, 400), free, horizon)
+    found = fit(read_robot(*paths))
+    mass, damping, stiffness = (found.values[n] for n in free)
+    assert damping / mass == pytest.approx(0.3, rel=0.02)
+    assert stiffness / mass == pytest.approx(15.0, rel=0.001)
+    said = " ".join(words(found.found))
+    assert "a free swing tells masses, inertias, frictions and stiffnesses by their ratios" in said
+    assert all(name in said for name in free)
+
+
+def test_a_driven_log_is_not_called_a_free_swing(tmp_path):
+    motor = MOTOR.format(gear=2)
+    log = swing(spring(motor=motor), 0.2, 400, force=1.5)
+    paths = robot(tmp_path, spring(motor=motor), log,
+                  ["body/cart.mass", "joint/x.damping", "joint/x.stiffness"])  # fmt: skip
+    assert "free swing" not in " ".join(fit_verdict(fit(read_robot(*paths)).found))
+
+
+@pytest.mark.parametrize(("motor", "horizon"), [("", "horizon = 0.4"), (MOTOR.format(gear=2), "")])
+def test_a_search_names_the_hidden_coulomb_friction(tmp_path, motor, horizon, capsys):
+    log = swing(spring(motor=motor, friction=0.15), 0.25, 500)
+    paths = robot(tmp_path, spring(motor=motor), log, ["joint/x.damping"], horizon)
+    of_inputs = {"delay", "lag", "saturation", "gain_drift", "time_shift"}
+    assert not of_inputs & {e.name for e in read_robot(*paths).candidates}
+    out = tmp_path / "found"
+    assert main(["discover", *map(str, paths), "--out", str(out), "--json"]) == 0
+    effects = json.loads(capsys.readouterr().out)["effects"]
+    assert effects[0]["name"] == "coulomb_friction"
+    assert json.loads((out / "result.json").read_text())["effects"] == effects
+
+
+def test_logs_without_inputs_are_thinned_and_held_in_both_ways():
+    log = swing(spring(), 0.2, 101)
+    assert decimate(log, 4).inputs.shape == (26, 0)
+    for kind in ("zoh", "foh"):
+        assert hold(log.inputs, 3, kind).shape == (300, 0)
+
+
+def test_a_free_swing_in_degrees_is_refused_with_the_unit_to_write(tmp_path):
+    xml = DOUBLE.format(a=0.05, b=0.03)
+    log = swing(xml, (0.6, -0.4), 300)
+    log = replace(log, outputs=np.rad2deg(log.outputs), units={})
+    paths = robot(tmp_path, xml, log, ["joint/a.damping"], "horizon = 0.5")
+    with pytest.raises(InputError, match='"deg"'):
+        read_robot(*paths)
+
+
+def test_a_free_swing_beside_a_driven_log_leaves_its_candidates_to_the_driven_one(tmp_path):
+    motor = MOTOR.format(gear=2)
+    still = swing(spring(motor=motor), 0.2, 200)
+    driven = replace(swing(spring(motor=motor), 0.1, 200, force=1.5), name="driven")
+    path, _ = robot(tmp_path, spring(motor=motor), still, ["joint/x.damping"], "horizon = 0.4")
+    read = read_robot(path, [still, driven])
+    assert "saturation" in {e.name for e in read.candidates}
