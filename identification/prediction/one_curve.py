@@ -25,6 +25,7 @@ from identification.prediction.model import WindowModel
 from identification.prediction.records import Record
 from identification.prediction.screening import score_all
 from identification.prediction.selection import Contender, refit_contenders
+from identification.prediction.several_places import places_of
 
 
 def with_one_curve(
@@ -74,7 +75,12 @@ def with_one_curve(
 
 def _joints_of_several(accepted: Sequence[Contender]) -> list[str]:
     """Joints at which several laws and no curve were accepted."""
-    curves = {a.candidate.where for a in accepted if a.candidate.effect.is_curve}
+    curves = {
+        place
+        for a in accepted
+        if a.candidate.effect.is_curve
+        for place in places_of(a.candidate.where)
+    }
     count = Counter(a.candidate.where for a in accepted if _is_law(a))
     return [where for where, n in count.items() if n > 1 and where not in curves]
 
