@@ -145,9 +145,15 @@ def has_candidate(model: FittedModel, candidate: Candidate) -> bool:
 def collect_parameters(
     task: DiscoveryTask, model: FittedModel, candidate: Candidate
 ) -> dict[str, tuple[float, float, str]]:
-    """Sizes and shapes of an effect in a fitted model, by symbol: value, std, unit."""
+    """Sizes and shapes of an effect in a fitted model, by symbol: value, std, unit.
+
+    The std is zero of what is not estimated, and of what a bound holds.
+    """
     point = model.refit.point
-    std = dict(zip(point.space.names, model.refit.std * point.space.slope(point.q), strict=True))
+    own = np.where(
+        point.space.on_bound(point.q), 0.0, model.refit.std * point.space.slope(point.q)
+    )  # fmt: skip
+    std = dict(zip(point.space.names, own, strict=True))
     out = {}
     for name in (*candidate.sizes, *candidate.fixed):
         record = task.nominal_model.plant.parameters[name]

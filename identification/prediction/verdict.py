@@ -157,7 +157,9 @@ def _refitted(model: WindowModel, contender: Contender, confidence: float) -> Re
     """An effect at the values of a model that has it."""
     c = contender.candidate
     plant, unknowns = model.plant, model.fit.problem.unknowns
-    values, std = {**model.values, **model.fit.values}, model.told_std
+    values = {**model.values, **model.fit.values}
+    # A bound holds a value as it holds what is not estimated: neither has a std.
+    std = {n: 0.0 if n in model.at_bound else s for n, s in model.told_std.items()}
     parameters = {}
     symbols = [plant.parameters[n].symbol for n in (*c.sizes, *c.fixed)]
     for name in (*c.sizes, *c.fixed):

@@ -11,7 +11,7 @@ from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.robot.absurd_start import refuse_absurd_start
 from identification.robot.file import RobotFile, read_robot_file
-from identification.robot.free_inertias import inertias_sentence
+from identification.robot.free_inertias import carried_sentence, inertias_sentence
 from identification.robot.other_spread import with_spread
 from identification.robot.robot import Robot, read_robot_log, robot_of
 from identification.robot.start_words import (
@@ -106,9 +106,9 @@ def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
         begun = [of(file, own, log) for log in logs for of in (start_sentence, apart_sentence)]
     else:  # each window begins where it was measured
         begun = [unused_sentence(file, own, robot.log)]
-    inertias = inertias_sentence(file)
+    inertias = (inertias_sentence(file), carried_sentence(robot))
     resampled = (remark for log in logs for remark in log.remarks)
-    return tuple(filter(None, (*robot.remarks, inertias, *resampled, *begun)))
+    return tuple(filter(None, (*robot.remarks, *inertias, *resampled, *begun)))
 
 
 def _log(file: RobotFile, log: str | Path | Log) -> Log:
