@@ -21,12 +21,13 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import Score
 from identification.kalman.refit import Refit
 from identification.logs.log import Log
+from identification.shown import Shown
 
 Verdict = Literal["named", "nothing missing", "unknown effect"]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Discovery:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Discovery(Shown):
     """The outcome of a discovery.
 
     Attributes:

@@ -19,6 +19,7 @@ from identification.prediction.record_errors import RecordError
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction
+from identification.shown import Shown
 
 Verdict = Literal["named", "nothing missing", "unknown effect", "unlisted effect"]
 
@@ -42,6 +43,16 @@ class RefittedEffect:
     criterion: float
     confidence: float
     doubt: Doubt | None
+
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.candidate.effect.name
+
+    @property
+    def where(self) -> str:
+        """Where it acts, in words."""
+        return self.candidate.where
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,9 +79,34 @@ class NamedByPrediction:
     agrees: tuple[str, ...]
     disagrees: tuple[str, ...]
 
+    @property
+    def candidate(self) -> Candidate:
+        """Effect, place, and shapes as estimated."""
+        return self.effect.candidate
 
-@dataclass(frozen=True, kw_only=True)
-class RecordsDiscovery:
+    @property
+    def parameters(self) -> Mapping[str, tuple[float, float, str]]:
+        """Its sizes and shapes by name: value, std, unit."""
+        return self.effect.parameters
+
+    @property
+    def confidence(self) -> float:
+        """Its share of the odds among its rivals, 0 to 1."""
+        return self.effect.confidence
+
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.candidate.effect.name
+
+    @property
+    def where(self) -> str:
+        """Where it acts, in words."""
+        return self.candidate.where
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class RecordsDiscovery(Shown):
     """The outcome.
 
     Attributes:

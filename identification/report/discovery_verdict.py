@@ -28,8 +28,10 @@ from identification.report.error_words import change_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.named_words import named_sentences
 from identification.report.nothing_words import nothing
+from identification.shown import verdict_of
 
 
+@verdict_of.register
 def discovery_verdict(found: Discovery) -> list[str]:
     """The verdict first, then what supports it."""
     own = list_at_bound(found.final, found.nominal.point.space.names)

@@ -41,7 +41,7 @@ def write_records_report(found: RecordsDiscovery, folder: Path) -> Path:
     names = ", ".join(r.log.name for r in found.records if r.role == "fit")
     return write_report(
         folder / "report.html", f"{names}: what the model lacks", records_verdict(found), shown,
-        good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
+        good=found.is_good,
         data=[r.log.name for r in found.records],
     )  # fmt: skip
 

@@ -10,11 +10,13 @@ from identification.report.error_words import change_words, error_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.refitted_words import sizes_words
 from identification.report.scale_words import describe_scale
+from identification.shown import verdict_of
 
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
 DIGITS = 3  # of errors over a horizon
 
 
+@verdict_of.register
 def records_verdict(found: RecordsDiscovery) -> list[str]:
     """The verdict first, then what supports it."""
     bounds = bound_sentences(found.final.plant.parameters, at_bound(found))

@@ -20,6 +20,7 @@ from identification.effects.named import unknown_effect
 from identification.errors import InputError, told_of, unknown_name
 from identification.logs.decimation import decimate
 from identification.logs.log import Log
+from identification.logs.names import listed
 from identification.logs.read import read_log
 from identification.model.plant import start_place
 from identification.model.predictor import output_columns
@@ -62,6 +63,10 @@ class Robot:
     others: tuple[Log, ...] = ()
     remarks: tuple[str, ...] = ()
     mean: Mapping[str, float] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        logs = listed(log.name for log in (self.log, *self.others, *self.records))
+        return f"Robot of {Path(self.file.path).name}, free: {listed(self.file.free)}; logs: {logs}"
 
     @property
     def nominal_model(self) -> NominalModel:
