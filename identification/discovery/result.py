@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from identification.discovery.attempts import Failed
 from identification.discovery.effect_results import (
     Detectable,
     Gap,
@@ -58,6 +59,7 @@ class Discovery(Shown):
         findings: what the final model leaves unexplained; empty when it explains all.
         missing_forces: the forces that the nominal model lacks, by where they act.
         seconds: wall time by stage [s].
+        failed: what was tried and could not be evaluated.
     """
 
     log: Log
@@ -84,3 +86,4 @@ class Discovery(Shown):
     findings: tuple[Finding, ...]
     missing_forces: tuple[MissingForce, ...]
     seconds: Mapping[str, float]
+    failed: tuple[Failed, ...] = ()

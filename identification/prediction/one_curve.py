@@ -11,11 +11,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
+from identification.discovery.attempts import attempt
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
-from identification.errors import InputError
 from identification.estimation.options import Progress
 from identification.prediction.contenders import count_numbers
 from identification.prediction.drawn_laws import ON_JOINTS
@@ -57,10 +58,11 @@ def with_one_curve(
             continue
         scores = [s for s in score_all(bare, curves, options) if s.candidate.where == where]
         horizon = float(nominal_model.horizon or 0.0)
-        try:
-            parent, tried = refit_contenders(bare, scores, horizon, confirm, options, progress)
-        except InputError:
+        refit = partial(refit_contenders, bare, scores, horizon, confirm, options, progress)
+        refitted_curves = attempt(None, refit)
+        if refitted_curves is None:
             continue
+        parent, tried = refitted_curves
         windows, outputs = count_windows(parent), len(parent.scale)
         numbers = sum(count_numbers(a.candidate) for a in laws)
         theirs = evidence([all_gains(parent, model)], [numbers], windows, outputs)[0, 0]

@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from identification.discovery.attempts import Failed
 from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import Finding
 from identification.discovery.findings.records_evidence import ShiftedRecord
@@ -137,6 +138,7 @@ class RecordsDiscovery(Shown):
         repeats: names of the records that confirm, but whose motion is that of a fitted record or
             of one that confirms before them.
         seconds: wall time by kind of work [s].
+        failed: what was tried and could not be evaluated.
     """
 
     records: tuple[Record, ...]
@@ -162,6 +164,7 @@ class RecordsDiscovery(Shown):
     shifts: tuple[ShiftedRecord, ...]
     repeats: tuple[str, ...]
     seconds: Mapping[str, float]
+    failed: tuple[Failed, ...] = ()
 
     @property
     def steps(self) -> tuple[float, float]:

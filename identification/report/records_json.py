@@ -22,6 +22,7 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
         "verdict": found.verdict,
         "effects": [_named_to_json(named, plant) for named in found.named],
         "rejected": [_refitted_to_json(effect, plant) for effect in found.rejected],
+        "failed": [asdict(failed) for failed in found.failed],
         "unexplained": found.unexplained,
         "share": found.share,
         "gap": {

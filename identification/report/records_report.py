@@ -13,6 +13,7 @@ from identification.prediction.result import RecordsDiscovery
 from identification.report.discovery_figures import gains_figure
 from identification.report.effect_words import describe_effect
 from identification.report.error_words import pair_words
+from identification.report.failed_words import FAILED, failed_lines
 from identification.report.law_section import law_sections
 from identification.report.page import Section, Table, save_figures, write_report
 from identification.report.records_finding_words import describe_shift
@@ -66,6 +67,8 @@ def _candidates(found: RecordsDiscovery) -> Section:
     if found.rejected:
         tried = "\n\n".join(rejected_lines(found))
         text += f"\n\nTried, and not proven on unseen data:\n\n{tried}"
+    if failed := failed_lines(found):
+        text += "\n\n".join(["", f"{FAILED.capitalize()}:", *failed])
     if not best:
         return Section("Who could explain it", text)
     figure = gains_figure(
