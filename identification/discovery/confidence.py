@@ -15,10 +15,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from identification.blas import one_blas_thread
+from identification.discovery.attempts import attempt
 from identification.discovery.effect_results import NamedEffect, Outside, Rival
 from identification.discovery.fitted_model import AcceptedEffect, FittedModel, collect_parameters
 from identification.discovery.free_curves import NODES, Curve, find_curves
@@ -50,7 +52,9 @@ def name_effects(
         limit: the upper limit of the confidence.
     """
     names = {_key(a.candidate) for a in accepted}
-    curves = find_curves(final.refit, task.options) if accepted else ()
+    curves: tuple[Curve, ...] = ()
+    if accepted:
+        curves = attempt("curves", partial(find_curves, final.refit, task.options)) or ()
     return tuple(
         _name(task, a, names, final, sensitivities, curves, explained, limit) for a in accepted
     )

@@ -100,7 +100,8 @@ def accept_deviants(
         return model, ()
     task = within_bounds(task)
     start = _as_effects(task.nominal_model, candidates, model.refit.point.values)
-    best = try_fit(task, (*model.candidates, *candidates), start, model)
+    more = (*model.candidates, *candidates)
+    best = try_fit(task, more, start, model, tried=candidates[0])
     kept: list[tuple[Candidate, Proof, float]] = []
     parent, bound = best, task
     for candidate in reversed(candidates):

@@ -72,6 +72,16 @@ class Rival:
     alike: float
     values: Mapping[str, float] = field(default_factory=dict)
 
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.candidate.effect.name
+
+    @property
+    def where(self) -> str:
+        """Where it acts, in words."""
+        return self.candidate.where
+
 
 @dataclass(frozen=True)
 class Retuned:
@@ -121,6 +131,16 @@ class RejectedEffect:
     proof: Proof
     outside: Outside | None = None
 
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.candidate.effect.name
+
+    @property
+    def where(self) -> str:
+        """Where it acts, in words."""
+        return self.candidate.where
+
 
 @dataclass(frozen=True, kw_only=True)
 class NamedEffect:
@@ -150,6 +170,16 @@ class NamedEffect:
     retuned: Retuned
     advice: str = ""
     outside: Outside | None = None
+
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.candidate.effect.name
+
+    @property
+    def where(self) -> str:
+        """Where it acts, in words."""
+        return self.candidate.where
 
     @property
     def odds(self) -> float:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from math import isclose
+
+import numpy as np
 
 from identification.discovery.result import Discovery
 from identification.effects.effect import Effect
 from identification.kalman.refit import Refit
+
+AT_BOUND = 1e-6  # relative distance from a bound that is on it
 
 
 def collect_final_values(found: Discovery) -> dict[str, float]:
@@ -36,7 +41,25 @@ def keep_of_robot(values: Mapping[str, float], effects: Sequence[Effect]) -> dic
 
 
 def collect_std(fit: Refit) -> dict[str, float]:
-    """Std of the free parameters of a fit by name, in their units."""
-    space = fit.point.space
-    std = fit.std * space.slope(fit.point.q)
+    """Std of the free parameters of a fit by name, in their units; NaN where a bound holds one."""
+    space, q = fit.point.space, fit.point.q
+    std = np.where(space.on_bound(q), np.nan, fit.std * space.slope(q))
     return dict(zip(space.names, std.tolist(), strict=True))
+
+
+def list_at_bound(fit: Refit, names: Collection[str]) -> list[str]:
+    """Returns those of some parameters that lie on a bound of their range.
+
+    A search may keep a value within a narrower range of what is plausible; such a limit is told by
+    a finding (`identification.discovery.findings.structure`).
+
+    Args:
+        fit: a fit.
+        names: of the parameters that are asked for.
+    """
+    parameters = fit.point.predictor.plant.parameters
+    each = ((parameters[n], value) for n, value in fit.point.values.items() if n in names)
+    return [
+        p.name for p, value in each
+        if any(isclose(value, bound, rel_tol=AT_BOUND) for bound in (p.lower, p.upper) if bound)
+    ]  # fmt: skip

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.effect_results import Proof
 from identification.discovery.nominal_model import STEPS, fit_with_effects
 from identification.discovery.options import DiscoveryOptions
@@ -16,7 +17,6 @@ from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.discovery.task import DiscoveryTask
 from identification.discovery.validation import Validation, validate
 from identification.effects.effect import Candidate
-from identification.errors import DivergenceError, InputError
 from identification.kalman.refit import Refit
 
 FEW = 5  # steps of a fit that only says how far a model is from the data
@@ -118,12 +118,27 @@ def try_fit(
     near: FittedModel | None = None,
     steps: int = STEPS,
     least: float = -np.inf,
+    tried: Candidate | None = None,
 ) -> FittedModel | None:
-    """The same as `fit_model`; None where that raises an error."""
-    try:
-        return fit_model(task, candidates, start, near, steps, least)
-    except (DivergenceError, InputError):
-        return None
+    """Returns what `fit_model` returns; None where that fails.
+
+    Args:
+        task: as of `fit_model`.
+        candidates: as of `fit_model`.
+        start: as of `fit_model`.
+        near: as of `fit_model`.
+        steps: as of `fit_model`.
+        least: as of `fit_model`.
+        tried: which of the candidates is on trial; a failure is told of it. None where none is: a
+            model without an effect is tried.
+    """
+
+    def evaluate() -> FittedModel:
+        model = fit_model(task, candidates, start, near, steps, least)
+        refuse_infinite(model.negative_bic, model.validation.rms, model.innovations)
+        return model
+
+    return attempt(tried, evaluate)
 
 
 def score_candidates(model: FittedModel, sensitivities: Sequence[Sensitivity],
@@ -145,9 +160,15 @@ def has_candidate(model: FittedModel, candidate: Candidate) -> bool:
 def collect_parameters(
     task: DiscoveryTask, model: FittedModel, candidate: Candidate
 ) -> dict[str, tuple[float, float, str]]:
-    """Sizes and shapes of an effect in a fitted model, by symbol: value, std, unit."""
+    """Sizes and shapes of an effect in a fitted model, by symbol: value, std, unit.
+
+    The std is zero of what is not estimated, and of what a bound holds.
+    """
     point = model.refit.point
-    std = dict(zip(point.space.names, model.refit.std * point.space.slope(point.q), strict=True))
+    own = np.where(
+        point.space.on_bound(point.q), 0.0, model.refit.std * point.space.slope(point.q)
+    )  # fmt: skip
+    std = dict(zip(point.space.names, own, strict=True))
     out = {}
     for name in (*candidate.sizes, *candidate.fixed):
         record = task.nominal_model.plant.parameters[name]

@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from identification.discovery.attempts import Failed
 from identification.discovery.effect_results import (
     Detectable,
     Gap,
@@ -21,12 +22,13 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import Score
 from identification.kalman.refit import Refit
 from identification.logs.log import Log
+from identification.shown import Shown
 
 Verdict = Literal["named", "nothing missing", "unknown effect"]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Discovery:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Discovery(Shown):
     """The outcome of a discovery.
 
     Attributes:
@@ -57,6 +59,7 @@ class Discovery:
         findings: what the final model leaves unexplained; empty when it explains all.
         missing_forces: the forces that the nominal model lacks, by where they act.
         seconds: wall time by stage [s].
+        failed: what was tried and could not be evaluated.
     """
 
     log: Log
@@ -83,3 +86,4 @@ class Discovery:
     findings: tuple[Finding, ...]
     missing_forces: tuple[MissingForce, ...]
     seconds: Mapping[str, float]
+    failed: tuple[Failed, ...] = ()

@@ -8,10 +8,12 @@ then parts that deviate by more than parts do  ->  pruning
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
+from identification.discovery.attempts import Failed, attempt, collected, tell_lost
 from identification.discovery.deviants import accept_deviants, within_bounds
 from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.fitted_model import (
@@ -56,6 +58,7 @@ class SearchState:
         scores: of the candidates that the model does not have, on it, the best first.
         rejected: what the last round refitted and did not accept, the best first.
         seconds: wall time by kind of work [s].
+        failed: what was tried and could not be evaluated.
     """
 
     task: DiscoveryTask
@@ -68,6 +71,7 @@ class SearchState:
     scores: tuple[Score, ...]
     rejected: tuple[RejectedEffect, ...]
     seconds: Mapping[str, float]
+    failed: tuple[Failed, ...] = ()
 
     @property
     def is_finished(self) -> bool:
@@ -93,7 +97,8 @@ def first_state(task: DiscoveryTask, progress: Progress) -> SearchState:
         task, nominal = _with_scatter(task, nominal)
     watch.stop("nominal fit")
     progress(f"nominal fit: {held(1e3 * nominal.validation.rms)}e-3 on unseen data")
-    sensitivities = _compute_all_sensitivities(task, nominal, ())
+    with collected(progress) as failed:
+        sensitivities = _compute_all_sensitivities(task, nominal, ())
     watch.stop("sensitivities")
     scores = score_candidates(nominal, sensitivities, task.options)
     watch.stop("scores")
@@ -101,24 +106,30 @@ def first_state(task: DiscoveryTask, progress: Progress) -> SearchState:
     return SearchState(
         task=task, stage="selection", nominal=nominal, sensitivities=sensitivities,
         nominal_scores=scores, model=nominal, accepted=(), scores=scores, rejected=(),
-        seconds=watch.seconds,
+        seconds=watch.seconds, failed=tuple(failed),
     )  # fmt: skip
 
 
 def next_state(state: SearchState, progress: Progress) -> SearchState:
-    """The state after one more step; a finished state stays as it is.
+    """Returns the state after one more step; a finished state stays as it is.
+
+    A step that fails is told and skipped: what was found before it stands.
 
     Args:
         state: the state before.
         progress: is told a line per refit.
     """
-    if state.stage == "selection":
-        return _select(state, progress)
-    if state.stage == "deviants":
-        return _deviate(state, progress)
-    if state.stage == "pruning":
-        return _prune(state)
-    return state
+    if state.is_finished:
+        return state
+    steps: dict[Stage, tuple[Callable[[], SearchState], Stage]] = {
+        "selection": (partial(_select, state, progress), "deviants"),
+        "deviants": (partial(_deviate, state, progress), "pruning"),
+        "pruning": (partial(_prune, state), "finished"),
+    }
+    step, after = steps[state.stage]
+    with collected(progress, state.failed) as failed:
+        new = attempt(f"the {state.stage}", step) or replace(state, stage=after)
+    return replace(new, failed=tuple(failed))
 
 
 def _with_scatter(task: DiscoveryTask, nominal: FittedModel) -> tuple[DiscoveryTask, FittedModel]:
@@ -211,12 +222,15 @@ def _compute_all_sensitivities(
     kept = tuple(s for s in before if has_candidate(model, s.candidate))
     left = [c for c in list_common(task.effects) if not has_candidate(model, c)]
     common = compute_sensitivities(point, left)
+    tell_lost(left, (s.candidate for s in common))
     best: dict[str, Score] = {}
     for s in score_candidates(model, common, task.options):
         best.setdefault(s.candidate.effect.name, s)
     single = list_single([s.candidate for s in best.values()])
     left = [c for c in single if not has_candidate(model, c)]
-    return kept + common + compute_sensitivities(point, left)
+    alone = compute_sensitivities(point, left)
+    tell_lost(left, (s.candidate for s in alone))
+    return kept + common + alone
 
 
 class _Watch:

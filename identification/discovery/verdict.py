@@ -166,6 +166,7 @@ def conclude(state: SearchState) -> Discovery:
         findings=findings,
         missing_forces=forces,
         seconds=state.seconds,
+        failed=state.failed,
     )
 
 

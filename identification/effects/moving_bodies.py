@@ -92,16 +92,20 @@ class Felt:
     def axes(self, body: MovingBody) -> str:
         """The axes of its frame along which a displaced centre of mass is felt, of "xyz"."""
         far = STEP * (body.reach or 1.0)
-        return "".join(a for k, a in enumerate("xyz") if self._is("body_ipos", body, k, far))
+        return "".join(a for k, a in enumerate("xyz") if self._is("body_ipos", body.index, k, far))
 
     def is_turning(self, body: MovingBody) -> bool:
         """Whether its inertia is felt."""
-        more = STEP * (float(self.model.body_inertia[body.index].max()) or 1.0)
-        return any(self._is("body_inertia", body, k, more) for k in range(3))
+        return bool(self.inertias(body.index).any())
 
-    def _is(self, field: str, body: MovingBody, k: int, more: float) -> bool:
+    def inertias(self, body: int) -> np.ndarray:
+        """Returns which of the principal inertias of a body are felt, shape (3,)."""
+        more = STEP * (float(self.model.body_inertia[body].max()) or 1.0)
+        return np.array([self._is("body_inertia", body, k, more) for k in range(3)])
+
+    def _is(self, field: str, body: int, k: int, more: float) -> bool:
         other = copy.copy(self.model)
-        getattr(other, field)[body.index, k] += more
+        getattr(other, field)[body, k] += more
         mujoco.mj_setConst(other, mujoco.MjData(other))
         change = np.abs(_forces(other, self.states) - self.nominal).max()
         return bool(change > FELT * max(float(np.abs(self.nominal).max()), 1e-300))

@@ -38,7 +38,7 @@ class Fit:
     Attributes:
         estimate: where the search ended.
         std: std of the values, in their units, shape (p,); infinite where neither the log nor a
-            prior determines a value.
+            prior determines a value, NaN where a bound holds it.
         correlation: correlation of the estimates, shape (p, p), without unit.
         at_bound: true where a value lies on a bound, shape (p,).
         found: the directions that the outputs feel, and those that they do not feel.
@@ -131,7 +131,9 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
     error = (estimate.weight * residual) @ estimate.whitener.T
     pull, share = influence(error, estimate.options.loss)
     covariance = _sandwich(S.reshape(*error.shape, -1), pull, share, error, known, prior)
-    std_q = np.where(known.undetermined, np.inf, np.sqrt(np.diag(covariance)))
+    at_bound = space.on_bound(q)
+    std_q = np.where(at_bound, np.nan, np.sqrt(np.diag(covariance)))
+    std_q[known.undetermined] = np.inf
     scale = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
     fit, unseen, spread = beyond(estimate, validation, covariance)
     expected = np.hypot(rms(residual), spread)
@@ -139,7 +141,7 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
         estimate=estimate,
         std=std_q * space.slope(q),
         correlation=_bounded(covariance / np.outer(scale, scale)),
-        at_bound=space.on_bound(q),
+        at_bound=at_bound,
         found=found,
         combinations=combinations_of(found, estimate, covariance),
         residual=residual,

@@ -17,6 +17,9 @@ from identification.errors import InputError, repeated
 from identification.model.parameter import ParameterSet
 
 FARTHEST = 700.0  # of a logarithm: beyond, exp overflows
+# A bound lies this many units in the last place inside the range of the values, so that a search
+# that ends on it gives a value of the range: exp(ln(x)) may be larger than x by the last digit.
+INSIDE = 4 * np.finfo(float).eps
 
 
 @dataclass(frozen=True)
@@ -108,4 +111,11 @@ def coordinates(
     with np.errstate(divide="ignore"):
         low = np.where(logarithmic, np.log(np.where(logarithmic, lower, 1.0)), lower / scale)
         high = np.where(logarithmic, np.log(np.where(logarithmic, upper, 1.0)), upper / scale)
+    low, high = low + _digits(low, logarithmic), high - _digits(high, logarithmic)
     return Coordinates(tuple(names), logarithmic, low, high, scale)
+
+
+def _digits(bound: np.ndarray, logarithmic: np.ndarray) -> np.ndarray:
+    """Returns how far inside the range a bound is put, shape (p,); zero where there is none."""
+    size = np.where(np.isfinite(bound), np.abs(bound), 0.0)
+    return INSIDE * np.where(logarithmic & np.isfinite(bound), np.maximum(1.0, size), size)

@@ -31,6 +31,8 @@ class Parameter:
         source: table, data sheet or paper the value was taken from.
         ties: further paths that get its value, each multiplied by a factor.
         scale: a magnitude that matters [unit]; a search divides by it where the value may be zero.
+        bounded_by: why its bounds are where they are, and what moves them, as a clause; "" where a
+            user gave them or they are plain.
 
     Raises:
         InputError: the unit is not SI (g, mm, deg), the bounds are in the wrong order, the value is
@@ -48,6 +50,7 @@ class Parameter:
     source: str = ""
     ties: tuple[tuple[str, float], ...] = ()
     scale: float = 1.0
+    bounded_by: str = ""
 
     def __post_init__(self) -> None:
         refuse_not_si(self.unit, f"parameter {self.name!r}")

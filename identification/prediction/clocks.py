@@ -14,14 +14,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from scipy.stats import t as student
 
+from identification.discovery.attempts import attempt
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
-from identification.errors import InputError
 from identification.model.coordinates import coordinates
 from identification.prediction.fit import WindowFit, solve
 from identification.prediction.model import WindowModel
@@ -52,14 +53,21 @@ def record_shifts(task: RecordsTask, model: WindowModel) -> tuple[ShiftedRecord,
     candidates = [Candidate(shifts[0], where, {}, probe) for probe in shifts[0].probes]
     out = []
     for record in task.records:
-        try:
-            at = _alone(model, record, task.horizon)
-            best = max(window_scores(at, candidates), key=lambda s: s.fall, default=None)
-            if best is not None:
-                out.append(_told(at, record, best, shifts[0].sizes[0].largest, task.options))
-        except InputError:  # the record is too short, or cannot be simulated: it tells nothing
-            continue
+        # A record that is too short, or cannot be simulated, tells nothing.
+        out.append(attempt(None, partial(_record_shift, task, model, record, candidates)))
     return tuple(s for s in out if s is not None)
+
+
+def _record_shift(
+    task: RecordsTask, model: WindowModel, record: Record, candidates: Sequence[Candidate]
+) -> ShiftedRecord | None:
+    """Returns the shift of one record; None where it has none that both halves tell."""
+    at = _alone(model, record, task.horizon)
+    best = max(window_scores(at, candidates), key=lambda s: s.fall, default=None)
+    if best is None:
+        return None
+    largest = best.candidate.effect.sizes[0].largest
+    return _told(at, record, best, largest, task.options)
 
 
 def told_shifts(

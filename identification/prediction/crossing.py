@@ -10,10 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from identification.errors import DivergenceError
+from identification.discovery.attempts import attempt
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.records import Record
@@ -36,10 +37,7 @@ def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:
         return fit
     found = sought_from_others(fit.problem.held(fit.q), fit.moves, starts)
     moves, r = tuple(s.d for s in found), [s.r for s in found]
-    try:
-        tangents = fit.problem.tangents(fit.q, moves, r)
-    except DivergenceError:  # beside it: what its own search found stands
-        return fit
+    tangents = fit.problem.tangents(fit.q, moves, r)
     return replace(
         fit, moves=moves, tangents=tangents, cost=fit.problem.cost_of(fit.q, r)
     )  # fmt: skip
@@ -69,7 +67,17 @@ def at_their_best(
 def _crossed(
     model: WindowModel, others: Sequence[WindowModel], horizon: float, confirm: Sequence[Record]
 ) -> WindowModel:
-    """A model whose windows begin where they are best, of what its searches and others found."""
+    """A model whose windows begin where they are best, of what its searches and others found.
+
+    Where one of these cannot be simulated, or beside it, what its own search found stands.
+    """
+    return attempt(None, partial(_moved, model, others, horizon, confirm)) or model
+
+
+def _moved(
+    model: WindowModel, others: Sequence[WindowModel], horizon: float, confirm: Sequence[Record]
+) -> WindowModel:
+    """The model whose windows begin there; an error where it cannot be simulated."""
     fit = crossed(model.fit, [o.fit for o in others])
     names = fit.problem.unknowns.local.names
     fixed = {n: v for n, v in model.values.items() if n not in names}

@@ -23,6 +23,7 @@ from identification.prediction.extension import refitted
 from identification.prediction.model import WindowModel
 from identification.prediction.records import Record
 from identification.prediction.selection import Contender
+from identification.prediction.several_places import places_of
 
 ON_JOINTS = {"force", "friction"}  # hooks of what a curve, which is a force, may do as well
 
@@ -46,9 +47,10 @@ def without_drawn_laws(
     """
     kept, lost = [*accepted], []
     for k, law in enumerate(accepted):
-        places = [c.candidate.where for c in accepted[k + 1 :] if c.candidate.effect.is_curve]
-        effect = law.candidate.effect
-        if effect.is_curve or law.candidate.where not in places or not {*effect.hooks} <= ON_JOINTS:
+        curves = [c.candidate for c in accepted[k + 1 :] if c.candidate.effect.is_curve]
+        drawn = {place for c in curves for place in places_of(c.where)}
+        effect, mine = law.candidate.effect, {*places_of(law.candidate.where)}
+        if effect.is_curve or not mine <= drawn or not {*effect.hooks} <= ON_JOINTS:
             continue
         rest = [c for c in model.candidates if c.key != law.candidate.key]
         without = refitted(model, rest, nominal_model, confirm)

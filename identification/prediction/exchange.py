@@ -13,8 +13,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.options import DiscoveryOptions
-from identification.errors import InputError
 from identification.estimation.options import Progress
 from identification.prediction.crossing import at_their_best
 from identification.prediction.extension import MOST_REFIT
@@ -71,7 +71,8 @@ def exchanged(model: WindowModel, records: Sequence[Record], horizon: float) -> 
     """
     fitted, confirm = ([r for r in records if r.role == role] for role in ("confirm", "fit"))
     old = model.fit.problem.unknowns
-    try:
+
+    def evaluate() -> WindowModel:
         task = problem(
             model.plant, fitted, old.shared, old.own, horizon, model.values, model.scale, STEPS
         )
@@ -80,9 +81,10 @@ def exchanged(model: WindowModel, records: Sequence[Record], horizon: float) -> 
         found = solve(task, q, moves, tolerance=FINE, most=MOST_REFIT)
         fixed = {n: v for n, v in model.values.items() if n not in old.local.names}
         unseen = predict_fitted(model.plant, confirm, horizon, model.scale, found, fixed)
-    except InputError:
-        return None
-    return WindowModel(model.candidates, found, unseen, model.scale)
+        refuse_infinite(found.cost, *unseen.at_horizon)
+        return WindowModel(model.candidates, found, unseen, model.scale)
+
+    return attempt(None, evaluate)
 
 
 def is_contradicted(without: WindowModel, with_it: WindowModel, options: DiscoveryOptions) -> bool:

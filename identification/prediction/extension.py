@@ -10,10 +10,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.nominal_model import NominalModel
 from identification.effects.effect import Candidate
 from identification.effects.jointed import JointPlant
-from identification.errors import InputError
 from identification.model.predictor import Plant
 from identification.prediction.first_fit import FINE, Begun, shapes_of
 from identification.prediction.fit import solve
@@ -41,7 +41,7 @@ def with_effect(
     fit = begun.parent.fit
     moves, _ = begun.task.settled(begun.q, fit.moves, fit.tangents, is_thorough=True)
     found = solve(begun.task, begun.q, moves, tolerance=FINE, most=MOST_REFIT)
-    if found.cost >= parent.fit.cost:
+    if not found.cost < parent.fit.cost:
         return None
     values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}
     fixed, plant = {**values, **begun.fixed}, begun.parent.plant
@@ -104,11 +104,13 @@ def refitted(
     task = with_unknowns(fit.problem, old.shared.only([*keep]), old.own.only([*keep]), fixed)
     q = np.array([fit.q[fit.problem.names.index(n)] for n in task.names])
     horizon = float(nominal_model.horizon or 0.0)
-    try:
+
+    def evaluate() -> WindowModel:
         found = solve(task, q, fit.moves)
         seen = predict_fitted(
             model.plant, confirm, horizon, model.scale, found, fixed, model.unseen
         )
-    except InputError:
-        return None
-    return WindowModel(tuple(candidates), found, seen, model.scale)
+        refuse_infinite(found.cost, *seen.at_horizon)
+        return WindowModel(tuple(candidates), found, seen, model.scale)
+
+    return attempt(None, evaluate)

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
+from identification.discovery.attempts import attempt
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import iterate_shapes
 from identification.effects.effect import Candidate
@@ -87,10 +89,11 @@ def _begun(parent: WindowModel, score: WindowScore, shape_std: float) -> Begun |
     tried = []
     for share in SHARES:
         q = _begin(task, parent, score, share)
-        try:  # the states have made up for what was missing
-            moves, cost = few.settled(q, begun, near)
-        except InputError:
+        # the states have made up for what was missing
+        settled = attempt(None, partial(few.settled, q, begun, near))
+        if settled is None:
             continue
+        moves, cost = settled
         tried.append((cost, q, moves))
         if cost < least or not c.free:
             break

@@ -17,7 +17,7 @@ from itertools import count
 
 import numpy as np
 
-from identification.errors import DivergenceError
+from identification.errors import InputError
 from identification.estimation.levenberg_marquardt import Damping, levenberg_marquardt
 from identification.estimation.options import Progress
 from identification.logs.by_unit import rms_by_unit
@@ -155,12 +155,12 @@ def solve(
                 converged = False
                 at, steps = at.refreshed(), steps + 1
                 trials = levenberg_marquardt(at, AtPoint.moved, DAMPING, trial.μ)
-        except DivergenceError:  # a neighbour of the new point: the last one stands
+        except InputError:  # a neighbour of the new point cannot be simulated: the last one stands
             break
         if trial.taken and progress is not None:
             progress(f"error {_error_words(problem, at)}, step {steps}")
     if not at.is_fresh:  # std and scores are those of slopes here
-        with suppress(DivergenceError):
+        with suppress(InputError):
             at, steps = at.refreshed(), steps + 1
     return WindowFit(
         problem=problem, q=at.q, moves=at.moves, tangents=at.tangents, cost=at.cost,

@@ -64,8 +64,14 @@ class WindowModel:
         return {r: own for r, own in {**told, **fitted}.items() if own}
 
     @property
+    def at_bound(self) -> tuple[str, ...]:
+        """Names of the free values that lie on a bound."""
+        on_bound = self.fit.problem.prior.space.on_bound(self.fit.q)
+        return tuple(n for n, at in zip(self.fit.problem.names, on_bound, strict=True) if at)
+
+    @property
     def told_std(self) -> dict[str, float]:
-        """These std as far as they can be known; NaN where too few windows tell of a value."""
+        """These std as far as they can be known; NaN where too few windows tell, or on a bound."""
         return dict(zip(self.fit.problem.names, told_std(self.fit).tolist(), strict=True))
 
     @cached_property

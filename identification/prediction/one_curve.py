@@ -11,11 +11,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
+from identification.discovery.attempts import attempt
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
-from identification.errors import InputError
 from identification.estimation.options import Progress
 from identification.prediction.contenders import count_numbers
 from identification.prediction.drawn_laws import ON_JOINTS
@@ -25,6 +26,7 @@ from identification.prediction.model import WindowModel
 from identification.prediction.records import Record
 from identification.prediction.screening import score_all
 from identification.prediction.selection import Contender, refit_contenders
+from identification.prediction.several_places import places_of
 
 
 def with_one_curve(
@@ -56,10 +58,11 @@ def with_one_curve(
             continue
         scores = [s for s in score_all(bare, curves, options) if s.candidate.where == where]
         horizon = float(nominal_model.horizon or 0.0)
-        try:
-            parent, tried = refit_contenders(bare, scores, horizon, confirm, options, progress)
-        except InputError:
+        refit = partial(refit_contenders, bare, scores, horizon, confirm, options, progress)
+        refitted_curves = attempt(None, refit)
+        if refitted_curves is None:
             continue
+        parent, tried = refitted_curves
         windows, outputs = count_windows(parent), len(parent.scale)
         numbers = sum(count_numbers(a.candidate) for a in laws)
         theirs = evidence([all_gains(parent, model)], [numbers], windows, outputs)[0, 0]
@@ -74,7 +77,12 @@ def with_one_curve(
 
 def _joints_of_several(accepted: Sequence[Contender]) -> list[str]:
     """Joints at which several laws and no curve were accepted."""
-    curves = {a.candidate.where for a in accepted if a.candidate.effect.is_curve}
+    curves = {
+        place
+        for a in accepted
+        if a.candidate.effect.is_curve
+        for place in places_of(a.candidate.where)
+    }
     count = Counter(a.candidate.where for a in accepted if _is_law(a))
     return [where for where, n in count.items() if n > 1 and where not in curves]
 

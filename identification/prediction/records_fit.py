@@ -80,7 +80,8 @@ class RecordsFit:
     def std(self) -> np.ndarray:
         """Std of each value by blocks of windows, in its unit, shape (p,).
 
-        NaN where too few windows tell of it for a std to be known, inf where none does.
+        NaN where too few windows tell of it for a std to be known, or where it lies on a bound; inf
+        where no window tells of it.
         """
         return told_std(self.model.fit)
 

@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from identification.discovery.attempts import Failed
 from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import Finding
 from identification.discovery.findings.records_evidence import ShiftedRecord
@@ -19,6 +20,7 @@ from identification.prediction.record_errors import RecordError
 from identification.prediction.records import Record
 from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction
+from identification.shown import Shown
 
 Verdict = Literal["named", "nothing missing", "unknown effect", "unlisted effect"]
 
@@ -42,6 +44,16 @@ class RefittedEffect:
     criterion: float
     confidence: float
     doubt: Doubt | None
+
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.candidate.effect.name
+
+    @property
+    def where(self) -> str:
+        """Where it acts, in words."""
+        return self.candidate.where
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,9 +80,34 @@ class NamedByPrediction:
     agrees: tuple[str, ...]
     disagrees: tuple[str, ...]
 
+    @property
+    def candidate(self) -> Candidate:
+        """Effect, place, and shapes as estimated."""
+        return self.effect.candidate
 
-@dataclass(frozen=True, kw_only=True)
-class RecordsDiscovery:
+    @property
+    def parameters(self) -> Mapping[str, tuple[float, float, str]]:
+        """Its sizes and shapes by name: value, std, unit."""
+        return self.effect.parameters
+
+    @property
+    def confidence(self) -> float:
+        """Its share of the odds among its rivals, 0 to 1."""
+        return self.effect.confidence
+
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.candidate.effect.name
+
+    @property
+    def where(self) -> str:
+        """Where it acts, in words."""
+        return self.candidate.where
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class RecordsDiscovery(Shown):
     """The outcome.
 
     Attributes:
@@ -101,6 +138,7 @@ class RecordsDiscovery:
         repeats: names of the records that confirm, but whose motion is that of a fitted record or
             of one that confirms before them.
         seconds: wall time by kind of work [s].
+        failed: what was tried and could not be evaluated.
     """
 
     records: tuple[Record, ...]
@@ -126,6 +164,7 @@ class RecordsDiscovery:
     shifts: tuple[ShiftedRecord, ...]
     repeats: tuple[str, ...]
     seconds: Mapping[str, float]
+    failed: tuple[Failed, ...] = ()
 
     @property
     def steps(self) -> tuple[float, float]:

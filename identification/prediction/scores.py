@@ -13,14 +13,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from scipy.linalg import block_diag
 from scipy.stats import f as f_distribution
 
+from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
-from identification.errors import InputError
 from identification.model.coordinates import coordinates
 from identification.model.parameter import ParameterSet
 from identification.prediction.fit import BLOCKS, WindowFit
@@ -70,14 +71,11 @@ def window_scores(fit: WindowFit, candidates: Sequence[Candidate]) -> tuple[Wind
     out: list[WindowScore] = []
     groups = [*_groups(candidates)]
     for group in counted(groups, "groups of candidates", len(groups)):
-        try:
-            out += base.scores(group)
-        except InputError:
-            for one in group:
-                try:
-                    out += base.scores([one])
-                except InputError:
-                    continue
+        found = attempt(None, partial(base.scores, group))
+        if found is None:  # one of them: the others are scored without it
+            each = (attempt(None, partial(base.scores, [one])) for one in group)
+            found = [s for scores in each if scores for s in scores]
+        out += found
     return tuple(sorted(out, key=lambda s: -s.fall))
 
 
@@ -95,7 +93,7 @@ def find_imitated(
     return {
         key
         for key, candidate in asked.items()
-        if base.is_imitated(candidate, options.imitated_share)
+        if attempt(candidate, partial(base.is_imitated, candidate, options.imitated_share))
     }
 
 
@@ -190,6 +188,7 @@ class _Base:
             moved = replace(there, space=space, predictor=predictor)
             y = moved.outputs(space.encode(values), moves, is_rough=True)
             r = np.stack([part.joined(one, d) for one in y], axis=-1)  # (W, m, 1 + k)
+            refuse_infinite(r)
             S = (r[..., :1] - r[..., 1:]) / np.array(probes)
             U = t.U * (t.s > 0)[:, None]
             S = S - U @ (np.swapaxes(U, 1, 2) @ S)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from identification.discovery.attempts import tell_lost
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import list_common, list_single
 from identification.effects.effect import Candidate, Effect
@@ -39,6 +40,7 @@ def score_all(
     again = {id(c) for c in promising}
     rest = [s for s in few if id(s.candidate) not in again]
     best = [*window_scores(model.fit, promising), *rest] if is_many else few
+    tell_lost(listed, (s.candidate for s in best))
     found = sorted(best, key=lambda s: -s.fall)
     beyond = [
         s for s in found if is_significant(s, len(found), options) and is_plausible(s, options)

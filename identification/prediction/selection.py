@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
+from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
-from identification.errors import InputError
 from identification.estimation.options import Progress
 from identification.prediction.contenders import (
     count_numbers,
@@ -102,7 +103,7 @@ def refit_contenders(
         parent, best = at_their_best(parent, children, horizon, confirm)
         return parent, [_judged(parent, c, refits, options, worse_fit) for c in best]
 
-    children = refit(_near_best(_begun(model, chosen, scores, options, progress), options))
+    children = refit(_near_best(_begun(model, chosen, scores, options), options))
     parent, out = judge(model, children)
     proven = [c for c in out if c.is_proven]
     if proven:
@@ -110,7 +111,7 @@ def refit_contenders(
         tried = {c.candidate.key for c in out}
         simpler = list_simpler(best.candidate, scores, options)
         rest = [s for s in simpler if s.candidate.key not in tried]
-        more = refit(_begun(model, rest, scores, options, progress))
+        more = refit(_begun(model, rest, scores, options))
         if more:
             parent, out = judge(parent, [*(c.model for c in out), *more])
     for c in out:
@@ -121,16 +122,14 @@ def refit_contenders(
 
 def _begun(
     model: WindowModel, chosen: Sequence[WindowScore], scores: Sequence[WindowScore],
-    options: DiscoveryOptions, progress: Progress,
+    options: DiscoveryOptions,
 ) -> list[Begun]:  # fmt: skip
     """Effects fitted to some of the windows; those that cannot be simulated are told."""
-    out = []
-    for s in chosen:
-        try:
-            out.append(begin(model, [s, *list_starts(s, scores)], options))
-        except InputError as error:
-            progress(f"{_label(s.candidate)}: left out, {error}")
-    return out
+    each = (
+        attempt(s.candidate, partial(begin, model, [s, *list_starts(s, scores)], options))
+        for s in chosen
+    )
+    return [begun for begun in each if begun is not None]
 
 
 def _near_best(begun: Sequence[Begun], options: DiscoveryOptions) -> list[Begun]:
@@ -156,15 +155,16 @@ def _refit(
     model: WindowModel, begun: Begun, horizon: float, confirm: Sequence[Record], progress: Progress
 ) -> WindowModel | None:
     """The model with an effect; None where it explains nothing, or cannot be simulated."""
-    label = _label(begun.candidate)
-    try:
+
+    def evaluate() -> WindowModel | None:
         new = with_effect(model, begun, horizon, confirm)
-    except InputError as error:
-        progress(f"{label}: left out, {error}")
-        return None
-    if new is None:
-        progress(f"{label}: explains no more than without it")
-    return new
+        if new is None:
+            progress(f"{_label(begun.candidate)}: explains no more than without it")
+        else:
+            refuse_infinite(new.fit.cost, *new.unseen.at_horizon)
+        return new
+
+    return attempt(begun.candidate, evaluate)
 
 
 def _judged(

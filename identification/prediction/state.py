@@ -9,9 +9,11 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
+from identification.discovery.attempts import Failed, attempt, collected
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Effect
@@ -84,6 +86,7 @@ class RecordsState:
             than those of the values with which the fit began: the search then begins with the
             latter. None where they are not.
         exchanged: the model with the roles of the records exchanged; None where it was not needed.
+        failed: what was tried and could not be evaluated.
     """
 
     task: RecordsTask
@@ -99,6 +102,7 @@ class RecordsState:
     seconds: Mapping[str, float]
     worse_fit: Unseen | None = None
     exchanged: WindowModel | None = None
+    failed: tuple[Failed, ...] = ()
 
 
 def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
@@ -127,14 +131,15 @@ def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
         )
         nominal = as_begun(base, nominal, begun)
     watch.stop("nominal fit")
-    scores = score_all(nominal, task.effects, task.options)
+    with collected(progress) as failed:
+        scores = score_all(nominal, task.effects, task.options)
     watch.stop("scores")
     if scores:
         progress(f"{len(scores)} candidates scored, {scores[0].candidate.effect.name} first")
     return RecordsState(
         task=task, is_finished=False, begun=begun, nominal=nominal, nominal_scores=scores,
         model=nominal, accepted=(), alternatives=(), scores=scores, rejected=(),
-        seconds=watch.seconds, worse_fit=worse,
+        seconds=watch.seconds, worse_fit=worse, failed=tuple(failed),
     )  # fmt: skip
 
 
@@ -154,7 +159,9 @@ def _refuse_few(unseen: Unseen, horizon: float) -> None:
 
 
 def next_state(state: RecordsState, progress: Progress) -> RecordsState:
-    """The state after one more round; a finished state stays as it is.
+    """Returns the state after one more round; a finished state stays as it is.
+
+    A round that fails is told and ends the search: what was found before it stands.
 
     Args:
         state: the state before.
@@ -162,6 +169,13 @@ def next_state(state: RecordsState, progress: Progress) -> RecordsState:
     """
     if state.is_finished:
         return state
+    with collected(progress, state.failed) as failed:
+        new = attempt("the next round", partial(_round, state, progress))
+    return replace(new or replace(state, is_finished=True), failed=tuple(failed))
+
+
+def _round(state: RecordsState, progress: Progress) -> RecordsState:
+    """Returns the state after a round."""
     task, watch = state.task, Watch(state.seconds)
     parent, tried = refit_contenders(
         state.model, state.scores, task.horizon, task.confirm, task.options, progress,
@@ -169,13 +183,18 @@ def next_state(state: RecordsState, progress: Progress) -> RecordsState:
     )  # fmt: skip
     nominal = state.nominal if state.accepted else parent
     state = replace(state, model=parent, nominal=nominal)
-    tried, other_side = _checked(state, tried, progress)
-    if not tried or not tried[0].is_proven:
-        state = _pruned(replace(state, rejected=tried), progress)
-        watch.stop("refits")
-        return replace(state, is_finished=True, seconds=watch.seconds)
-    best = tried[0]
-    model = with_fitting_steps(best.model, task.horizon, task.confirm)
+    model = None
+    while model is None:  # a model that its own steps let diverge is none: the next one is asked
+        tried, other_side = _checked(state, tried, progress)
+        if not tried or not tried[0].is_proven:
+            state = replace(state, rejected=tried)
+            state = attempt("the pruning", partial(_pruned, state, progress)) or state
+            watch.stop("refits")
+            return replace(state, is_finished=True, seconds=watch.seconds)
+        best = tried[0]
+        shorter = partial(with_fitting_steps, best.model, task.horizon, task.confirm)
+        model = attempt(best.candidate, shorter)
+        tried = tried if model else tried[1:]
     watch.stop("refits")
     scores = score_all(model, task.effects, task.options)
     others = find_rivals(tried[1:], state.model, state.scores, best.model, scores, task.options)
@@ -187,7 +206,9 @@ def next_state(state: RecordsState, progress: Progress) -> RecordsState:
         accepted=accepted, alternatives=(*state.alternatives, others), scores=scores, rejected=(),
         seconds=watch.seconds, exchanged=other_side,
     )  # fmt: skip
-    return _pruned(state, progress) if is_last else state
+    if not is_last:
+        return state
+    return attempt("the pruning", partial(_pruned, state, progress)) or state
 
 
 def _checked(

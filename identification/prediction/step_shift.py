@@ -14,12 +14,13 @@ from __future__ import annotations
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
+from identification.discovery.attempts import attempt
 from identification.discovery.prediction_options import PredictionOptions
 from identification.effects.jointed import JointPlant
-from identification.errors import DivergenceError
 from identification.model.plant import ModelPlant
 from identification.model.predictor import Plant
 from identification.prediction.fit import WindowFit
@@ -80,10 +81,9 @@ def step_shift(found: WindowFit) -> StepShift:
     if plant is None:
         return unknown
     parts = (replace(p, predictor=replace(p.predictor, plant=plant)) for p in problem.parts)
-    try:
-        errors = replace(problem, parts=tuple(parts)).held(q).residuals(found.moves)
-        problem.cost_of(q, errors)
-    except DivergenceError:
+    finer_problem = replace(problem, parts=tuple(parts))
+    errors = attempt(None, lambda: finer_problem.held(q).residuals(found.moves))
+    if errors is None or attempt(None, partial(problem.cost_of, q, errors)) is None:
         return unknown
     g, before, after = np.zeros(len(q)), 0.0, 0.0
     for t, r in zip(found.tangents, errors, strict=True):

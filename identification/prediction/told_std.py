@@ -21,14 +21,16 @@ def told_std(found: WindowFit) -> np.ndarray:
     """Std of each value by blocks of windows, in its unit, shape (p,).
 
     It is inf where no window feels the parameter, and NaN where too few windows tell of it for
-    their scatter to be known.
+    their scatter to be known, or where the value lies on a bound: there the bound holds it, and the
+    windows would have moved it farther.
 
     Args:
         found: a fit.
     """
     std = found.std
     few = np.isfinite(std) & (degrees_of_freedom(found) < FEWEST)
-    return np.where(few, np.nan, std)
+    on_bound = found.problem.prior.space.on_bound(found.q)
+    return np.where(few | (on_bound & np.isfinite(std)), np.nan, std)
 
 
 def degrees_of_freedom(found: WindowFit) -> np.ndarray:

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from scipy.stats import ttest_1samp
 
+from identification.discovery.attempts import attempt
 from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.once import listed_once
@@ -59,7 +61,10 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
     different = any(
         f.kind in (FindingKind.DIFFERENT_RECORD, FindingKind.SHIFTED_RECORD) for f in findings
     )
-    needed = needed_input_error(model.fit, model.unseen.floor)
+    # Beside a model with effects that diverges there, the nominal one tells it.
+    needed = attempt(None, partial(needed_input_error, model.fit, model.unseen.floor))
+    if needed is None:
+        needed = needed_input_error(nominal.fit, nominal.unseen.floor)
     verdict: Verdict = "nothing missing"
     if named and sure:
         curves = [n.effect.candidate.effect.is_curve for n in named]
@@ -94,6 +99,7 @@ def conclude(state: RecordsState) -> RecordsDiscovery:
         nominal=nominal, final=model,
         scores=state.nominal_scores, remaining=state.scores if named else state.nominal_scores,
         findings=findings, shifts=shifts, repeats=_repeats(task.records), seconds=state.seconds,
+        failed=state.failed,
     )  # fmt: skip
 
 
@@ -157,7 +163,9 @@ def _refitted(model: WindowModel, contender: Contender, confidence: float) -> Re
     """An effect at the values of a model that has it."""
     c = contender.candidate
     plant, unknowns = model.plant, model.fit.problem.unknowns
-    values, std = {**model.values, **model.fit.values}, model.told_std
+    values = {**model.values, **model.fit.values}
+    # A bound holds a value as it holds what is not estimated: neither has a std.
+    std = {n: 0.0 if n in model.at_bound else s for n, s in model.told_std.items()}
     parameters = {}
     symbols = [plant.parameters[n].symbol for n in (*c.sizes, *c.fixed)]
     for name in (*c.sizes, *c.fixed):

@@ -31,6 +31,7 @@ def discovery_to_json(found: Discovery | RecordsDiscovery) -> dict[str, Any]:
         "verdict": found.verdict,
         "effects": [_named_to_json(named) for named in found.named],
         "rejected": [rejected_to_json(rejected) for rejected in found.rejected],
+        "failed": [asdict(failed) for failed in found.failed],
         "unexplained": found.unexplained,
         "gap": {
             "noise_rms": found.noise_rms,

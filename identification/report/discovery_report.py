@@ -70,6 +70,6 @@ def write_discovery_report(
         f"{found.log.name}: what the model lacks",
         [*discovery_verdict(found), *sentences],
         shown,
-        good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
+        good=found.is_good,
         data=[log.name for _, log in records_of(found.log)],
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import isfinite, isnan
 
 from identification.discovery.final_values import collect_final_values, collect_std
 from identification.discovery.result import Discovery
@@ -89,4 +89,6 @@ def unseen_section(found: Discovery) -> Section:
 
 
 def _value(value: float | None, std: float | None, unit: str, like: float) -> str:
-    return "–" if value is None or std is None else quantity(value, std, unit, like)
+    if value is None or std is None:
+        return "–"
+    return quantity(value, std, unit, like) + (", on its bound" if isnan(std) else "")

@@ -15,6 +15,7 @@ from identification.report.discovery_tables import parameters_section
 from identification.report.discovery_verdict import discovery_verdict
 from identification.report.effect_words import describe_effect, describe_gains, describe_rejected
 from identification.report.error_words import error_words
+from identification.report.failed_words import FAILED, failed_lines
 from identification.report.finding_words import describe_finding
 from identification.report.fitted_values import shown_values, unknown_shares
 from identification.report.named_words import diff_line
@@ -31,7 +32,7 @@ def discovery_text(found: Discovery | RecordsDiscovery) -> str:
     """The whole outcome, in paragraphs."""
     if isinstance(found, RecordsDiscovery):
         return records_text(found)
-    title, lines = describe_rejected(found)
+    (title, lines), failed = describe_rejected(found), failed_lines(found)
     parts = [
         "\n".join(discovery_verdict(found)),
         "\n".join(_diff(found)),
@@ -41,6 +42,7 @@ def discovery_text(found: Discovery | RecordsDiscovery) -> str:
         _list("where the nominal model fails", found.located),
         _list("where the final model still fails", found.findings),
         "\n".join([f"{title}:", *(f"  {line}" for line in lines)]) if lines else "",
+        "\n".join([f"{FAILED}:", *(f"  {line}" for line in failed)]) if failed else "",
         "\n".join(shown_lines(found.detectable)),
         search_time(found.seconds),
     ]

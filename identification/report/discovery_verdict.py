@@ -5,9 +5,11 @@ from __future__ import annotations
 from math import isfinite
 
 from identification.discovery.effect_results import RejectedEffect
+from identification.discovery.final_values import list_at_bound
 from identification.discovery.fitted_model import is_proven
 from identification.discovery.result import Discovery
 from identification.quantities import held
+from identification.report.bound_words import bound_sentences
 from identification.report.discovery_errors import (
     closed_share,
     errors_of,
@@ -26,11 +28,15 @@ from identification.report.error_words import change_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.named_words import named_sentences
 from identification.report.nothing_words import nothing
+from identification.shown import verdict_of
 
 
+@verdict_of.register
 def discovery_verdict(found: Discovery) -> list[str]:
     """The verdict first, then what supports it."""
-    return [*_verdict(found), *_unlike(found)]
+    own = list_at_bound(found.final, found.nominal.point.space.names)
+    bounds = bound_sentences(found.final.point.predictor.plant.parameters, own)
+    return [*_verdict(found), *bounds, *_unlike(found)]
 
 
 def _unlike(found: Discovery) -> list[str]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from identification.logs.by_unit import relative
 from identification.quantities import error, held
+from identification.report.bound_words import bound_sentences
 from identification.report.error_words import error_words, times_words
 from identification.report.untold_words import identifiable_sentences, weak_sentences
 
@@ -36,9 +37,7 @@ def search_sentences(fit: Fit) -> list[str]:
         "stopped": "The search was stopped; these are the best values it had seen.",
     }[fit.estimate.status]
     bound = [n for n, at in zip(fit.found.names, fit.at_bound, strict=True) if at]
-    if bound:
-        return [said, f"At a bound: {', '.join(bound)}; widen it or fix the parameter."]
-    return [said]
+    return [said, *bound_sentences(fit.estimate.predictor.plant.parameters, bound)]
 
 
 def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str]:
@@ -50,8 +49,8 @@ def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str
         unit: of the outputs, "" where they have several.
     """
     said = ["The search converged." if found.converged else "The search ran out of iterations."]
-    if bound := [n for n, at in zip(found.values, found.at_bound, strict=True) if at]:
-        said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
+    bound = [n for n, at in zip(found.values, found.at_bound, strict=True) if at]
+    said += bound_sentences((), bound)
     if unknown := [n for n, u in zip(found.values, found.found.undetermined, strict=True) if u]:
         said.append(f"The windows cannot tell {' and '.join(unknown)}; fix one, or widen them.")
     said += weak_sentences(found)

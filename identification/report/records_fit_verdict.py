@@ -7,6 +7,7 @@ import numpy as np
 from identification.estimation.identifiability import in_words
 from identification.logs.by_unit import relative
 from identification.prediction.records_fit import RecordsFit
+from identification.report.bound_words import bound_sentences
 from identification.report.error_words import error_words, times_words
 from identification.report.scale_words import describe_scale
 from identification.report.step_words import std_sentence, step_sentences
@@ -25,8 +26,7 @@ def records_fit_verdict(found: RecordsFit) -> list[str]:
     said.append("The search converged." if fit.converged else "The search ran out of iterations.")
     if steps := std_sentence(found.model):
         said.append(steps)
-    if bound := [n for n, at in zip(found.values, found.at_bound, strict=True) if at]:
-        said.append(f"At a bound: {', '.join(bound)}; widen it or fix the parameter.")
+    said += bound_sentences(found.model.plant.parameters, found.model.at_bound)
     said += _blind(found) + _weak(found) + _unknown_std(found)
     windows = sum(len(part.cut.starts) for part in fit.problem.parts)
     floor, rms = found.noise_by_unit, found.rms_by_unit
@@ -76,7 +76,8 @@ def _weak(found: RecordsFit) -> list[str]:
 
 def _unknown_std(found: RecordsFit) -> list[str]:
     """Values whose std too few windows tell."""
-    few = [n for n, std in zip(found.values, found.std, strict=True) if np.isnan(std)]
+    rows = zip(found.values, found.std, found.at_bound, strict=True)
+    few = [n for n, std, at_bound in rows if np.isnan(std) and not at_bound]
     if not few:
         return []
     count = sum(len(part.cut.starts) for part in found.model.fit.problem.parts)

@@ -22,6 +22,7 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
         "verdict": found.verdict,
         "effects": [_named_to_json(named, plant) for named in found.named],
         "rejected": [_refitted_to_json(effect, plant) for effect in found.rejected],
+        "failed": [asdict(failed) for failed in found.failed],
         "unexplained": found.unexplained,
         "share": found.share,
         "gap": {
@@ -93,9 +94,13 @@ def _called(candidate: Candidate, plant: Plant) -> dict[str, Any]:
     if not effect.is_curve:
         return {"name": effect.name, "where": where}
     nodes = curve_nodes(candidate, plant)
+    each = {
+        f"joint {n.joint}": {"reads": n.reads, "nodes": n.at.tolist(), "nodes_unit": n.unit}
+        for n in nodes
+    }
     return {
-        "name": "unlisted", "where": where, "depends_on": nodes.depends_on, "reads": nodes.reads,
-        "nodes": nodes.at.tolist(), "nodes_unit": nodes.unit,
+        "name": "unlisted", "where": where, "depends_on": nodes[0].depends_on,
+        **({"joints": each} if len(nodes) > 1 else each[f"joint {nodes[0].joint}"]),
     }  # fmt: skip
 
 

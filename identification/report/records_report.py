@@ -13,6 +13,7 @@ from identification.prediction.result import RecordsDiscovery
 from identification.report.discovery_figures import gains_figure
 from identification.report.effect_words import describe_effect
 from identification.report.error_words import pair_words
+from identification.report.failed_words import FAILED, failed_lines
 from identification.report.law_section import law_sections
 from identification.report.page import Section, Table, save_figures, write_report
 from identification.report.records_finding_words import describe_shift
@@ -44,8 +45,7 @@ def write_records_report(
     names = ", ".join(r.log.name for r in found.records if r.role == "fit")
     return write_report(
         folder / "report.html", f"{names}: what the model lacks",
-        [*records_verdict(found), *sentences], shown,
-        good=False if found.verdict == "unknown effect" else None if found.unexplained else True,
+        [*records_verdict(found), *sentences], shown, good=found.is_good,
         data=[r.log.name for r in found.records],
     )  # fmt: skip
 
@@ -70,6 +70,8 @@ def _candidates(found: RecordsDiscovery) -> Section:
     if found.rejected:
         tried = "\n\n".join(rejected_lines(found))
         text += f"\n\nTried, and not proven on unseen data:\n\n{tried}"
+    if failed := failed_lines(found):
+        text += "\n\n".join(["", f"{FAILED.capitalize()}:", *failed])
     if not best:
         return Section("Who could explain it", text)
     figure = gains_figure(

@@ -10,6 +10,7 @@ from identification.prediction.result import RecordsDiscovery, RefittedEffect
 from identification.prediction.scores import WindowScore
 from identification.report.effect_words import describe_there
 from identification.report.error_words import pair_words
+from identification.report.failed_words import FAILED, failed_lines
 from identification.report.records_finding_words import describe_shift
 from identification.report.records_values import text_table, value_table, value_words
 from identification.report.records_verdict import DIGITS, records_verdict
@@ -31,6 +32,8 @@ def records_text(found: RecordsDiscovery) -> str:
     if found.rejected:
         lines = [f"  {said}" for said in rejected_lines(found)]
         parts.append("\n".join(["tried, and not proven on unseen data:", *lines]))
+    if failed := failed_lines(found):
+        parts.append("\n".join([f"{FAILED}:", *(f"  {line}" for line in failed)]))
     plant = found.nominal.plant
     scores = [
         f"  {describe_there(s.candidate, plant)}: {100 * s.fall:z.0f} % of the fitted error, chance"

@@ -73,7 +73,9 @@ def _values(model: WindowModel, like: Mapping[str, float], is_begun: bool) -> di
     for name, value in {**model.fit.values, **model.values}.items():
         unit = parameters[name.partition(" [")[0]].unit
         most = like[name]
-        if name in std and not is_begun:
+        if name in model.at_bound and not is_begun:
+            out[name] = f"{quantity(value, unit=unit, like=most)}, on its bound"
+        elif name in std and not is_begun:
             out[name] = value_with_std(value, std[name], unit, most)
         else:
             out[name] = quantity(value, unit=unit, like=most)

@@ -5,20 +5,33 @@ from __future__ import annotations
 from math import inf, isfinite
 
 from identification.prediction.result import NamedByPrediction, RecordsDiscovery
+from identification.report.bound_words import bound_sentences
 from identification.report.curve_nodes import curve_nodes, nodes_sentence
 from identification.report.effect_words import describe_there, phrase
 from identification.report.error_words import change_words, error_words
 from identification.report.finding_words import describe_finding, sentence
 from identification.report.refitted_words import sizes_words
 from identification.report.scale_words import describe_scale
+from identification.shown import verdict_of
 
 NO_ERROR = 1e-3  # of the inputs' rms: less is not told from none
 DIGITS = 3  # of errors over a horizon
 
 
+@verdict_of.register
 def records_verdict(found: RecordsDiscovery) -> list[str]:
     """The verdict first, then what supports it."""
-    return [*_verdict(found), *describe_scale(found.nominal)]
+    bounds = bound_sentences(found.final.plant.parameters, at_bound(found))
+    return [*_verdict(found), *bounds, *describe_scale(found.nominal)]
+
+
+def at_bound(found: RecordsDiscovery) -> list[str]:
+    """Returns the names of the nominal model's values that end on a bound in the final model.
+
+    Values with which a search began, because its fit was worse, lie inside their bounds.
+    """
+    own = found.nominal.fit.problem.names
+    return [name for name in found.final.at_bound if name in own]
 
 
 def _verdict(found: RecordsDiscovery) -> list[str]:

@@ -14,6 +14,7 @@ from identification.errors import InputError, refuse_kind
 from identification.logs.log import Log
 from identification.prediction.discovery import discover_records
 from identification.prediction.result import RecordsDiscovery
+from identification.report import discovery_verdict, records_verdict  # noqa: F401  how both are shown
 from identification.robot.checks import refuse_horizon, refuse_unlike
 from identification.robot.diverged import told_of_factors
 from identification.robot.robot import Robot
@@ -46,6 +47,26 @@ def discover(
     A model with a horizon is judged by predictions over it, on the records that confirm or on the
     second half of each log (`identification.prediction`); one without by the innovations of a
     Kalman filter along its free run (`identification.discovery`).
+
+    Both results are read in one way. `found` itself shows the first sentence of its verdict;
+    `discovery_text(found)` tells all of it. Read `found.verdict` first ("named", "unlisted effect",
+    "unknown effect" or "nothing missing"), then `found.unexplained`: whether something is left.
+    `found.named` has what is missing, `found.rejected` what was tried and not proven, and
+    `found.before`, `found.after` and `found.noise_rms` say how far the model was off unseen data.
+
+    Examples:
+        from identification import confirm, discover, discovery_text, read_robot
+
+        at = "examples/elbow/"
+        robot = read_robot(at + "elbow.toml", at + "first.csv", confirm=[at + "second.csv"])
+        found = discover(robot)
+        print(found.verdict, found.unexplained)
+        for named in found.named:
+            print(named.name, named.where, named.confidence, named.parameters)
+            print([(rival.name, rival.where, rival.confidence) for rival in named.rivals])
+        print(discovery_text(found))
+        for record in confirm(robot, found):
+            print(record)
 
     Args:
         model: a robot of `read_robot`, which has its log and its candidates; or a nominal model

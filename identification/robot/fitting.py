@@ -15,6 +15,7 @@ from identification.errors import InputError, refuse_kind
 from identification.estimation.estimation import estimate
 from identification.estimation.fit import Fit, assess
 from identification.prediction.records_fit import RecordsFit, fit_records
+from identification.quantities import quantity
 from identification.robot.checks import refuse_horizon
 from identification.robot.diverged import told_of_factors
 from identification.robot.record_error import AS_WRITTEN, FITTED, Confirmation, of_record
@@ -34,6 +35,14 @@ class RobotFit:
 
     robot: Robot
     found: Fit | RecordsFit
+
+    def __repr__(self) -> str:
+        parameters = self.robot.plant.parameters
+        units = {n: parameters[n.partition(" [")[0]].unit for n in self.values}
+        return ", ".join(
+            f"{n} = {quantity(v, self.std[n], units[n])}" + ", on its bound" * self.at_bound[n]
+            for n, v in self.values.items()
+        )
 
     @property
     def values(self) -> dict[str, float]:

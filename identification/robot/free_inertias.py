@@ -2,9 +2,9 @@
 
     I_k <= I_i + I_j        of every distribution of mass; flat bodies have I_k = I_i + I_j
 
-An inertia that is free alone has bounds for this (`identification.robot.parameters`). Bounds cannot
-say it of several, whose limits move with each other; spreads of the mass can
-(`identification.model.spread`).
+An inertia that is free alone has bounds for this, or the other two go along with it where nothing
+feels them (`identification.robot.parameters`). Bounds cannot say it of several, whose limits move
+with each other; spreads of the mass can (`identification.model.spread`).
 """
 
 from __future__ import annotations
@@ -35,6 +35,24 @@ def inertias_sentence(file: RobotFile) -> str:
         f"{file.path} frees {free}: together they may become inertias that no body has; free"
         f" {spreads} instead, which cannot."
     )
+
+
+def carried_sentence(robot: Robot) -> str:
+    """Returns a sentence on inertias that go along with a free one; empty where there are none.
+
+    Args:
+        robot: the robot, compiled.
+    """
+    said = []
+    for p in robot.plant.parameters:
+        body, inertia, _ = p.where.partition(".inertia[")
+        if inertia and p.ties and p.name in robot.file.free:
+            others = listed(path for path, _ in p.ties)
+            said.append(
+                f"Of {body} the motion feels the inertia {p.name} alone; {others}, which nothing"
+                " feels, go along with it in proportion, so that it stays a body."
+            )
+    return " ".join(said)
 
 
 def impossible_sentence(robot: Robot, values: Mapping[str, float]) -> str:

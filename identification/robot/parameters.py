@@ -16,6 +16,7 @@ import numpy as np
 
 from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
+from identification.effects.moving_bodies import Felt
 from identification.effects.named import means_effect, unknown_number
 from identification.errors import InputError, told_of
 from identification.logs.dimension import refuse_other_unit
@@ -122,7 +123,8 @@ def _free(
         if means_effect(path, effects):
             raise unknown_number(path, effects)
         body = path.partition(".inertia")[0]
-        every = (str(file.records.get(n, {}).get("path", n)) for n in file.free)
+        names = dict.fromkeys([*file.free, *log.values])
+        every = (str(file.records.get(n, {}).get("path", n)) for n in names)
         alone = sum(p.startswith(f"{body}.inertia") for p in every) == 1
         refuse_unit(said, unit_of(model, path), "it")
         record, guess = _in_model(path, name, model, log, given, alone)
@@ -182,18 +184,35 @@ def _in_model(
     fields |= {"value": value, "scale": scale, "lower": 0.0 if attribute in POSITIVE else -np.inf}
     if attribute == "inertia":
         fields |= _possible(model, resolve(model, path), alone)
+    if {"lower", "upper"} & {*given}:
+        fields.pop("bounded_by", None)
     return Parameter(name=name, **{**fields, **given}), KNOWN * scale
 
 
-def _possible(model: mujoco.MjModel, slot: Slot, alone: bool) -> dict[str, float]:
-    """Bounds of a principal inertia I_k that is free alone: |I_i - I_j| <= I_k <= I_i + I_j."""
+def _possible(model: mujoco.MjModel, slot: Slot, alone: bool) -> dict[str, Any]:
+    """Returns what keeps a principal inertia I_k that is free alone one of a body.
+
+    It has bounds, |I_i - I_j| <= I_k <= I_i + I_j. Where no motion of the model feels the other two
+    (a link that turns in a plane), they go along with it in proportion instead: a body that is
+    possible stays so, and two numbers that nothing feels bind none that is felt.
+    """
     if slot.column is None or len(slot.rows) != 1 or not alone:
         return {}
-    a, b = np.delete(model.body_inertia[slot.rows[0]], slot.column)
-    own = float(model.body_inertia[slot.rows[0], slot.column])
+    body, k = slot.rows[0], slot.column
+    others, inertia = [i for i in range(3) if i != k], model.body_inertia[body]
+    a, b = (float(inertia[i]) for i in others)
+    own, label = float(inertia[k]), model.body(body).name
+    felt = Felt(model).inertias(body)
+    in_fluid = bool(model.opt.density or model.opt.viscosity)  # its drag is made of all three
+    if felt[k] and not felt[others].any() and not in_fluid and min(a, b, own) > 0:
+        return {"ties": tuple((f"body/{label}.inertia[{i}]", inertia[i] / own) for i in others)}
     # A bound must not be the value itself, as that of a flat body is.
-    low, high = min(float(abs(a - b)), own * (1 - 1e-6)), max(float(a + b), own * (1 + 1e-6))
-    return {"lower": low, "upper": high}
+    low, high = min(abs(a - b), own * (1 - 1e-6)), max(a + b, own * (1 + 1e-6))
+    return {
+        "lower": low, "upper": high,
+        "bounded_by": f"the other two inertias of {label} allow {low:.4g} to {high:.4g} kg m^2:"
+        f" change these in the model, or free body/{label}.spread[0] to [2] in its place",
+    }  # fmt: skip
 
 
 def _moved(model: mujoco.MjModel, place: tuple[str, int], log: Log) -> float:

@@ -13,7 +13,7 @@ from identification.logs.log import Log
 from identification.robot.absurd_start import refuse_absurd_start
 from identification.robot.checks import with_judged_gaps
 from identification.robot.file import RobotFile, read_robot_file
-from identification.robot.free_inertias import inertias_sentence
+from identification.robot.free_inertias import carried_sentence, inertias_sentence
 from identification.robot.free_swing import without_untold
 from identification.robot.other_spread import with_spread
 from identification.robot.robot import Robot, read_robot_log, robot_of
@@ -119,11 +119,11 @@ def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
         begun = [of(file, own, log) for log in logs for of in (start_sentence, apart_sentence)]
     else:  # each window begins where it was measured
         begun = [unused_sentence(file, own, robot.log)]
-    inertias = inertias_sentence(file)
+    inertias = (inertias_sentence(file), carried_sentence(robot))
     still = (still_sentence(log) for log in logs)
     resampled = (remark for log in logs for remark in log.remarks)
     of_logs = (*still, *resampled, *begun, robot.touches)
-    return tuple(filter(None, (*robot.remarks, inertias, *of_logs)))
+    return tuple(filter(None, (*robot.remarks, *inertias, *of_logs)))
 
 
 def _log(file: RobotFile, log: str | Path | Log) -> Log:

@@ -20,6 +20,7 @@ from identification.errors import InputError, told_of, unknown_name
 from identification.logs.cures import toml_key
 from identification.logs.decimation import decimate
 from identification.logs.log import Log
+from identification.logs.names import listed
 from identification.logs.read import read_log
 from identification.logs.table import MissingColumnsError
 from identification.model.plant import start_place
@@ -67,6 +68,10 @@ class Robot:
     remarks: tuple[str, ...] = ()
     mean: Mapping[str, float] = field(default_factory=dict)
     touches: str = ""
+
+    def __repr__(self) -> str:
+        logs = listed(log.name for log in (self.log, *self.others, *self.records))
+        return f"Robot of {Path(self.file.path).name}, free: {listed(self.file.free)}; logs: {logs}"
 
     @property
     def nominal_model(self) -> NominalModel:

@@ -42,7 +42,8 @@ class WindowEstimate:
 
     Attributes:
         values: the estimates by name.
-        std: for white noise, infinite where the windows cannot say, shape (p,), in their units.
+        std: for white noise, infinite where the windows cannot say and NaN where a bound holds the
+            value, shape (p,), in their units.
         start: starting values, shape (p,), in their units.
         at_bound: true where a value lies on a bound, shape (p,).
         found: the directions that the windows show.
@@ -127,11 +128,13 @@ def estimate_windows(
     readings = cut.outputs.size + len(at.d) * int((shooting.first.weight > 0).sum())
     freedom = max(1, readings - at.tangent.freedom - len(first))
     scale = float(np.sqrt(np.sum(at.tangent.r**2) / freedom))
+    at_bound = space.on_bound(q)
+    std = np.where(at_bound & np.isfinite(found.std), np.nan, scale * found.std * space.slope(q))
     return WindowEstimate(
         values=dict(zip(names, space.decode(q).tolist(), strict=True)),
-        std=scale * found.std * space.slope(q),
+        std=std,
         start=first,
-        at_bound=space.on_bound(q),
+        at_bound=at_bound,
         found=found,
         residual=shooting.error(at.tangent.r),
         states=begun,

@@ -46,6 +46,22 @@ def discover(
 ) -> Discovery:
     """Name the physical effect that the twin lacks to explain logs, and prove it.
 
+    What is found shows the first sentence of its verdict; `identification.discovery_text` tells all
+    of it. Read `found.verdict` first ("named", "unknown effect" or "nothing missing"), then
+    `found.unexplained`: whether something is left that no named effect explains.
+
+    Examples:
+        from identification import discovery_text
+        from inca_mj import discover, named_twin, read_inca_log
+
+        found = discover(read_inca_log("examples/log.csv"), progress=print)
+        print(found.verdict, found.unexplained)
+        for named in found.named:
+            print(named.name, named.where, named.confidence, named.parameters)
+            print([(rival.name, rival.where, rival.confidence) for rival in named.rivals])
+        print(discovery_text(found))
+        robot = named_twin(found)
+
     Args:
         log: what was measured, one record or several. Where nothing confirms, the part `estimation`
             (or first half) of each is fitted, and the rest is unseen data for the proof.
@@ -80,6 +96,7 @@ def discover(
     # These imports are slow, so they come after the checks that may refuse the log.
     from identification.discovery.search import discover as search
     from identification.discovery.search import refuse_unfit
+    from identification.report import discovery_verdict  # noqa: F401  how the result is shown
     from inca_mj.workflows.look_alikes import told
 
     options, spread = options or DiscoveryOptions(), spread or spread_of("usual")

@@ -80,7 +80,7 @@ def test_each_kind_begins_at_its_best_score_and_a_worse_fit_is_not_taken(asked, 
     old = replace(old, candidates=(every[0],))
     tried = []
 
-    def worse(task, candidates, start):
+    def worse(task, candidates, start, **_):
         tried.append((candidates[0].shape, start))
         level = replace(old.refit.level, log_likelihood=old.refit.level.log_likelihood - 1)
         return replace(old, candidates=candidates, refit=replace(old.refit, level=level))

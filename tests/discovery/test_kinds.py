@@ -58,7 +58,7 @@ def test_a_kind_that_explains_more_is_refitted_from_its_own_size_and_kept(asked,
     seen = sense_as(monkeypatch, "spring")
     tried = []
 
-    def fit(task, candidates, start, near=None, least=None):
+    def fit(task, candidates, start, near=None, least=None, **_):
         tried.append((candidates, start))
         assert near is None  # the model leaves structure, so that its optimum is no place to begin
         level = replace(model.refit.level, log_likelihood=model.refit.level.log_likelihood + 50)
@@ -106,7 +106,7 @@ def test_the_best_limit_of_another_kind_is_refitted(asked, monkeypatch):
     known = [Sensitivity(hard, S), Sensitivity(soft, S)]
     asked_for = []
 
-    def fit(task, candidates, start, near=None, steps=0, least=0.0):
+    def fit(task, candidates, start, near=None, steps=0, least=0.0, **_):
         asked_for.append(candidates)
         level = replace(model.refit.level, log_likelihood=model.refit.level.log_likelihood + 50)
         better = replace(model.refit, level=level)

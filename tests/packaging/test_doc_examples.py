@@ -9,7 +9,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("identification", "inca_mj", "inca_mj.kinematics", "identification.sweep")
-SLOW = {"discover", "fit", "identify", "trials", "film", "crosscheck"}  # searches, and drawing
+# Searches, drawing, and what reads the result of a search (`test_results_read_alike.py` runs it).
+SLOW = {"discover", "fit", "identify", "trials", "film", "crosscheck", "found"}
 BLOCKS = [
     pytest.param(text, id=f"{path.name}-{number}")
     for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))

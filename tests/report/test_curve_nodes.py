@@ -29,7 +29,7 @@ CASES = [
     ("plant", "effect", "where"), CASES, ids=[f"{e.name}-{w}" for _, e, w in CASES]
 )
 def test_a_curve_has_its_sizes_at_its_nodes(plant, effect, where):
-    nodes = curve_nodes(Candidate(effect, where, {}), plant)
+    (nodes,) = curve_nodes(Candidate(effect, where, {}), plant)
     joint, field = where.removeprefix("joint "), FIELD[nodes.depends_on]
     beside = nodes.depends_on.endswith(("before", "behind"))
     neighbour = NEIGHBOUR[where] if beside else ""
@@ -43,7 +43,7 @@ def test_a_curve_has_its_sizes_at_its_nodes(plant, effect, where):
         assert law.py_func(s, C) == pytest.approx(c, rel=1e-9)
     assert (neighbour or joint) in nodes.reads or nodes.reads == "time"
     assert np.isfinite(nodes.at).all()
-    assert f"{nodes.unit} ({nodes.reads})" in nodes_sentence(nodes)
+    assert f"{nodes.unit} ({nodes.reads})" in nodes_sentence([nodes])
 
 
 @pytest.mark.parametrize(

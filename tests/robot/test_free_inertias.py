@@ -29,6 +29,8 @@ def test_a_free_spread_is_fitted_and_a_single_inertia_keeps_within_what_a_body_c
     found = fit(read_robot(path, tmp_path / "log.csv"))
     assert found.values["body/cart.spread[0]"] == pytest.approx((1.5 + 2 - 1) / 2, rel=1e-3)
     path.write_text('model = "disc.xml"\nfree = ["body/cart.inertia[2]"]\n')
+    turning = '<joint name="turn" axis="1 1 1"/><joint name="slide"'
+    (tmp_path / "disc.xml").write_text(spun.replace('<joint name="slide"', turning))
     inertia = read_robot(path, tmp_path / "log.csv").plant.parameters["body/cart.inertia[2]"]
     assert (inertia.lower, inertia.upper) == (0.5, 2.5)
 

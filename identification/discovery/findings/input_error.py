@@ -17,17 +17,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
 from identification.blas import one_blas_thread
+from identification.discovery.attempts import attempt
 from identification.discovery.findings.evidence import StructuredInputError
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import flip_chance
 from identification.discovery.validation import Validation
-from identification.errors import DivergenceError
 from identification.kalman.noise_model import Whitener
 from identification.kalman.point import evaluate_sensitivities
 
@@ -103,9 +103,9 @@ def fit_families(validation: Validation, options: DiscoveryOptions) -> tuple[Fam
     if not (validation.filter.A.size and validation.log.inputs.shape[1]):
         return ()
     fit = validation.refit
-    try:
-        J = evaluate_sensitivities(fit.point, validation.log)
-    except DivergenceError:  # a small change of a parameter makes the simulation diverge
+    # A small change of a parameter may make the simulation diverge.
+    J = attempt(None, partial(evaluate_sensitivities, fit.point, validation.log))
+    if J is None:
         return ()
     with one_blas_thread():
         F = validation.filter(J) / fit.level.sigma

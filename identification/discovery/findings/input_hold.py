@@ -7,11 +7,12 @@ like an error of the inputs, and no effect of a robot.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
+from identification.discovery.attempts import attempt
 from identification.discovery.findings.evidence import InputHold
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
-from identification.errors import DivergenceError
 from identification.kalman.point import evaluate_point
 from identification.kalman.refit import Refit, estimate_noise
 
@@ -30,9 +31,9 @@ def find_input_hold(fit: Refit, options: DiscoveryOptions) -> tuple[Finding, ...
         return ()
     other = HOLDS[1 - HOLDS.index(point.log.hold)]
     predictor = replace(point.predictor, log=replace(point.log, hold=other))
-    try:
-        there = evaluate_point(predictor, point.space, point.q, point, point.small)
-    except DivergenceError:
+    evaluate = partial(evaluate_point, predictor, point.space, point.q, point, point.small)
+    there = attempt(None, evaluate)
+    if there is None:
         return ()
     level = estimate_noise(there, fit.prior, options, fit.level)
     if level.input_std >= options.other_hold_share * fit.level.input_std:

@@ -9,15 +9,17 @@ uncertainty of the parameters.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from scipy.stats import ttest_ind
 
 from identification.blas import one_blas_thread
+from identification.discovery.attempts import attempt
 from identification.discovery.findings.evidence import RobotChange
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.validation import Validation
-from identification.errors import DivergenceError
 from identification.kalman.point import evaluate_sensitivities
 
 
@@ -32,10 +34,9 @@ def find_robot_change(validation: Validation, options: DiscoveryOptions) -> tupl
     fitted, blocks = E[seen], options.proof_blocks
     if not _is_larger(fitted, E[~seen], options):
         return ()
-    try:
-        remaining = E - _explain(validation)
-    except DivergenceError:  # a small change of a parameter makes the simulation diverge
-        remaining = E
+    # A small change of a parameter may make the simulation diverge.
+    explained = attempt(None, partial(_explain, validation))
+    remaining = E if explained is None else E - explained
     unseen = remaining[~seen]
     if not _is_larger(fitted, unseen, options):
         return ()

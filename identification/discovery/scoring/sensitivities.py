@@ -12,8 +12,8 @@ from itertools import product
 
 import numpy as np
 
+from identification.discovery.attempts import attempt, refuse_infinite
 from identification.effects.effect import Candidate, Effect
-from identification.errors import DivergenceError, InputError
 from identification.kalman.columns import do_equations_hold
 from identification.kalman.linear import Linearisation, linearise_records
 from identification.kalman.point import Point
@@ -100,7 +100,8 @@ def compute_sensitivities(point: Point, candidates: Sequence[Candidate]) -> tupl
         candidates: the effects, each at a place and with shapes.
     """
     found: dict[int, Sensitivity] = {}
-    records = _fine_records(point)
+    # A model that is linearised at its samples alone need not be so between them.
+    records = attempt(None, partial(_fine_records, point)) or ()
     if records:
         groups = [*_groups([*enumerate(candidates)])]
         for group in counted(groups, "groups of candidates", len(groups)):
@@ -162,12 +163,11 @@ def _alone(
     group: list[tuple[int, Candidate]],
 ) -> dict[int, Sensitivity]:
     """What is computed of a group, or of each candidate alone where one of them diverges."""
-    try:
-        each = zip(group, compute([c for _, c in group]), strict=True)
-        return {i: s for (i, _), s in each if s is not None}
-    except (DivergenceError, InputError):
-        if len(group) == 1:
-            return {}
+    found = attempt(None, partial(compute, [c for _, c in group]))
+    if found is not None:
+        return {i: s for (i, _), s in zip(group, found, strict=True) if s is not None}
+    if len(group) == 1:
+        return {}
     return {i: s for one in group for i, s in _alone(compute, [one]).items()}
 
 
@@ -188,13 +188,15 @@ def _solve(
     """Sensitivities by the equations; None of a candidate that they do not describe."""
     predictor, values, rows, probes = _probe(point, group, SHORTER)
     S = solve_sensitivities(predictor, records, values, rows, probes)
-    return [None if np.isnan(s.S).any() else s for s in _each(group, np.moveaxis(S, 2, 0))]
+    return [s if np.isfinite(s.S).all() else None for s in _each(group, np.moveaxis(S, 2, 0))]
 
 
 def _simulate(point: Point, predicted: np.ndarray, group: list[Candidate]) -> list[Sensitivity]:
     """Sensitivities by simulations with each candidate."""
     predictor, _, rows, probes = _probe(point, group, 1.0)
-    return _each(group, (predictor.predict(rows) - predicted) / probes[:, None, None])
+    S = (predictor.predict(rows) - predicted) / probes[:, None, None]
+    refuse_infinite(S)
+    return _each(group, S)
 
 
 def _probe(

@@ -43,7 +43,7 @@ def _likeliest(task: DiscoveryTask, model: FittedModel, scores: Sequence[Score])
     best, mine = model, model.candidates[-1]
     for s in _best_of_each_kind(mine, scores):
         sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
-        new = try_fit(task, (s.candidate,), {**s.candidate.fixed, **sizes})
+        new = try_fit(task, (s.candidate,), {**s.candidate.fixed, **sizes}, tried=s.candidate)
         if new is not None and new.negative_bic > best.negative_bic:
             best = new
     return best

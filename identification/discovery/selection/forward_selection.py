@@ -24,12 +24,12 @@ from identification.discovery.fitted_model import (
     AcceptedEffect,
     FittedModel,
     collect_parameters,
-    fit_model,
     is_confirmed,
     is_far_likelier,
     is_proven,
     is_relevant,
     score_candidates,
+    try_fit,
 )
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import prove
@@ -46,7 +46,6 @@ from identification.discovery.selection.kinds import improve_rivals
 from identification.discovery.selection.shapes import improve_shape
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
-from identification.errors import DivergenceError, InputError
 from identification.estimation.options import Progress
 from identification.progress import counted
 
@@ -123,13 +122,11 @@ def _refit_candidates(
         name = f"{s.candidate.effect.name}, {s.candidate.where}"
         sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
         more = (*model.candidates, s.candidate)
-        try:
-            start = {**model.refit.point.values, **sizes}
-            asked = _ask(s.candidate, model, len(scores) if is_hidden else 0, task.options)
-            least = model.refit.log_posterior + asked / 2
-            new = fit_model(task, more, start, model, least=least)
-        except (DivergenceError, InputError) as error:
-            progress(f"{name}: left out, {error}")
+        start = {**model.refit.point.values, **sizes}
+        asked = _ask(s.candidate, model, len(scores) if is_hidden else 0, task.options)
+        least = model.refit.log_posterior + asked / 2
+        new = try_fit(task, more, start, model, least=least, tried=s.candidate)
+        if new is None:
             continue
         progress(f"{name}: gain {new.negative_bic - model.negative_bic:.0f}")
         if not is_hidden or new.refit.log_posterior > least:

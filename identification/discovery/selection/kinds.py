@@ -15,10 +15,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import product
 
 import numpy as np
 
+from identification.discovery.attempts import attempt
 from identification.discovery.fitted_model import (
     FEW,
     AcceptedEffect,
@@ -33,6 +35,7 @@ from identification.discovery.scoring.significance import gain_of_whole, is_plau
 from identification.discovery.selection.shapes import is_structured
 from identification.discovery.task import DiscoveryTask
 from identification.effects.effect import Candidate
+from identification.kalman.point import Point
 
 
 def improve_kinds(
@@ -109,8 +112,8 @@ def _fit_kind(
     candidates = tuple(other if c.key == other.key else c for c in model.candidates)
     begin, least = {**model.refit.point.values, **start}, model.refit.log_posterior
     if is_structured(model, task.options):
-        return try_fit(task, candidates, begin)
-    return try_fit(task, candidates, begin, model, least=least)
+        return try_fit(task, candidates, begin, tried=other)
+    return try_fit(task, candidates, begin, model, least=least, tried=other)
 
 
 def _share(task: DiscoveryTask, model: FittedModel) -> float:
@@ -134,8 +137,10 @@ def _list_kinds(
     """
     best: dict[tuple[float, ...], tuple[float, Candidate, np.ndarray]] = {}
     kinds, fit = [s.name for s in old.effect.shapes if not s.free], model.refit
-    for s in compute_beside(fit.point, _other_kinds(old, model)):
-        other = replace_effect(fit, old, s.S, fit.level)
+    for s in _beside(fit.point, _other_kinds(old, model)):
+        other = attempt(s.candidate, partial(replace_effect, fit, old, s.S, fit.level))
+        if other is None:
+            continue
         kind = tuple(s.candidate.shape[name] for name in kinds)
         is_best = kind not in best or other.loss < best[kind][0]
         is_enough = other.share * (1 - share) < 1  # it loses less than this share of the gain
@@ -176,6 +181,15 @@ def _list_limits(
         (s.candidate, {**s.candidate.fixed, **dict(zip(s.candidate.sizes, s.size, strict=True))})
         for s in best.values()
     ]
+
+
+def _beside(point: Point, candidates: Sequence[Candidate]) -> list[Sensitivity]:
+    """Sensitivities to an effect of other kinds; one of them that diverges is told and left out."""
+    every = attempt(None, partial(compute_beside, point, candidates))
+    if every is not None:
+        return [*every]
+    each = (attempt(c, partial(compute_beside, point, [c])) for c in candidates)
+    return [s for found in each if found for s in found]
 
 
 def _other_kinds(old: Candidate, model: FittedModel) -> list[Candidate]:

@@ -54,7 +54,7 @@ def find_pair(
     (second,) = selection.accepted
     pair = second.model
     rest = (*model.candidates, second.candidate)
-    alone = try_fit(task, rest, pair.refit.point.values, pair)
+    alone = try_fit(task, rest, pair.refit.point.values, pair, tried=second.candidate)
     if alone is None:
         return ()
     proof = prove(alone.validation, pair.validation, options)

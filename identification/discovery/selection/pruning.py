@@ -9,9 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
+from identification.discovery.attempts import attempt
 from identification.discovery.fitted_model import (
     FAR,
     FEW,
@@ -71,7 +73,10 @@ def _is_needed(task: DiscoveryTask, model: FittedModel, candidate: Candidate) ->
     To first order: `FAR` times what BIC asks leaves room for what is not linear. Of a limit, whose
     size is not estimated, this says nothing.
     """
-    loss, _ = retune(model.refit, task.nominal_model, candidate, task.options)
+    retuned = attempt(
+        None, partial(retune, model.refit, task.nominal_model, candidate, task.options)
+    )
+    loss = retuned[0] if retuned else np.inf
     asked = len(candidate.free) * np.log(len(model.refit.point.log))
     return bool(np.isfinite(loss) and loss > FAR * asked)
 
@@ -119,12 +124,13 @@ def _fit_rival(
     Its BIC is then behind by more than a margin, or its fit has ended below the log posterior
     `least`.
     """
-    new = try_fit(task, candidates, begin, model, FEW, least)
+    rival = candidates[-1]
+    new = try_fit(task, candidates, begin, model, FEW, least, rival)
     if new is None or new.negative_bic < model.negative_bic - margin:
         return None
     if new.refit.steps < FEW and new.refit.log_posterior < least:
         return None
-    return try_fit(task, candidates, new.refit.point.values, new, least=least)
+    return try_fit(task, candidates, new.refit.point.values, new, least=least, tried=rival)
 
 
 def _count(model: FittedModel, without: Candidate, with_it: Candidate | None = None) -> int:

@@ -51,7 +51,8 @@ def _try_from_nominal(task: DiscoveryTask, model: FittedModel, best: FittedModel
     """
     old = {n: model.refit.point.values[n] for c in model.candidates for n in c.free}
     new = {n: best.refit.point.values[n] for n in best.candidates[-1].free}
-    again = try_fit(task, best.candidates, {**old, **new}, least=best.refit.log_posterior)
+    least, mine = best.refit.log_posterior, best.candidates[-1]
+    again = try_fit(task, best.candidates, {**old, **new}, least=least, tried=mine)
     return max(best, again or best, key=_negative_bic)
 
 
@@ -102,7 +103,8 @@ def _fit_shape(
     """
     sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
     more = (*model.candidates, s.candidate)
-    return try_fit(task, more, {**model.refit.point.values, **sizes}, model, least=least)
+    start = {**model.refit.point.values, **sizes}
+    return try_fit(task, more, start, model, least=least, tried=s.candidate)
 
 
 def _negative_bic(model: FittedModel) -> float:

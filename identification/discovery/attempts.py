@@ -1,0 +1,131 @@
+"""The place through which both searches evaluate what they try: a failure of it ends no search.
+
+A candidate may diverge where a refit takes its size or its shape, may be refused at a value that
+nobody gave (motors with more inertia than the robot), or make a matrix that cannot be solved. It is
+then rejected and told, and the search goes on. Only the nominal model may end a search. No other
+function of `identification.discovery` or `identification.prediction` catches these errors, so that
+what is evaluated elsewhere is seen to be unguarded; a test holds this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from identification.effects.effect import Candidate
+from identification.errors import DivergenceError, InputError
+from identification.estimation.options import Progress
+
+FAILURES = (InputError, np.linalg.LinAlgError, ArithmeticError)
+NOT_FINITE = "its simulation leaves the finite numbers"
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Failed:
+    """Something that a search tried and that could not be evaluated.
+
+    Attributes:
+        name: of the effect; what the search was about to do, where that is no candidate.
+        where: its place, in words; "" where it has none.
+        diverged: whether a simulation diverged; else the values that were tried were refused, or
+            equations could not be solved.
+        reason: what the error said; "" where it said nothing.
+    """
+
+    name: str
+    where: str
+    diverged: bool
+    reason: str
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """The effect and its place."""
+        return self.name, self.where
+
+    @property
+    def outcome(self) -> str:
+        """What happened, in words."""
+        what = "its simulation diverged" if self.diverged else "it could not be evaluated"
+        return f"tried, and {what}" + (f": {self.reason}" if self.reason else "")
+
+    def __str__(self) -> str:
+        return f"{', '.join(filter(None, self.key))}: {self.outcome}"
+
+
+_NOTE: ContextVar[Callable[[Failed], None] | None] = ContextVar("failed", default=None)
+
+
+@contextmanager
+def collected(progress: Progress, before: Sequence[Failed] = ()) -> Iterator[list[Failed]]:
+    """Yields what fails in the block, each effect at each place once, after what failed before.
+
+    Args:
+        progress: is told a line for each.
+        before: what has failed until now.
+    """
+    failed = [*before]
+
+    def note(one: Failed) -> None:
+        if one.key not in {f.key for f in failed}:
+            failed.append(one)
+            progress(str(one))
+
+    token = _NOTE.set(note)
+    try:
+        yield failed
+    finally:
+        _NOTE.reset(token)
+
+
+def attempt(tried: Candidate | str | None, evaluate: Callable[[], T]) -> T | None:
+    """Returns what an evaluation returns; None where it fails, which is told.
+
+    Args:
+        tried: the candidate, or what the search is about to do; None where a failure is not told,
+            because something else takes its place.
+        evaluate: the evaluation.
+    """
+    try:
+        return evaluate()
+    except FAILURES as error:
+        # What stands behind a semicolon tells a user what to give, who gave nothing here.
+        reason = str(error).partition(";")[0]
+        if tried is not None:
+            _tell(tried, isinstance(error, DivergenceError), reason)
+        return None
+
+
+def tell_lost(asked: Iterable[Candidate], found: Iterable[Candidate]) -> None:
+    """Tell of the candidates of which no shape could be evaluated.
+
+    Args:
+        asked: what was to be evaluated.
+        found: what was.
+    """
+    keys = {c.key for c in found}
+    for candidate in asked:
+        if candidate.key not in keys:
+            _tell(candidate, True, "")
+
+
+def refuse_infinite(*numbers: float | np.ndarray) -> None:
+    """Refuse the numbers of an evaluation that are not finite.
+
+    Raises:
+        DivergenceError: one of them is not.
+    """
+    if not all(np.isfinite(x).all() for x in numbers):
+        raise DivergenceError(NOT_FINITE)
+
+
+def _tell(tried: Candidate | str, diverged: bool, reason: str) -> None:
+    note = _NOTE.get()
+    if note is not None:
+        name, where = (tried, "") if isinstance(tried, str) else tried.key
+        note(Failed(name, where, diverged, reason))

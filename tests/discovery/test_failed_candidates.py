@@ -1,0 +1,206 @@
+"""A candidate that fails is rejected and told, whatever stage of a search it fails in.
+
+The slider lacks a constant force and a dry friction. One of the two fails as soon as it is there:
+a simulation diverges, values are refused, a matrix cannot be inverted, or NaN comes out. Only the
+nominal model may end a search.
+"""
+
+import ast
+from pathlib import Path
+
+import pytest
+from discovery_cases import EFFECTS, disturbed, searched, stepped, task
+from failing_cases import ERRORS, HOWS, Failing
+
+from identification.discovery import attempts, confidence, fitted_model, state
+from identification.discovery.attempts import Failed, attempt, collected, tell_lost
+from identification.discovery.fitted_model import try_fit
+from identification.discovery.selection import anew, forward_selection, kinds
+from identification.discovery.state import first_state, next_state
+from identification.discovery.verdict import conclude
+from identification.effects.effect import Candidate
+from identification.errors import DivergenceError, InputError
+from identification.report.discovery_json import discovery_to_json
+from identification.report.discovery_text import discovery_text
+from identification.report.failed_words import FAILED
+
+TRUTH = {"offset.f": -0.8, "rubbing.c": 1.0}
+KEY = ("rubbing", "joint")
+ENGINES = [
+    path
+    for folder in ("discovery", "prediction")
+    for path in Path(attempts.__file__).parents[1].joinpath(folder).rglob("*.py")
+]
+# Steps of a search for values within one model, and files: no candidate is judged there.
+INNER = {"attempts.py", "fit.py", "point.py", "unseen.py", "options.py", "forecast.py"}
+
+
+def failing(monkeypatch, how, size="rubbing.c"):
+    return Failing(size, how).install(monkeypatch)
+
+
+def told_of(found):
+    return {f.key for f in found.failed}
+
+
+@pytest.mark.parametrize("how", HOWS)
+@pytest.mark.parametrize(
+    ("module", "function"),
+    [
+        (state, "_compute_all_sensitivities"),
+        (forward_selection, "_refit_candidates"),
+        (fitted_model, "validate"),
+    ],
+    ids=["columns", "refit", "validation"],
+)
+def test_a_candidate_that_fails_is_rejected_and_told_and_the_search_goes_on(
+    module, function, how, monkeypatch
+):
+    bad, said = failing(monkeypatch, how), []
+    bad.within(monkeypatch, module, function)
+    states = stepped(first_state(task(disturbed(**TRUTH)), said.append))
+    assert bad.reached
+    assert states[-1].is_finished
+    found = conclude(states[-1])
+    assert "rubbing" not in {n.name for n in found.named}
+    assert KEY in told_of(found)
+    (one,) = (f for f in found.failed if f.key == KEY)
+    assert one.outcome in discovery_text(found)
+    assert f"{FAILED}:" in discovery_text(found)
+    assert KEY in {(f["name"], f["where"]) for f in discovery_to_json(found)["failed"]}
+    assert not any("take a smaller rho" in str(f) for f in found.failed)
+
+
+@pytest.mark.parametrize("how", ["diverges", "cannot be solved", "gives NaN"])
+def test_an_accepted_effect_that_fails_as_the_others_are_dropped_or_exchanged_stays(
+    how, monkeypatch
+):
+    before = searched(**TRUTH)[-2]
+    assert before.stage == "pruning"
+    bad = failing(monkeypatch, how)
+    with bad.active():
+        after = next_state(before, print)
+        found = conclude(after)
+    assert bad.reached
+    assert after.is_finished
+    assert {n.name for n in found.named} | {r.name for r in found.rejected} >= {"rubbing"}
+
+
+@pytest.mark.parametrize("how", ["is refused", "cannot be solved", "gives NaN"])
+def test_a_second_effect_of_a_pair_that_fails_makes_no_pair(how, monkeypatch):
+    first = searched(**TRUTH)[0]
+    offset = Candidate(EFFECTS[1], "joint", {})
+    one = try_fit(first.task, (offset,), {"offset.f": -0.8}, first.model)
+    bad, said = failing(monkeypatch, how), []
+    with collected(said.append) as failed, bad.active():
+        along = state._compute_all_sensitivities(first.task, one, first.sensitivities)
+        assert state.find_pair(first.task, first.model, one, along, said.append) == ()
+    assert bad.reached
+    assert [f.key for f in failed] == [KEY]
+    assert said[0] == str(failed[0])
+
+
+@pytest.mark.parametrize("how", HOWS)
+def test_refits_that_begin_anew_and_fail_leave_the_first_ones(how, monkeypatch):
+    first = searched(**TRUTH)[0]
+    rubbing = Candidate(EFFECTS[2], "joint", {})
+    model = try_fit(first.task, (rubbing,), {"rubbing.c": 1.0}, first.model)
+    monkeypatch.setattr(anew, "list_parameters_at_limit", lambda *_: ("mass",))
+    bad = failing(monkeypatch, how)
+    with collected(print) as failed, bad.active():
+        assert anew.begin_anew(first.task, [model], first.scores) == [model]
+    assert bad.reached
+    assert [f.key for f in failed] == [KEY]
+
+
+@pytest.mark.parametrize("how", HOWS)
+def test_another_kind_that_fails_leaves_the_kind_that_was_accepted(how, monkeypatch):
+    last = searched(**TRUTH)[2]
+    asked = []
+
+    def fails(point, candidates):
+        asked.extend(candidates)
+        raise ERRORS.get(how, FloatingPointError("not a number"))
+
+    monkeypatch.setattr(kinds, "compute_beside", fails)
+    monkeypatch.setattr(kinds, "_other_kinds", lambda old, model: [old])
+    with collected(print) as failed:
+        found, model = kinds.improve_kinds(last.task, last.accepted, last.model, last.sensitivities)
+    assert model is last.model
+    assert [a.candidate for a in found] == [a.candidate for a in last.accepted]
+    assert {f.key for f in failed} == {c.key for c in asked}
+
+
+@pytest.mark.parametrize("stage", ["select_effect", "accept_deviants", "prune"])
+def test_a_step_that_fails_as_a_whole_is_told_and_skipped(stage, monkeypatch):
+    first, said = searched(**TRUTH)[0], []
+
+    def fails(*_):
+        raise DivergenceError("a force is not finite; take a shorter step")
+
+    monkeypatch.setattr(state, stage, fails)
+    now = first
+    while not now.is_finished:
+        now = next_state(now, said.append)
+    (one,) = (f for f in now.failed if not f.where)
+    assert one.reason == "a force is not finite"
+    assert str(one) in said
+    assert conclude(now).failed == now.failed
+
+
+def test_curves_that_cannot_be_drawn_leave_the_names(monkeypatch):
+    def fails(*_):
+        raise DivergenceError("a force is not finite")
+
+    last = searched(**TRUTH)[-1]
+    names = {n.name for n in conclude(last).named}
+    monkeypatch.setattr(confidence, "find_curves", fails)
+    found = conclude(last)
+    assert names
+    assert {n.name for n in found.named} == names
+
+
+@pytest.mark.parametrize("how", ["diverges", "gives NaN"])
+def test_the_nominal_model_ends_a_search_and_nothing_else(how, monkeypatch):
+    bad = failing(monkeypatch, how, "mass")
+    with bad.active(), pytest.raises(InputError):
+        first_state(task(disturbed(**TRUTH)), print)
+
+
+def test_a_failure_is_told_once_and_without_what_nobody_can_follow():
+    said, candidate = [], Candidate(EFFECTS[0], "joint", {})
+
+    def fails():
+        raise ERRORS["diverges"]
+
+    with collected(said.append) as failed:
+        assert attempt(None, fails) is None
+        assert attempt(candidate, fails) is attempt(candidate, fails) is None
+        tell_lost([candidate], [])
+        tell_lost([candidate], [candidate])
+        assert attempt("the pruning", lambda: 3) == 3
+    reason = "the motors have more inertia than the robot"
+    assert failed == [Failed("spring", "joint", True, reason)]
+    assert said == [f"spring, joint: tried, and its simulation diverged: {reason}"]
+    assert attempt(candidate, fails) is None  # nobody listens
+
+
+def test_an_error_of_the_program_is_no_failed_candidate():
+    def wrong():
+        raise TypeError("a fault of the program")
+
+    with pytest.raises(TypeError):
+        attempt(None, wrong)
+
+
+@pytest.mark.parametrize("path", ENGINES, ids=lambda p: f"{p.parent.name}/{p.name}")
+def test_no_other_function_of_the_engines_catches_what_a_candidate_raises(path):
+    caught = {
+        name.id
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ExceptHandler) and node.type is not None
+        for name in ast.walk(node.type)
+        if isinstance(name, ast.Name)
+    }
+    if path.name not in INNER:
+        assert not caught & {"InputError", "DivergenceError", "FAILURES", "Exception"}

@@ -1,0 +1,148 @@
+"""Over a horizon too, a candidate that fails is rejected and told, whatever stage it fails in.
+
+The pendulum lacks friction under its load. This effect fails as soon as its size is not zero, while
+one stage of the search runs; the other candidates are tried all the same.
+"""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from failing_cases import HOWS, Failing
+from page_text import text_of
+from records_cases import HORIZON, nominal_model, pendulum, records
+
+from identification.discovery.options import DiscoveryOptions
+from identification.effects.joint_plant import candidates
+from identification.errors import InputError
+from identification.prediction import exchange, extension, selection, state
+from identification.prediction.records import as_records
+from identification.prediction.state import RecordsTask, first_state, next_state
+from identification.prediction.verdict import conclude
+from identification.report.records_json import records_to_json
+from identification.report.records_report import write_records_report
+from identification.report.records_text import records_text
+
+SIZE, NAME, WHERE = "quadratic_friction.c@hinge", "quadratic_friction", "joint hinge"
+KEY, TRUE = (NAME, WHERE), 0.01
+SAMPLES, ONE = 200, np.ones((1, 1))
+
+
+@cache
+def task():
+    logs = records(3, {SIZE: TRUE}, samples=SAMPLES)
+    return RecordsTask(
+        nominal_model=nominal_model(), horizon=HORIZON,
+        records=as_records(logs[:1], logs[1:], None),
+        effects=tuple(
+            e for e in candidates(pendulum(), ("J", "d")) if e.name in (NAME, "offset")
+        ),
+        options=DiscoveryOptions(),
+    )  # fmt: skip
+
+
+@cache
+def begun():
+    return first_state(task(), print)
+
+
+def ended(first, progress=print):
+    now = first
+    while not now.is_finished:
+        now = next_state(now, progress)
+    return now
+
+
+@cache
+def found():
+    return conclude(ended(begun()))
+
+
+def failing(monkeypatch, how):
+    return Failing(SIZE, how).install(monkeypatch)
+
+
+def test_without_a_failure_it_is_named_and_nothing_is_told_to_have_failed():
+    assert [n.candidate.key for n in found().named] == [KEY]
+    assert found().failed == ()
+
+
+@pytest.mark.parametrize("how", HOWS)
+def test_a_candidate_whose_columns_fail_is_told_and_the_others_are_scored(how, monkeypatch):
+    bad, said = failing(monkeypatch, how), []
+    bad.within(monkeypatch, state, "score_all")
+    first = first_state(task(), said.append)
+    assert bad.reached
+    assert {s.candidate.effect.name for s in first.scores} == {"offset"}
+    assert [f.key for f in first.failed] == [KEY]
+    assert str(first.failed[0]) in said
+
+
+@pytest.mark.parametrize(
+    ("module", "function", "how"),
+    [
+        (selection, "begin", "diverges"), (selection, "begin", "gives NaN"),
+        (selection, "with_effect", "is refused"), (selection, "with_effect", "cannot be solved"),
+        (extension, "predict_fitted", "diverges"), (extension, "predict_fitted", "gives NaN"),
+        (state, "with_fitting_steps", "divides by zero"),
+    ],
+)  # fmt: skip
+def test_a_candidate_whose_refit_fails_is_told_and_not_named(module, function, how, monkeypatch):
+    bad, said = failing(monkeypatch, how), []
+    if function == "with_fitting_steps":  # the steps are short enough here: it asks all the same
+        whole = state.with_fitting_steps
+        monkeypatch.setattr(
+            state, function, lambda m, *rest: m.plant.settings((SIZE,), ONE) and whole(m, *rest)
+        )
+    bad.within(monkeypatch, module, function)
+    answer = conclude(ended(begun(), said.append))
+    assert bad.reached
+    assert NAME not in {n.name for n in answer.named}
+    assert [f.key for f in answer.failed] == [KEY]
+    assert str(answer.failed[0]) in said
+    assert answer.failed[0].outcome in records_text(answer)
+    assert records_to_json(answer)["failed"][0]["name"] == NAME
+
+
+@pytest.mark.parametrize(
+    ("module", "function", "how"),
+    [
+        (selection, "at_their_best", "diverges"), (selection, "at_their_best", "gives NaN"),
+        (state, "exchanged", "cannot be solved"), (exchange, "solve", "diverges"),
+        (state, "prune", "is refused"), (state, "without_idle_places", "diverges"),
+    ],
+)  # fmt: skip
+def test_an_effect_that_fails_only_in_a_comparison_keeps_what_its_own_fit_found(
+    module, function, how, monkeypatch
+):
+    bad = failing(monkeypatch, how)
+    bad.within(monkeypatch, module, function)
+    answer = conclude(ended(begun()))
+    assert [n.candidate.key for n in answer.named] == [KEY]
+    assert answer.named[0].parameters["c"][0] == pytest.approx(
+        found().named[0].parameters["c"][0], rel=0.05
+    )
+
+
+def test_a_failure_while_a_search_ends_leaves_what_was_found(monkeypatch):
+    bad = failing(monkeypatch, "diverges")
+    end = ended(begun())
+    with bad.active():
+        answer = conclude(end)
+    assert [n.candidate.key for n in answer.named] == [KEY]
+
+
+@pytest.mark.parametrize("step", ["refit_contenders", "find_rivals", "_pruned"])
+def test_a_round_that_fails_as_a_whole_ends_the_search_with_what_was_found(
+    step, monkeypatch, tmp_path
+):
+    def fails(*_):
+        raise InputError("a matrix is singular; take another")
+
+    monkeypatch.setattr(state, step, fails)
+    said = []
+    answer = conclude(ended(begun(), said.append))
+    (one,) = answer.failed
+    assert (one.where, one.reason) == ("", "a matrix is singular")
+    assert str(one) in said
+    assert one.outcome in text_of(write_records_report(answer, tmp_path).read_text())
