@@ -4,7 +4,8 @@ Python notices an interrupt between two of its own steps only, and not within a 
 compilation. So the signal also wakes a thread (`signal.set_wakeup_fd`), which says that the program
 stops. Where the program has not ended after `GRACE`, be it within native code or waiting for a
 thread of its own, the thread ends it; so does a second Ctrl-C. What was half-written then lies in
-drafts, which no reader takes for results and the next run removes.
+drafts, which no reader takes for results and the next run removes. What is drawn after the results
+were saved may be left out (`leaving_out`).
 """
 
 from __future__ import annotations
@@ -12,12 +13,15 @@ from __future__ import annotations
 import os
 import select
 import signal
+import sys
 import threading
 import time
+from collections import deque
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 
+_LEFT_OUT: deque[str] = deque()  # the sentence for an interrupt in what may be left out
 GRACE = 1.5  # [s] for native code to return, and to keep what is worth keeping
 STOPPED = 130  # exit code, as a shell gives it
 
@@ -57,6 +61,25 @@ def stoppable(name: str) -> Iterator[None]:
         watch.join(GRACE)
 
 
+@contextmanager
+def leaving_out(sentence: str) -> Iterator[None]:
+    """Say on Ctrl-C in the block, once, what it leaves out and where the rest is.
+
+    Args:
+        sentence: says so.
+    """
+    _LEFT_OUT.append(sentence)
+    try:
+        yield
+    except KeyboardInterrupt:
+        with suppress(IndexError, OSError):  # unless the thread has said it
+            sys.stderr.write(f"{_LEFT_OUT.pop()}\n")
+            sys.stderr.flush()
+        raise
+    finally:
+        _LEFT_OUT.clear()
+
+
 def at_end() -> None:
     """Make an interrupt change nothing, once all is done and only the process has to end.
 
@@ -84,4 +107,6 @@ def _watch(name: str, read: int) -> None:
             os._exit(STOPPED)
         end = time.monotonic() + GRACE
         os.write(2, f"{name}: stopping …\n".encode())
+        with suppress(IndexError):
+            os.write(2, f"{_LEFT_OUT.pop()}\n".encode())
     os.close(read)

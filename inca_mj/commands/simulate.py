@@ -78,7 +78,8 @@ class Simulate:
         if self.output.out is not None:
             files = "log.csv, run.npz, figures, model.xml and report.html"
             text += f"\n{files} are in {self.output.out}"
-        conclude(now, summary, text, partial(keep, result, now._notes()))
+        notes = now._notes()
+        conclude(now, summary, text, partial(keep, result, notes), partial(draw, result, notes))
         return 0
 
     def _resolved(self) -> Simulate:
@@ -176,16 +177,21 @@ def _text(result: Run) -> str:
 
 
 def keep(result: Run, notes: str, out: Path) -> None:
-    """Write log, run, model, figures and the report into a folder."""
+    """Write log, run and model into a folder."""
     from identification import write_log
-    from identification.report.page import save_figures, write_report
-    from inca_mj.report.sections import model_section, run_section
     from inca_mj.twin.logs import run_to_log
     from inca_mj.twin.run import save_run
 
     write_log(run_to_log(result, notes=f"simulated by inca simulate: {notes}"), out / "log.csv")
     save_run(result, out / "run.npz")
     result.twin.save(out / "model.xml")
+
+
+def draw(result: Run, notes: str, out: Path) -> None:
+    """Write figures and the report into a folder."""
+    from identification.report.page import save_figures, write_report
+    from inca_mj.report.sections import model_section, run_section
+
     sections = [run_section(result), model_section(result.twin)]
     save_figures(sections, out)
     write_report(
