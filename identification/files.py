@@ -6,7 +6,7 @@ import errno
 import os
 import tomllib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -145,7 +145,8 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
             f"cannot write {path}: {reason}; choose a folder with room and permission"
         ) from error
     finally:
-        draft.unlink(missing_ok=True)
+        with suppress(OSError):
+            draft.unlink(missing_ok=True)
 
 
 def to_disk(path: Path) -> None:

@@ -126,12 +126,13 @@ def keep_if_possible(what: str, write: Callable[[], object]) -> bool:
 
     Raises:
         InputError: the folder cannot be written.
+        OSError: as for `InputError`, from a library.
     """
     from identification.errors import InputError
 
     try:
         write()
-    except InputError:
+    except (InputError, OSError):
         raise
     except Exception as error:  # nothing else may cost what took minutes to find
         _note_without(what, error)

@@ -80,15 +80,25 @@ def leaving_out(sentence: str) -> Iterator[None]:
         _LEFT_OUT.clear()
 
 
-def at_end() -> None:
+def at_end(code: int = 0) -> None:
     """Make an interrupt change nothing, once all is done and only the process has to end.
+
+    A process that was stopped ends here. Python would free first what it holds, and contexts of
+    OpenGL take seconds in which no other thread runs.
 
     Python ends by the signal itself, whatever the exit code, where an interrupt came while it ran
     a text as code, as each dataclass does that is imported: it remembers this until it runs a text
     again (`unhandled_keyboard_interrupt` in CPython).
+
+    Args:
+        code: the exit code of the process.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     exec("")
+    if code == STOPPED:
+        with suppress(OSError, ValueError, AttributeError):  # stdout is full, closed or none
+            sys.stdout.flush()
+        os._exit(code)
 
 
 def _watch(name: str, read: int) -> None:
