@@ -49,7 +49,7 @@ def refuse_foreign(folder: Path) -> None:
     try:
         if not folder.is_dir():
             return
-        with alone(folder.parent):
+        with alone(folder.resolve().parent):
             finish_moves(folder)
         now = list_content(folder)
     except OSError as error:
@@ -135,6 +135,8 @@ def draft_of(path: str | os.PathLike[str]) -> Iterator[Draft]:
     try:
         yield draft
     except InputError as error:  # a file that cannot be written has the name that is known
+        if str(folder) not in str(error):
+            raise
         raise InputError(str(error).replace(str(folder), str(draft.place))) from error.__cause__
     finally:
         rmtree(folder, ignore_errors=True)
@@ -248,12 +250,16 @@ def _make_hidden(path: Path) -> Path:
         known = number.isdigit() and os.name == "posix"
         if not _is_running(int(number)) if known else time.time() - draft.stat().st_mtime > _OLD:
             rmtree(draft, ignore_errors=True)
+    inside = _make_hidden_inside(path)  # what only its owner may write is not replaced either
     try:
-        return _make_hidden_beside(path)
+        beside = _make_hidden_beside(path)
     except OSError as error:
-        if error.errno not in IMPOSSIBLE:
-            raise
-        return _make_hidden_inside(path)
+        if error.errno in IMPOSSIBLE:
+            return inside
+        inside.rmdir()
+        raise
+    inside.rmdir()
+    return beside
 
 
 def _make_hidden_beside(path: Path) -> Path:

@@ -156,13 +156,13 @@ def keep(found: Discovery, out: Path, command: Any) -> dict[str, Path]:
 
 
 def draw(found: Discovery, out: Path, film: Sequence[Section] = ()) -> None:
-    """Write figures and report into a folder; a film has a section that goes first."""
+    """Write figures and report into a folder; with the section of a film the report alone."""
     from identification.report.discovery_report import write_discovery_report
     from inca_mj.report.sections import model_section
     from inca_mj.workflows.discovery_model import named_twin
 
     more = [*film, model_section(_without_zeros(named_twin(found)))]
-    write_discovery_report(found, out, sections=more, files=FILES)
+    write_discovery_report(found, out, sections=more, files=FILES, pictures=not film)
 
 
 def film(found: Discovery, out: Path, tell: Callable[[str], None]) -> None:

@@ -1,6 +1,6 @@
 """Saves results in a child that is killed, or whose disk fails, at each of its calls in turn.
 
-    python saving_cases.py kill|ENOSPC|EIO CASE FOLDER
+    python saving_cases.py kill|ENOSPC|EIO|full CASE FOLDER
 
 Each call that opens a file to write, makes, links, renames or removes a name, or brings a file to
 the disk is met once. What every command does with its results (`conclude`) is run in a child, and
@@ -11,7 +11,7 @@ list: each call with the exit code and what the folder then held, old, new or a 
 import errno
 import json
 import os
-import shutil
+import subprocess
 import sys
 from dataclasses import dataclass, field
 from itertools import count
@@ -19,11 +19,13 @@ from pathlib import Path
 
 from identification.commands.common import Output, conclude
 from identification.errors import InputError
+from identification.files import write_text
 from identification.folders import draft_of, list_foreign, refuse_foreign
 
 CALLS = ("os.rename", "os.mkdir", "os.link", "os.remove", "os.rmdir", "os.chmod", "os.utime")
 WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT
 OLD = {"result.json": "old", "robot.toml": "old", "film.mp4": "old"}
+LONG = 6000  # letters of a file, more than a page of a disk
 LEFT = (".draft-", ".moving-")  # names of what a killed program leaves
 MINE = {".mine": "hidden", "notes/log.csv": "time,u\n0,1\n"}  # what a user may have in the folder
 
@@ -39,8 +41,8 @@ def save(out: Path) -> None:
     """Save results as a command does: two files, then a report."""
     conclude(
         Command(Output(json=True, out=out, quiet=True)), {"value": 1}, "",
-        keep=lambda folder: (folder / "robot.toml").write_text("new"),
-        draw=lambda folder: (folder / "report.html").write_text("new"),
+        keep=lambda folder: write_text(folder / "robot.toml", "new".ljust(LONG)),
+        draw=lambda folder: write_text(folder / "report.html", "new".ljust(LONG)),
     )  # fmt: skip
 
 
@@ -66,8 +68,10 @@ def content(folder: Path) -> dict[str, str]:
         return {}
     names = [f.relative_to(folder).as_posix() for f in folder.rglob("*") if f.is_file()]
     kept = [n for n in names if not n.startswith((*LEFT, ".made.json"))]
-    return {n: "new" if n == "result.json" and is_new(folder / n) else (folder / n).read_text()
-            for n in kept}  # fmt: skip
+    texts = {name: (folder / name).read_text().strip() for name in kept}
+    if "result.json" in texts and is_new(folder / "result.json"):
+        texts["result.json"] = "new"
+    return texts
 
 
 def is_new(path: Path) -> bool:
@@ -154,6 +158,30 @@ def main(what: str, case: str, place: str) -> None:
     sys.__stdout__.write(json.dumps(found) + "\n")
 
 
+def fill_disks(case: str, place: str) -> None:
+    """Save on disks of more and more pages, and check the folder after each."""
+    found = []
+    for pages in range(2, 24):
+        home = Path(place)
+        subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", f"size={4 * pages}k", "none", place], check=True
+        )
+        try:
+            prepare(case, home / "out")
+        except (InputError, OSError):  # not even the old results have room
+            subprocess.run(["umount", place], check=True)
+            continue
+        before = content(home / "out")
+        code, left = child(home / "out", -1, "ENOSPC", 2), content(home / "out")
+        whole = [{"result.json": "new", "robot.toml": "new"}]
+        whole += [{**whole[0], "report.html": "new"}]
+        assert left == before if code == 2 else left in whole, (pages, code, left)
+        refuse_foreign(home / "out")
+        found.append((code, "report.html" in left))
+        subprocess.run(["umount", place], check=True)
+    sys.__stdout__.write(json.dumps(found) + "\n")
+
+
 if __name__ == "__main__":
     sys.stdout = open(os.devnull, "w")  # noqa: SIM115
-    main(*sys.argv[1:])
+    fill_disks(*sys.argv[2:]) if sys.argv[1] == "full" else main(*sys.argv[1:])
