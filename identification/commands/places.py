@@ -5,6 +5,7 @@ Nothing that a user made is replaced: neither an input of the command nor anothe
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
@@ -49,7 +50,7 @@ def refuse_place(command: Any) -> None:
         there = next(p for p in (out, *out.absolute().parents) if p.exists())
         is_folder, real = there.is_dir(), out.resolve()
     except (OSError, RuntimeError) as error:  # a name that is too long, a loop of links
-        reason = getattr(error, "strerror", None) or error
+        reason = error.strerror if isinstance(error, OSError) else os.strerror(errno.ELOOP)
         raise InputError(f"cannot make folder {out}: {reason}; choose another") from error
     if not is_folder:
         raise InputError(f"cannot make folder {out}: {there} is a file; choose another")
