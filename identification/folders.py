@@ -250,15 +250,15 @@ def _make_hidden(path: Path) -> Path:
         known = number.isdigit() and os.name == "posix"
         if not _is_running(int(number)) if known else time.time() - draft.stat().st_mtime > _OLD:
             rmtree(draft, ignore_errors=True)
-    inside = _make_hidden_inside(path)  # what only its owner may write is not replaced either
+    inside = _make_hidden_inside(path)  # the folder itself must be writable, not only its parent
     try:
         beside = _make_hidden_beside(path)
     except OSError as error:
         if error.errno in IMPOSSIBLE:
             return inside
-        inside.rmdir()
+        rmtree(inside, ignore_errors=True)
         raise
-    inside.rmdir()
+    rmtree(inside, ignore_errors=True)
     return beside
 
 

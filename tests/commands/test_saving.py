@@ -68,11 +68,9 @@ def test_a_kill_where_no_step_exchanges_folders_is_finished_by_the_next_run(tmp_
 @pytest.mark.parametrize(("what", "case"), [("ENOSPC", "older"), ("EIO", "folders")])
 def test_a_call_that_fails_leaves_the_old_results_and_exit_code_2(tmp_path, what, case):
     found = driven(what, case, tmp_path)  # which checks that nothing was written or touched
-    codes = [code for _, code, _ in found]
-    saved = codes.index(0)
     assert {call for call, code, _ in found if code == 2} >= CHANGES
-    assert codes[saved:] == [0] * (len(codes) - saved) or 2 in codes[saved:]
     assert all(state == ("old" if code == 2 else "new") for _, code, state in found)
+    assert found[-1][1] == 0  # what cannot be removed or drawn costs no result
 
 
 def without_root(*line):
