@@ -1,13 +1,13 @@
 """Ctrl-C at 20 random times of every command: exit code, seconds until the end, what was left.
 
-    python benchmarks/interrupts.py [--times 20] [--command discover]
+    python benchmarks/interrupts.py [--times 20] [--command discover] [--latest 6] [--within 2]
 
 A command that ends by itself before the interrupt is not counted, and another one is begun for it.
 The time until the first line of the program runs is measured and left out, because the answer is
 then Python's own. A command that had ended but for its process ends with 0. Right is that, or exit
 code 130 within two seconds with "stopping" or "stopped" said once, and no draft left in the folder
-of the results. A row for each interrupt is added to results/interrupts.jsonl, of which
-benchmarks/robustness.py makes its page.
+of the results or beside it; what is there is whole, and the next run accepts it. A row for each
+interrupt is added to results/interrupts.jsonl, of which benchmarks/robustness.py makes its page.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from identification.folders import list_foreign
 from identification.sweep.code import commit
 
 LATEST = 6.0  # [s] after the start, when most commands are within their search
@@ -48,6 +49,8 @@ COMMANDS = {
     "demo": [*INCA, "demo"],
     "fit": [*ROBOT, "fit", "{robot}/robot.toml", "{robot}/log.csv"],
     "discover, robot": [*ROBOT, "discover", "{robot}/robot.toml", "{robot}/log.csv"],
+    "fit, horizon": [*ROBOT, "fit", "{robot}/horizon.toml", "{robot}/log.csv"],
+    "discover, horizon": [*ROBOT, "discover", "{robot}/horizon.toml", "{robot}/log.csv"],
 }
 
 
@@ -57,6 +60,8 @@ def main() -> int:
     parser.add_argument("--times", type=int, default=20)
     parser.add_argument("--command", nargs="*", choices=[*COMMANDS], default=[*COMMANDS])
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--latest", type=float, default=LATEST, help="of an interrupt [s]")
+    parser.add_argument("--within", type=float, default=WITHIN, help="seconds until the end")
     parser.add_argument("--record", type=Path, default=RECORD)
     options = parser.parse_args()
     chance, wrong, earliest = random.Random(options.seed), 0, python_start()
@@ -69,7 +74,7 @@ def main() -> int:
             tries = 0
             while len(stopped) < options.times and tries < TRIES * options.times:
                 tries += 1
-                row = interrupted(line, chance.uniform(earliest, LATEST))
+                row = interrupted(line, chance.uniform(earliest, options.latest), options.within)
                 if row is not None:
                     stopped.append({"command": name, "seed": options.seed, **row, "commit": now})
             with options.record.open("a") as record:
@@ -92,7 +97,7 @@ def python_start() -> float:
     return max(seconds)
 
 
-def interrupted(line: list[str], after: float) -> dict[str, Any] | None:
+def interrupted(line: list[str], after: float, within: float) -> dict[str, Any] | None:
     """What a command did that was interrupted so many seconds after its start; None if nothing."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "out"
@@ -116,15 +121,18 @@ def interrupted(line: list[str], after: float) -> dict[str, Any] | None:
         seconds = time.perf_counter() - began
         told = said.count("stopping") + said.count("stopped\n")
         left = sorted(p.name for p in out.iterdir()) if out.exists() else []
+        drafts = [p.name for p in Path(folder).iterdir() if p.name != "out"]
         result = json.loads((out / "result.json").read_text()) if "result.json" in left else None
         right = (
             (process.returncode, told) in ((130, 1), (0, 0))
-            and seconds < WITHIN
+            and seconds < within
             and "Traceback" not in said
             and (not left or result is not None)
+            and not drafts
+            and not list_foreign(out)
         )
         return {"right": right, "after": round(after, 3), "seconds": round(seconds, 3),
-                "code": process.returncode, "left": left,
+                "code": process.returncode, "left": left + drafts,
                 "said": said[-600:] if not right else ""}  # fmt: skip
 
 
@@ -138,6 +146,7 @@ def write_robot(folder: Path) -> None:
 
     (folder / "slider.xml").write_text(SLIDER)
     (folder / "robot.toml").write_text(TOML)
+    (folder / "horizon.toml").write_text(f"horizon = 0.2\n{TOML}")
     write_log(simulated({"damping": 3.6, "mass": 1.8}, 2000), folder / "log.csv")
 
 

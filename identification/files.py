@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import tomllib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -136,6 +137,7 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
     draft = path.with_name(f".{uuid4().hex}{path.suffix}")
     try:
         yield draft
+        to_disk(draft)
         draft.replace(path)
     except OSError as error:
         reason = error.strerror or type(error).__name__
@@ -143,7 +145,29 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
             f"cannot write {path}: {reason}; choose a folder with room and permission"
         ) from error
     finally:
-        draft.unlink(missing_ok=True)
+        with suppress(OSError):
+            draft.unlink(missing_ok=True)
+
+
+def to_disk(path: Path) -> None:
+    """Bring a file, or the names in a folder, to the disk, so that a loss of power loses nothing.
+
+    Args:
+        path: of the file or folder.
+
+    Raises:
+        OSError: the disk is full or broken.
+    """
+    if os.name != "posix":  # other systems bring nothing to the disk that is open to be read
+        return
+    number = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(number)
+    except OSError as error:
+        if error.errno not in (errno.EINVAL, errno.EROFS, errno.EOPNOTSUPP):  # no such step here
+            raise
+    finally:
+        os.close(number)
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> Path:

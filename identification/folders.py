@@ -1,48 +1,68 @@
 """Folders of results: written whole or not at all, and nothing of anybody else is replaced.
 
-A hidden file of the folder, `.made.json`, lists what was made there, each file with the hash of its
-content. A second run replaces these. A file that is not listed, or that was changed since, belongs
-to somebody else: a folder with such a file is refused.
+Results are put together in a hidden folder. Together with what others keep in the old folder, they
+take its place in a single step: whoever looks, and whatever is killed, finds the old results or the
+new ones. Where there is no such step the files are moved one by one (`identification.moves`).
+
+The files that the program made before go, also those of which there is no new one. A file that it
+did not make, or that was changed since, belongs to somebody else (`identification.made`): a folder
+with such a file is refused.
 """
 
 from __future__ import annotations
 
-import json
 import os
+import shutil
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
-from hashlib import file_digest
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from shutil import rmtree
-from tempfile import mkdtemp
+from uuid import uuid4
 
 from identification.errors import InputError
-from identification.files import write_text
+from identification.exchange import IMPOSSIBLE, alone, exchange, make_alike
+from identification.files import to_disk
+from identification.made import MADE, Content, list_content, write_made
+from identification.moves import finish_moves, move_all
 
-MADE = ".made.json"
 _DRAFT = ".draft-"
 _OLD = 86400.0  # [s] after which the draft of an unknown process is left over
+_TRIED = 4096  # bytes that are written to try a folder, a page of most disks
 _SHOWN = 3  # names in a message
+_TAIL = 80  # bytes of a folder's name in that of its draft; a name may have 255
+_RESULTS = ("result.json", "report.html", MADE)  # no folder may bear these names
 
 
 def list_foreign(folder: Path) -> list[str]:
     """Names of the files of a folder that were not made there, or were changed since."""
-    if not folder.is_dir():
-        return []
-    made = _read_made(folder)
-    files = [f for f in folder.iterdir() if not f.name.startswith(".") and not f.is_dir()]
-    return sorted(f.name for f in files if f.name not in made or made[f.name] != _digest(f))
+    return list_content(folder).foreign if folder.is_dir() else []
 
 
 def refuse_foreign(folder: Path) -> None:
     """Refuse a folder with files of others, which results could replace.
 
     Raises:
-        InputError: there is such a file.
+        InputError: there is such a file, or the folder cannot be read.
     """
-    foreign = list_foreign(folder)
-    if foreign:
+    try:
+        if not folder.is_dir():
+            return
+        with alone(folder.resolve().parent):
+            finish_moves(folder)
+        now = list_content(folder)
+    except OSError as error:
+        raise InputError(
+            f"cannot read folder {folder}: {_reason(error)}; choose another"
+        ) from error
+    for name in _RESULTS:
+        if name in now.folders:
+            raise InputError(
+                f"{folder / name} is a folder, and results have a file of this name; give --out"
+                " another folder"
+            )
+    if foreign := now.foreign:
         more = f" and {len(foreign) - _SHOWN} more" if len(foreign) > _SHOWN else ""
         raise InputError(
             f"the folder {folder} holds {', '.join(foreign[:_SHOWN])}{more}, not made there by this"
@@ -50,9 +70,53 @@ def refuse_foreign(folder: Path) -> None:
         )
 
 
+@dataclass
+class Draft:
+    """Results that are put together before they are saved.
+
+    Attributes:
+        folder: where files are written; hidden.
+        place: where they are saved.
+        taken: names of files of others that were in the way, so that `place` is another folder.
+    """
+
+    folder: Path
+    place: Path
+    taken: tuple[str, ...] = ()
+
+    def save(self) -> None:
+        """Save what the draft holds so far; more may be added to it and saved again.
+
+        Raises:
+            InputError: it cannot be written, and the place is as it was.
+        """
+        try:
+            self.place.mkdir(parents=True, exist_ok=True)  # somebody may have removed it meanwhile
+            with alone(self.place.resolve().parent):
+                finish_moves(self.place)
+                now = list_content(self.place)
+                taken = {f.name for f in self.folder.iterdir()} & (now.others | now.folders)
+                if taken:
+                    self.taken, self.place = tuple(sorted(taken)), _free_beside(self.place)
+                    self.place.mkdir()
+                    now = Content()
+                place = self.place.resolve()
+                if not _replace(self.folder, place, now):
+                    with _filled(self.folder, _make_hidden_inside(place)) as fresh:
+                        move_all(fresh, place)
+        except OSError as error:
+            raise InputError(
+                f"cannot write folder {self.place}: {_reason(error)}; choose a folder with room and"
+                " permission"
+            ) from error
+
+
 @contextmanager
-def whole_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """A temporary folder whose files move to `path` when the block ends well; made when missing.
+def draft_of(path: str | os.PathLike[str]) -> Iterator[Draft]:
+    """A draft of the results of a folder, which is made when missing; it is saved when asked.
+
+    Args:
+        path: of the folder.
 
     Raises:
         InputError: the folder cannot be made or written to, or holds files of others. Where these
@@ -60,70 +124,170 @@ def whole_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
     """
     path = Path(path)
     refuse_foreign(path)
-    is_new = not path.exists()
+    made: list[Path] = []
     try:
-        path.mkdir(parents=True, exist_ok=True)
-        _remove_left_over(path)
-        draft = Path(mkdtemp(prefix=f"{_DRAFT}{os.getpid()}-", dir=path))
+        _make_folders(path, made)
+        folder = _make_hidden(path)
     except OSError as error:
-        raise InputError(f"cannot make folder {path}: {error.strerror}; choose another") from None
+        _remove_empty(made)
+        raise InputError(f"cannot make folder {path}: {_reason(error)}; choose another") from None
+    draft = Draft(folder, path)
     try:
         yield draft
-        new = sorted(file.name for file in draft.iterdir())
-        taken = [name for name in list_foreign(path) if name in new]
-        place = _free_beside(path) if taken else path
-        place.mkdir(exist_ok=True)
-        for name in new:
-            (draft / name).replace(place / name)
-        _add_made(place, new)
+    except InputError as error:  # a file that cannot be written has the name that is known
+        if str(folder) not in str(error):
+            raise
+        raise InputError(str(error).replace(str(folder), str(draft.place))) from error.__cause__
     finally:
-        rmtree(draft, ignore_errors=True)
-        if is_new and not any(path.iterdir()):
-            path.rmdir()
-    if taken:
+        rmtree(folder, ignore_errors=True)
+        _remove_empty(made)
+    if draft.taken:
         raise InputError(
-            f"{', '.join(taken[:_SHOWN])} came into {path} or changed there while the program ran;"
-            f" nothing of it was replaced, and the results are in {place}"
+            f"{', '.join(draft.taken[:_SHOWN])} came into {path} or changed there while the program"
+            f" ran; nothing of it was replaced, and the results are in {draft.place}"
         )
 
 
-def _read_made(folder: Path) -> dict[str, str]:
+@contextmanager
+def whole_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """A temporary folder whose files are saved in `path` when the block ends well.
+
+    Args:
+        path: of a folder, which is made when missing.
+
+    Raises:
+        InputError: as of `draft_of` and `Draft.save`.
+    """
+    with draft_of(path) as draft:
+        yield draft.folder
+        draft.save()
+
+
+def try_folder(path: Path) -> None:
+    """Refuse a folder in which no results can be saved, by writing a file for it and removing it.
+
+    Raises:
+        InputError: the folder cannot be made, read or written, or holds files of others.
+    """
+    with draft_of(path) as draft:
+        try:
+            file = draft.folder / "result.json"
+            file.write_bytes(bytes(_TRIED))
+            to_disk(file)
+        except OSError as error:
+            raise InputError(
+                f"cannot write folder {path}: {_reason(error)}; choose a folder with room and"
+                " permission"
+            ) from error
+
+
+def _replace(draft: Path, place: Path, now: Content) -> bool:
+    """Put a copy of a draft in the place of a folder in one step; False where this cannot be."""
+    if now.folders or _stands_in(place):
+        return False  # folders cannot be in two places until the step is done
     try:
-        made = json.loads((folder / MADE).read_text(encoding="utf-8"))["files"]
-        return {str(name): str(digest) for name, digest in made.items()}
-    except (OSError, ValueError, TypeError, KeyError, AttributeError):
-        return {}  # then nothing is known to be ours
+        with _filled(draft, _make_hidden_beside(place)) as fresh:
+            for name in now.others:
+                os.link(place / name, fresh / name, follow_symlinks=False)
+            make_alike(fresh, place)
+            to_disk(fresh)
+            if now == Content():
+                fresh.replace(place)  # which every file system knows, where the old one is empty
+            else:
+                exchange(fresh, place)
+                if not _is_still(now, fresh, place):
+                    exchange(fresh, place)
+                    return False
+    except OSError as error:
+        if error.errno in IMPOSSIBLE:
+            return False
+        raise
+    with suppress(OSError):  # all is in its place, and the disk will know it a little later
+        to_disk(place.parent)
+    return True
 
 
-def _add_made(folder: Path, names: list[str]) -> None:
-    made = {**_read_made(folder), **{name: _digest(folder / name) for name in names}}
-    kept = {name: digest for name, digest in sorted(made.items()) if (folder / name).is_file()}
-    write_text(folder / MADE, json.dumps({"files": kept}, indent=1) + "\n")
-
-
-def _digest(file: Path) -> str:
+def _is_still(now: Content, old: Path, new: Path) -> bool:
+    """Whether nobody has put or changed a file in the old folder while it was replaced."""
     try:
-        with file.open("rb") as stream:
-            return file_digest(stream, "sha256").hexdigest()
+        same = list_content(old) == now
+        return same and all(os.path.samestat((old / n).lstat(), (new / n).lstat())
+                            for n in now.others)  # fmt: skip
     except OSError:
-        return ""  # what cannot be read is not ours
+        return False
 
 
-def _free_beside(path: Path) -> Path:
-    """The first of path-2, path-3, … that is not there."""
-    number = 2
-    while path.with_name(f"{path.name}-{number}").exists():
-        number += 1
-    return path.with_name(f"{path.name}-{number}")
+def _stands_in(folder: Path) -> bool:
+    """Whether this program stands in the folder, as does the shell from which it was called."""
+    try:
+        return Path.cwd().is_relative_to(folder)
+    except OSError:  # where it stands is no more
+        return False
 
 
-def _remove_left_over(folder: Path) -> None:
-    """Remove the drafts of programs that were killed, and of no other program that still runs."""
-    for draft in folder.glob(f"{_DRAFT}*"):
+@contextmanager
+def _filled(draft: Path, fresh: Path) -> Iterator[Path]:
+    """A hidden folder with the files of a draft and their record; what is left of it goes."""
+    try:
+        for file in draft.iterdir():
+            try:
+                os.link(file, fresh / file.name)
+            except OSError as error:
+                if error.errno not in IMPOSSIBLE:
+                    raise
+                shutil.copy2(file, fresh / file.name)
+        write_made(fresh)
+        yield fresh
+    finally:
+        rmtree(fresh, ignore_errors=True)
+
+
+def _make_hidden(path: Path) -> Path:
+    """Make a hidden folder for a draft, and remove those that are left of programs."""
+    path = path.resolve()
+    for draft in _drafts(path, path.parent):
         number = draft.name.removeprefix(_DRAFT).partition("-")[0]
         known = number.isdigit() and os.name == "posix"
         if not _is_running(int(number)) if known else time.time() - draft.stat().st_mtime > _OLD:
             rmtree(draft, ignore_errors=True)
+    inside = _make_hidden_inside(path)  # the folder itself must be writable, not only its parent
+    try:
+        beside = _make_hidden_beside(path)
+    except OSError as error:
+        if error.errno in IMPOSSIBLE:
+            return inside
+        rmtree(inside, ignore_errors=True)
+        raise
+    rmtree(inside, ignore_errors=True)
+    return beside
+
+
+def _make_hidden_beside(path: Path) -> Path:
+    folder = path.parent / f"{_DRAFT}{os.getpid()}-{uuid4().hex[:8]}-{_tail(path)}"
+    folder.mkdir()
+    return folder
+
+
+def _make_hidden_inside(path: Path) -> Path:
+    folder = path / f"{_DRAFT}{os.getpid()}-{uuid4().hex[:8]}"
+    folder.mkdir()
+    return folder
+
+
+def _tail(path: Path) -> str:
+    return os.fsdecode(os.fsencode(path.name)[-_TAIL:])
+
+
+def _drafts(path: Path, parent: Path) -> list[Path]:
+    """The drafts of results of a folder, those of programs that still run among them."""
+    found = [each for each in path.iterdir() if each.name.startswith(_DRAFT)]
+    with suppress(OSError):  # what is above may be written and not read
+        found += [
+            each
+            for each in parent.iterdir()
+            if each.name.startswith(_DRAFT) and each.name.endswith(f"-{_tail(path)}")
+        ]
+    return found
 
 
 def _is_running(process: int) -> bool:
@@ -134,3 +298,34 @@ def _is_running(process: int) -> bool:
     except (PermissionError, OverflowError):
         return True
     return True
+
+
+def _make_folders(path: Path, made: list[Path]) -> None:
+    """Make a folder and those above it; lists those that were not there."""
+    missing = [each for each in (path, *path.parents) if not each.exists()]
+    for each in reversed(missing):
+        with suppress(FileExistsError):
+            each.mkdir()
+            made.append(each)
+    if not path.is_dir():
+        raise NotADirectoryError(20, os.strerror(20))
+
+
+def _remove_empty(made: list[Path]) -> None:
+    """Remove folders that were made and stayed empty."""
+    for each in reversed(made):
+        with suppress(OSError):
+            each.rmdir()
+
+
+def _free_beside(path: Path) -> Path:
+    """The first of path-2, path-3, … that is not there."""
+    path = path if path.name.strip(".") else path.resolve()
+    number = 2
+    while path.with_name(f"{path.name}-{number}").exists():
+        number += 1
+    return path.with_name(f"{path.name}-{number}")
+
+
+def _reason(error: OSError) -> str:
+    return error.strerror or type(error).__name__

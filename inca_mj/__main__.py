@@ -22,7 +22,7 @@ def program() -> int:
     code = main()
     from identification.commands.stopping import at_end
 
-    at_end()
+    at_end(code)
     return code
 
 

@@ -5,12 +5,16 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field, is_dataclass
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import tyro
+
+if TYPE_CHECKING:
+    from identification.folders import Draft
 
 
 @dataclass(frozen=True)
@@ -75,38 +79,46 @@ def conclude(
     record: Mapping[str, Any],
     text: str,
     keep: Callable[[Path], object] | None = None,
+    draw: Callable[[Path], object] | None = None,
 ) -> None:
-    """Keep the results in the folder that was asked for, whole or not at all, and say them.
+    """Save the results in the folder that was asked for, say them, then draw.
 
-    They are said even where they cannot be kept: a full disk must not cost what took minutes.
+    They are said even where they cannot be saved: a full disk must not cost what took minutes.
+    They are saved before anything is drawn, so that an interrupt or an error costs the drawings.
 
     Args:
         command: with its `output`; its fields are the configuration that result.json tells.
         record: the results as plain values: result.json, and what `--json` prints.
         text: what is printed without `--json`.
-        keep: writes more files into the folder: figures, the report, a model.
+        keep: writes more results into a folder: logs, a model.
+        draw: writes figures and the report into a folder.
 
     Raises:
         InputError: the folder cannot be written.
     """
-    from identification.folders import whole_folder
+    from identification.folders import draft_of
 
     output: Output = command.output
-    try:
-        if output.out is not None:
-            with whole_folder(output.out) as out:
-                write_result(out / "result.json", command, record)
+    with ExitStack() as stack:
+        draft = None
+        try:
+            if output.out is not None:
+                draft = stack.enter_context(draft_of(output.out))
+                write_result(draft.folder / "result.json", command, record)
                 if keep is not None:
-                    keep_if_possible("figures and report", partial(keep, out))
-    finally:
-        if output.json:
-            say_json(record)
-        else:
-            say(text)
+                    keep_if_possible("data and model", partial(keep, draft.folder))
+                draft.save()
+        finally:
+            if output.json:
+                say_json(record)
+            else:
+                say(text)
+        if draft is not None and draw is not None:
+            add_drawings(draft, "figures and report", partial(draw, draft.folder))
 
 
 def keep_if_possible(what: str, write: Callable[[], object]) -> bool:
-    """Write more than the results, or say in one sentence why not: what was found is kept.
+    """Write more than result.json, or say in one sentence why not: what was found is kept.
 
     Args:
         what: is written.
@@ -114,18 +126,46 @@ def keep_if_possible(what: str, write: Callable[[], object]) -> bool:
 
     Raises:
         InputError: the folder cannot be written.
+        OSError: as for `InputError`, from a library.
     """
     from identification.errors import InputError
 
     try:
         write()
-    except InputError:
+    except (InputError, OSError):
         raise
-    except Exception as error:  # a drawing must not cost what took minutes to find
-        reason = (str(error).strip() or type(error).__name__).splitlines()[0]
-        note(f"no {what}: {reason}; the results are kept without")
+    except Exception as error:  # nothing else may cost what took minutes to find
+        _note_without(what, error)
         return False
     return True
+
+
+def add_drawings(draft: Draft, what: str, write: Callable[[], object]) -> bool:
+    """Add drawings to results that were saved; an error or Ctrl-C costs the drawings only.
+
+    Args:
+        draft: of the results.
+        what: is drawn, such as "figures and report".
+        write: writes it into the folder of the draft.
+
+    Returns:
+        Whether it was added.
+    """
+    from identification.commands.stopping import leaving_out
+
+    try:
+        with leaving_out(f"left out: {what}; the results are kept in {draft.place}"):
+            write()
+            draft.save()
+    except Exception as error:  # a full disk, too: what was saved before is whole
+        _note_without(what, error)
+        return False
+    return True
+
+
+def _note_without(what: str, error: Exception) -> None:
+    reason = (str(error).strip() or type(error).__name__).splitlines()[0]
+    note(f"no {what}: {reason}; the results are kept without")
 
 
 def _version(package: str) -> str:

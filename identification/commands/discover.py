@@ -11,12 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from identification.commands.common import (
-    keep_if_possible,
-    say,
-    say_json,
-    write_result,
-)
+from identification.commands.common import conclude
 from identification.commands.robots import OnRobot
 
 if TYPE_CHECKING:
@@ -44,7 +39,6 @@ class Discover(OnRobot):
         options = None if self.options is None else read_options(self.options)
         robot = self.read()  # before the imports that are slow: a wrong file is refused at once
         from identification.discovery.final_values import collect_final_values
-        from identification.folders import whole_folder
         from identification.prediction.result import RecordsDiscovery
         from identification.report.discovery_json import discovery_to_json
         from identification.report.discovery_report import write_discovery_report
@@ -63,30 +57,24 @@ class Discover(OnRobot):
         told = [*doubtful(robot), *map(str, (*pairs, *repeated))]
         record: dict[str, Any] = _with_repetitions(discovery_to_json(found), repeated)
         record = {**record, "confirm": [vars(c) for c in pairs], "remarks": list(robot.remarks)}
-        if self.output.json:
-            say_json(record)
-        else:
-            say("\n".join([discovery_text(found), *told]))
-        if self.output.out is not None:
-            with whole_folder(self.output.out) as out:
-                has = {
-                    n
-                    for named in found.named
-                    for n in (*named.candidate.sizes, *named.candidate.fixed)
-                }
-                values = {
-                    n: v
-                    for n, v in collect_final_values(found).items()
-                    if n in (*robot.file.free, *has)
-                }
-                write_robot(robot, values, out / "robot.toml", self.output.out)
-                write_result(out / "result.json", self, record)
-                self._draw(partial(write_discovery_report, found, out, sentences=told))
+
+        def keep(out: Path) -> None:
+            has = {
+                n for named in found.named for n in (*named.candidate.sizes, *named.candidate.fixed)
+            }
+            values = {
+                n: v
+                for n, v in collect_final_values(found).items()
+                if n in (*robot.file.free, *has)
+            }
+            write_robot(robot, values, out / "robot.toml", self.output.out or out)
+
+        draw = self._timed(partial(write_discovery_report, found, sentences=told))
+        conclude(self, record, "\n".join([discovery_text(found), *told]), keep, draw)
         return 0
 
     def _keep_records(self, robot: Robot, found: RecordsDiscovery) -> int:
         """Say and keep a discovery on several records."""
-        from identification.folders import whole_folder
         from identification.report.records_json import records_to_json
         from identification.report.records_report import write_records_report
         from identification.report.records_text import records_text
@@ -98,27 +86,28 @@ class Discover(OnRobot):
         told = [*doubtful(robot), *map(str, repeated)]
         record = _with_repetitions(records_to_json(found), repeated)
         record["remarks"] = list(robot.remarks)
-        if self.output.json:
-            say_json(record)
-        else:
-            say("\n".join([records_text(found), *told]))
-        if self.output.out is not None:
-            with whole_folder(self.output.out) as out:
-                values, own = found.final.values, found.final.own_values
-                write_robot(robot, values, out / "robot.toml", self.output.out, own_values=own)
-                write_result(out / "result.json", self, record)
-                self._draw(partial(write_records_report, found, out, told))
+
+        def keep(out: Path) -> None:
+            values, own = found.final.values, found.final.own_values
+            place = self.output.out or out
+            write_robot(robot, values, out / "robot.toml", place, own_values=own)
+
+        draw = self._timed(partial(write_records_report, found, sentences=told))
+        conclude(self, record, "\n".join([records_text(found), *told]), keep, draw)
         return 0
 
-    def _draw(self, write: Callable[[], object]) -> None:
-        """Draw figures and report, and say how long it took."""
+    def _timed(self, draw: Callable[..., object]) -> Callable[[Path], None]:
+        """Returns what draws figures and report into a folder, and says how long it took."""
         from identification.progress import duration
 
-        self.output.tell("drawing the report")
-        begun = time.monotonic()
-        keep_if_possible("figures and report", write)
-        drawn = duration(time.monotonic() - begun)
-        self.output.tell(f"report and figures took {drawn}, beside the search")
+        def timed(out: Path) -> None:
+            self.output.tell("drawing the report")
+            begun = time.monotonic()
+            draw(folder=out)
+            drawn = duration(time.monotonic() - begun)
+            self.output.tell(f"report and figures took {drawn}, beside the search")
+
+        return timed
 
 
 def _with_repetitions(record: dict[str, Any], repeated: Sequence[Repetition]) -> dict[str, Any]:

@@ -67,7 +67,8 @@ class Linearize:
         }
         units = {} if log is None else log.units
         text = "\n".join(said(s, label) for s, label in zip(systems, labels, strict=True))
-        conclude(self, record, text, partial(keep, systems, labels, rate, units))
+        keep = partial(save_systems, systems, rate)
+        conclude(self, record, text, keep, partial(draw, systems, labels, rate, units))
         return 0
 
 
@@ -83,20 +84,19 @@ def said(system: LinearSystem, label: str) -> str:
     )  # fmt: skip
 
 
-def keep(
+def draw(
     systems: Sequence[LinearSystem],
     labels: Sequence[str],
     rate: float | None,
     units: Mapping[str, str],
     out: Path,
 ) -> None:
-    """Write the systems for Python and MATLAB, figures and the one-file report into a folder."""
+    """Write figures and the one-file report of the systems into a folder."""
     from identification.linear.modes import modes
     from identification.report.linear_sections import linear_sections, slowest_and_fastest
     from identification.report.page import save_figures, write_report
 
     sections = linear_sections(systems, labels, rate, units)
-    save_systems(systems, rate, out)
     save_figures(sections, out)
     verdict = [slowest_and_fastest(modes(systems[0]))]
     write_report(out / "report.html", "The linear model", verdict, sections)

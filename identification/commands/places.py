@@ -5,8 +5,8 @@ Nothing that a user made is replaced: neither an input of the command nor anothe
 
 from __future__ import annotations
 
+import errno
 import os
-import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from itertools import pairwise
@@ -29,43 +29,42 @@ def refuse_empty(arguments: Sequence[str]) -> None:
 
 
 def refuse_place(command: Any) -> None:
-    """Refuse a folder for the results that cannot be made, or that holds files of others.
+    """Refuse a folder for the results that cannot be written, or that holds files of others.
 
     Args:
         command: with its fields; without an `output` nothing is written.
 
     Raises:
-        InputError: the folder, or what is above it, is a file or cannot be written; an input of the
-            command lies in it; or another file that the program did not make there.
+        InputError: the folder, or what is above it, is a file or cannot be read or written; an
+            input of the command is it or lies in it; or another file lies there that the program
+            did not make.
     """
     from identification.errors import InputError
-    from identification.folders import refuse_foreign
+    from identification.folders import try_folder
 
     output = getattr(command, "output", None)
     out = output.out if isinstance(output, Output) else None
     if out is None:
         return
-    there = next(p for p in (out, *out.absolute().parents) if p.exists())
-    if not there.is_dir():
+    try:
+        there = next(p for p in (out, *out.absolute().parents) if p.exists())
+        is_folder, real = there.is_dir(), out.resolve()
+    except (OSError, RuntimeError) as error:  # a name that is too long, a loop of links
+        reason = error.strerror if isinstance(error, OSError) else os.strerror(errno.ELOOP)
+        raise InputError(f"cannot make folder {out}: {reason}; choose another") from error
+    if not is_folder:
         raise InputError(f"cannot make folder {out}: {there} is a file; choose another")
-    try:  # permissions do not tell it of every file system
-        os.rmdir(tempfile.mkdtemp(prefix=".inca-", dir=there))
-    except OSError as error:
-        raise InputError(
-            f"cannot make folder {out}: {there} cannot be written ({error.strerror}); choose"
-            " another"
-        ) from error
     for path in _inputs(command):
-        if path.parent.resolve() == out.resolve():
+        if (path if path.is_dir() else path.parent).resolve() == real:
             raise InputError(
                 f"{path} is read by this command and lies in {out}, the folder for its results;"
                 " give --out another folder"
             )
-    refuse_foreign(out)
+    try_folder(out)
 
 
 def _inputs(value: Any) -> Iterator[Path]:
-    """The files that a command's fields name."""
+    """The files and folders that a command's fields name."""
     from identification.files import is_file
 
     if isinstance(value, Output):
@@ -76,5 +75,7 @@ def _inputs(value: Any) -> Iterator[Path]:
     elif isinstance(value, tuple | list):
         for each in value:
             yield from _inputs(each)
+    elif isinstance(value, Path) and os.path.isdir(value):
+        yield value
     elif isinstance(value, Path | str) and is_file(Path(value)):
         yield Path(value)

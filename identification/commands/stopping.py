@@ -4,7 +4,8 @@ Python notices an interrupt between two of its own steps only, and not within a 
 compilation. So the signal also wakes a thread (`signal.set_wakeup_fd`), which says that the program
 stops. Where the program has not ended after `GRACE`, be it within native code or waiting for a
 thread of its own, the thread ends it; so does a second Ctrl-C. What was half-written then lies in
-drafts, which no reader takes for results and the next run removes.
+drafts, which no reader takes for results and the next run removes. What is drawn after the results
+were saved may be left out (`leaving_out`).
 """
 
 from __future__ import annotations
@@ -12,12 +13,15 @@ from __future__ import annotations
 import os
 import select
 import signal
+import sys
 import threading
 import time
+from collections import deque
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 
+_LEFT_OUT: deque[str] = deque()  # the sentence for an interrupt in what may be left out
 GRACE = 1.5  # [s] for native code to return, and to keep what is worth keeping
 STOPPED = 130  # exit code, as a shell gives it
 
@@ -57,15 +61,44 @@ def stoppable(name: str) -> Iterator[None]:
         watch.join(GRACE)
 
 
-def at_end() -> None:
+@contextmanager
+def leaving_out(sentence: str) -> Iterator[None]:
+    """Say on Ctrl-C in the block, once, what it leaves out and where the rest is.
+
+    Args:
+        sentence: says so.
+    """
+    _LEFT_OUT.append(sentence)
+    try:
+        yield
+    except KeyboardInterrupt:
+        with suppress(IndexError, OSError):  # unless the thread has said it
+            sys.stderr.write(f"{_LEFT_OUT.pop()}\n")
+            sys.stderr.flush()
+        raise
+    finally:
+        _LEFT_OUT.clear()
+
+
+def at_end(code: int = 0) -> None:
     """Make an interrupt change nothing, once all is done and only the process has to end.
+
+    A process that was stopped ends here. Python would free first what it holds, and contexts of
+    OpenGL take seconds in which no other thread runs.
 
     Python ends by the signal itself, whatever the exit code, where an interrupt came while it ran
     a text as code, as each dataclass does that is imported: it remembers this until it runs a text
     again (`unhandled_keyboard_interrupt` in CPython).
+
+    Args:
+        code: the exit code of the process.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     exec("")
+    if code == STOPPED:
+        with suppress(OSError, ValueError, AttributeError):  # stdout is full, closed or none
+            sys.stdout.flush()
+        os._exit(code)
 
 
 def _watch(name: str, read: int) -> None:
@@ -84,4 +117,6 @@ def _watch(name: str, read: int) -> None:
             os._exit(STOPPED)
         end = time.monotonic() + GRACE
         os.write(2, f"{name}: stopping …\n".encode())
+        with suppress(IndexError):
+            os.write(2, f"{_LEFT_OUT.pop()}\n".encode())
     os.close(read)

@@ -95,7 +95,7 @@ class SweepCommand:
         found = summarise(sweep, store.rows())
         record = {**found.record, "path": str(path)}
         text = "\n".join([*found.sentences, f"The records are in {path}."])
-        conclude(kept, record, text, partial(_write, sweep, found))
+        conclude(kept, record, text, draw=partial(_draw, sweep, found))
         if found.record["failed"] == found.record["records"]:
             note("every task met an error; the column error of the records tells which")
             return 1
@@ -116,7 +116,7 @@ def _options(words: Sequence[str]) -> dict[str, str]:
     return dict(word.split("=", 1) for word in words)
 
 
-def _write(sweep: Sweep, found: Summary, out: Path) -> None:
+def _draw(sweep: Sweep, found: Summary, out: Path) -> None:
     from identification.report.page import save_figures, write_report
 
     save_figures(found.sections, out)

@@ -48,6 +48,7 @@ def write_discovery_report(
     sentences: Sequence[str] = (),
     sections: Sequence[Section] = (),
     files: str = "",
+    pictures: bool = True,
 ) -> Path:
     """Write report.html and its figures into a folder; returns the path of the page.
 
@@ -57,6 +58,7 @@ def write_discovery_report(
         sentences: that follow the verdict.
         sections: that follow those of every report of a discovery.
         files: a sentence that says where the model with the named effects is.
+        pictures: whether the figures are written as PNG, too.
 
     Raises:
         InputError: a file cannot be written.
@@ -64,7 +66,8 @@ def write_discovery_report(
     shown = [*discovery_sections(found, files), *sections]
     if all(section.video is None for section in shown):  # the law stands where a film would
         shown = [replace(s, first=s.first or s.title == LAWS) for s in shown]
-    save_figures(shown, folder)
+    if pictures:
+        save_figures(shown, folder)
     return write_report(
         folder / "report.html",
         f"{found.log.name}: what the model lacks",

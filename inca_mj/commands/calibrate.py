@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -78,7 +79,8 @@ class Calibrate:
             progress=self.output.tell,
             trust=flat(self.trust),
         )
-        conclude(self, calibration_json(found), text(found), lambda out: keep(found, out))
+        record = calibration_json(found)
+        conclude(self, record, text(found), partial(keep, found), partial(draw, found))
         return 0
 
 
@@ -98,16 +100,21 @@ def text(found: Calibration) -> str:
 
 
 def keep(found: Calibration, out: Path) -> None:
-    """Write the twin, its geometry, figures and the report into a folder."""
-    from identification.report.page import Section, Table, write_report
-    from identification.report.style import save_png
-    from inca_mj.report import calibration as told
-    from inca_mj.report.calibration_figures import drives_figure, points_figure
+    """Write the twin and its geometry into a folder."""
     from inca_mj.robot.geometry import write_geometry
     from inca_mj.twin.saved import save_twin
 
     save_twin(found.robot, out)
     write_geometry(found.robot.geometry, out / "geometry.toml")
+
+
+def draw(found: Calibration, out: Path) -> None:
+    """Write figures and the report into a folder."""
+    from identification.report.page import Section, Table, write_report
+    from identification.report.style import save_png
+    from inca_mj.report import calibration as told
+    from inca_mj.report.calibration_figures import drives_figure, points_figure
+
     figures = {f"{point}_points": points_figure(found, point) for point in found.spread.points}
     if found.spread.drives:
         figures["drives"] = drives_figure(found)

@@ -45,7 +45,9 @@ class Compare:
         result = compare_with(
             self.robot, read_inca_log(self.log, flat(self.trust)), flat(self.trust)
         )
-        conclude(self, result.to_json(), summary(result), partial(keep, result))
+        conclude(
+            self, result.to_json(), summary(result), partial(keep, result), partial(draw, result)
+        )
         if self.output.out is not None:
             note(f"figure, report, model and result.json are in {self.output.out}")
         return 0
@@ -91,15 +93,20 @@ def summary(result: Comparison) -> str:
 
 
 def keep(result: Comparison, out: Path) -> None:
-    """Write the figure, the one-file report, the model and the run into a folder."""
+    """Write the model and the run into a folder."""
+    from inca_mj.twin.run import save_run
+
+    result.run.twin.save(out / "model.xml")
+    save_run(result.run, out / "run.npz")
+
+
+def draw(result: Comparison, out: Path) -> None:
+    """Write the figure and the one-file report into a folder."""
     from identification.report.page import save_figures, write_report
     from inca_mj.report.sections import compare_section, compare_verdict, model_section
-    from inca_mj.twin.run import save_run
 
     sections = [compare_section(result), model_section(result.run.twin)]
     save_figures(sections, out)
-    result.run.twin.save(out / "model.xml")
-    save_run(result.run, out / "run.npz")
     write_report(
         out / "report.html",
         f"{result.log.name}: measured against simulated",

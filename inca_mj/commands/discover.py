@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,8 +14,8 @@ import tyro
 
 from identification.commands.common import (
     Output,
+    add_drawings,
     flat,
-    keep_if_possible,
     note,
     output_field,
     say,
@@ -24,9 +26,12 @@ from inca_mj.commands.common import Trust, Values, cannot_draw, do_not_draw, val
 
 if TYPE_CHECKING:
     from identification.discovery.result import Discovery
+    from identification.folders import Draft
     from identification.report.page import Section
     from inca_mj.twin.twin import Twin
 
+ORDER = ("report", "model", "effects", "film")  # in which files are named
+LEAVE_OUT = "Ctrl-C leaves it out, and so does --no-film"
 FILES = "The model with it is in model.xml and effects.json; inca_mj.load_twin reads them."
 
 
@@ -67,6 +72,7 @@ class Discover:
             do_not_draw()
         from identification.discovery.options import read_options
         from identification.errors import InputError
+        from identification.folders import draft_of
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.discovery import discover
         from inca_mj.workflows.spread import spread_of
@@ -96,30 +102,40 @@ class Discover:
         if not self.output.json:
             say(discovery_text(found))
         files: dict[str, Path] = {}
-        try:
-            files = self._keep(found, blind)
-        finally:  # what was found is said even where it cannot be kept
-            if self.output.json:
-                say_json(as_json(found, files.get("model")))
-        if files and not self.output.json:
-            say("\n" + "\n".join(f"{what + ':':<8} {path}" for what, path in files.items()))
+        with ExitStack() as stack:
+            draft = None
+            try:  # what was found is said even where it cannot be saved
+                if self.output.out is not None:
+                    draft = stack.enter_context(draft_of(self.output.out))
+                    files = keep(found, draft.folder, self)
+                    draft.save()
+            finally:
+                if self.output.json:
+                    model = draft.place / files["model"] if draft and files else None
+                    say_json(as_json(found, model))
+            if draft is not None:
+                self._draw(found, draft, files, blind)
+                if not self.output.json:
+                    lines = [f"{w + ':':<8} {draft.place / files[w]}" for w in ORDER if w in files]
+                    say("\n" + "\n".join(lines))
         return 0
 
-    def _keep(self, found: Discovery, blind: str) -> dict[str, Path]:
-        """Keep the results in the folder that was asked for; the paths by kind."""
-        from identification.folders import whole_folder
+    def _draw(self, found: Discovery, draft: Draft, files: dict[str, Path], blind: str) -> None:
+        """Add figures and the report to the saved results, and then the film; adds their names."""
         from identification.progress import duration
 
-        if (out := self.output.out) is None:
-            return {}
-        begun = time.monotonic()
+        begun, tell = time.monotonic(), self.output.tell
+        tell("drawing the report")
+        if not add_drawings(draft, "figures and report", partial(draw, found, draft.folder)):
+            return
+        files["report"] = Path("report.html")
+        drawn = duration(time.monotonic() - begun)
+        tell(f"report and figures took {drawn}, beside the search")
         if blind:
             note(f"no film: {blind}")
-        with whole_folder(out) as draft:
-            files = keep(found, draft, self, film=self.film and not blind)
-        drawn = duration(time.monotonic() - begun)
-        self.output.tell(f"report, figures and film took {drawn}, beside the search")
-        return {what: out / path.name for what, path in files.items()}
+        elif self.film and add_drawings(draft, "film", partial(film, found, draft.folder, tell)):
+            files["film"] = Path("film.mp4")
+            tell(f"the film took {duration(time.monotonic() - begun)}")
 
 
 def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
@@ -129,28 +145,33 @@ def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
     return {**discovery_to_json(found), "model": None if model is None else str(model)}
 
 
-def keep(found: Discovery, out: Path, command: Any, *, film: bool) -> dict[str, Path]:
-    """Write report, figures, model, effects, result and film into a folder; the paths by kind."""
-    from identification.report.discovery_report import write_discovery_report
-    from inca_mj.report.sections import model_section
+def keep(found: Discovery, out: Path, command: Any) -> dict[str, Path]:
+    """Write model, effects and result into a folder; returns their names by kind."""
     from inca_mj.twin.saved import save_twin
     from inca_mj.workflows.discovery_model import named_twin
 
-    robot = named_twin(found)
-    model, effects = save_twin(robot, out)
-    write_result(out / "result.json", command, as_json(found, Path(model.name)))
-    files = {"model": model, "effects": effects}
+    model, effects = (Path(path.name) for path in save_twin(named_twin(found), out))
+    write_result(out / "result.json", command, as_json(found, model))
+    return {"model": model, "effects": effects}
 
-    def draw() -> None:
-        command.output.tell("drawing the report")
-        drawn = _film(found, out, command.output.tell) if film else None
-        more = [*([drawn[1]] if drawn else []), model_section(_without_zeros(robot))]
-        files.update({"film": drawn[0]} if drawn else {})
-        files["report"] = write_discovery_report(found, out, sections=more, files=FILES)
 
-    keep_if_possible("figures and report", draw)
-    order = ("report", "model", "effects", "film")
-    return {what: files[what] for what in order if what in files}
+def draw(found: Discovery, out: Path, film: Sequence[Section] = ()) -> None:
+    """Write figures and report into a folder; with the section of a film the report alone."""
+    from identification.report.discovery_report import write_discovery_report
+    from inca_mj.report.sections import model_section
+    from inca_mj.workflows.discovery_model import named_twin
+
+    more = [*film, model_section(_without_zeros(named_twin(found)))]
+    write_discovery_report(found, out, sections=more, files=FILES, pictures=not film)
+
+
+def film(found: Discovery, out: Path, tell: Callable[[str], None]) -> None:
+    """Write the film into a folder, and the report anew, with the film in it."""
+    from inca_mj.commands.film_progress import FilmProgress
+    from inca_mj.commands.filmed import FPS, film_discovery
+
+    _, section = film_discovery(found, out, FilmProgress(tell, FPS, hint=LEAVE_OUT))
+    draw(found, out, [section])
 
 
 def _without_zeros(robot: Twin) -> Twin:
@@ -159,16 +180,3 @@ def _without_zeros(robot: Twin) -> Twin:
 
     shown = tuple(p for p in robot.parameters if p.where != "effect" or p.value)
     return replace(robot, parameters=replace(robot.parameters, records=shown))
-
-
-def _film(found: Discovery, out: Path, tell: Callable[[str], None]) -> tuple[Path, Section] | None:
-    """The film and its section; None, and a sentence, where it cannot be drawn."""
-    from identification.errors import DivergenceError, GraphicsError, InputError
-    from inca_mj.commands.film_progress import FilmProgress
-    from inca_mj.commands.filmed import FPS, film_discovery
-
-    try:
-        return film_discovery(found, out, FilmProgress(tell, FPS))
-    except (DivergenceError, GraphicsError, InputError) as error:
-        note(f"no film: {error}")
-        return None

@@ -87,7 +87,7 @@ class Excite:
         said = [summary(result), *design_verdict(result)]
         if self.output.out is not None:
             said.append(f"inca simulate --input {self.output.out / 'excite.csv'} replays it")
-        conclude(self, record, "\n".join(said), partial(keep, result))
+        conclude(self, record, "\n".join(said), partial(keep, result), partial(draw, result))
         return 0
 
 
@@ -106,15 +106,20 @@ def summary(result: Design) -> str:
 
 
 def keep(result: Design, out: Path) -> None:
-    """Write the input as a log that the twin replays, and the report with its figures."""
+    """Write the input as a log that the twin replays."""
     from identification import write_log
-    from identification.report.page import save_figures, write_report
-    from inca_mj.report.sections import run_section
-    from inca_mj.report.sections_information import design_section, design_verdict
     from inca_mj.twin.logs import run_to_log
 
     notes = f"designed by inca excite: {result.best.name}, simulated"
     write_log(run_to_log(result.best.run, "excite", notes), out / "excite.csv")
+
+
+def draw(result: Design, out: Path) -> None:
+    """Write figures and the report into a folder."""
+    from identification.report.page import save_figures, write_report
+    from inca_mj.report.sections import run_section
+    from inca_mj.report.sections_information import design_section, design_verdict
+
     sections = [design_section(result), run_section(result.best.run)]
     save_figures(sections, out)
     write_report(out / "report.html", "An input to identify with", design_verdict(result), sections)

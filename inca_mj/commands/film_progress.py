@@ -23,12 +23,14 @@ class FilmProgress:
         fps: frames per second of the film.
         lines: whether it is told a line now and then; where stderr is a terminal, a bar says it.
         clock: the time [s].
+        hint: how to do without the film; told where it begins.
     """
 
     tell: Callable[[str], None]
     fps: float
     lines: bool = field(default_factory=lambda: not sys.stderr.isatty())
     clock: Callable[[], float] = time.monotonic
+    hint: str = ""
     _begun: float = 0.0
     _said: float = 0.0
     _is_promised: bool = False
@@ -43,7 +45,8 @@ class FilmProgress:
         now = self.clock()
         if done == 1:
             self._begun = self._said = now
-            self.tell(f"film: {frames} frames, {frames / self.fps:.3g} s of film")
+            more = f"; {self.hint}" if self.hint else ""
+            self.tell(f"film: {frames} frames, {frames / self.fps:.3g} s of film{more}")
             return
         left = (now - self._begun) / (done - 1) * (frames - done)
         if done == frames:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -12,13 +12,10 @@ import tyro
 
 from identification.commands.common import (
     Output,
+    conclude,
     flat,
-    keep_if_possible,
     output_field,
-    say,
-    say_json,
     table,
-    write_result,
 )
 from identification.commands.stopping import STOPPED
 from inca_mj.commands.common import Robot, Trust, do_not_draw, robot_field
@@ -26,6 +23,7 @@ from inca_mj.commands.common import Robot, Trust, do_not_draw, robot_field
 if TYPE_CHECKING:
     from identification.estimation.fit import Fit
     from identification.estimation.profiles import Profile
+    from inca_mj.workflows.comparison import Comparison
     from inca_mj.workflows.identification import Identification
 
 
@@ -71,28 +69,30 @@ class Identify:
         """Identify, say, keep."""
         do_not_draw()
         from identification.estimation.profiles import profile
-        from identification.folders import whole_folder
         from inca_mj.report.identification_json import identification_json, profile_sentence
 
         result = self._identify()
         profiles = [profile(result.fit_of(name), name) for name in self.profile]
         best = identification_json(result, profiles, self.seed)
-        if self.output.json:
-            say_json(best)
-        else:
-            for k, fit in enumerate(result.fits, 1):
-                say(f"step {k} of {len(result.fits)}\n{summary(result, fit)}\n")
-            for known in profiles:
-                say(profile_sentence(known))
-            if len(result.fits) > 1:
-                say(f"step {result.best + 1} predicts unseen data best.")
-        if self.output.out is not None:  # last: drawing can fail, or be stopped
-            with whole_folder(self.output.out) as out:
-                write_result(out / "result.json", self, best)
-                if not result.stopped:  # whoever stopped it does not wait for figures
-                    write = partial(keep, result, profiles, out, self.robot)
-                    keep_if_possible("figures and report", write)
-        return STOPPED if result.stopped else 0
+        steps = [
+            f"step {k} of {len(result.fits)}\n{summary(result, fit)}\n"
+            for k, fit in enumerate(result.fits, 1)
+        ]
+        said = [*steps, *map(profile_sentence, profiles)]
+        if len(result.fits) > 1:
+            said.append(f"step {result.best + 1} predicts unseen data best.")
+        if result.stopped:  # whoever stopped it does not wait for a model and figures
+            conclude(self, best, "\n".join(said))
+            return STOPPED
+        shown = cache(partial(compared, result, self.robot))
+        conclude(
+            self,
+            best,
+            "\n".join(said),
+            keep=lambda out: shown().run.twin.save(out / "model.xml"),
+            draw=lambda out: draw(result, profiles, shown(), out),
+        )
+        return 0
 
     def _identify(self) -> Identification:
         """What the options ask for.
@@ -186,20 +186,25 @@ def summary(result: Identification, fit: Fit) -> str:
     )
 
 
-def keep(result: Identification, profiles: Sequence[Profile], out: Path, robot: Robot) -> None:
-    """Write figures, the one-file report and the identified model into a folder."""
-    from identification.report.page import save_figures, write_report
-    from inca_mj.report.identification_json import identification_verdict
-    from inca_mj.report.sections import compare_section, model_section
-    from inca_mj.report.sections_fit import fit_section, profile_section
-    from inca_mj.report.sections_information import information_section
+def compared(result: Identification, robot: Robot) -> Comparison:
+    """Returns the log beside a run of the identified model."""
     from inca_mj.twin.judged import UNJUDGED
     from inca_mj.workflows.comparison import compare
 
     plant = result.fit.estimate.predictor.plant
     final = plant.parameters.with_values(result.values, "fitted to the log")
     place, step = robot.place(), robot.step
-    shown = compare(result.log, final, place, timestep=step, trust=UNJUDGED)  # judged before it
+    return compare(result.log, final, place, timestep=step, trust=UNJUDGED)  # judged before it
+
+
+def draw(result: Identification, profiles: Sequence[Profile], shown: Comparison, out: Path) -> None:
+    """Write figures and the one-file report into a folder."""
+    from identification.report.page import save_figures, write_report
+    from inca_mj.report.identification_json import identification_verdict
+    from inca_mj.report.sections import compare_section, model_section
+    from inca_mj.report.sections_fit import fit_section, profile_section
+    from inca_mj.report.sections_information import information_section
+
     about = (
         f"What {result.log.name} says of the parameters at their estimate, for white noise of the"
         " size of the noise floor."
@@ -211,7 +216,6 @@ def keep(result: Identification, profiles: Sequence[Profile], out: Path, robot: 
         compare_section(shown),
         model_section(shown.run.twin),
     ]
-    shown.run.twin.save(out / "model.xml")
     save_figures(sections, out)
     write_report(
         out / "report.html",

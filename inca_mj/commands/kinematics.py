@@ -91,12 +91,13 @@ class Kinematics:
         there = inverse(pose, place, Pulleys(self.pulley) if self.pulley else None)
         said = cables_verdict(there, place)
         text = "\n".join([table(*cables_rows(there)), jacobian_text(there), *said])
-        conclude(self, cables_json(pose, there), text, partial(keep_pose, pose, there, place, said))
+        draw = partial(draw_pose, pose, there, place, said)
+        conclude(self, cables_json(pose, there), text, draw=draw)
 
     def _along(self) -> None:
         from identification.errors import InputError
         from inca_mj.commands.assignments import assignments
-        from inca_mj.report.poses import poses_json, poses_verdict
+        from inca_mj.report.poses import poses_json, poses_verdict, write_poses
         from inca_mj.twin.logs import read_inca_log
         from inca_mj.workflows.poses import log_poses
 
@@ -112,7 +113,13 @@ class Kinematics:
             progress=self.output.tell,
         )
         text = "\n".join([log_text(found), *poses_verdict(found)])
-        conclude(self, poses_json(found), text, partial(keep_log, found))
+        conclude(
+            self,
+            poses_json(found),
+            text,
+            keep=lambda out: write_poses(found, out / "poses.csv"),
+            draw=partial(draw_log, found),
+        )
 
 
 def jacobian_text(cables: Cables) -> str:
@@ -135,7 +142,7 @@ def log_text(found: LogPoses) -> str:
     return table(("time [s]", *(f"{n} [{'m' if n in 'xyz' else 'rad'}]" for n in POSE)), rows)
 
 
-def keep_pose(
+def draw_pose(
     pose: np.ndarray, cables: Cables, geometry: Geometry, said: list[str], out: Path
 ) -> None:
     """Write the figure and the one-file report of a pose into a folder."""
@@ -147,12 +154,11 @@ def keep_pose(
     write_report(out / "report.html", "A pose and its cables", said, sections)
 
 
-def keep_log(found: LogPoses, out: Path) -> None:
-    """Write poses.csv, the figure and the one-file report of a log into a folder."""
+def draw_log(found: LogPoses, out: Path) -> None:
+    """Write the figure and the one-file report of a log into a folder."""
     from identification.report.page import save_figures, write_report
-    from inca_mj.report.poses import poses_section, poses_verdict, write_poses
+    from inca_mj.report.poses import poses_section, poses_verdict
 
-    write_poses(found, out / "poses.csv")
     sections = [poses_section(found)]
     save_figures(sections, out)
     write_report(

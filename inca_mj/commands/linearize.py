@@ -66,7 +66,9 @@ class Linearize:
             grid, errors, runs = self._grid(models[0], rate)
             record["grid"] = grid_to_json(grid, errors, runs)
             said += grid_sentences(errors, runs)
-        conclude(self, record, "\n".join(said), partial(keep, models, labels, rate, grid, said))
+        keep_all = partial(keep, models, rate, grid)
+        draw_all = partial(draw, models, labels, rate, said)
+        conclude(self, record, "\n".join(said), keep_all, draw_all)
         return 0
 
     def _refuse_unclear(self) -> None:
@@ -130,24 +132,28 @@ class Linearize:
         return grid, errors, (run_error(model.robot, grid, point, rate=rate),)
 
 
-def keep(
-    models: Sequence[LinearModel],
-    labels: Sequence[str],
-    rate: float,
-    grid: GriddedSystem | None,
-    said: Sequence[str],
-    out: Path,
-) -> None:
-    """Write the systems for Python and MATLAB, figures and the one-file report into a folder."""
+def keep(models: Sequence[LinearModel], rate: float, grid: GriddedSystem | None, out: Path) -> None:
+    """Write the systems for Python and MATLAB into a folder."""
     from identification.commands.linearize import save_systems
     from identification.linear.export import FORMATS
-    from identification.report.page import save_figures, write_report
-    from inca_mj.report.linear_sections import model_sections
 
     save_systems([m.system for m in models], rate, out)
     if grid is not None:
         for end in FORMATS:
             grid.save(out / f"grid{end}")
+
+
+def draw(
+    models: Sequence[LinearModel],
+    labels: Sequence[str],
+    rate: float,
+    said: Sequence[str],
+    out: Path,
+) -> None:
+    """Write figures and the one-file report into a folder."""
+    from identification.report.page import save_figures, write_report
+    from inca_mj.report.linear_sections import model_sections
+
     sections = model_sections(models, labels, rate)
     save_figures(sections, out)
     verdict = [line for line in said if "\n" not in line]

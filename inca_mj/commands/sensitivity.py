@@ -61,7 +61,7 @@ class Sensitivity:
         about = f"{what}, noise {trial.sigma:.3g} rad."
         record = {"noise": trial.sigma, **information_json(found)}
         text = "\n".join([summary(found), about, *information_verdict(found)])
-        conclude(self, record, text, partial(keep, found, about))
+        conclude(self, record, text, draw=partial(draw, found, about))
         return 0
 
 
@@ -74,7 +74,7 @@ def summary(found: Information) -> str:
     )
 
 
-def keep(found: Information, about: str, out: Path) -> None:
+def draw(found: Information, about: str, out: Path) -> None:
     """Write the figure and the one-file report into a folder."""
     from identification.report.page import save_figures, write_report
     from inca_mj.report.sections_information import information_section, information_verdict

@@ -85,7 +85,9 @@ class Simulate:
             files = "log.csv, run.npz, figures, model.xml and report.html are in"
         more = "" if is_drawn else "; --out DIR adds figures and a report"
         text = f"{_text(result)}\n{files} {now.output.out}{more}"
-        conclude(now, summary, text, partial(keep, result, now._notes(), is_drawn))
+        notes = now._notes()
+        drawn = partial(draw, result, notes) if is_drawn else None
+        conclude(now, summary, text, partial(keep, result, notes), drawn)
         return 0
 
     def _resolved(self) -> Simulate:
@@ -185,8 +187,8 @@ def _text(result: Run) -> str:
     )
 
 
-def keep(result: Run, notes: str, is_drawn: bool, out: Path) -> None:
-    """Write log, run and model into a folder, with figures and a report where they are drawn."""
+def keep(result: Run, notes: str, out: Path) -> None:
+    """Write log, run and model into a folder."""
     from identification import write_log
     from inca_mj.twin.logs import run_to_log
     from inca_mj.twin.run import save_run
@@ -194,8 +196,10 @@ def keep(result: Run, notes: str, is_drawn: bool, out: Path) -> None:
     write_log(run_to_log(result, notes=f"simulated by inca simulate: {notes}"), out / "log.csv")
     save_run(result, out / "run.npz")
     result.twin.save(out / "model.xml")
-    if not is_drawn:
-        return
+
+
+def draw(result: Run, notes: str, out: Path) -> None:
+    """Write figures and the report into a folder."""
     from identification.report.page import save_figures, write_report
     from inca_mj.report.sections import model_section, run_section
 

@@ -86,8 +86,8 @@ class Statics:
         if blind:
             note(f"no picture of the workspace: {blind}")
         text = "\n".join([summary(found), *statics_verdict(found)])
-        keep_all = partial(keep, self, found, draws and not blind)
-        conclude(self, statics_json(found), text, keep_all)
+        draw_all = partial(draw, self, found, draws and not blind)
+        conclude(self, statics_json(found), text, draw=draw_all)
         return 0
 
 
@@ -104,7 +104,7 @@ def summary(found: StaticAnalysis) -> str:
     )  # fmt: skip
 
 
-def keep(command: Statics, found: StaticAnalysis, picture: bool, out: Path) -> None:
+def draw(command: Statics, found: StaticAnalysis, picture: bool, out: Path) -> None:
     """Write the figures, the picture of the workspace, and the report into a folder."""
     from identification.report.page import save_figures, write_report
     from inca_mj.report.statics_sections import statics_sections, statics_verdict

@@ -42,7 +42,7 @@ class Thesis:
 
         options = Options(horizons=(1.0,)) if self.single else None
         found = repeat_thesis(seed=self.seed, options=options, progress=self.output.tell)
-        conclude(self, thesis_json(found), self._text(found), partial(keep, found))
+        conclude(self, thesis_json(found), self._text(found), draw=partial(draw, found))
         return 0
 
     def _text(self, found: ThesisResults) -> str:
@@ -60,7 +60,7 @@ class Thesis:
         return said
 
 
-def keep(found: ThesisResults, out: Path) -> None:
+def draw(found: ThesisResults, out: Path) -> None:
     """Write the report and its figures as PNG."""
     from identification.report.page import save_figures, write_report
     from inca_mj.report.thesis import thesis_sections, thesis_verdict

@@ -84,7 +84,7 @@ class Track:
         if self.output.out is not None:
             files = "log.csv, run.npz, figures, model.xml and report.html"
             text += f"\n{files} are in {self.output.out}"
-        conclude(self, summary(result), text, partial(keep, result))
+        conclude(self, summary(result), text, partial(keep, result), partial(draw, result))
         return 0
 
     def _nominal(self, step: float) -> Twin:
@@ -138,11 +138,8 @@ def _text(result: Tracking) -> str:
 
 
 def keep(result: Tracking, out: Path) -> None:
-    """Write log, run, model, figures and the report into a folder."""
+    """Write log, run and model into a folder."""
     from identification import write_log
-    from identification.report.page import save_figures, write_report
-    from inca_mj.report.sections import model_section, run_section
-    from inca_mj.report.tracking import tracking_section
     from inca_mj.twin.logs import run_to_log
     from inca_mj.twin.run import save_run
 
@@ -150,6 +147,15 @@ def keep(result: Tracking, out: Path) -> None:
     write_log(run_to_log(run, notes="simulated by inca track"), out / "log.csv")
     save_run(run, out / "run.npz")
     run.twin.save(out / "model.xml")
+
+
+def draw(result: Tracking, out: Path) -> None:
+    """Write figures and the report into a folder."""
+    from identification.report.page import save_figures, write_report
+    from inca_mj.report.sections import model_section, run_section
+    from inca_mj.report.tracking import tracking_section
+
+    run = result.run
     sections = [tracking_section(result), run_section(run), model_section(run.twin)]
     save_figures(sections, out)
     write_report(out / "report.html", "A robot on a path", _text(result).split("\n"), sections)

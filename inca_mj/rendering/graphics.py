@@ -33,6 +33,7 @@ _FIX = (
 
 # A second context after a failed one aborts the process inside MuJoCo: the first answer stands.
 _failed: list[str] = []
+_abandoned: list[object] = []  # renderers that an interrupt has left
 
 
 def choose_backend() -> str:
@@ -86,8 +87,15 @@ def renderer(model: mujoco.MjModel, width: int, height: int) -> Iterator[mujoco.
         reason = str(error).strip().splitlines() or [type(error).__name__]
         _failed.append(f"no OpenGL for the film ({reason[0][:80]}): {_FIX}")
         raise GraphicsError(_failed[0]) from error
-    with made:
+    try:
         yield made
+    except KeyboardInterrupt:  # to free it takes seconds, and the process ends now in any case
+        _abandoned.append(made)
+        raise
+    except BaseException:
+        made.close()
+        raise
+    made.close()
 
 
 @contextmanager

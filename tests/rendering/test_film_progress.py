@@ -46,3 +46,9 @@ def test_where_a_bar_is_drawn_only_the_length_and_the_time_are_said():
 
 def test_a_film_of_few_frames_promises_nothing():
     assert told(5, 0.5) == ["film: 5 frames, 0.167 s of film"]
+
+
+def test_it_begins_with_how_to_do_without_the_film():
+    said = []
+    FilmProgress(said.append, 15.0, True, hint="--no-film leaves it out")(1, 90)
+    assert said == ["film: 90 frames, 6 s of film; --no-film leaves it out"]

@@ -1,0 +1,90 @@
+"""What lies in a folder of results: what the program made there, and what belongs to others.
+
+The hidden file `.made.json` lists what was made, each file with the hash of its content. A file
+that is not listed, or that was changed since, belongs to somebody else.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from hashlib import file_digest
+from pathlib import Path
+
+from identification.files import write_text
+
+MADE = ".made.json"
+
+
+@dataclass(frozen=True)
+class Content:
+    """The names in a folder, without that of its record.
+
+    Attributes:
+        made: files that the program made there and nobody changed.
+        others: all other files, hidden ones among them.
+        folders: folders, hidden ones among them.
+    """
+
+    made: frozenset[str] = frozenset()
+    others: frozenset[str] = frozenset()
+    folders: frozenset[str] = frozenset()
+
+    @property
+    def foreign(self) -> list[str]:
+        """Files of others that are not hidden."""
+        return sorted(name for name in self.others if not name.startswith("."))
+
+
+def list_content(folder: Path, records: Iterable[Mapping[str, str]] = ()) -> Content:
+    """Returns what lies in a folder.
+
+    Args:
+        folder: exists.
+        records: hashes by name of more files that the program made, beside those of its record.
+
+    Raises:
+        OSError: the folder cannot be read.
+    """
+    known = [read_made(folder), *records]
+    made, others, folders = set(), set(), set()
+    for entry in folder.iterdir():
+        name = entry.name
+        if name == MADE and entry.is_file():
+            continue
+        if entry.is_dir():
+            folders.add(name)
+        elif any(name in k for k in known) and digest(entry) in {k.get(name) for k in known}:
+            made.add(name)
+        else:
+            others.add(name)
+    return Content(frozenset(made), frozenset(others), frozenset(folders))
+
+
+def read_made(folder: Path) -> dict[str, str]:
+    """Returns the record of a folder, hashes by name; empty if there is none that can be read."""
+    try:
+        made = json.loads((folder / MADE).read_text(encoding="utf-8"))["files"]
+        return {str(name): str(digest) for name, digest in made.items()}
+    except (OSError, ValueError, TypeError, KeyError, AttributeError):
+        return {}  # then nothing is known to be ours
+
+
+def write_made(folder: Path) -> None:
+    """Write the record of a folder in which the program has made all files.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    made = {file.name: digest(file) for file in sorted(folder.iterdir()) if file.name != MADE}
+    write_text(folder / MADE, json.dumps({"files": made}, indent=1) + "\n")
+
+
+def digest(file: Path) -> str:
+    """Returns the hash of a file; "" if it cannot be read, because then it is not ours."""
+    try:
+        with file.open("rb") as stream:
+            return file_digest(stream, "sha256").hexdigest()
+    except OSError:
+        return ""

@@ -1,0 +1,366 @@
+"""Results are there whole, the old ones or the new ones, whatever ends the program."""
+
+import errno
+import json
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import fake_discovery
+import pytest
+
+from identification.commands.common import Output, conclude
+from identification.errors import InputError
+from identification.folders import draft_of, list_foreign, refuse_foreign, try_folder, whole_folder
+from inca_mj.commands import filmed
+from inca_mj.commands.discover import Discover
+
+DRIVER = Path(__file__).parents[1] / "cases" / "saving_cases.py"
+POSIX = pytest.mark.skipif(os.name != "posix", reason="forks")
+CHANGES = {"open", "os.mkdir", "os.link", "os.rename", "os.fsync"}
+
+
+@dataclass(frozen=True)
+class Command:
+    output: Output = field(default_factory=Output)
+
+
+def driven(*arguments, before=()):
+    """What the driver found: each call, the exit code, what the folder then held."""
+    line = [*before, sys.executable, str(DRIVER), *map(str, arguments)]
+    done = subprocess.run(line, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def content(folder):
+    files = [p for p in folder.iterdir() if p.is_file() and p.name[0] != "."]
+    return {p.name: p.read_text(errors="replace") for p in files}
+
+
+def made(out, **texts):
+    with whole_folder(out) as draft:
+        for name, text in texts.items():
+            (draft / name).write_text(text)
+
+
+@POSIX
+@pytest.mark.parametrize("case", ["new", "older", "hidden"])
+def test_a_kill_at_any_call_leaves_the_old_results_or_the_new_ones(tmp_path, case):
+    found = driven("kill", case, tmp_path)
+    assert {call for call, _, _ in found} >= CHANGES
+    states = [state for _, _, state in found]
+    assert states == sorted(states, reverse=True)  # old until one call, and new from then on
+    assert {*states} == {"old", "new"}
+
+
+@POSIX
+@pytest.mark.parametrize("case", ["folders", "inside"])
+def test_a_kill_where_no_step_exchanges_folders_is_finished_by_the_next_run(tmp_path, case):
+    found = driven("kill", case, tmp_path)  # which checks what the next run finds
+    assert [call for call, _, state in found if state == "part"] == 4 * ["os.rename"]
+
+
+@POSIX
+@pytest.mark.parametrize(("what", "case"), [("ENOSPC", "older"), ("EIO", "folders")])
+def test_a_call_that_fails_leaves_the_old_results_and_exit_code_2(tmp_path, what, case):
+    found = driven(what, case, tmp_path)  # which checks that nothing was written or touched
+    assert {call for call, code, _ in found if code == 2} >= CHANGES
+    assert all(state == ("old" if code == 2 else "new") for _, code, state in found)
+    assert found[-1][1] == 0  # what cannot be removed or drawn costs no result
+
+
+def without_root(*line):
+    """A line that may mount disks in a world of its own; skipped where there is none."""
+    alone = ["unshare", "-rm"]
+    try:
+        subprocess.run([*alone, "true"], check=True, capture_output=True)
+    except (OSError, subprocess.CalledProcessError):
+        pytest.skip("no mount of its own can be made here")
+    return [*alone, *line]
+
+
+@POSIX
+@pytest.mark.parametrize("case", ["empty", "older"])
+def test_a_full_disk_leaves_the_old_results_or_the_new_ones(tmp_path, case):
+    found = driven("full", case, tmp_path, before=without_root())
+    assert found[0] == [2, False]  # of few pages; the driver checks that the old ones are there
+    assert found[-1] == [0, True]
+    assert sorted(found, key=lambda each: (each[0] == 0, each[1])) == found
+
+
+READ_ONLY = """
+import subprocess, sys
+from pathlib import Path
+from identification.folders import try_folder
+subprocess.run(["mount", "-t", "tmpfs", "-o", "ro", "none", sys.argv[1]], check=True)
+try_folder(Path(sys.argv[1]) / sys.argv[2])
+"""
+
+
+@POSIX
+@pytest.mark.parametrize("name", [".", "out"])
+def test_a_disk_that_is_only_read_is_named_before_anything_is_done(tmp_path, name):
+    line = without_root(sys.executable, "-c", READ_ONLY, str(tmp_path), name)
+    done = subprocess.run(line, capture_output=True, text=True, check=False)
+    said = done.stderr.splitlines()[-1]
+    assert "Read-only file system" in said
+    assert str(tmp_path / name) in said
+
+
+# what is drawn after the results are saved
+
+
+def test_an_interrupt_while_figures_are_drawn_costs_the_figures_only(tmp_path, capsys):
+    out = tmp_path / "out"
+
+    def keep(folder):
+        (folder / "robot.toml").write_text("found")
+
+    def draw(folder):
+        (folder / "half.png").write_text("half")
+        assert {*content(out)} == {"result.json", "robot.toml"}  # saved before anything is drawn
+        raise KeyboardInterrupt
+
+    made(out, **{"film.mp4": "old"})
+    with pytest.raises(KeyboardInterrupt):
+        conclude(Command(Output(out=out)), {"value": 1}, "the verdict", keep, draw)
+    said = capsys.readouterr()
+    assert said.out == "the verdict\n"
+    assert said.err == f"left out: figures and report; the results are kept in {out}\n"
+    assert {*content(out)} == {"result.json", "robot.toml"}
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+    refuse_foreign(out)
+
+
+def test_figures_that_have_no_room_cost_the_figures_only(tmp_path, capsys):
+    out = tmp_path / "out"
+
+    def draw(folder):
+        raise InputError(f"cannot write {folder / 'a.png'}: No space left on device")
+
+    conclude(Command(Output(out=out)), {"value": 1}, "the verdict", draw=draw)
+    assert "no figures and report: cannot write" in capsys.readouterr().err
+    assert {*content(out)} == {"result.json"}
+
+
+@pytest.mark.parametrize("command", [Discover, "json"])
+def test_an_interrupt_in_the_film_costs_the_film_only(tmp_path, capsys, monkeypatch, command):
+    out = tmp_path / "out"
+
+    def interrupted(found, folder, progress):
+        (folder / ".half.mp4").write_text("half")
+        progress(1, 91)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(filmed, "film_discovery", interrupted)
+    monkeypatch.setattr("inca_mj.commands.discover.cannot_draw", lambda: "")
+    monkeypatch.setattr(
+        "inca_mj.workflows.discovery.discover", lambda *_, **__: fake_discovery.found()
+    )
+    with pytest.raises(KeyboardInterrupt):
+        Discover((Path("examples/log.csv"),), output=Output(out=out, json=command == "json")).run()
+    said = capsys.readouterr()
+    assert "--no-film" in said.err
+    assert said.err.endswith(f"left out: film; the results are kept in {out}\n")
+    assert {"result.json", "model.xml", "effects.json", "report.html"} <= {*content(out)}
+    assert any(name.endswith(".png") for name in content(out))
+    assert "<video" not in (out / "report.html").read_text()
+    assert list_foreign(out) == []
+    if command == "json":
+        assert json.loads(said.out)["model"] == str(out / "model.xml")
+
+
+WAIT = """
+import time
+from pathlib import Path
+from dataclasses import dataclass, field
+from identification.commands.common import Output, conclude
+from identification.commands.stopping import STOPPED, at_end, stoppable
+
+@dataclass(frozen=True)
+class Command:
+    output: Output = field(default_factory=lambda: Output(out=Path("out")))
+
+def draw(folder):
+    print("drawing", flush=True)
+    {}
+
+try:
+    with stoppable("robot"):
+        conclude(Command(), {{"value": 1}}, "", draw=draw)
+except KeyboardInterrupt:
+    at_end(STOPPED)
+"""
+
+
+@POSIX
+@pytest.mark.parametrize("busy", [
+    "time.sleep(60)",
+    "import hashlib; hashlib.pbkdf2_hmac('sha256', b'', b'', 2**31 - 1)",  # is ended by the thread
+])  # fmt: skip
+def test_the_sentence_is_said_once_whoever_ends_the_program(tmp_path, busy):
+    process = subprocess.Popen(
+        [sys.executable, "-c", WAIT.format(busy)], cwd=tmp_path, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    while process.stdout.readline() != "drawing\n":
+        assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=60)[1]
+    assert process.returncode == 130
+    assert sorted(said.splitlines()) == [
+        "left out: figures and report; the results are kept in out", "robot: stopping …",
+    ]  # fmt: skip
+    assert {*content(tmp_path / "out")} == {"result.json"}
+    try_folder(tmp_path / "out")
+
+
+# what others have in the folder
+
+
+def test_a_file_that_comes_at_the_last_moment_stays(tmp_path, monkeypatch):
+    from identification import folders
+
+    out, exchange = tmp_path / "out", folders.exchange
+    made(out, a="old")
+
+    def late(one, other):
+        if not (one / "mine").exists() and not (other / "mine").exists():
+            (other / "mine").write_text("of the user")
+        exchange(one, other)
+
+    monkeypatch.setattr(folders, "exchange", late)
+    made(out, a="new")
+    assert content(out) == {"a": "new", "mine": "of the user"}
+
+
+def test_what_is_in_the_folder_beside_results_stays_what_it_is(tmp_path):
+    out = tmp_path / "out"
+    made(out, a="old", b="old")
+    out.chmod(0o750)
+    (out / ".hidden").write_text("of the user")
+    number = (out / ".hidden").stat().st_ino
+    made(out, a="new")
+    assert content(out) == {"a": "new"}
+    assert (out / ".hidden").stat().st_ino == number
+    assert out.stat().st_mode & 0o777 == 0o750
+    (out / "notes").mkdir()
+    folder = out.stat().st_ino
+    made(out, a="newer")
+    assert content(out) == {"a": "newer"}
+    assert (out / "notes").is_dir()
+    assert out.stat().st_ino == folder  # a folder in it cannot be in two places at once
+
+
+def test_a_link_to_a_folder_stays_a_link(tmp_path):
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").symlink_to("real")
+    made(tmp_path / "link", a="1")
+    made(tmp_path / "link", a="2")
+    assert (tmp_path / "link").is_symlink()
+    assert content(tmp_path / "real") == {"a": "2"}
+
+
+@pytest.mark.parametrize("number", [errno.EINVAL, errno.EXDEV, errno.ENOSYS])
+def test_a_file_system_without_the_step_is_filled_file_by_file(tmp_path, monkeypatch, number):
+    from identification import folders
+
+    out = tmp_path / "out"
+    made(out, a="old", b="old")
+
+    def no_step(one, other):
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(folders, "exchange", no_step)
+    made(out, a="new")
+    assert content(out) == {"a": "new"}
+    names = sorted(p.name for p in (*out.iterdir(), *tmp_path.iterdir()))
+    assert names == [".made.json", "a", "out"]
+
+
+def test_two_at_once_leave_the_results_of_one(tmp_path):
+    out = tmp_path / "out"
+    with draft_of(out) as first, draft_of(out) as second:
+        for draft, name in ((first, "first"), (second, "second")):
+            (draft.folder / "result.json").write_text(name)
+            draft.save()
+        for draft, name in ((second, "second"), (first, "first")):
+            (draft.folder / f"{name}.png").write_text(name)
+            draft.save()
+            assert content(out) == {"result.json": name, f"{name}.png": name}
+    refuse_foreign(out)
+
+
+# before any work
+
+
+def long_name(folder):
+    return folder / (300 * "a")
+
+
+def deep_long_name(folder):
+    return folder / "new" / (300 * "b") / "out"
+
+
+def result_is_a_folder(folder):
+    (folder / "out" / "result.json").mkdir(parents=True)
+    return folder / "out"
+
+
+def link_to_nothing(folder):
+    (folder / "out").symlink_to("nowhere")
+    return folder / "out"
+
+
+def loop_of_links(folder):
+    (folder / "out").symlink_to("other")
+    (folder / "other").symlink_to("out")
+    return folder / "out"
+
+
+@pytest.mark.parametrize(("place", "reason"), [
+    (long_name, "File name too long"), (deep_long_name, "File name too long"),
+    (result_is_a_folder, "result.json is a folder"), (link_to_nothing, "Not a directory"),
+    (loop_of_links, "ymbolic link"),
+])  # fmt: skip
+def test_a_folder_that_cannot_be_is_named_before_any_work(
+    tmp_path, capsys, monkeypatch, place, reason
+):
+    from inca_mj.cli import main
+
+    monkeypatch.setattr("inca_mj.commands.simulate.Simulate.run", lambda _: pytest.fail("works"))
+    out = place(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    assert main(["simulate", "--out", str(out)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert str(tmp_path) in said
+    assert reason in said
+    assert "another" in said
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+@pytest.mark.parametrize("call", ["iterdir", "mkdir"])
+def test_a_folder_that_cannot_be_read_or_written_is_named(tmp_path, monkeypatch, call):
+    def denied(path, *_, **__):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+
+    out = tmp_path / "out"
+    out.mkdir()
+    monkeypatch.setattr(Path, call, denied)
+    with pytest.raises(InputError, match=f"folder {out}: Permission denied; choose another"):
+        try_folder(out)
+
+
+def test_a_folder_that_a_command_reads_is_not_that_of_its_results(tmp_path, capsys):
+    from inca_mj.cli import main
+
+    made(tmp_path / "robot", **{"effects.json": "{}", "model.xml": "<mujoco/>"})
+    line = ["film", "examples/log.csv", "--model", str(tmp_path / "robot")]
+    assert main([*line, "--out", str(tmp_path / "robot")]) == 2
+    assert "is read by this command" in capsys.readouterr().err
+    assert {*content(tmp_path / "robot")} == {"effects.json", "model.xml"}
