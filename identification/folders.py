@@ -12,13 +12,12 @@ import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from hashlib import file_digest
 from pathlib import Path
 from shutil import rmtree
 from tempfile import mkdtemp
 
 from identification.errors import InputError
-from identification.files import write_text
+from identification.files import digest, read_json, write_text
 
 MADE = ".made.json"
 _DRAFT = ".draft-"
@@ -89,9 +88,9 @@ def whole_folder(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 def _read_made(folder: Path) -> dict[str, str]:
     try:
-        made = json.loads((folder / MADE).read_text(encoding="utf-8"))["files"]
+        made = read_json(folder / MADE, "list of results", "remove it")["files"]
         return {str(name): str(digest) for name, digest in made.items()}
-    except (OSError, ValueError, TypeError, KeyError, AttributeError):
+    except (InputError, TypeError, KeyError, AttributeError):
         return {}  # then nothing is known to be ours
 
 
@@ -103,9 +102,8 @@ def _add_made(folder: Path, names: list[str]) -> None:
 
 def _digest(file: Path) -> str:
     try:
-        with file.open("rb") as stream:
-            return file_digest(stream, "sha256").hexdigest()
-    except OSError:
+        return digest(file)
+    except InputError:
         return ""  # what cannot be read is not ours
 
 
@@ -121,7 +119,7 @@ def _remove_left_over(folder: Path) -> None:
     """Remove the drafts of programs that were killed, and of no other program that still runs."""
     for draft in folder.glob(f"{_DRAFT}*"):
         number = draft.name.removeprefix(_DRAFT).partition("-")[0]
-        known = number.isdigit() and os.name == "posix"
+        known = number.isdecimal() and number.isascii() and os.name == "posix"
         if not _is_running(int(number)) if known else time.time() - draft.stat().st_mtime > _OLD:
             rmtree(draft, ignore_errors=True)
 

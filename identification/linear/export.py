@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from identification.errors import InputError
-from identification.files import whole_file
+from identification.files import read_archive, whole_file
 from identification.linear.system import LinearSystem
 
 NAMES = ("states", "inputs", "outputs")
@@ -54,7 +54,7 @@ def load_system(path: str | Path) -> LinearSystem:
     Raises:
         InputError: there is no such file, or it is no such system.
     """
-    content = read_arrays(path, (*ARRAYS, *NAMES, "Ts"), "a system of save_system")
+    content = read_arrays(path, (*ARRAYS, *NAMES, "Ts"), "system of save_system")
     Ts = float(content["Ts"])
     arrays: dict[str, Any] = {name: content[name] for name in ARRAYS}
     names: dict[str, Any] = {name: tuple(content[name].tolist()) for name in NAMES}
@@ -96,17 +96,14 @@ def read_arrays(path: str | Path, names: tuple[str, ...], what: str) -> dict[str
     Args:
         path: of the file.
         names: of the variables that it must have.
-        what: the file is, for the message.
+        what: kind of file that is wanted, for messages.
 
     Raises:
-        InputError: there is no such file, or a variable is missing.
+        InputError: there is no such file, it is damaged, or a variable is missing.
     """
-    try:
-        with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            return {name: file[name] for name in (*names, *(set(file.files) - {*names}))}
-    except FileNotFoundError:
-        raise InputError(f"no such file: {path}; check its name and folder") from None
-    except Exception as error:  # zip and numpy raise different errors
+    arrays = read_archive(Path(path), what)
+    if missing := [name for name in names if name not in arrays]:
         raise InputError(
-            f"{path} is not {what}, or is damaged ({type(error).__name__}); write it again"
-        ) from error
+            f"{path} is no {what}, or is damaged: it lacks {', '.join(missing)}; write it again"
+        )
+    return arrays

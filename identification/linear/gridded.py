@@ -267,7 +267,7 @@ def load_grid(path: str | Path) -> GriddedSystem:
     Raises:
         InputError: there is no such file, or it is no such grid.
     """
-    content = read_arrays(path, (*ARRAYS, *NAMES, "scheduling", "method"), "a grid of systems")
+    content = read_arrays(path, (*ARRAYS, *NAMES, "scheduling", "method"), "grid of systems")
     arrays: dict[str, Any] = {name: content[name] for name in ARRAYS}
     names: dict[str, Any] = {name: tuple(content[name].tolist()) for name in NAMES}
     return GriddedSystem(

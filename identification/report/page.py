@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from identification.errors import InputError
-from identification.files import write_text
+from identification.files import read_text, write_text
 from identification.report.cells import columns_of, text_of
 from identification.report.media import drawing, image_source, video_source
 from identification.report.origin import origin
@@ -18,6 +18,7 @@ from identification.report.whole_quantities import whole_quantities
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+TEMPLATES = Path(__file__).parent / "templates"
 LONG = 12  # rows: a table of more is folded
 WIDE = 9.0  # a figure of so many inches has a row of its own
 
@@ -96,8 +97,6 @@ def write_report(
     Raises:
         InputError: a video cannot be read or is too large, or the file cannot be written.
     """
-    from importlib.resources import files
-
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
@@ -119,7 +118,7 @@ def write_report(
         mood={True: "good", False: "bad", None: "plain"}[good],
         footer="\n".join(filter(None, [footer, origin(data)])),
         dark=DARK,
-        script=Markup((files("identification.report") / "templates" / "figures.js").read_text()),
+        script=Markup(read_text(TEMPLATES / "figures.js")),
     )
     return write_text(path, page)
 
