@@ -39,6 +39,14 @@ def is_file(path: Path) -> bool:
         return False
 
 
+def exists(path: Path) -> bool:
+    """Returns whether anything has this name; a name that nothing can have is none."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):  # too long, or not to be looked at
+        return False
+
+
 LOG = "log file (.csv or .mat)"  # what a path should have been, in messages
 MODEL = "model file (MJCF or URDF)"
 
@@ -183,9 +191,9 @@ def check_file(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> None:
     """
     try:
         state = path.stat()
-    except (FileNotFoundError, NotADirectoryError):
+    except (FileNotFoundError, NotADirectoryError, ValueError):  # of a name with a zero byte
         raise InputError(_missing(path)) from None
-    except (OSError, ValueError) as error:  # a name with a zero byte is a ValueError
+    except OSError as error:
         raise _unreadable(path, error) from error
     if stat.S_ISDIR(state.st_mode):
         raise InputError(f"{path} is a folder; give the path of a {what}")
@@ -207,8 +215,8 @@ def _too_large(path: Path, size: int, largest: int, what: str) -> str:
     )
 
 
-def _unreadable(path: Path, error: OSError | ValueError) -> InputError:
-    reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
+def _unreadable(path: Path, error: OSError) -> InputError:
+    reason = error.strerror or type(error).__name__
     return InputError(f"cannot read {path}: {reason}; check its name and permissions")
 
 
@@ -249,11 +257,11 @@ def read_toml(path: Path, what: str = "TOML file") -> dict[str, Any]:
 
 
 def _missing(path: Path) -> str:
-    if not path.parent.is_dir():
-        return f"no such folder: {path.parent}; check the path of {path.name}"
     try:
+        if not path.parent.is_dir():
+            return f"no such folder: {path.parent}; check the path of {path.name}"
         others = [file.name for file in path.parent.iterdir()]
-    except OSError:  # a folder that may be entered and not listed
+    except (OSError, ValueError):  # a folder that may not be listed, or that no folder can be
         others = []
     near = get_close_matches(path.name, others, n=3, cutoff=_ALIKE)
     hint = f"did you mean {' or '.join(near)}?" if near else "check its name and folder"

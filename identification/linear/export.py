@@ -20,6 +20,10 @@ from identification.files import read_archive, whole_file
 from identification.linear.system import LinearSystem
 
 NAMES = ("states", "inputs", "outputs")
+_SHAPES = {
+    "A": ("states", "states"), "B": ("states", "inputs"), "C": ("outputs", "states"),
+    "D": ("outputs", "inputs"),
+}  # fmt: skip
 ARRAYS = ("A", "B", "C", "D", "x", "u", "y", "rate")
 FORMATS = (".npz", ".mat")
 
@@ -55,10 +59,33 @@ def load_system(path: str | Path) -> LinearSystem:
         InputError: there is no such file, or it is no such system.
     """
     content = read_arrays(path, (*ARRAYS, *NAMES, "Ts"), "system of save_system")
-    Ts = float(content["Ts"])
+    names = names_in(content, path)
     arrays: dict[str, Any] = {name: content[name] for name in ARRAYS}
-    names: dict[str, Any] = {name: tuple(content[name].tolist()) for name in NAMES}
-    return LinearSystem(**arrays, **names, sampling_time=Ts or None)
+    for name, array in {**arrays, "Ts": content["Ts"]}.items():
+        shape = tuple(len(names[axis]) for axis in _SHAPES.get(name, ()))
+        fits = array.shape == shape if name in _SHAPES else array.ndim == int(name != "Ts")
+        if not (fits and array.dtype.kind in "fiu" and np.isfinite(array).all()):
+            raise InputError(
+                f"{path} is damaged: {name} is no array of finite numbers that fits the names of"
+                " states, inputs and outputs; write the system again"
+            )
+    return LinearSystem(**arrays, **names, sampling_time=float(content["Ts"]) or None)
+
+
+def names_in(content: Mapping[str, np.ndarray], path: str | Path) -> dict[str, Any]:
+    """Returns the names of states, inputs and outputs in a file.
+
+    Args:
+        content: of the file.
+        path: of it, for messages.
+
+    Raises:
+        InputError: they are no rows of text.
+    """
+    for name in NAMES:
+        if content[name].ndim != 1 or content[name].dtype.kind != "U":
+            raise InputError(f"{path} is damaged: {name} is no row of names; write it again")
+    return {name: tuple(content[name].tolist()) for name in NAMES}
 
 
 def write_arrays(path: str | Path, content: Mapping[str, Any]) -> Path:

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from identification.errors import InputError, unknown_name
+from identification.files import is_file
 
 if TYPE_CHECKING:
     from identification.report.page import Section
@@ -119,10 +120,10 @@ def reference_of(word: str, known: Registry, folder: Path) -> str:
     """
     file, colon, name = word.rpartition(":")
     if colon and file.endswith(".py"):
-        path = (folder / file).resolve()
-        if not path.is_file():
+        path = folder / file
+        if not is_file(path):
             raise InputError(f"method {word!r}: there is no file {path}; correct the path")
-        return f"{path}:{name}"
+        return f"{path.resolve()}:{name}"
     if word not in known:
         error = unknown_name("method", word, known)
         raise InputError(f"{error}; a method of your own is file.py:NAME (docs/sweeps.md)")

@@ -1,4 +1,4 @@
-"""A pipe, a device or a file of gigabytes in the place of any file is refused and not waited for."""
+"""A pipe, a device or gigabytes in the place of any file are refused and not waited for."""
 
 import json
 import os
@@ -131,10 +131,10 @@ def test_an_archive_that_unpacks_to_gigabytes_is_refused(tmp_path, monkeypatch):
         read_archive(tmp_path / "run.npz", "run")
 
 
-@pytest.mark.parametrize("name", ["a\0b", 300 * "a", "loop"])
+@pytest.mark.parametrize("name", ["a\0b", "a\0b/c", 300 * "a", "loop"])
 def test_a_name_that_no_file_can_have_is_told(tmp_path, name):
     (tmp_path / "loop").symlink_to(tmp_path / "loop")
-    with pytest.raises(InputError, match="cannot read"):
+    with pytest.raises(InputError, match=r"cannot read|no such file"):
         read_bytes(tmp_path / name)
 
 

@@ -27,6 +27,7 @@ ALLOWED = {
     "identification/logs/read_mat.py: load": "the bytes that another process wrote",
     "identification/logs/mat_child.py: loadmat": "the bytes of its input",
     "identification/effects/rows.py: from_file": "MuJoCo, after the reader has looked",
+    "identification/model/compile_child.py: from_file": "MuJoCo, after the reader has looked",
     "identification/sweep/parquet.py: read_table": "pyarrow, after the digest was read",
     "identification/sweep/parquet.py: dataset": "pyarrow, after the digest was read",
     "identification/sweep/parquet.py: open": "a folder, to bring it to the disk",
