@@ -53,7 +53,10 @@ MODEL = "model file (MJCF or URDF)"
 
 def readable(name: str) -> str:
     """Returns a name that every file and screen can hold: bytes that are no text are escaped."""
-    return name.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+    try:
+        return name.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+    except UnicodeEncodeError:  # half a letter that is no byte either
+        return name.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 @contextmanager
@@ -294,5 +297,5 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
 def write_text(path: str | os.PathLike[str], text: str) -> Path:
     """Write UTF-8 text to a file, whole or not at all; returns its path."""
     with whole_file(path) as draft:
-        draft.write_text(text, encoding="utf-8", newline="")
+        draft.write_text(text, encoding="utf-8", errors="backslashreplace", newline="")
     return Path(path)

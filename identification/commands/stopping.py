@@ -12,6 +12,7 @@ from __future__ import annotations
 import os
 import select
 import signal
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -19,6 +20,7 @@ from contextlib import contextmanager
 from types import FrameType
 
 GRACE = 1.5  # [s] for native code to return, and to keep what is worth keeping
+AGAIN = 0.01  # [s] after which an interrupt is raised again that machine code has lost
 STOPPED = 130  # exit code, as a shell gives it
 
 
@@ -38,9 +40,19 @@ def stoppable(name: str) -> Iterator[None]:
         heard.set()
         raise KeyboardInterrupt
 
+    def lost(error: sys.UnraisableHookArgs) -> None:
+        # A function of Python that machine code calls cannot pass an error on (numba's compiler
+        # calls one for its cache, MuJoCo one for its warnings): Python would print it and go on.
+        if isinstance(error.exc_value, KeyboardInterrupt):
+            signal.setitimer(signal.ITIMER_REAL, AGAIN)
+        else:
+            unraisable(error)
+
     read, write = os.pipe()
     os.set_blocking(write, False)
+    unraisable, sys.unraisablehook = sys.unraisablehook, lost
     handler = signal.signal(signal.SIGINT, interrupt)
+    alarm = signal.signal(signal.SIGALRM, interrupt)
     woken = signal.set_wakeup_fd(write, warn_on_full_buffer=False)
     watch = threading.Thread(target=_watch, args=(name, read), daemon=True)
     watch.start()
@@ -52,7 +64,10 @@ def stoppable(name: str) -> Iterator[None]:
         raise
     finally:
         signal.set_wakeup_fd(woken)
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, alarm)
         signal.signal(signal.SIGINT, handler)
+        sys.unraisablehook = unraisable
         os.close(write)  # the thread says what is left to say, and closes the other end
         watch.join(GRACE)
 
