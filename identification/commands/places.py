@@ -39,13 +39,18 @@ def refuse_place(command: Any) -> None:
             command lies in it; or another file that the program did not make there.
     """
     from identification.errors import InputError
+    from identification.files import exists
     from identification.folders import refuse_foreign
 
     output = getattr(command, "output", None)
     out = output.out if isinstance(output, Output) else None
     if out is None:
         return
-    there = next(p for p in (out, *out.absolute().parents) if p.exists())
+    there = next(p for p in (out, *out.absolute().parents) if os.path.lexists(p))
+    if not exists(there):
+        raise InputError(
+            f"cannot make folder {out}: {there} is a link that leads nowhere; choose another"
+        )
     if not there.is_dir():
         raise InputError(f"cannot make folder {out}: {there} is a file; choose another")
     try:  # permissions do not tell it of every file system
@@ -56,7 +61,7 @@ def refuse_place(command: Any) -> None:
             " another"
         ) from error
     for path in _inputs(command):
-        if path.parent.resolve() == out.resolve():
+        if os.path.realpath(path.parent) == os.path.realpath(out):
             raise InputError(
                 f"{path} is read by this command and lies in {out}, the folder for its results;"
                 " give --out another folder"

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -102,6 +104,7 @@ def write_report(
 
     from identification.report.vector import DARK
 
+    script = f"\n//<![CDATA[\n{read_text(TEMPLATES / 'figures.js')}\n//]]>\n"
     environment = Environment(
         loader=PackageLoader("identification.report"),
         autoescape=True,
@@ -118,9 +121,26 @@ def write_report(
         mood={True: "good", False: "bad", None: "plain"}[good],
         footer="\n".join(filter(None, [footer, origin(data)])),
         dark=DARK,
-        script=Markup(read_text(TEMPLATES / "figures.js")),
+        script=Markup(script),
+        policy=_policy(script),
     )
     return write_text(path, page)
+
+
+def _policy(script: str) -> str:
+    """Returns what a browser may do for a page: nothing but show what stands in it.
+
+    No word of a log or a model can then run a script, or ask another computer for anything. Styles
+    may stand anywhere, because figures have some in their elements.
+
+    Args:
+        script: all that stands in the element of the page's one script.
+    """
+    digest = b64encode(sha256(script.encode()).digest()).decode()
+    return (
+        f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline';"
+        " img-src data:; media-src data:; base-uri 'none'; form-action 'none'"
+    )
 
 
 def save_figures(sections: Iterable[Section], folder: Path) -> list[Path]:
