@@ -21,13 +21,14 @@ def drawing(figure: Figure, prefix: str, caption: str) -> Any:
 
     from markupsafe import Markup
 
+    from identification.report.style import write_figure
     from identification.report.vector import svg
 
     drawn = svg(figure, prefix, caption)
     if len(drawn) <= _LARGEST_SVG:
         return Markup(drawn)
     stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=150)
+    write_figure(figure, stream, format="png", dpi=150)
     source = "data:image/png;base64," + b64encode(stream.getvalue()).decode()
     said = '<img src="{}" role="img" alt="{}" title="{}" />'
     return Markup(said).format(source, caption, caption)
