@@ -21,6 +21,8 @@ ALLOWED = {
     "identification/files.py: open": "the reader",
     "identification/files.py: fdopen": "the reader",
     "identification/files.py: load": "the bytes that the reader has read",
+    "identification/commands/streams.py: open": "the file that takes everything and holds nothing",
+    "identification/commands/streams.py: fdopen": "the file that takes everything",
     "identification/native/cache_folder.py: open": "bounded, and no links or pipes either",
     "identification/native/cache_folder.py: fdopen": "bounded, and no links or pipes either",
     "identification/logs/read_csv.py: loadtxt": "lines that the reader has read",
