@@ -19,6 +19,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def program() -> int:
     """Run one command as a process of its own, which ends with the exit code."""
+    try:
+        from identification.commands.streams import settle_streams
+
+        settle_streams()
+    except KeyboardInterrupt:  # while that is imported
+        return 130
     code = main()
     from identification.commands.stopping import at_end
 

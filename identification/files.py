@@ -3,27 +3,47 @@
 from __future__ import annotations
 
 import errno
+import io
+import json
 import os
+import stat
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from difflib import get_close_matches
+from hashlib import file_digest
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 from uuid import uuid4
+from zipfile import ZipFile
 
 from identification.errors import InputError
 
-_BY_HAND = 2**20  # bytes
+if TYPE_CHECKING:
+    import numpy as np
+
+BY_HAND = 2**20  # bytes of a file that a person writes
+BY_PROGRAM = 64 * 2**20  # bytes of a JSON file that a program writes
+MAX_BYTES = 512 * 2**20  # hours at 1 kHz; more would fill the memory before it failed
 _ALIKE = 0.75  # share of letters of a file that may be meant
 _SAID = 120  # letters of another library's message
-MAX_BYTES = 512 * 2**20  # hours at 1 kHz; more would fill the memory before it failed
+_UNPACKED = 8  # times as large an archive of arrays may be as the largest file
+# Opening a pipe waits for a writer unless it is told not to; Windows has no such flag.
+_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 
 
 def is_file(path: Path) -> bool:
-    """Whether there is a regular file of this name; a name that no file can have is none."""
+    """Returns whether a regular file has this name; a name that no file can have is none."""
     try:
         return path.is_file()
+    except (OSError, ValueError):  # too long, or not to be looked at
+        return False
+
+
+def exists(path: Path) -> bool:
+    """Returns whether anything has this name; a name that nothing can have is none."""
+    try:
+        return path.exists()
     except (OSError, ValueError):  # too long, or not to be looked at
         return False
 
@@ -32,8 +52,20 @@ LOG = "log file (.csv or .mat)"  # what a path should have been, in messages
 MODEL = "model file (MJCF or URDF)"
 
 
-def read_bytes(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> bytes:
-    """The bytes of a regular file of a sane size.
+def readable(name: str) -> str:
+    """Returns a name that every file and screen can hold: bytes that are no text are escaped."""
+    try:
+        return name.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+    except UnicodeEncodeError:  # half a letter that is no byte either
+        return name.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+@contextmanager
+def opened(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> Iterator[BinaryIO]:
+    """Opens a regular file of a sane size for reading; nothing else is ever waited for.
+
+    Every file that the program reads is opened here. A pipe, a device or a socket in its place is
+    refused, also where it takes that place after `check_file` has looked.
 
     Args:
         path: of the file.
@@ -43,15 +75,115 @@ def read_bytes(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> bytes:
     Raises:
         InputError: there is no such file, it is something else, too large, or cannot be read.
     """
+    check_file(path, largest, what)
     try:
-        check_file(path, largest, what)
-        return path.read_bytes()
+        with os.fdopen(os.open(path, _FLAGS), "rb") as stream:
+            if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
+                raise InputError(_irregular(path, what))
+            yield stream
     except OSError as error:
         raise _unreadable(path, error) from error
 
 
+def read_bytes(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> bytes:
+    """Returns the bytes of a regular file of a sane size.
+
+    Args:
+        path: of the file.
+        largest: sane size [bytes].
+        what: kind of file that is wanted, for messages.
+
+    Raises:
+        InputError: there is no such file, it is something else, too large, or cannot be read.
+    """
+    with opened(path, largest, what) as stream:
+        content = stream.read(largest + 1)
+    if len(content) > largest:  # it grew, or its system does not tell its size
+        raise InputError(_too_large(path, len(content), largest, what))
+    return content
+
+
+def read_text(path: Path, largest: int = BY_PROGRAM, what: str = "text file") -> str:
+    """Returns the text of a UTF-8 file of a sane size.
+
+    Args:
+        path: of the file.
+        largest: sane size [bytes].
+        what: kind of file that is wanted, for messages.
+
+    Raises:
+        InputError: there is no such file, it is something else, too large, or no text.
+    """
+    try:
+        return read_bytes(path, largest, what).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} is no UTF-8 text; give the path of a {what}") from error
+
+
+def read_json(path: Path, what: str, cure: str) -> Any:
+    """Returns the content of a JSON file that a program wrote.
+
+    Args:
+        path: of the file.
+        what: kind of file that is wanted, for messages.
+        cure: what a user does about a damaged one, for messages.
+
+    Raises:
+        InputError: there is no such file, it is too large, or it is not JSON.
+    """
+    text = read_text(path, what=what)
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{path} cannot be read as JSON ({_said(error)}); {cure}") from error
+
+
+def read_archive(path: Path, what: str) -> dict[str, np.ndarray]:
+    """Returns the arrays of an .npz by name.
+
+    Args:
+        path: of the file.
+        what: kind of file that is wanted, for messages.
+
+    Raises:
+        InputError: there is no such file, it is too large, also once it is unpacked, or it is not
+            an archive of arrays of numbers and text.
+    """
+    import numpy as np
+
+    raw = io.BytesIO(read_bytes(path, what=what))
+    try:
+        with ZipFile(raw) as archive:
+            unpacked = sum(part.file_size for part in archive.infolist())
+        if unpacked > _UNPACKED * MAX_BYTES:
+            raise InputError(_too_large(path, unpacked, _UNPACKED * MAX_BYTES, what))
+        with np.load(raw, allow_pickle=False) as file:
+            return {name: file[name] for name in file}
+    except InputError:
+        raise
+    except Exception as error:  # zip and numpy raise different errors
+        raise InputError(
+            f"{path} is no {what}, or is damaged ({type(error).__name__}); write it again"
+        ) from error
+
+
+def digest(path: Path, largest: int = 8 * MAX_BYTES, what: str = "file") -> str:
+    """Returns the SHA-256 of a regular file, which is read a part at a time.
+
+    Args:
+        path: of the file.
+        largest: sane size [bytes].
+        what: kind of file that is wanted, for messages.
+
+    Raises:
+        InputError: there is no such file, it is something else, too large, or cannot be read.
+    """
+    with opened(path, largest, what) as stream:
+        return file_digest(stream, "sha256").hexdigest()  # type: ignore[arg-type]
+
+
 def check_file(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> None:
-    """Refuse what is no regular file of a sane size, without reading it.
+    """Refuses what is no regular file of a sane size, without opening it.
 
     Args:
         path: of the file.
@@ -62,26 +194,40 @@ def check_file(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> None:
         InputError: there is no such file, it is something else, or too large.
     """
     try:
-        if not path.exists():
-            raise InputError(_missing(path))
-        if path.is_dir():
-            raise InputError(f"{path} is a folder; give the path of a {what}")
-        if not path.is_file():
-            raise InputError(f"{path} is not a regular file; give the path of a {what}")
-        size = path.stat().st_size
-        if size > largest:
-            cure = "cut it into shorter logs" if what == LOG else f"give the path of a {what}"
-            raise InputError(
-                f"{path} has {size / 2**20:.0f} MB, more than the {largest / 2**20:.0f} MB that "
-                f"are read at once; {cure}"
-            )
+        state = path.stat()
+    except (FileNotFoundError, NotADirectoryError, ValueError):  # of a name with a zero byte
+        raise InputError(_missing(path)) from None
     except OSError as error:
         raise _unreadable(path, error) from error
+    if stat.S_ISDIR(state.st_mode):
+        raise InputError(f"{path} is a folder; give the path of a {what}")
+    if not stat.S_ISREG(state.st_mode):
+        raise InputError(_irregular(path, what))
+    if state.st_size > largest:
+        raise InputError(_too_large(path, state.st_size, largest, what))
+
+
+def _irregular(path: Path, what: str) -> str:
+    return f"{path} is not a regular file; give the path of a {what}"
+
+
+def _too_large(path: Path, size: int, largest: int, what: str) -> str:
+    cure = "cut it into shorter logs" if what == LOG else f"give the path of a {what}"
+    return (
+        f"{path} has {size / 2**20:.0f} MB, more than the {largest / 2**20:.0f} MB that are read at"
+        f" once; {cure}"
+    )
 
 
 def _unreadable(path: Path, error: OSError) -> InputError:
     reason = error.strerror or type(error).__name__
     return InputError(f"cannot read {path}: {reason}; check its name and permissions")
+
+
+def _said(error: Exception) -> str:
+    """Returns another library's message in one short line."""
+    letters = "".join(c if c.isprintable() else "?" for c in str(error))[:_SAID]
+    return "nested too deeply" if isinstance(error, RecursionError) else letters
 
 
 def _refuse_long(value: Any) -> None:
@@ -105,21 +251,23 @@ def read_toml(path: Path, what: str = "TOML file") -> dict[str, Any]:
             is not TOML.
     """
     try:
-        content = tomllib.loads(read_bytes(path, _BY_HAND, what).decode("utf-8-sig"))
+        content = tomllib.loads(read_bytes(path, BY_HAND, what).decode("utf-8-sig"))
         _refuse_long(content)
         return content
     except (ValueError, RecursionError) as error:  # digits without end are a ValueError too
         if isinstance(error, InputError):
             raise
-        letters = "".join(c if c.isprintable() else "?" for c in str(error))[:_SAID]
-        said = "nested too deeply" if isinstance(error, RecursionError) else letters
-        raise InputError(f"{path} is not TOML ({said}); correct it there") from error
+        raise InputError(f"{path} is not TOML ({_said(error)}); correct it there") from error
 
 
 def _missing(path: Path) -> str:
-    if not path.parent.is_dir():
-        return f"no such folder: {path.parent}; check the path of {path.name}"
-    near = get_close_matches(path.name, [f.name for f in path.parent.iterdir()], n=3, cutoff=_ALIKE)
+    try:
+        if not path.parent.is_dir():
+            return f"no such folder: {path.parent}; check the path of {path.name}"
+        others = [file.name for file in path.parent.iterdir()]
+    except (OSError, ValueError):  # a folder that may not be listed, or that no folder can be
+        others = []
+    near = get_close_matches(path.name, others, n=3, cutoff=_ALIKE)
     hint = f"did you mean {' or '.join(near)}?" if near else "check its name and folder"
     return f"no such file: {path}; {hint}"
 
@@ -173,5 +321,5 @@ def to_disk(path: Path) -> None:
 def write_text(path: str | os.PathLike[str], text: str) -> Path:
     """Write UTF-8 text to a file, whole or not at all; returns its path."""
     with whole_file(path) as draft:
-        draft.write_text(text, encoding="utf-8", newline="")
+        draft.write_text(text, encoding="utf-8", errors="backslashreplace", newline="")
     return Path(path)

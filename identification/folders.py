@@ -247,7 +247,7 @@ def _make_hidden(path: Path) -> Path:
     path = path.resolve()
     for draft in _drafts(path, path.parent):
         number = draft.name.removeprefix(_DRAFT).partition("-")[0]
-        known = number.isdigit() and os.name == "posix"
+        known = number.isdecimal() and number.isascii() and os.name == "posix"
         if not _is_running(int(number)) if known else time.time() - draft.stat().st_mtime > _OLD:
             rmtree(draft, ignore_errors=True)
     inside = _make_hidden_inside(path)  # the folder itself must be writable, not only its parent

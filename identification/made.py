@@ -9,10 +9,11 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from hashlib import file_digest
 from pathlib import Path
 
-from identification.files import write_text
+from identification.errors import InputError
+from identification.files import digest as digest_of
+from identification.files import read_json, write_text
 
 MADE = ".made.json"
 
@@ -65,9 +66,9 @@ def list_content(folder: Path, records: Iterable[Mapping[str, str]] = ()) -> Con
 def read_made(folder: Path) -> dict[str, str]:
     """Returns the record of a folder, hashes by name; empty if there is none that can be read."""
     try:
-        made = json.loads((folder / MADE).read_text(encoding="utf-8"))["files"]
+        made = read_json(folder / MADE, "list of results", "remove it")["files"]
         return {str(name): str(digest) for name, digest in made.items()}
-    except (OSError, ValueError, TypeError, KeyError, AttributeError):
+    except (InputError, TypeError, KeyError, AttributeError):
         return {}  # then nothing is known to be ours
 
 
@@ -84,7 +85,6 @@ def write_made(folder: Path) -> None:
 def digest(file: Path) -> str:
     """Returns the hash of a file; "" if it cannot be read, because then it is not ours."""
     try:
-        with file.open("rb") as stream:
-            return file_digest(stream, "sha256").hexdigest()
-    except OSError:
+        return digest_of(file)
+    except InputError:
         return ""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import os
+import sys
 from collections.abc import Sequence
 from typing import Annotated
 
 import tyro
 
+from identification.commands.common import import_without_graphics
 from identification.commands.discover import Discover
 from identification.commands.fit import Fit
 from identification.commands.linearize import Linearize
@@ -28,6 +29,7 @@ EXAMPLES = (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
-    os.environ.setdefault("MUJOCO_GL", "disable")  # nothing here draws with OpenGL
+    given = sys.argv[1:] if arguments is None else arguments
+    import_without_graphics(own_methods=[*given[:1]] == ["sweep"])
     what = "Fit the parameters of any MJCF to a log, find what it lacks, and linearise it."
     return run_program(Command, "identification", what, arguments, EXAMPLES)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
@@ -41,6 +42,7 @@ def say(text: str) -> None:
 
 
 T = TypeVar("T")
+_BACKENDS = ("egl", "osmesa", "glfw")  # of MuJoCo, by the words of MUJOCO_GL
 
 
 def flat(groups: Iterable[Iterable[T]]) -> list[T]:
@@ -58,7 +60,7 @@ def note(text: str) -> None:
 
 def say_json(result: Mapping[str, Any]) -> None:
     """The result as one JSON object on stdout; what is not finite is null."""
-    say(json.dumps(result, allow_nan=False))
+    say(json.dumps(_plain(result), allow_nan=False))
 
 
 def write_result(path: Path, command: Any, result: Mapping[str, Any]) -> None:
@@ -67,7 +69,7 @@ def write_result(path: Path, command: Any, result: Mapping[str, Any]) -> None:
 
     packages = ("inca-mj", "mujoco", "numpy", "scipy", "numba")
     record = {
-        **result,
+        **_plain(result),
         "configuration": _plain(asdict(command)) if is_dataclass(command) else {},  # type: ignore[arg-type]
         "versions": {"python": sys.version.split()[0], **{p: _version(p) for p in packages}},
     }
@@ -168,6 +170,20 @@ def _note_without(what: str, error: Exception) -> None:
     note(f"no {what}: {reason}; the results are kept without")
 
 
+def import_without_graphics(*, own_methods: bool = False) -> None:
+    """Makes MuJoCo be imported without OpenGL, here and in processes that begin from here.
+
+    Nothing of these commands draws with it, and MuJoCo's import dies of a wrong MUJOCO_GL.
+
+    Args:
+        own_methods: whether methods of the user may run, which may draw: MUJOCO_GL then stays where
+            it names one of MuJoCo's backends.
+    """
+    backend = os.environ.get("MUJOCO_GL", "").lower().strip()
+    if not (own_methods and backend in _BACKENDS):
+        os.environ["MUJOCO_GL"] = "disable"
+
+
 def _version(package: str) -> str:
     from importlib.metadata import PackageNotFoundError, version
 
@@ -178,11 +194,14 @@ def _version(package: str) -> str:
 
 
 def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
+    """Returns a value with paths as text, and with text that every reader of JSON takes."""
+    from identification.files import readable
+
+    if isinstance(value, Mapping):
         return {k: _plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):
         return [_plain(v) for v in value]
-    return str(value) if isinstance(value, Path) else value
+    return readable(str(value)) if isinstance(value, Path | str) else value
 
 
 def table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:

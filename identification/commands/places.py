@@ -47,11 +47,15 @@ def refuse_place(command: Any) -> None:
     if out is None:
         return
     try:
-        there = next(p for p in (out, *out.absolute().parents) if p.exists())
-        is_folder, real = there.is_dir(), out.resolve()
+        there = next(p for p in (out, *out.absolute().parents) if os.path.lexists(p))
+        leads, is_folder, real = there.exists(), there.is_dir(), out.resolve()
     except (OSError, RuntimeError) as error:  # a name that is too long, a loop of links
         reason = error.strerror if isinstance(error, OSError) else os.strerror(errno.ELOOP)
         raise InputError(f"cannot make folder {out}: {reason}; choose another") from error
+    if not leads:
+        raise InputError(
+            f"cannot make folder {out}: {there} is a link that leads nowhere; choose another"
+        )
     if not is_folder:
         raise InputError(f"cannot make folder {out}: {there} is a file; choose another")
     for path in _inputs(command):

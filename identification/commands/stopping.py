@@ -23,6 +23,7 @@ from types import FrameType
 
 _LEFT_OUT: deque[str] = deque()  # the sentence for an interrupt in what may be left out
 GRACE = 1.5  # [s] for native code to return, and to keep what is worth keeping
+AGAIN = 0.01  # [s] after which an interrupt is raised again that machine code has lost
 STOPPED = 130  # exit code, as a shell gives it
 
 
@@ -42,9 +43,19 @@ def stoppable(name: str) -> Iterator[None]:
         heard.set()
         raise KeyboardInterrupt
 
+    def lost(error: sys.UnraisableHookArgs) -> None:
+        # A function of Python that machine code calls cannot pass an error on (numba's compiler
+        # calls one for its cache, MuJoCo one for its warnings): Python would print it and go on.
+        if isinstance(error.exc_value, KeyboardInterrupt):
+            signal.setitimer(signal.ITIMER_REAL, AGAIN)
+        else:
+            unraisable(error)
+
     read, write = os.pipe()
     os.set_blocking(write, False)
+    unraisable, sys.unraisablehook = sys.unraisablehook, lost
     handler = signal.signal(signal.SIGINT, interrupt)
+    alarm = signal.signal(signal.SIGALRM, interrupt)
     woken = signal.set_wakeup_fd(write, warn_on_full_buffer=False)
     watch = threading.Thread(target=_watch, args=(name, read), daemon=True)
     watch.start()
@@ -56,7 +67,10 @@ def stoppable(name: str) -> Iterator[None]:
         raise
     finally:
         signal.set_wakeup_fd(woken)
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, alarm)
         signal.signal(signal.SIGINT, handler)
+        sys.unraisablehook = unraisable
         os.close(write)  # the thread says what is left to say, and closes the other end
         watch.join(GRACE)
 

@@ -13,12 +13,14 @@ from __future__ import annotations
 import os
 import time
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from identification.discovery.scoring.sensitivities import list_common, list_single
 from identification.discovery.task import DiscoveryTask
 from identification.errors import InputError
+from identification.files import read_text
 from identification.model.predictor import Predictor
 
 COPIES = 5.75  # of the sensitivities to all candidates, that a search holds at once
@@ -101,8 +103,8 @@ def refuse_large(found: Forecast, share: float, least: int) -> None:
 def free_memory() -> float:
     """Memory that programs may still take [bytes]; infinite where the system does not say."""
     try:
-        with open("/proc/meminfo") as file:
-            table = dict(line.split(":", 1) for line in file)
+        lines = read_text(Path("/proc/meminfo")).splitlines()
+        table = dict(line.split(":", 1) for line in lines)
         return 1024.0 * float(table["MemAvailable"].split()[0])
     except (OSError, KeyError, ValueError):
         try:

@@ -23,6 +23,7 @@ from identification.errors import InputError, unknown_name
 from identification.files import MODEL, read_bytes
 from identification.logs.names import quoted
 from identification.model.hostile import refuse_hostile, refuse_numbers
+from identification.model.large import refuse_endless
 from identification.model.paths import Slot
 from identification.native.joint_callback import FIRST, REACH, STOP, TAG, stopping_steps
 
@@ -45,7 +46,12 @@ def read_model(source: str | Path | mujoco.MjSpec) -> mujoco.MjSpec:
     text = str(source)
     given = text.lstrip().startswith("<")
     where = "the model" if given else f"the model {text}"
-    refuse_hostile(text if given else read_bytes(Path(text), what=MODEL), where)
+    if given:
+        amount = refuse_hostile(text, where)
+    else:
+        amount = refuse_hostile(read_bytes(Path(text), what=MODEL), where, Path(text).parent)
+    if amount.may_be_large:
+        refuse_endless(text if given else Path(text), where)
     try:
         spec = mujoco.MjSpec.from_string(text) if given else mujoco.MjSpec.from_file(text)
         with catch_warnings():

@@ -16,10 +16,14 @@ from typing import Any
 import numpy as np
 
 from identification.errors import InputError
-from identification.files import whole_file
+from identification.files import read_archive, whole_file
 from identification.linear.system import LinearSystem
 
 NAMES = ("states", "inputs", "outputs")
+_SHAPES = {
+    "A": ("states", "states"), "B": ("states", "inputs"), "C": ("outputs", "states"),
+    "D": ("outputs", "inputs"),
+}  # fmt: skip
 ARRAYS = ("A", "B", "C", "D", "x", "u", "y", "rate")
 FORMATS = (".npz", ".mat")
 
@@ -54,11 +58,34 @@ def load_system(path: str | Path) -> LinearSystem:
     Raises:
         InputError: there is no such file, or it is no such system.
     """
-    content = read_arrays(path, (*ARRAYS, *NAMES, "Ts"), "a system of save_system")
-    Ts = float(content["Ts"])
+    content = read_arrays(path, (*ARRAYS, *NAMES, "Ts"), "system of save_system")
+    names = names_in(content, path)
     arrays: dict[str, Any] = {name: content[name] for name in ARRAYS}
-    names: dict[str, Any] = {name: tuple(content[name].tolist()) for name in NAMES}
-    return LinearSystem(**arrays, **names, sampling_time=Ts or None)
+    for name, array in {**arrays, "Ts": content["Ts"]}.items():
+        shape = tuple(len(names[axis]) for axis in _SHAPES.get(name, ()))
+        fits = array.shape == shape if name in _SHAPES else array.ndim == int(name != "Ts")
+        if not (fits and array.dtype.kind in "fiu" and np.isfinite(array).all()):
+            raise InputError(
+                f"{path} is damaged: {name} is no array of finite numbers that fits the names of"
+                " states, inputs and outputs; write the system again"
+            )
+    return LinearSystem(**arrays, **names, sampling_time=float(content["Ts"]) or None)
+
+
+def names_in(content: Mapping[str, np.ndarray], path: str | Path) -> dict[str, Any]:
+    """Returns the names of states, inputs and outputs in a file.
+
+    Args:
+        content: of the file.
+        path: of it, for messages.
+
+    Raises:
+        InputError: they are no rows of text.
+    """
+    for name in NAMES:
+        if content[name].ndim != 1 or content[name].dtype.kind != "U":
+            raise InputError(f"{path} is damaged: {name} is no row of names; write it again")
+    return {name: tuple(content[name].tolist()) for name in NAMES}
 
 
 def write_arrays(path: str | Path, content: Mapping[str, Any]) -> Path:
@@ -96,17 +123,14 @@ def read_arrays(path: str | Path, names: tuple[str, ...], what: str) -> dict[str
     Args:
         path: of the file.
         names: of the variables that it must have.
-        what: the file is, for the message.
+        what: kind of file that is wanted, for messages.
 
     Raises:
-        InputError: there is no such file, or a variable is missing.
+        InputError: there is no such file, it is damaged, or a variable is missing.
     """
-    try:
-        with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            return {name: file[name] for name in (*names, *(set(file.files) - {*names}))}
-    except FileNotFoundError:
-        raise InputError(f"no such file: {path}; check its name and folder") from None
-    except Exception as error:  # zip and numpy raise different errors
+    arrays = read_archive(Path(path), what)
+    if missing := [name for name in names if name not in arrays]:
         raise InputError(
-            f"{path} is not {what}, or is damaged ({type(error).__name__}); write it again"
-        ) from error
+            f"{path} is no {what}, or is damaged: it lacks {', '.join(missing)}; write it again"
+        )
+    return arrays

@@ -19,7 +19,14 @@ import numpy as np
 
 from identification.blas import one_blas_thread
 from identification.errors import InputError, unknown_name
-from identification.linear.export import ARRAYS, NAMES, names_of, read_arrays, write_arrays
+from identification.linear.export import (
+    ARRAYS,
+    NAMES,
+    names_in,
+    names_of,
+    read_arrays,
+    write_arrays,
+)
 from identification.linear.system import LinearSystem, held_for, sampling_time_of
 
 FEWEST = {"linear": 2, "cubic": 4}  # points of an axis
@@ -267,11 +274,23 @@ def load_grid(path: str | Path) -> GriddedSystem:
     Raises:
         InputError: there is no such file, or it is no such grid.
     """
-    content = read_arrays(path, (*ARRAYS, *NAMES, "scheduling", "method"), "a grid of systems")
+    content = read_arrays(path, (*ARRAYS, *NAMES, "scheduling", "method"), "grid of systems")
     arrays: dict[str, Any] = {name: content[name] for name in ARRAYS}
-    names: dict[str, Any] = {name: tuple(content[name].tolist()) for name in NAMES}
+    names, scheduling = names_in(content, path), np.atleast_1d(content["scheduling"]).tolist()
+    axes = {name: content.get(f"{_AXIS}{name}", np.zeros(())) for name in scheduling}
+    grid = tuple(axis.size for axis in axes.values() if axis.ndim == 1)
+    numbers = {**arrays, **axes}.values()
+    if not (
+        all(a.dtype.kind in "fiu" and np.isfinite(a).all() for a in numbers)
+        and len(grid) == len(axes)
+        and all(a.shape[: len(grid)] == grid for a in arrays.values())
+    ):
+        raise InputError(
+            f"{path} is damaged: its arrays are no finite numbers over the grid of"
+            f" {', '.join(map(str, scheduling))}; write it again"
+        )
     return GriddedSystem(
-        axes={name: content[f"{_AXIS}{name}"] for name in content["scheduling"].tolist()},
+        axes=axes,
         **arrays,
         **names,
         method=str(content["method"]),  # type: ignore[arg-type]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from identification.errors import InputError
-from identification.files import read_bytes
+from identification.files import read_bytes, readable
 from identification.logs.conversion import conversions, converted
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
@@ -132,7 +132,7 @@ def read_log(
         output_names=tuple(outputs),
         extras={name: table[name] for name in optional if name in table.names},
         units={name: unit for name, unit in si.items() if name != "time"},
-        name=path.stem,
+        name=readable(path.stem),
         notes=sidecar.notes,
         hold=sidecar.hold,
         splits=sidecar.splits,

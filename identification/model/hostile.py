@@ -5,19 +5,28 @@ An MJCF may ask for more than it writes: a `replicate` of a `replicate` multipli
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import Path
 from xml.etree import ElementTree
 
 import mujoco
 import numpy as np
 
 from identification.errors import InputError
+from identification.files import MAX_BYTES, MODEL, check_file, exists, read_bytes
+from identification.model.large import Amount, refuse_size
 
 MOST = 20_000  # elements, replicated ones counted each; robots have hundreds
 STEP = (1e-7, 1.0)  # least and largest timestep [s]
 HUGE = 1e50  # of any unit: squares and cubes of it are numbers too
+DEEPEST = 20  # files that include each other
+_FILES = MAX_BYTES, "file of a mesh, a texture or a heightfield"
+_FOLDERS = ("meshdir", "texturedir", "assetdir")
 _COUNTS = {"composite": "count", "flexcomp": "count"}
 _GRIDS = {"hfield": ("nrow", "ncol"), "texture": ("width", "height")}
 _CELLS = 2**26
+# What the engine can do beside its steps, and what our simulations of many values at once cannot.
+_UNSUPPORTED = {"mjENBL_SLEEP": "sleep", "mjENBL_IPC": "ipc"}
 _FINITE = (
     "body_mass", "body_inertia", "body_ipos", "body_pos", "dof_armature", "dof_damping",
     "dof_frictionloss", "jnt_stiffness", "jnt_pos", "qpos0", "actuator_gear", "actuator_gainprm",
@@ -25,39 +34,102 @@ _FINITE = (
 )  # fmt: skip
 
 
-def refuse_hostile(raw: str | bytes, where: str) -> None:
-    """Refuse a model by its text.
+def refuse_hostile(raw: str | bytes, where: str, folder: Path | None = None) -> Amount:
+    """Refuses a model by its text, and by that of the files that it includes.
 
     Args:
         raw: the MJCF.
         where: the model in messages, such as "the model slider.xml".
+        folder: of its file; None of a model that is in no file.
+
+    Returns:
+        What it asks for.
 
     Raises:
-        InputError: it is no XML, has too many elements, or a value that is no number.
+        InputError: it is no XML, has too many elements, or a value that is no number; or a file
+            that it names is none that can be read.
     """
+    amount = _amount(raw, where, folder, 0)
+    if amount.elements > MOST:
+        raise InputError(
+            f"{where} has {amount.elements:.3g} elements when all that repeat are counted, more"
+            f" than {MOST}; lower the counts of replicate, composite and flexcomp"
+        )
+    return amount
+
+
+def _amount(raw: str | bytes, where: str, folder: Path | None, depth: int) -> Amount:
+    """Returns what a text and the files that it names ask for."""
+    if depth > DEEPEST:
+        raise InputError(f"{where} includes itself; take the <include> out")
     try:
         root = ElementTree.fromstring(raw)
         names = {str(element.get("name")) for element in root.iter()}
         _refuse_nan(root, names, where)
-        count = _count(root, where)
+        elements = _count(root, where)
     except (ElementTree.ParseError, ValueError, RecursionError) as error:
         if isinstance(error, InputError):
             raise
         said = "nested too deeply" if isinstance(error, RecursionError) else str(error)
         raise InputError(f"{where} cannot be read ({said}); correct it there") from error
-    if count > MOST:
-        raise InputError(
-            f"{where} has {count:.3g} elements when all that repeat are counted, more than {MOST};"
-            " lower the counts of replicate, composite and flexcomp"
-        )
+    grids = [_product(" ".join(e.get(name, "1") for name in _GRIDS[e.tag]))
+             for e in root.iter() if e.tag in _GRIDS]  # fmt: skip
+    users = [_product(number) for e in root.iter("size") for name, number in e.items()
+             if name.startswith("nuser_")]  # fmt: skip
+    here = Amount(elements, sum(grids), max(users, default=0.0), len(raw))
+    included = () if folder is None else _included(root, folder)
+    parts = [_amount(read_bytes(file, what=MODEL), f"the model {file}", folder, depth + 1)
+             for file in included]  # fmt: skip
+    size = 0 if folder is None else sum(_sizes(root, folder))
+    return Amount(
+        elements=sum(part.elements for part in (here, *parts)),
+        cells=sum(part.cells for part in (here, *parts)),
+        numbers=max(part.numbers for part in (here, *parts)),
+        size=size + sum(part.size for part in (here, *parts)),
+    )
+
+
+def _included(root: ElementTree.Element, folder: Path) -> tuple[Path, ...]:
+    """Returns the files that a text includes; MuJoCo tells of those that are missing."""
+    files = (folder / element.get("file", "") for element in root.iter("include"))
+    return tuple(file for file in files if exists(file) and file != folder)
+
+
+def _sizes(root: ElementTree.Element, folder: Path) -> Iterator[int]:
+    """Yields the sizes [bytes] of the files that a text names beside the ones it includes.
+
+    Raises:
+        InputError: one is no regular file, or too large.
+    """
+    folders = {folder / element.get(name, "") for element in root.iter("compiler")
+               for name in _FOLDERS} | {folder}  # fmt: skip
+    for element in root.iter():
+        named = element.get("file")
+        if named and element.tag != "include":
+            for file in {place / named for place in folders}:
+                if exists(file):
+                    check_file(file, *_FILES)
+                    yield file.stat().st_size
 
 
 def refuse_numbers(model: mujoco.MjModel, where: str) -> None:
-    """Refuse a compiled model that cannot be simulated for its numbers.
+    """Refuses a compiled model that cannot be simulated for its flags, its size or its numbers.
+
+    Args:
+        model: the compiled model.
+        where: the model in messages, such as "the model slider.xml".
 
     Raises:
-        InputError: its timestep [s] is none, or a number of its dynamics is infinite or huge.
+        InputError: it is too large, or has a flag that simulations of many values at once cannot
+            follow; its timestep [s] is none, or a number of its dynamics is infinite or huge.
     """
+    for flag, word in _UNSUPPORTED.items():
+        if model.opt.enableflags & int(getattr(mujoco.mjtEnableBit, flag, 0)):
+            raise InputError(
+                f'{where} has <flag {word}="enable"/>, with which no two simulations of it can be'
+                f' compared; write <flag {word}="disable"/>'
+            )
+    refuse_size(mujoco.mj_sizeModel(model), where)
     (least, most), step = STEP, model.opt.timestep
     if not least <= step <= most:
         raise InputError(

@@ -6,7 +6,7 @@ from base64 import b64encode
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from identification.errors import InputError
+from identification.files import read_bytes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,13 +21,14 @@ def drawing(figure: Figure, prefix: str, caption: str) -> Any:
 
     from markupsafe import Markup
 
+    from identification.report.style import write_figure
     from identification.report.vector import svg
 
     drawn = svg(figure, prefix, caption)
     if len(drawn) <= _LARGEST_SVG:
         return Markup(drawn)
     stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=150)
+    write_figure(figure, stream, format="png", dpi=150)
     source = "data:image/png;base64," + b64encode(stream.getvalue()).decode()
     said = '<img src="{}" role="img" alt="{}" title="{}" />'
     return Markup(said).format(source, caption, caption)
@@ -35,20 +36,10 @@ def drawing(figure: Figure, prefix: str, caption: str) -> Any:
 
 def image_source(path: Path) -> str:
     """A JPEG as the address of an `<img>`."""
-    try:
-        return "data:image/jpeg;base64," + b64encode(path.read_bytes()).decode()
-    except OSError as error:
-        raise InputError(f"cannot read the picture {path}: {error.strerror}") from error
+    return "data:image/jpeg;base64," + b64encode(read_bytes(path, what="picture (.jpg)")).decode()
 
 
 def video_source(path: Path) -> str:
     """An mp4 as the address of a `<video>`."""
-    try:
-        size = path.stat().st_size
-        if size > _LARGEST_VIDEO:
-            raise InputError(
-                f"{path} has {size / 2**20:.0f} MB, too much for one page; make a shorter film"
-            )
-        return "data:video/mp4;base64," + b64encode(path.read_bytes()).decode()
-    except OSError as error:
-        raise InputError(f"cannot read the film {path}: {error.strerror}") from error
+    film = read_bytes(path, _LARGEST_VIDEO, "shorter film (.mp4), which fits into a page")
+    return "data:video/mp4;base64," + b64encode(film).decode()

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
+from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from identification.errors import InputError
-from identification.files import write_text
+from identification.files import read_text, write_text
 from identification.report.cells import columns_of, text_of
 from identification.report.media import drawing, image_source, video_source
 from identification.report.origin import origin
@@ -18,6 +20,7 @@ from identification.report.whole_quantities import whole_quantities
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+TEMPLATES = Path(__file__).parent / "templates"
 LONG = 12  # rows: a table of more is folded
 WIDE = 9.0  # a figure of so many inches has a row of its own
 
@@ -96,13 +99,12 @@ def write_report(
     Raises:
         InputError: a video cannot be read or is too large, or the file cannot be written.
     """
-    from importlib.resources import files
-
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
     from identification.report.vector import DARK
 
+    script = f"\n//<![CDATA[\n{read_text(TEMPLATES / 'figures.js')}\n//]]>\n"
     environment = Environment(
         loader=PackageLoader("identification.report"),
         autoescape=True,
@@ -119,9 +121,26 @@ def write_report(
         mood={True: "good", False: "bad", None: "plain"}[good],
         footer="\n".join(filter(None, [footer, origin(data)])),
         dark=DARK,
-        script=Markup((files("identification.report") / "templates" / "figures.js").read_text()),
+        script=Markup(script),
+        policy=_policy(script),
     )
     return write_text(path, page)
+
+
+def _policy(script: str) -> str:
+    """Returns what a browser may do for a page: nothing but show what stands in it.
+
+    No word of a log or a model can then run a script, or ask another computer for anything. Styles
+    may stand anywhere, because figures have some in their elements.
+
+    Args:
+        script: all that stands in the element of the page's one script.
+    """
+    digest = b64encode(sha256(script.encode()).digest()).decode()
+    return (
+        f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline';"
+        " img-src data:; media-src data:; base-uri 'none'; form-action 'none'"
+    )
 
 
 def save_figures(sections: Iterable[Section], folder: Path) -> list[Path]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from matplotlib.figure import Figure
 
@@ -53,6 +54,22 @@ def settle(figure: Figure) -> None:
         figure.set_layout_engine(None)
 
 
+def write_figure(figure: Figure, stream: IO[Any], **how: Any) -> None:
+    """Writes a figure, also one with letters that the font of its pixels lacks.
+
+    A joint may be called by any letter. Where there is no picture of it, a box stands, and a
+    browser shows the letter itself; matplotlib would warn of each one.
+
+    Args:
+        figure: of matplotlib.
+        stream: is written.
+        how: what `Figure.savefig` takes.
+    """
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", r"Glyph .* missing from", UserWarning)
+        figure.savefig(stream, **how)
+
+
 def save_png(figure: Figure, path: str | Path, dpi: float = 150) -> Path:
     """Write a figure as PNG, whole or not at all.
 
@@ -68,5 +85,5 @@ def save_png(figure: Figure, path: str | Path, dpi: float = 150) -> Path:
         InputError: the file cannot be written.
     """
     with whole_file(path) as draft, draft.open("wb") as stream:
-        figure.savefig(stream, format="png", dpi=dpi)
+        write_figure(figure, stream, format="png", dpi=dpi)
     return Path(path)

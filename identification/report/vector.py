@@ -18,7 +18,7 @@ import matplotlib
 import numpy as np
 from matplotlib.ticker import FixedLocator
 
-from identification.report.style import STYLE
+from identification.report.style import STYLE, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,7 +49,7 @@ def svg(figure: Figure, prefix: str = "", title: str = "") -> str:
     stream = io.StringIO()
     nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
     with matplotlib.rc_context({**STYLE, "svg.fonttype": "none"}):
-        figure.savefig(stream, format="svg", metadata=nothing)
+        write_figure(figure, stream, format="svg", metadata=nothing)
     text = stream.getvalue()
     text = re.sub(r"<metadata>.*?</metadata>\s*", "", text[text.index("<svg") :], flags=re.DOTALL)
     text = _with_prefix(_rounded(_with_variables(text)), prefix)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -25,7 +26,7 @@ def refuse_same_stem(file: RobotFile, log: Path) -> None:
     Raises:
         InputError: it has the same name as the log.
     """
-    if log.name and log.with_suffix(".toml").resolve() == file.path.resolve():
+    if log.name and os.path.realpath(log.with_suffix(".toml")) == os.path.realpath(file.path):
         raise InputError(
             f"{file.path} bears the name of {log} and would be read as what its log's own TOML says"
             " of units and parts; rename one of them"

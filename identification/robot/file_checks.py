@@ -11,6 +11,7 @@ from identification.errors import InputError, unknown_name
 
 Kinds = Mapping[str, tuple[type | tuple[type, ...], str]]  # by key: the types, and what they are
 POSITIVE = ("every", "known", "scale", "std")
+TINY, HUGE = 1e-50, 1e50  # of any unit: their squares, and what is divided by these, are numbers
 
 
 def check_table(table: Mapping[str, Any], kinds: Kinds, where: str) -> None:
@@ -32,6 +33,11 @@ def check_table(table: Mapping[str, Any], kinds: Kinds, where: str) -> None:
         good = isinstance(value, kind) and not isinstance(value, bool)
         if good and number:
             good = isfinite(value) and (key not in POSITIVE or value > 0)
+            if good and key in POSITIVE and not TINY <= value <= HUGE:
+                raise InputError(
+                    f"{key} in {where} is {value:g}, which no robot has; write a number between"
+                    f" {TINY:g} and {HUGE:g}"
+                )
         if not good:
             raise InputError(f"{key} in {where} must be {words}; correct it there")
 

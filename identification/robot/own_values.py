@@ -60,11 +60,30 @@ def value_parameters(
 
 
 def refuse_impossible(plant: JointPlant, logs: Sequence[Log]) -> None:
-    """Refuse values of logs outside the bounds of their parameters.
+    """Refuses values of logs outside their bounds, and moving bodies without mass.
+
+    Args:
+        plant: with the values of the robot's file.
+        logs: all logs of the robot.
 
     Raises:
         InputError: there is one.
     """
+    _refuse_massless(plant.model)
     for log in logs:
         with told_of(f"values of log {log.name!r}"):
-            plant.parameters.with_values(log.values)
+            _refuse_massless(plant.with_values(log.values).model)
+
+
+def _refuse_massless(model: mujoco.MjModel) -> None:
+    """Refuses a model that MuJoCo would not compile: a value has taken the mass of a moving body.
+
+    What is welded to a body moves with it, so that their masses count together.
+    """
+    for body in range(1, model.nbody):
+        together = model.body_weldid == body
+        if model.body_dofnum[body] and model.body_mass[together].sum() < mujoco.mjMINVAL:
+            raise InputError(
+                f"body/{model.body(body).name} moves, and its mass is"
+                f" {model.body_mass[body]:g} kg; give it a value above zero"
+            )

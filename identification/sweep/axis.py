@@ -10,13 +10,13 @@ With `label`, only those files are taken that labels.json beside them describes 
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from glob import glob
 from pathlib import Path
 from typing import Any
 
 from identification.errors import InputError
+from identification.files import read_json
 from identification.robot.file_checks import Kinds, check_table
 from identification.sweep.settings import Plain, place
 
@@ -83,10 +83,7 @@ def _files(pattern: str, label: Mapping[str, Any], folder: Path, where: str) -> 
 
 def _labels(folder: Path) -> dict[str, Any]:
     path = folder / "labels.json"
-    try:
-        labels = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path} cannot be read as JSON ({error}); leave label out") from error
+    labels = read_json(path, "JSON file of labels", "leave label out")
     return labels if isinstance(labels, dict) else {}
 
 

@@ -22,11 +22,11 @@ from math import prod
 from pathlib import Path
 from typing import Any
 
-from identification.errors import InputError, repeated
+from identification.errors import InputError, repeated, told_of
 from identification.files import read_toml
 from identification.robot.file_checks import Kinds, check_table
 from identification.sweep.axis import axis
-from identification.sweep.method import Registry, load_method, reference_of
+from identification.sweep.method import Registry, load_method, reference_of, told_in_method
 from identification.sweep.settings import Plain, build, refuse_missing_files
 from identification.sweep.task import Study, Sweep
 
@@ -83,10 +83,8 @@ def read_sweep(path: str | Path, known: Registry, *, files: bool = True) -> Swee
 def _check(study: Study, settings: Mapping[str, Plain], files: bool) -> None:
     """Refuse what the settings of a point would be refused for in each of its tasks."""
     where = f"study {study.name!r}"
-    try:
+    with told_of(where), told_in_method(study.reference, "refuses its settings"):
         build(study.method.settings, settings)
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from error
     if files:
         refuse_missing_files(study.method.settings, settings, where)
 

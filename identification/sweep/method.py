@@ -9,7 +9,9 @@ a worker on another machine can import it: `module:NAME` of an installed package
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
+import traceback
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from hashlib import sha256
 from importlib import import_module
@@ -21,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from identification.errors import InputError, unknown_name
+from identification.files import BY_HAND, check_file, is_file
 
 if TYPE_CHECKING:
     from identification.report.page import Section
@@ -119,14 +122,58 @@ def reference_of(word: str, known: Registry, folder: Path) -> str:
     """
     file, colon, name = word.rpartition(":")
     if colon and file.endswith(".py"):
-        path = (folder / file).resolve()
-        if not path.is_file():
+        path = folder / file
+        if not is_file(path):
             raise InputError(f"method {word!r}: there is no file {path}; correct the path")
-        return f"{path}:{name}"
+        return f"{path.resolve()}:{name}"
     if word not in known:
         error = unknown_name("method", word, known)
         raise InputError(f"{error}; a method of your own is file.py:NAME (docs/sweeps.md)")
     return known[word]
+
+
+@contextmanager
+def told_in_method(reference: str, what: str) -> Iterator[None]:
+    """Tells an error of a method's own code with its file and line; `sys.exit` in it is one too.
+
+    Args:
+        reference: of the method, the result of `reference_of`.
+        what: the method does not do, such as "cannot be imported".
+
+    Raises:
+        InputError: the code raised, or wanted to end the program.
+    """
+    try:
+        yield
+    except (InputError, MemoryError):
+        raise
+    except (Exception, SystemExit) as error:
+        raise InputError(
+            f"the method {reference} {what}: {error_line(error, reference)}; correct it there"
+        ) from error
+
+
+def error_line(error: BaseException, reference: str) -> str:
+    """Returns kind and message of an error, with the file and the line that raised it.
+
+    The line is the last one of the method's own file, where it had a part. A refusal of input says
+    itself what is wrong, and has no line.
+
+    Args:
+        error: it.
+        reference: of the method, the result of `reference_of`.
+    """
+    try:
+        said = " ".join(str(error).split())
+    except Exception:  # an error of a user may fail even at this
+        said = "without a message"
+    name = type(error).__name__
+    calls = traceback.extract_tb(error.__traceback__)
+    if isinstance(error, SyntaxError | InputError) or not calls:  # their messages say where
+        return f"{name}: {said}"
+    file = reference.rpartition(":")[0]
+    last = next((c for c in reversed(calls) if c.filename == file), calls[-1])
+    return f"{name}: {said} ({Path(last.filename).name}, line {last.lineno})"
 
 
 def load_method(reference: str) -> Method:
@@ -139,10 +186,8 @@ def load_method(reference: str) -> Method:
         InputError: the module cannot be imported, or has no method of that name.
     """
     place, _, name = reference.rpartition(":")
-    try:
+    with told_in_method(reference, "cannot be imported"):
         module = _load_file(Path(place)) if place.endswith(".py") else import_module(place)
-    except (ImportError, SyntaxError, OSError) as error:
-        raise InputError(f"the method {reference} cannot be imported: {error}") from error
     method = getattr(module, name, None)
     if not isinstance(method, Method):
         good = [n for n, value in vars(module).items() if isinstance(value, Method)]
@@ -157,6 +202,7 @@ def _load_file(path: Path) -> ModuleType:
     name = f"_sweep_{path.stem}_{sha256(str(path).encode()).hexdigest()[:12]}"
     if name in sys.modules:
         return sys.modules[name]
+    check_file(path, BY_HAND, "Python file with a method")
     spec = spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
         raise ImportError(f"{path} is no Python file")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
-from hashlib import file_digest
 from pathlib import Path
 from typing import Any
 
+from identification.files import digest
 from identification.sweep.extras import needed
 
 _BLOCK = 20_000  # rows that are held at once
+_LARGEST = 2**36  # bytes of a file of records, which is read a part at a time
 
 
 def write_whole(folder: Path, stem: str, schema: Any, tables: Iterable[Any]) -> Path:
@@ -43,6 +44,7 @@ def read_tasks(path: Path) -> set[int]:
     """The tasks of a file.
 
     Raises:
+        InputError: it is no regular file.
         OSError: the file is not whole, or was changed.
     """
     parquet: Any = needed("pyarrow.parquet", "sweep", "a sweep")
@@ -52,8 +54,7 @@ def read_tasks(path: Path) -> set[int]:
 
 
 def _digest(path: Path) -> str:
-    with path.open("rb") as stream:
-        return file_digest(stream, "sha256").hexdigest()[:16]
+    return digest(path, _LARGEST, "record of a sweep")[:16]
 
 
 def read_tables(files: Sequence[Path], schema: Any, count: int) -> Iterator[Any]:

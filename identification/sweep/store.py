@@ -22,7 +22,7 @@ from typing import Any, Self
 from uuid import uuid4
 
 from identification.errors import InputError
-from identification.files import write_text
+from identification.files import read_json, write_text
 from identification.sweep.extras import needed
 from identification.sweep.parquet import read_tables, read_tasks, write_whole
 from identification.sweep.rows import schema
@@ -130,9 +130,9 @@ class Store:
             write_text(key, json.dumps(mine, indent=1) + "\n")
             return
         try:
-            theirs = json.loads(key.read_text(encoding="utf-8"))
+            theirs = read_json(key, "record of a sweep", "give --out a new folder")
             other = theirs["digest"] != mine["digest"]
-        except (OSError, ValueError, KeyError, TypeError) as error:
+        except (InputError, KeyError, TypeError) as error:
             raise InputError(f"{key} cannot be read; give --out a new folder") from error
         if other:
             raise InputError(

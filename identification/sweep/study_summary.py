@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from identification.report.page import Section, Table
-from identification.sweep.method import Findings, Record
+from identification.sweep.method import Findings, Record, told_in_method
 from identification.sweep.power import axes, grouped, word
 from identification.sweep.power_section import power_section
 from identification.sweep.statistics import said, wilson
@@ -41,7 +41,8 @@ def summarise_study(study: Study, rows: Sequence[Record]) -> Findings:
         record["power"] = power
     sentences: list[str] = []
     if study.method.summary is not None and done:
-        own = study.method.summary(done)
+        with told_in_method(study.reference, "has no summary of its records"):
+            own = study.method.summary(done)
         record["summary"] = own.record
         sections += [_titled(study, section) for section in own.sections]
         sentences = [f"{study.name}: {sentence}" for sentence in own.sentences]

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from identification.sweep.code import code
-from identification.sweep.method import Column, load_method
+from identification.sweep.method import Column, error_line, load_method
 from identification.sweep.settings import build
 from identification.sweep.task import Task
 
@@ -55,17 +55,17 @@ def work(task: Task) -> Outcome:
     from threadpoolctl import threadpool_limits
 
     with _ONE, one_thread():
-        method = load_method(task.reference)
         begin, processor = time.perf_counter(), time.process_time()
         record, error, trace = None, None, None
         with threadpool_limits(1):
             try:
+                method = load_method(task.reference)
                 made = method.run(build(method.settings, task.settings), task.seed)
                 record = checked(made, method.columns)
             except MemoryError:
                 raise
-            except Exception as caught:
-                error = " ".join(f"{type(caught).__name__}: {caught}".split())
+            except (Exception, SystemExit) as caught:
+                error = error_line(caught, task.reference)
                 trace = traceback.format_exc(limit=-4)
         run = {
             "seconds": time.perf_counter() - begin,

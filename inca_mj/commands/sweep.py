@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from identification.commands.common import import_without_graphics
 from identification.commands.sweep import SweepCommand
-from inca_mj.commands.common import do_not_draw
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Sweep(SweepCommand):
 
     def run(self) -> int:
         """Run, keep, say; 1 where every task met an error."""
-        do_not_draw()
+        import_without_graphics(own_methods=True)
         return super().run()
 
     def methods(self) -> Mapping[str, str]:

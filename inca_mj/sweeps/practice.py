@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from identification.errors import InputError
+from identification.files import read_json
 from identification.sweep.answers import (
     ANSWER,
     JUDGED,
@@ -77,10 +77,10 @@ def truth_of(log: Path) -> dict[str, Any]:
         InputError: there is no label of it.
     """
     path = log.parent / "labels.json"
-    try:
-        label = json.loads(path.read_text(encoding="utf-8"))[log.stem]
-    except (OSError, ValueError, KeyError) as error:
-        raise InputError(f"{path} has no label of {log.stem}: {error}") from error
+    labels = read_json(path, "JSON file of labels", "write it again")
+    if not isinstance(labels, dict) or log.stem not in labels:
+        raise InputError(f"{path} has no label of {log.stem}; add one, or leave that log out")
+    label = labels[log.stem]
     names = [e if isinstance(e, str) else e["name"] for e in label["effects"]]
     where = label["where"] if isinstance(label["where"], list) else [label["where"]]
     places = ["" if w is None else f"drive {w}" for w in where]

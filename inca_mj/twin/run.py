@@ -14,7 +14,7 @@ from mujoco.batch import Batch
 
 from identification.effects.effect import Effect
 from identification.errors import InputError
-from identification.files import whole_file
+from identification.files import read_archive, whole_file
 from identification.model.rollout import State, rollout
 from inca_mj.effects.catalogue import EVERY
 from inca_mj.kinematics.rotations import euler
@@ -206,14 +206,12 @@ def load_run(path: str | Path, effects: Sequence[Effect] = EVERY) -> Run:
             `effects`.
     """
     try:
-        with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            header: dict[str, Any] = {**OLDER, **json.loads(str(file["header"]))}
-            arrays = {name: file[name] for name in _ARRAYS}
-            arrays.update({name: file[name] for name in _OPTIONAL if name in file})
+        file = read_archive(Path(path), "run of inca simulate")
+        header: dict[str, Any] = {**OLDER, **json.loads(str(file["header"]))}
+        arrays = {name: file[name] for name in _ARRAYS}
+        arrays.update({name: file[name] for name in _OPTIONAL if name in file})
         _refuse_damaged(arrays, Path(path))
         return Run(twin=twin_from_record(header, effects, Path(path)), **arrays)
-    except FileNotFoundError:
-        raise InputError(f"no run {path}; inca simulate --out DIR writes one") from None
     except InputError:
         raise
     except Exception as error:  # zip, JSON and numpy raise different errors

@@ -18,7 +18,7 @@ import numpy as np
 
 from identification.effects.effect import Effect
 from identification.errors import InputError
-from identification.files import write_text
+from identification.files import MODEL, read_json, read_text, write_text
 from identification.model.parameter import Parameter, ParameterSet
 from inca_mj.effects.catalogue import EVERY
 from inca_mj.effects.values import records
@@ -135,13 +135,9 @@ def _effect(effect: Effect, values: dict[str, float]) -> dict[str, Any]:
 
 
 def _read(path: Path) -> dict[str, Any]:
-    try:
-        record = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise InputError(f"no {path}; inca discover --out DIR writes one") from None
-    except (OSError, ValueError, RecursionError) as error:
-        reason = (str(error).splitlines() or [type(error).__name__])[0][:120]
-        raise InputError(f"{path} cannot be read as JSON ({reason}); save the twin again") from None
+    if not path.exists():
+        raise InputError(f"no {path}; inca discover --out DIR writes one")
+    record = read_json(path, "file of a saved twin", "save the twin again")
     if not isinstance(record, dict):
         raise InputError(f"{path} holds no object; save the twin again")
     return record
@@ -184,7 +180,7 @@ def _same(model: mujoco.MjModel, path: Path) -> None:
     if not path.is_file():
         raise InputError(f"no {path}; save the twin again")
     try:
-        other = mujoco.MjModel.from_xml_path(str(path))
+        other = mujoco.MjModel.from_xml_string(read_text(path, what=MODEL))
     except ValueError as error:
         said = " ".join(str(error).split())
         raise InputError(f"{path} is not a model MuJoCo can read: {said}") from None

@@ -159,3 +159,21 @@ def test_a_folder_that_a_stopped_command_made_does_not_stay(tmp_path):
             stopped(out)
         assert out.exists() == stays
         assert not stays or not list(out.iterdir())
+
+
+@pytest.mark.parametrize("inside", ["", "/new", "/new/deeper"])
+@pytest.mark.parametrize("target", ["loop", "nowhere"])
+def test_a_link_that_leads_nowhere_is_no_folder_for_results(tmp_path, capsys, inside, target):
+    (tmp_path / "loop").symlink_to(tmp_path / target)
+    assert inca(["simulate", "--duration", "1", "--out", f"{tmp_path / 'loop'}{inside}"]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "loop is a link that leads nowhere; choose another" in said
+
+
+@pytest.mark.parametrize("name", [".draft-²-x", ".draft-٣-x", ".draft--x", ".draft-1e3-x"])
+def test_a_draft_of_no_process_is_kept(tmp_path, name):
+    (tmp_path / name).mkdir()
+    made(tmp_path, a="1")
+    assert (tmp_path / name).is_dir()
+    assert list_foreign(tmp_path) == []

@@ -16,10 +16,12 @@ BUSY = {
     "waiting": "time.sleep(60)",
     "a thread": "with ThreadPoolExecutor(1) as w: w.submit(time.sleep, 60); time.sleep(60)",
     "text that is code": "exec('time.sleep(60)')",  # as in each dataclass that is imported
+    "a function that machine code calls": "ctypes.CFUNCTYPE(None)(lambda: time.sleep(1))();"
+    " time.sleep(60)",
     "native": "hashlib.pbkdf2_hmac('sha256', b'', b'', 2**31 - 1)",  # takes minutes
 }
 PROGRAM = """
-import hashlib, sys, time
+import ctypes, hashlib, sys, time
 from concurrent.futures import ThreadPoolExecutor
 from identification.commands.stopping import STOPPED, at_end, stoppable
 try:

@@ -21,6 +21,7 @@ HOSTILE = (
     b"9223372036854775808", b"9" * 400, b'""', b'"x"', b"true", b"[]", b"{}", b"null", b"''", b"",
     b"1 2", b"1,2", "\u0663".encode(), "\u00e9".encode(), b"\xff\xfe", b"\x00", b"$\\bad{$",
     b"<b>&amp;", b"../..", b"[[1]]", b"{a = 1}", b"1_000", b"0x10", b"1979-05-27",
+    b"\\u0000", b"\\ud800", "\u00b2".encode(), 2000 * b"[", b"/dev/zero", b"/proc/self/mem", b"..",
 )  # fmt: skip
 ARRAYS: tuple[Callable[[np.ndarray], np.ndarray], ...] = (
     lambda a: a * np.nan if a.dtype.kind == "f" else a,

@@ -13,6 +13,10 @@ from scipy.io import savemat
 from identification import read_log, read_robot
 from identification.commands.refusals import parsed
 from identification.discovery.options import read_options
+from identification.folders import MADE, whole_folder
+from identification.linear.export import load_system, save_system
+from identification.linear.system import LinearSystem
+from identification.sweep.config import read_sweep
 from inca_mj.cli import Command
 from inca_mj.robot.geometry import INCA, read_geometry, write_geometry
 from inca_mj.robot.inputs import prbs
@@ -70,6 +74,38 @@ only = ["stribeck_friction"]
 """
 
 
+SWEEP = """
+seed = 3
+about = "a study"
+[[study]]
+method = "own.py:OWN"
+name = "first"
+count = 2
+paired = true
+[study.settings]
+log = "log.csv"
+[study.grid]
+ratio = [1, 3, 10]
+file = { files = "*.csv", label = { kind = "null" } }
+"""
+OWN = """
+from dataclasses import dataclass
+from pathlib import Path
+from identification.sweep.method import Column, Method
+
+@dataclass(frozen=True)
+class Settings:
+    ratio: int
+    log: Path
+    file: str = "a"
+
+OWN = Method(
+    about="nothing", settings=Settings, columns={"a": Column(float, "one")},
+    run=lambda settings, seed: {"a": 1.0},
+)
+"""
+
+
 @dataclass(frozen=True)
 class Target:
     """A reader.
@@ -109,6 +145,33 @@ def _robot(folder: Path) -> None:
     time = 0.01 * np.arange(SAMPLES)
     table = np.column_stack([time, np.sin(9 * time), 0.1 * np.sin(7 * time)])
     np.savetxt(folder / "log.csv", table, "%.9g", ",", header="time,force,x", comments="")
+
+
+def _sweep(folder: Path) -> None:
+    (folder / "sweep.toml").write_text(SWEEP)
+    (folder / "own.py").write_text(OWN)
+    (folder / "log.csv").touch()
+    (folder / "labels.json").write_text('{"log": {"kind": "null", "effects": ["a"]}}')
+
+
+def _results(folder: Path) -> None:
+    with whole_folder(folder / "out") as draft:
+        (draft / "result.json").write_text("{}")
+    (folder / MADE).write_bytes((folder / "out" / MADE).read_bytes())
+
+
+def _replaced(folder: Path) -> None:
+    """Write results into a folder whose list of results is a changed one."""
+    (folder / "out" / MADE).write_bytes((folder / MADE).read_bytes())
+    with whole_folder(folder / "out") as draft:
+        (draft / "result.json").write_text("{}")
+
+
+def _system(folder: Path) -> None:
+    names = {"states": ("x", "v"), "inputs": ("u",), "outputs": ("y",)}
+    A, B, C, D = np.eye(2), np.ones((2, 1)), np.ones((1, 2)), np.zeros((1, 1))
+    at = {"x": np.zeros(2), "u": np.zeros(1), "y": np.zeros(1), "rate": np.zeros(2)}
+    save_system(LinearSystem(A=A, B=B, C=C, D=D, **at, **names), folder / "system.npz")
 
 
 def _run(folder: Path) -> None:
@@ -158,6 +221,12 @@ TARGETS = {
     "MJCF": Target(
         _robot, ("slider.xml",), lambda d: read_robot(d / "robot.toml", d / "log.csv"), 1
     ),
+    "sweep": Target(
+        _sweep, ("sweep.toml", "labels.json"),
+        lambda d: read_sweep(d / "sweep.toml", {}), 2,
+    ),
+    "results": Target(_results, (MADE,), _replaced, 2),
+    "system": Target(_system, ("system.npz",), lambda d: load_system(d / "system.npz"), 2),
     "MATLAB": Target(
         _matlab, ("log.mat",), lambda d: read_log(d / "log.mat", CURRENTS, ANGLES), 0.02
     ),

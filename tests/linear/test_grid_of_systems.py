@@ -118,8 +118,8 @@ def test_without_python_control_the_way_out_is_told(monkeypatch):
         (lambda: gridded({"a": np.arange(2.0)}, [random_system(0).discrete(9)] * 2), "continuous"),
         (lambda: grid(3).simulate(np.zeros(2), np.zeros((3, 1)), 10), "a is no state"),
         (lambda: save_system(random_system(0), "system.csv"), r"\.npz or \.mat"),
-        (lambda: load_system("no/such.npz"), "no such file"),
-        (lambda: load_grid(__file__), "is not a grid"),
+        (lambda: load_system("no/such.npz"), "no such folder"),
+        (lambda: load_grid(__file__), "is no grid"),
     ],
 )
 def test_what_cannot_be_is_refused(wrong, words):

@@ -194,11 +194,11 @@ def test_bad_paths(tmp_path, refusal):
 
 
 def test_a_file_that_may_not_be_read(csv, refusal, monkeypatch):
-    def forbidden(self):
+    def forbidden(*_):
         raise PermissionError(13, "Permission denied")
 
     path = csv(lines())
-    monkeypatch.setattr(Path, "read_bytes", forbidden)
+    monkeypatch.setattr("identification.files.os.open", forbidden)
     assert "Permission denied" in refusal(read, path)
 
 
@@ -207,7 +207,7 @@ def test_a_huge_file_is_refused_before_it_is_read(tmp_path, refusal, monkeypatch
     path = tmp_path / name
     with path.open("wb") as file:
         file.truncate(4 * MAX_BYTES)
-    monkeypatch.setattr(Path, "read_bytes", None)
+    monkeypatch.setattr("identification.files.os.open", None)
     text = refusal(read, path)
     for word in ("2048 MB", "512 MB", "cut it"):
         assert word in text

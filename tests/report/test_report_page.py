@@ -2,6 +2,8 @@
 
 import json
 import re
+from base64 import b64encode
+from hashlib import sha256
 from html import unescape
 from xml.etree import ElementTree
 
@@ -207,3 +209,18 @@ def test_sizes_without_a_unit_are_all_in_percent():
 
 def test_the_two_gains_are_told_apart(page):
     assert "promises before an effect is fitted" in page
+
+
+def test_a_page_may_run_its_one_script_and_ask_nobody_for_anything(page):
+    (policy,) = re.findall(r'http-equiv="Content-Security-Policy" content="([^"]*)"', page)
+    (script,) = re.findall(r"<script>(.*?)</script>", page, re.DOTALL)
+    rules = dict(rule.split(maxsplit=1) for rule in unescape(policy).split("; "))
+    digest = b64encode(sha256(script.encode()).digest()).decode()
+    assert rules["script-src"] == f"'sha256-{digest}'"
+    assert rules["default-src"] == rules["base-uri"] == rules["form-action"] == "'none'"
+    assert rules["img-src"] == rules["media-src"] == "data:"
+    assert set(" ".join(rules.values()).split()) <= {
+        "'none'", "'unsafe-inline'", "data:", f"'sha256-{digest}'",
+    }  # fmt: skip
+    assert page.index("Content-Security-Policy") < page.index("<style>") < page.index("<script>")
+    assert not re.search(r"<[^>]*\son\w+=", page)  # the policy would not run it

@@ -33,6 +33,9 @@ class Some:
             yield work(task)
 
 
+BAD = "this task is bad (sweep_method.py, line 42)"
+
+
 def begun(path, folder, count, **how):
     with pytest.raises(Stopped):
         run(path, folder, Some(count), **how)
@@ -105,7 +108,7 @@ def test_records_that_are_there_twice_count_once(tmp_path):
 def test_errors_are_rows_and_run_again_on_demand(tmp_path):
     path, out = write(tmp_path, "[study.grid]\nbad = [false, true]\n", 2), tmp_path / "out"
     rows = [json.loads(text) for text in run(path, out)]
-    assert [row["error"] for row in rows] == [None, None, *["ValueError: this task is bad"] * 2]
+    assert [row["error"] for row in rows] == [None, None, *[f"ValueError: {BAD}"] * 2]
     assert rows[2]["total"] is None
     with Store(read_sweep(path, {}), out) as store:
         assert store.drop_errors() == 2

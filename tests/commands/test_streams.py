@@ -1,0 +1,86 @@
+"""Closed and full streams, strict encodings and warnings change no exit code and end no program."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+from robot_cases import TOML, simulated
+
+from identification.logs.write import write_log
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="streams of POSIX")
+STRICT = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0",
+          "PYTHONIOENCODING": "ascii:strict"}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with a robot that reads quickly, and a log of it."""
+    from joint_cases import SLIDER
+
+    folder = tmp_path_factory.mktemp("robot")
+    (folder / "slider.xml").write_text(SLIDER)
+    (folder / "robot.toml").write_text(TOML)
+    write_log(simulated({"damping": 3.0, "mass": 2.0}, 200), folder / "log.csv")
+    return folder
+
+
+def shell(folder, line, **environment):
+    """What a line of a shell says on stdout and stderr, and its exit code; `P` is the program."""
+    program = f"{sys.executable} -m identification"
+    done = subprocess.run(
+        ["sh", "-c", line.replace("P ", f"{program} ", 1)], cwd=folder, capture_output=True,
+        env=os.environ | environment, check=False,
+    )  # fmt: skip
+    return done.returncode, done.stdout, done.stderr
+
+
+BAD, GOOD = "P fit robot.toml nope.csv", "P fit robot.toml log.csv"
+
+
+@pytest.mark.parametrize(("line", "code"), [
+    (f"{BAD} 2>&-", 2), (f"{BAD} 2>/dev/full", 2), (f"{BAD} >&- 2>&-", 2), (f"{BAD} <&-", 2),
+    (f"{GOOD} --quiet >&-", 0), (f"{GOOD} 2>/dev/full", 0), (f"{GOOD} 2>&-", 0),
+    (f"{GOOD} <&- >&- 2>&-", 0), (f"{GOOD} --quiet >/dev/full", 2), ("P --help >&-", 0),
+    ("P --help 2>&- | true", 0),
+])  # fmt: skip
+def test_the_exit_code_is_that_of_the_work(folder, line, code):
+    ended, _, said = shell(folder, line)
+    assert ended == code, said
+    assert b"Traceback" not in said
+
+
+def test_what_is_written_goes_into_no_closed_stream(folder):
+    """Else the first file that is opened gets the number of a stream, and what is said to it."""
+    code, _, said = shell(folder, f"{GOOD} --quiet --out out >&- 2>&- <&-")
+    assert (code, said) == (0, b"")
+    assert json.loads((folder / "out" / "result.json").read_text())["status"] == "converged"
+
+
+@pytest.mark.parametrize("arguments", ["", "--json"])
+def test_letters_that_an_encoding_lacks_end_nothing(folder, arguments):
+    name = os.fsdecode(b"n\xff.csv")
+    (folder / name).write_bytes((folder / "log.csv").read_bytes())
+    line = f"{GOOD.replace('log.csv', name)} --quiet --out strict{arguments} {arguments}"
+    code, out, said = shell(folder, line, **STRICT)
+    assert (code, said) == (0, b"")
+    assert out.isascii()
+    assert b"n\\xff" in out.replace(b"\\\\", b"\\")
+    text = (folder / f"strict{arguments}" / "result.json").read_text(encoding="utf-8")
+    assert "\\ud" not in text.replace("\\\\", "")  # half a letter, which other readers refuse
+
+
+def test_no_warning_of_a_library_reaches_a_user(folder):
+    (folder / "warns.py").write_text(
+        "import warnings\nfrom identification.__main__ import program\n"
+        "import identification.commands.cli as cli\n"
+        "cli.run_program = lambda *_: warnings.warn('Glyph 128512 missing') or 0\n"
+        "raise SystemExit(program())\n"
+    )
+    for words, is_told in (([], False), (["-W", "default"], True)):
+        done = subprocess.run([sys.executable, *words, "warns.py"], cwd=folder,
+                              capture_output=True, check=False)  # fmt: skip
+        assert done.returncode == 0
+        assert (b"Glyph" in done.stderr) == is_told

@@ -1,0 +1,50 @@
+"""A wrong MUJOCO_GL ends no command that draws nothing."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+from robot_cases import TOML, simulated
+from sweep_cases import METHOD
+
+from identification.commands.common import import_without_graphics
+from identification.logs.write import write_log
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with a robot, its log, and a sweep."""
+    from joint_cases import SLIDER
+
+    folder = tmp_path_factory.mktemp("robot")
+    (folder / "slider.xml").write_text(SLIDER)
+    (folder / "robot.toml").write_text(TOML)
+    (folder / "sweep.toml").write_text(f"[[study]]\nmethod = '{METHOD}:TOSS'\n")
+    write_log(simulated({"damping": 3.0, "mass": 2.0}, 200), folder / "log.csv")
+    return folder
+
+
+@pytest.mark.parametrize("line", [
+    "identification fit robot.toml log.csv", "identification linearize robot.toml --json",
+    "identification sweep sweep.toml --jobs 1 --out one",
+    "inca_mj sweep sweep.toml --jobs 1 --out two", "inca_mj simulate --duration 0.1",
+    "inca_mj cite",
+])  # fmt: skip
+def test_a_command_that_draws_nothing_runs(folder, line):
+    done = subprocess.run(
+        [sys.executable, "-m", *line.split()], cwd=folder, capture_output=True, text=True,
+        env=os.environ | {"MUJOCO_GL": "bogus"}, check=False,
+    )  # fmt: skip
+    assert "MUJOCO_GL" not in done.stderr
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(("given", "own_methods", "left"), [
+    ("bogus", False, "disable"), ("bogus", True, "disable"), ("egl", False, "disable"),
+    ("egl", True, "egl"), ("", True, "disable"),
+])  # fmt: skip
+def test_a_method_of_the_user_may_draw(monkeypatch, given, own_methods, left):
+    monkeypatch.setenv("MUJOCO_GL", given)
+    import_without_graphics(own_methods=own_methods)
+    assert os.environ["MUJOCO_GL"] == left

@@ -1,0 +1,153 @@
+"""A pipe, a device or gigabytes in the place of any file are refused and not waited for."""
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from identification import InputError, read_log
+from identification.files import (
+    digest,
+    opened,
+    read_archive,
+    read_bytes,
+    read_json,
+    read_text,
+    read_toml,
+)
+from identification.folders import MADE, list_foreign, whole_folder
+from identification.linear.export import load_system
+from identification.report.media import image_source, video_source
+from identification.sweep.axis import axis
+from identification.sweep.parquet import read_tasks
+from inca_mj.sweeps.practice import truth_of
+from inca_mj.twin.run import load_run
+from inca_mj.twin.saved import load_twin, save_twin
+from inca_mj.twin.twin import build_twin
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="pipes and devices of POSIX")
+LARGE = 3 * 2**30  # [bytes]
+
+
+def pipe(path: Path) -> None:
+    os.mkfifo(path)
+
+
+def device(path: Path) -> None:
+    path.symlink_to("/dev/zero")
+
+
+def sparse(path: Path) -> None:
+    with path.open("wb") as file:
+        file.truncate(LARGE)
+
+
+READERS = {
+    "read_bytes": read_bytes,
+    "read_text": read_text,
+    "read_toml": read_toml,
+    "read_json": lambda p: read_json(p, "list", "write it again"),
+    "read_archive": lambda p: read_archive(p, "run"),
+    "log": lambda p: read_log(p.rename(p.with_suffix(".csv")), ["u"], ["y"]),
+    "system": load_system,
+    "run": load_run,
+    "picture": image_source,
+    "film": video_source,
+}
+
+
+@pytest.mark.parametrize("make", [pipe, device, sparse])
+@pytest.mark.parametrize("reader", READERS)
+def test_a_reader_refuses_it(tmp_path, reader, make):
+    make(tmp_path / "file")
+    with pytest.raises(InputError, match=r"is not a regular file|MB, more than the"):
+        READERS[reader](tmp_path / "file")
+
+
+@pytest.mark.parametrize("make", [pipe, device])
+def test_a_record_of_a_sweep_that_is_none_is_told(tmp_path, make):
+    make(tmp_path / "part-0-0123456789abcdef.parquet")
+    with pytest.raises(InputError, match="is not a regular file"):
+        read_tasks(tmp_path / "part-0-0123456789abcdef.parquet")
+
+
+@pytest.mark.parametrize("make", [pipe, device, sparse])
+def test_labels_that_are_none_are_told(tmp_path, make):
+    make(tmp_path / "labels.json")
+    (tmp_path / "a.csv").touch()
+    for call in (
+        lambda: axis({"files": "*.csv", "label": {"kind": "null"}}, tmp_path, "grid.log"),
+        lambda: truth_of(tmp_path / "a.csv"),
+    ):
+        with pytest.raises(InputError, match=r"labels\.json (is not a regular|has 3072 MB)"):
+            call()
+
+
+@pytest.mark.parametrize("name", ["effects.json", "model.xml"])
+@pytest.mark.parametrize("make", [pipe, device, sparse])
+def test_a_twin_with_a_file_that_is_none_is_refused(tmp_path, make, name):
+    save_twin(build_twin(), tmp_path)
+    (tmp_path / name).unlink()
+    make(tmp_path / name)
+    with pytest.raises(InputError, match=rf"{name}.*regular file|{name} has 3072 MB|no .*{name}"):
+        load_twin(tmp_path)
+
+
+@pytest.mark.parametrize("make", [pipe, device])
+@pytest.mark.parametrize("name", ["result.json", MADE])
+def test_a_folder_of_results_with_one_is_foreign_or_unknown(tmp_path, make, name):
+    with whole_folder(tmp_path / "out") as draft:
+        (draft / "result.json").write_text("{}")
+    assert list_foreign(tmp_path / "out") == []
+    (tmp_path / "out" / name).unlink()
+    make(tmp_path / "out" / name)
+    assert list_foreign(tmp_path / "out") == ["result.json"]
+
+
+def test_what_takes_the_place_of_a_file_after_it_was_looked_at_is_not_waited_for(
+    tmp_path, monkeypatch
+):
+    os.mkfifo(tmp_path / "file")
+    monkeypatch.setattr("identification.files.check_file", lambda *_: None)
+    with pytest.raises(InputError, match="is not a regular file"), opened(tmp_path / "file"):
+        pass
+
+
+def test_a_file_that_grows_while_it_is_read_is_bounded(tmp_path, monkeypatch):
+    (tmp_path / "file").write_bytes(bytes(101))
+    monkeypatch.setattr("identification.files.check_file", lambda *_: None)
+    with pytest.raises(InputError, match="more than"):
+        read_bytes(tmp_path / "file", 100)
+    assert len(read_bytes(tmp_path / "file", 101)) == 101
+
+
+def test_an_archive_that_unpacks_to_gigabytes_is_refused(tmp_path, monkeypatch):
+    np.savez_compressed(tmp_path / "run.npz", a=np.zeros(2**20))
+    assert read_archive(tmp_path / "run.npz", "run")["a"].shape == (2**20,)
+    monkeypatch.setattr("identification.files.MAX_BYTES", 2**19)
+    with pytest.raises(InputError, match="more than the 4 MB"):
+        read_archive(tmp_path / "run.npz", "run")
+
+
+@pytest.mark.parametrize("name", ["a\0b", "a\0b/c", 300 * "a", "loop"])
+def test_a_name_that_no_file_can_have_is_told(tmp_path, name):
+    (tmp_path / "loop").symlink_to(tmp_path / "loop")
+    with pytest.raises(InputError, match=r"cannot read|no such file"):
+        read_bytes(tmp_path / name)
+
+
+def test_a_digest_is_that_of_the_content(tmp_path):
+    (tmp_path / "a").write_bytes(b"content")
+    (tmp_path / "b").write_bytes(b"content")
+    (tmp_path / "c").write_bytes(b"other")
+    one, same, other = (digest(tmp_path / name) for name in "abc")
+    assert one == same != other
+
+
+@pytest.mark.parametrize("text", ["[" * 200_000 + "]" * 200_000, "{", "\ud800", '{"files": 3}'])
+def test_a_list_of_results_that_is_damaged_lists_nothing(tmp_path, text):
+    (tmp_path / MADE).write_text(text, errors="surrogatepass")
+    (tmp_path / "result.json").write_text(json.dumps({}))
+    assert list_foreign(tmp_path) == ["result.json"]
