@@ -5,15 +5,17 @@ e = y - ŷ(q),   Φ = ∂ŷ/∂q,   δx_{k+1} = A_k δx_k + B_k δu_k
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from identification.kalman.columns import MANY, compute_columns
-from identification.kalman.linear import LinearPlant, join, linearise, linearise_records
+from identification.kalman.linear import Linearisation, LinearPlant, join, linearise_records
 from identification.logs.log import Log
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
+from identification.model.protocol import with_states
 
 HOLDS = 0.1  # share by which outputs may miss what the columns of a point say of a short step
 
@@ -77,9 +79,11 @@ def evaluate_point(
         DivergenceError: a simulation left the finite numbers.
     """
     inside = space.inside(q)
-    records = linearise_records(predictor, space.decode(inside))
+    values = space.decode(inside)
+    records = linearise_records(predictor, values)
     known = _known(near, small)
-    predicted, J = compute_columns(predictor, space, inside, records, known)
+    followed = predict_followed(predictor, values, records)
+    predicted, J = compute_columns(predictor, space, inside, records, known, followed)
     return Point(
         predictor=predictor,
         space=space,
@@ -90,6 +94,27 @@ def evaluate_point(
         small=small,
         is_borrowed=bool(known),
     )
+
+
+def predict_followed(
+    predictor: Predictor, values: np.ndarray, records: Sequence[Linearisation]
+) -> np.ndarray | None:
+    """Returns the outputs of the runs that the plant was linearised along, without another run.
+
+    Args:
+        predictor: plant, log and free parameters.
+        values: shape (p,), in the parameters' units.
+        records: the linearisation of each record there.
+
+    Returns:
+        Shape (N, ny); None for a plant whose sensors see states that no model file has.
+    """
+    if with_states(predictor.plant) is not None:
+        return None
+    return np.concatenate([
+        record.outputs(values[None, columns], {f: x[None] for f, x in of.along.states.items()})[0]
+        for (record, columns), of in zip(predictor.records(), records, strict=True)
+    ])  # fmt: skip
 
 
 def is_costly(point: Point) -> bool:
@@ -137,8 +162,9 @@ def extend_point(point: Point, whole: Log) -> Point:
     """The same point on a longer log, of which its own log is a part; without J."""
     predictor = replace(point.predictor, log=whole)
     values = point.space.decode(point.q)
-    e = whole.outputs - predictor.predict(values)[0]
-    linear = linearise(predictor, values)
+    records = linearise_records(predictor, values)
+    predicted = predict_followed(predictor, values, records)
+    e = whole.outputs - (predictor.predict(values)[0] if predicted is None else predicted)
     return Point(
-        predictor=predictor, space=point.space, q=point.q, e=e, J=point.J[:0], linear=linear
+        predictor=predictor, space=point.space, q=point.q, e=e, J=point.J[:0], linear=join(records)
     )
