@@ -18,6 +18,7 @@ from identification.blas import one_blas_thread
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_model import Noise, Whitener, augment, build_whitener
 from identification.kalman.options import KalmanOptions
+from identification.kalman.recursion import propagate
 
 FIRST, LAST = 1.6, 1.15  # factors with which the pattern search begins and ends
 # Multiples of the ρ of a point nearby that are tried; the last two where the second beats the first
@@ -54,13 +55,8 @@ def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) ->
         sampling_time: [s].
         time: correlation time of the inputs' error [s].
     """
-    n, nx, _ = plant.B.shape
-    A, _, P, Q = augment(plant, Noise(1.0, time), sampling_time)
-    moved = 0.0
-    for k in range(n):
-        P = A[k] @ P @ A[k].T + Q[k]
-        moved += np.einsum("ij,jk,ik->", plant.C, P[:nx, :nx], plant.C)
-    return 1 / np.sqrt(moved / (n * len(plant.C)))
+    moved = propagate(*augment(plant, Noise(1.0, time), sampling_time))
+    return float(1 / np.sqrt(moved.mean()))
 
 
 def evaluate_noise(
