@@ -12,6 +12,7 @@ import threading
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
+from itertools import pairwise
 from typing import TypeVar
 
 Part = TypeVar("Part")
@@ -58,7 +59,7 @@ def split(count: int, least: int = 1, most: int | None = None) -> list[slice]:
     if most is not None:
         parts = max(parts, -(-count // most))
     ends = [count * k // parts for k in range(parts + 1)]
-    return [slice(*pair) for pair in zip(ends[:-1], ends[1:], strict=True)]
+    return [slice(*pair) for pair in pairwise(ends)]
 
 
 @lru_cache(maxsize=1)

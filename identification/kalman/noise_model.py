@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.kalman.linear import LinearPlant
-from identification.kalman.recursion import filter_gains, filter_innovations
+from identification.kalman.recursion import filter_gains, filter_innovations, transpose_filter
 
 
 @dataclass(frozen=True)
@@ -65,6 +65,12 @@ class Whitener:
             return np.array(e)
         columns = e.reshape(*e.shape[:2], -1)
         return filter_innovations(self.A, self.C, self.K, self.L, columns).reshape(e.shape)
+
+    def transposed(self, E: np.ndarray) -> np.ndarray:
+        """The x with x · e = E · (innovations of e) for any residual e; both of shape (n, ny)."""
+        if not self.A.size:
+            return np.array(E)
+        return transpose_filter(self.A, self.C, self.K, self.L, E)
 
 
 def augment(

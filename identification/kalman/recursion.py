@@ -82,6 +82,28 @@ def filter_innovations(
     return out
 
 
+def transpose_filter(
+    A: np.ndarray, C: np.ndarray, K: np.ndarray, L: np.ndarray, E: np.ndarray
+) -> np.ndarray:
+    """The transposed filter, backwards in time: x with x · e = E · (innovations of e) for any e.
+
+    Args:
+        A: as of `filter_innovations`.
+        C: as of `filter_innovations`.
+        K: as of `filter_innovations`.
+        L: as of `filter_innovations`.
+        E: shape (n, ny) for n <= N samples.
+
+    Returns:
+        x, shape (n, ny).
+    """
+    n, ny = E.shape
+    out = np.empty((n, ny))
+    given = (np.ascontiguousarray(a, float) for a in (A, C, K, L, E))
+    _call(_compiled(_transposed, 6), (n, A.shape[1], ny), (*given, out))
+    return out
+
+
 def propagate(A: np.ndarray, C: np.ndarray, P: np.ndarray, share: np.ndarray) -> np.ndarray:
     """Variances over σ² of the outputs that the process noise causes where nothing is measured.
 
@@ -188,6 +210,26 @@ def _innovations(  # type: ignore[no-untyped-def]
                 for j in range(p):
                     seen[i, j] += z[i, j]
             np.dot(A[k], seen, z)
+
+
+def _transposed(n, nz, ny, A_, C_, K_, L_, E_, out_):  # type: ignore[no-untyped-def]
+    A, C = carray(A_, (max(n - 1, 0), nz, nz)), carray(C_, (ny, nz))
+    K, L = carray(K_, (n, nz, ny)), carray(L_, (n, ny, ny))
+    E, out = carray(E_, (n, ny)), carray(out_, (n, ny))
+    z, later = np.zeros(nz), np.zeros(nz)
+    for k in range(n - 1, -1, -1):
+        if k + 1 < n:
+            np.dot(A[k].T, z, later)
+        for i in range(ny):
+            out[k, i] = 0.0
+            for j in range(ny):
+                out[k, i] += L[k, j, i] * E[k, j]
+            for j in range(nz):
+                out[k, i] += K[k, j, i] * later[j]
+        for j in range(nz):
+            z[j] = later[j]
+            for i in range(ny):
+                z[j] -= C[i, j] * out[k, i]
 
 
 @cache
