@@ -45,21 +45,17 @@ def run_parts(function: Callable[[Part], Result], parts: Iterable[Part]) -> list
     return list(_pool(count, os.getpid()).map(function, each))
 
 
-def split(count: int, least: int = 1, most: int | None = None) -> list[slice]:
+def split(count: int, most: int) -> list[slice]:
     """Splits a count of things into ranges of nearly the same length.
 
-    There is one for each thread, but for two limits.
+    How many threads there are does not matter to it, so that neither do the last digits of results.
 
     Args:
         count: of things.
-        least: things of a range, if there are as many in all.
-        most: things of a range at most; there may then be more ranges than threads.
+        most: things of a range at most.
     """
-    parts = max(1, min(threads(), count // max(1, least)))
-    if most is not None:
-        parts = max(parts, -(-count // most))
-    ends = [count * k // parts for k in range(parts + 1)]
-    return [slice(*pair) for pair in pairwise(ends)]
+    parts = max(1, -(-count // most))
+    return [slice(*pair) for pair in pairwise(count * k // parts for k in range(parts + 1))]
 
 
 @lru_cache(maxsize=1)

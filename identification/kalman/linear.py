@@ -24,7 +24,7 @@ from identification.kalman.trajectory import COARSE, Trajectory, follow
 from identification.model.predictor import Predictor, output_columns
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LinearPlant:
     """Linearisation at the N samples of a log.
 

@@ -13,6 +13,7 @@ last.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -84,17 +85,25 @@ def augment(
         Where another record begins, A is zero and the share is 1: nothing is known of its inputs'
         error.
     """
-    n, nx, nu = plant.B.shape
-    a = np.exp(-sampling_time / noise.time)
-    A = np.zeros((n, nx + nu, nx + nu))
-    A[:, :nx, :nx], A[:, :nx, nx:] = plant.A, plant.B
-    A[:, nx:, nx:] = a * np.eye(nu)
+    nx, nu = plant.B.shape[1:]
+    a = float(np.exp(-sampling_time / noise.time))
+    A = _transitions(plant, a)
     C = np.hstack([plant.C, np.zeros((len(plant.C), nu))])
     P = np.zeros((nx + nu, nx + nu))
     P[nx:, nx:] = noise.ratio**2 * np.eye(nu)
-    begins = np.asarray(~plant.A.any(axis=(1, 2)))
-    A[begins] = 0
-    return A, C, P, np.where(begins, 1.0, 1 - a**2)
+    return A, C, P, np.where(A.any(axis=(1, 2)), 1 - a**2, 1.0)
+
+
+@lru_cache(maxsize=1)
+def _transitions(plant: LinearPlant, a: float) -> np.ndarray:
+    """The transitions of the state (x, w); noises of one correlation time share them."""
+    n, nx, nu = plant.B.shape
+    A = np.zeros((n, nx + nu, nx + nu))
+    A[:, :nx, :nx], A[:, :nx, nx:] = plant.A, plant.B
+    A[:, nx:, nx:] = a * np.eye(nu)
+    A[~plant.A.any(axis=(1, 2))] = 0
+    A.flags.writeable = False
+    return A
 
 
 def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:

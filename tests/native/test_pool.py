@@ -50,13 +50,11 @@ def test_a_process_that_was_forked_off_has_a_pool_of_its_own():
     assert os.waitpid(child, 0)[1] == 0
 
 
-@pytest.mark.parametrize(
-    ("count", "limits"), [(0, {}), (1, {}), (7, {"least": 3}), (100, {"most": 9})]
-)
-def test_ranges_cover_all_things_once(count, limits):
-    parts = split(count, **limits)
+@pytest.mark.parametrize(("count", "most"), [(0, 5), (1, 5), (5, 5), (6, 5), (100, 9)])
+def test_ranges_cover_all_things_once(count, most):
+    parts = split(count, most)
     assert [k for part in parts for k in range(part.start, part.stop)] == list(range(count))
     sizes = {part.stop - part.start for part in parts}
     assert max(sizes) - min(sizes) <= 1
-    assert max(sizes) <= limits.get("most", count)
-    assert len(parts) == 1 or min(sizes) >= limits.get("least", 1)
+    assert max(sizes) <= most
+    assert len(parts) == max(1, -(-count // most))

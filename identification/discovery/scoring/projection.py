@@ -15,8 +15,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from identification.kalman.noise_model import Noise, build_whitener
+from identification.kalman.noise_model import Noise
 from identification.kalman.refit import Refit
+from identification.kalman.whitened import whiten
 
 LEAST = 1e-14  # of the largest eigenvalue of ΦᵀΦ: less is no direction that the outputs feel
 
@@ -57,19 +58,17 @@ class Projection:
     def __init__(self, fit: Refit, noise: Noise) -> None:
         point = fit.point
         self.noise, self.samples = noise, point.e.size
-        self._filter = build_whitener(point.linear, noise, point.log.sampling_time)
-        p = point.J.shape[2]
-        W = self._filter(np.concatenate([point.e[..., None], point.J], axis=2))
-        W = W.reshape(self.samples, 1 + p)
+        white = whiten(point.linear, point.J, noise, point.log.sampling_time)
+        self._filter, self._F = white.filter, white.F
+        E = self._filter(point.e).ravel()
         # The priors enter as further measurements: rows below the samples, in units of σ.
         self._ridge = fit.prior * fit.level.sigma
-        self._F = np.ascontiguousarray(W[:, 1:])
         below = self._ridge * (fit.mean - point.q)
-        w, V = np.linalg.eigh(self._F.T @ self._F + np.diag(self._ridge**2))
+        w, V = np.linalg.eigh(white.H + np.diag(self._ridge**2))
         kept = w > LEAST * w.max(initial=0.0)
         self._w, self._V = w[kept], V[:, kept]
-        c = self._coefficients(self._F.T @ W[:, 0] + self._ridge * below)
-        self._e, self._below = W[:, 0] - self._F @ c, below - self._ridge * c
+        c = self._coefficients(self._F.T @ E + self._ridge * below)
+        self._e, self._below = E - self._F @ c, below - self._ridge * c
         self.rest = float(self._e @ self._e + self._below @ self._below)
         self.dual = self._filter.transposed(self._e.reshape(point.e.shape))
 

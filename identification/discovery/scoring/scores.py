@@ -44,7 +44,7 @@ from identification.kalman.refit import Refit
 from identification.pool import run_parts, split
 
 SHORTEST = 10  # samples of a block at least
-TOGETHER = 128  # columns that are projected at once: bounds the memory that they take
+TOGETHER = 96  # columns that are projected at once: bounds the memory that they take
 NEAR = 1e-6  # of twice a log likelihood: far more than rounding, and of no account
 SMALLER = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # ρ that are tried, in units of the nominal model's
 
@@ -106,7 +106,7 @@ def _numbers(sensitivities: Sequence[Sensitivity]) -> list[int]:
 def _groups(sensitivities: Sequence[Sensitivity], m: int) -> list[list[int]]:
     """Places of candidates with m sizes, as many at a time as are projected at once."""
     places = [j for j, s in enumerate(sensitivities) if s.S.shape[2] == m]
-    return [places[some] for some in split(len(places), most=max(1, TOGETHER // m))]
+    return [places[some] for some in split(len(places), max(1, TOGETHER // m))]
 
 
 @dataclass
