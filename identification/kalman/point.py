@@ -10,10 +10,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.kalman.columns import MANY, compute_columns
-from identification.kalman.linear import LinearPlant, join, linearise, linearise_records
+from identification.kalman.linear import (
+    LinearPlant,
+    extend,
+    join,
+    join_plants,
+    linearise_along,
+    linearise_records,
+)
+from identification.kalman.trajectory import COARSE, follow
+from identification.logs.joined import records_of
 from identification.logs.log import Log
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
+from identification.model.protocol import with_states
 
 HOLDS = 0.1  # share by which outputs may miss what the columns of a point say of a short step
 
@@ -134,11 +144,52 @@ def evaluate_sensitivities(point: Point, whole: Log) -> np.ndarray:
 
 
 def extend_point(point: Point, whole: Log) -> Point:
-    """The same point on a longer log, of which its own log is a part; without J."""
+    """The same point on a longer log, of which its own log is a part; without J.
+
+    The linearisation of its own log is kept where that is the beginning of a record.
+
+    Args:
+        point: the plant on its own log.
+        whole: the longer log.
+
+    Raises:
+        DivergenceError: the simulation of the longer log left the finite numbers.
+    """
     predictor = replace(point.predictor, log=whole)
-    values = point.space.decode(point.q)
-    e = whole.outputs - predictor.predict(values)[0]
-    linear = linearise(predictor, values)
+    values, known = point.space.decode(point.q), _known_plants(point)
+    each, predicted = [], []
+    for (number, log), (record, columns) in zip(
+        records_of(whole), predictor.records(), strict=True
+    ):
+        own = values[..., columns]
+        along = follow(record, own, COARSE)
+        begun, plant = known.get(number, (None, None))
+        if plant is None or begun != log.begun:
+            plant = linearise_along(record, along).at_samples()
+        else:
+            plant = extend(plant, record, along)
+        each.append(plant)
+        if with_states(record.plant) is None:
+            said = record.outputs(own, {field: x[None] for field, x in along.states.items()})
+        else:
+            said = record.predict(own)
+        predicted.append(said[0])
+    e = whole.outputs - np.concatenate(predicted)
     return Point(
-        predictor=predictor, space=point.space, q=point.q, e=e, J=point.J[:0], linear=linear
+        predictor=predictor,
+        space=point.space,
+        q=point.q,
+        e=e,
+        J=point.J[:0],
+        linear=join_plants(each),
     )
+
+
+def _known_plants(point: Point) -> dict[int, tuple[float, LinearPlant]]:
+    """Where each record of a point's log begins [s], and its linearisation, by its number."""
+    out, done, linear = {}, 0, point.linear
+    for number, log in records_of(point.log):
+        own = slice(done, done + len(log) - 1)
+        out[number] = log.begun, replace(linear, A=linear.A[own], B=linear.B[own])
+        done += len(log)
+    return out
