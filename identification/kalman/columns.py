@@ -28,9 +28,9 @@ WRONG = 0.1  # share by which a simulation may differ from the sensitivity equat
 
 def compute_columns(
     predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
-    known: Mapping[str, np.ndarray], predicted: np.ndarray | None = None,
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """Computes the outputs and their sensitivities to the free parameters.
+    known: Mapping[str, np.ndarray], predicted: np.ndarray,
+) -> np.ndarray:  # fmt: skip
+    """Computes the sensitivities of the outputs to the free parameters.
 
     Args:
         predictor: plant, log and free parameters.
@@ -38,10 +38,10 @@ def compute_columns(
         q: shape (p,).
         records: the linearisation of each record there.
         known: columns that need not be computed, by name, each (N, ny).
-        predicted: ŷ, where it is known.
+        predicted: ŷ, shape (N, ny).
 
     Returns:
-        ŷ, shape (N, ny), and J, shape (N, ny, p).
+        J, shape (N, ny, p).
 
     Raises:
         DivergenceError: a simulation left the finite numbers.
@@ -56,15 +56,16 @@ def compute_columns(
         short = SHORTER * moves
         S = _solve(predictor, space, q, records, short, short.sum(axis=1))
         to = space.inside(q + STEP * _along(S, asked))
-        runs = predictor.predict(space.decode(to[None] if predicted is not None else [q, to]))
-        here = runs[0] if predicted is None else predicted
-        if _agree(S @ (to - q)[asked], runs[-1] - here):
+        (ahead,) = predictor.predict(space.decode(to[None]))
+        if _agree(S @ (to - q)[asked], ahead - predicted):
             J[..., asked] = S
-            return here, J
-    runs = predictor.predict(space.decode(np.vstack([q, q + moves])))
-    moved = (runs[1:] - runs[0]) / moves.sum(axis=1)[:, None, None]
+            return J
+    if not len(moves):
+        return J
+    runs = predictor.predict(space.decode(q + moves))
+    moved = (runs - predicted) / moves.sum(axis=1)[:, None, None]
     J[..., asked] = np.moveaxis(moved, 0, -1)
-    return runs[0], J
+    return J
 
 
 def _solve(

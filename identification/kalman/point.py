@@ -11,7 +11,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from identification.kalman.columns import MANY, compute_columns
-from identification.kalman.linear import Linearisation, LinearPlant, join, linearise_records
+from identification.kalman.linear import (
+    Linearisation,
+    LinearPlant,
+    extend,
+    join,
+    join_plants,
+    linearise_along,
+    linearise_records,
+)
+from identification.kalman.trajectory import COARSE, Trajectory, follow
+from identification.logs.joined import records_of
 from identification.logs.log import Log
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
@@ -82,8 +92,8 @@ def evaluate_point(
     values = space.decode(inside)
     records = linearise_records(predictor, values)
     known = _known(near, small)
-    followed = predict_followed(predictor, values, records)
-    predicted, J = compute_columns(predictor, space, inside, records, known, followed)
+    predicted = _predict_along(predictor, values, records)
+    J = compute_columns(predictor, space, inside, records, known, predicted)
     return Point(
         predictor=predictor,
         space=space,
@@ -94,27 +104,6 @@ def evaluate_point(
         small=small,
         is_borrowed=bool(known),
     )
-
-
-def predict_followed(
-    predictor: Predictor, values: np.ndarray, records: Sequence[Linearisation]
-) -> np.ndarray | None:
-    """Returns the outputs of the runs that the plant was linearised along, without another run.
-
-    Args:
-        predictor: plant, log and free parameters.
-        values: shape (p,), in the parameters' units.
-        records: the linearisation of each record there.
-
-    Returns:
-        Shape (N, ny); None for a plant whose sensors see states that no model file has.
-    """
-    if with_states(predictor.plant) is not None:
-        return None
-    return np.concatenate([
-        record.outputs(values[None, columns], {f: x[None] for f, x in of.along.states.items()})[0]
-        for (record, columns), of in zip(predictor.records(), records, strict=True)
-    ])  # fmt: skip
 
 
 def is_costly(point: Point) -> bool:
@@ -154,17 +143,76 @@ def _known(near: Point | None, small: frozenset[str]) -> dict[str, np.ndarray]:
 def evaluate_sensitivities(point: Point, whole: Log) -> np.ndarray:
     """J of the same point on a longer log, shape (N, ny, p)."""
     predictor = replace(point.predictor, log=whole)
-    records = linearise_records(predictor, point.space.decode(point.q))
-    return compute_columns(predictor, point.space, point.q, records, {})[1]
+    values = point.space.decode(point.q)
+    records = linearise_records(predictor, values)
+    predicted = _predict_along(predictor, values, records)
+    return compute_columns(predictor, point.space, point.q, records, {}, predicted)
 
 
 def extend_point(point: Point, whole: Log) -> Point:
-    """The same point on a longer log, of which its own log is a part; without J."""
+    """The same point on a longer log, of which its own log is a part; without J.
+
+    The linearisation of its own log is kept where that is the beginning of a record.
+
+    Args:
+        point: the plant on its own log.
+        whole: the longer log.
+
+    Raises:
+        DivergenceError: the simulation of the longer log left the finite numbers.
+    """
     predictor = replace(point.predictor, log=whole)
-    values = point.space.decode(point.q)
-    records = linearise_records(predictor, values)
-    predicted = predict_followed(predictor, values, records)
-    e = whole.outputs - (predictor.predict(values)[0] if predicted is None else predicted)
+    values, known = point.space.decode(point.q), _known_plants(point)
+    each, predicted = [], []
+    for (number, log), (record, columns) in zip(
+        records_of(whole), predictor.records(), strict=True
+    ):
+        own = values[..., columns]
+        along = follow(record, own, COARSE)
+        begun, plant = known.get(number, (None, None))
+        if plant is None or begun != log.begun:
+            plant = linearise_along(record, along).at_samples()
+        else:
+            plant = extend(plant, record, along)
+        each.append(plant)
+        predicted.append(_outputs_along(record, own, along))
+    e = whole.outputs - np.concatenate(predicted)
     return Point(
-        predictor=predictor, space=point.space, q=point.q, e=e, J=point.J[:0], linear=join(records)
+        predictor=predictor,
+        space=point.space,
+        q=point.q,
+        e=e,
+        J=point.J[:0],
+        linear=join_plants(each),
     )
+
+
+def _predict_along(
+    predictor: Predictor, values: np.ndarray, records: Sequence[Linearisation]
+) -> np.ndarray:
+    """Returns the outputs of all records, shape (N, ny), along which they were linearised."""
+    each = zip(predictor.records(), records, strict=True)
+    return np.concatenate([
+        _outputs_along(record, values[columns], linear.along) for (record, columns), linear in each
+    ])  # fmt: skip
+
+
+def _outputs_along(record: Predictor, values: np.ndarray, along: Trajectory) -> np.ndarray:
+    """Returns the outputs along a trajectory, shape (N, ny), without another simulation.
+
+    A plant whose sensors see states that no model file has is simulated: a trajectory lacks these.
+    """
+    if with_states(record.plant) is not None:
+        return record.predict(values)[0]
+    states = {field: x[None] for field, x in along.states.items()}
+    return record.outputs(np.atleast_2d(values), states)[0]
+
+
+def _known_plants(point: Point) -> dict[int, tuple[float, LinearPlant]]:
+    """Where each record of a point's log begins [s], and its linearisation, by its number."""
+    out, done, linear = {}, 0, point.linear
+    for number, log in records_of(point.log):
+        own = slice(done, done + len(log) - 1)
+        out[number] = log.begun, replace(linear, A=linear.A[own], B=linear.B[own])
+        done += len(log)
+    return out

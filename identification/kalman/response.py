@@ -8,7 +8,6 @@ processor's cache; the threads share the columns.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from ctypes import POINTER, c_double, c_int64
 from functools import cache
 from typing import Any
@@ -27,7 +26,7 @@ _SIGNATURE = types.void(*[types.int64] * 6, *[_DOUBLES] * 4, _INTS, _DOUBLES)
 
 
 def respond(
-    A: np.ndarray, Γ: np.ndarray, first: np.ndarray, g: np.ndarray, every: int, rows: Sequence[int]
+    A: np.ndarray, Γ: np.ndarray, first: np.ndarray, g: np.ndarray, every: int, rows: np.ndarray
 ) -> np.ndarray:
     """Computes some entries of the state at the samples.
 
@@ -37,7 +36,7 @@ def respond(
         first: the first state of each column, shape (m, nx).
         g: forcings of each column, means over the intervals, shape (m, L, nf).
         every: intervals of a sample.
-        rows: r entries of the state.
+        rows: indices of r entries of the state, shape (r,).
 
     Returns:
         Shape (m, N, r), N = L/every + 1.
@@ -53,10 +52,10 @@ def respond(
     def part(k: int) -> None:
         for chunk in chunks[k::workers]:
             doubles = (a.ctypes.data_as(POINTER(c_double)) for a in (A, Γ, first[chunk], g[chunk]))
-            run(
-                L, nx, nf, chunk.stop - chunk.start, every, len(wanted), *doubles,
-                wanted.ctypes.data_as(POINTER(c_int64)), out[chunk].ctypes.data_as(POINTER(c_double)),
-            )  # fmt: skip
+            places = wanted.ctypes.data_as(POINTER(c_int64))
+            to = out[chunk].ctypes.data_as(POINTER(c_double))
+            columns = chunk.stop - chunk.start
+            run(L, nx, nf, columns, every, len(wanted), *doubles, places, to)
 
     run_parts(part, min(workers, len(chunks)))
     return out

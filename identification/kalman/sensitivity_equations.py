@@ -90,7 +90,7 @@ def _of_record(
     out = np.zeros((*predictor.log.outputs.shape, counts.sum()))
     if moved.size:
         rows, change = rows[[0, *(1 + moved)]], change[moved]
-        some = [courses[k] for k in moved]
+        some = [courses[int(k)] for k in moved]
         start, numbers = predictor.settings(rows)
         g, known = _forcing(predictor, linear, rows, numbers, some)
         here = predictor.log.begun

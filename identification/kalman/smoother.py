@@ -31,8 +31,8 @@ def smooth(
     n, nu = len(e), plant.B.shape[2]
     if noise.ratio == 0:
         return np.zeros((n, nu)), np.zeros_like(e)
-    A, C, P, Q = augment(plant, noise, sampling_time)
-    z = np.zeros(len(P))
+    A, C, P, share = augment(plant, noise, sampling_time)
+    first, z = P, np.zeros(len(P))
     seen, later = [], []  # (z, P) given the samples up to k, and given those up to k - 1
     for k in range(n):
         later.append((z, P))
@@ -41,7 +41,7 @@ def smooth(
         z, P = z + K @ (e[k] - C @ z), P - K @ PC.T
         seen.append((z, P))
         if k + 1 < n:
-            z, P = A[k] @ z, A[k] @ P @ A[k].T + Q[k]
+            z, P = A[k] @ z, A[k] @ P @ A[k].T + share[k] * first
             P = (P + P.T) / 2
     out = np.empty((n, len(z)))
     out[-1] = seen[-1][0]

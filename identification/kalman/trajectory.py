@@ -77,6 +77,16 @@ class Trajectory:
         places = np.searchsorted(self.begins, np.arange(len(length)), side="right") - 1
         return Intervals(self.begins, length / self.duration[places])
 
+    def after(self, sample: int) -> Trajectory:
+        """The same from one of its samples on."""
+        begins = self.begins[self.intervals * sample :]
+        first = int(begins[0]) if len(begins) else len(self.time)
+        points = {
+            f: getattr(self, f)[first:] for f in ("qpos", "qvel", "act", "inputs", "time", "steps")
+        }
+        states = {field: x[sample:] for field, x in self.states.items()}
+        return replace(self, begins=begins - first, states=states, **points)
+
     def some(self, most: int) -> Trajectory:
         """The same at no more than `most` of its points, which stand for no intervals."""
         every = slice(None, None, -(-len(self.time) // most))

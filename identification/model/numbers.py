@@ -56,6 +56,6 @@ def list_differences(numbers: Numbers, like: int, rows: Sequence[int]) -> Iterat
     for row in rows:
         yield [
             (Slot(numbers[k][0].field, (i,), numbers[k][0].column), float(every[k, row]))
-            for k in np.flatnonzero(every[:, row] != every[:, like])
+            for k in np.flatnonzero(every[:, row] != every[:, like]).tolist()
             for i in numbers[k][0].rows
         ]

@@ -42,10 +42,10 @@ _NONE, _POSITION, _VELOCITY = (
 SHARED = {"nothing": _NONE, "positions": _POSITION, "velocities": _VELOCITY}
 
 # base model; states of the base; table of the cases (place in the output, model, states, stage,
-# first of its numbers, end of them, courses, their number); number of cases; addresses of the numbers; their values; data; number of points;
-# table of the results; their number; interval of each point; weight of each point; output of the
-# base; output of the cases; distance of two outputs; distance of two courses, where increments are
-# asked for, else zero
+# first of its numbers, end of them, courses, their number); number of cases; addresses of the
+# numbers; their values; data; number of points; table of the results; their number; interval of
+# each point; weight of each point; output of the base; output of the cases; distance of two
+# outputs; distance of two courses, where increments are asked for, else zero
 _SIGNATURE = types.void(*[types.int64] * 16)
 
 
@@ -130,7 +130,7 @@ def evaluate(
     ends = np.cumsum([0, *(len(case.numbers) for case in cases)])
     values = np.array([value for case in cases for *_, value in case.numbers], float)
 
-    # A case that moves positions leaves nothing in mjData that others could share, so it comes last.
+    # A case that moves positions leaves nothing in mjData that others could share: it comes last.
     order = sorted(range(len(cases)), key=lambda j: -SHARED[cases[j].shares])
 
     def part(k: int) -> None:
@@ -231,8 +231,22 @@ def _collect(d, results, kinds, own, to, weight, is_relative):  # type: ignore[n
 
 
 def _forward(  # type: ignore[no-untyped-def]
-    base, base_states, cases, n, places, values, d, points, results, kinds, where, weight, own,
-    out, apart, course
+    base,
+    base_states,
+    cases,
+    n,
+    places,
+    values,
+    d,
+    points,
+    results,
+    kinds,
+    where,
+    weight,
+    own,
+    out,
+    apart,
+    course,
 ):
     row = 8 * (1 + word(base, M.nq) + word(base, M.nv) + word(base, M.na) + word(base, M.nu))
     width = 0
