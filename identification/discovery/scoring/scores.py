@@ -45,7 +45,7 @@ from identification.kalman.refit import Refit
 from identification.pool import run_parts, split
 
 SHORTEST = 10  # samples of a block at least
-TOGETHER = 96  # columns that are projected at once: bounds the memory that they take
+TOGETHER, MEMORY = 96, 2**24  # columns that are projected at once, and bytes of them, at most
 NEAR = 1e-6  # of twice a log likelihood: far more than rounding, and of no account
 SMALLER = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # ρ that are tried, in units of the nominal model's
 
@@ -124,7 +124,8 @@ def _numbers(sensitivities: Sequence[Sensitivity]) -> list[int]:
 def _groups(sensitivities: Sequence[Sensitivity], m: int) -> list[list[int]]:
     """Places of candidates with m sizes, as many at a time as are projected at once."""
     places = [j for j, s in enumerate(sensitivities) if s.S.shape[2] == m]
-    return [places[some] for some in split(len(places), max(1, TOGETHER // m))]
+    most = min(TOGETHER // m, MEMORY // max(1, sensitivities[0].S[..., 0].nbytes * m))
+    return [places[some] for some in split(len(places), max(1, most))]
 
 
 @dataclass
