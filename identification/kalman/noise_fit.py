@@ -21,8 +21,9 @@ from identification.kalman.noise_model import Noise, Whitener, augment
 from identification.kalman.options import KalmanOptions
 from identification.kalman.recursion import propagate
 from identification.kalman.whitened import Whitened, keep, whiten
-from identification.pool import run_parts
+from identification.pool import run_parts, split
 
+TOGETHER = 4  # noises that are tried at once: each takes the memory of the sensitivities
 FIRST, LAST = 1.6, 1.15  # factors with which the pattern search begins and ends
 # Multiples of the ρ of a point nearby that are tried; the last two where the second beats the first
 AROUND = (1.0, 0.3, 0.05, 0.0)
@@ -141,7 +142,9 @@ def fit_noise(
             return level
 
         def believed(noise: Noise, factors: Sequence[float]) -> list[NoiseLevel]:
-            tried = run_parts(at, [noise.scaled(f) for f in factors])
+            each = [noise.scaled(f) for f in factors]
+            some = split(len(each), TOGETHER)
+            tried = [level for few in some for level in run_parts(at, each[few])]
             return [level for level in tried if level.input_std <= largest]
 
         found: list[NoiseLevel] = []

@@ -71,7 +71,7 @@ class Whitener:
         """The x with x · e = E · (innovations of e) for any residual e; both of shape (n, ny)."""
         if not self.A.size:
             return np.array(E)
-        return transpose_filter(self.A, self.C, self.K, self.L, E)
+        return transpose_filter(self.A, self.C, self.K, self.L, E)[0]
 
 
 def augment(

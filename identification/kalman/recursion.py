@@ -84,8 +84,10 @@ def filter_innovations(
 
 def transpose_filter(
     A: np.ndarray, C: np.ndarray, K: np.ndarray, L: np.ndarray, E: np.ndarray
-) -> np.ndarray:
+) -> tuple[np.ndarray, np.ndarray]:
     """The transposed filter, backwards in time: x with x · e = E · (innovations of e) for any e.
+
+        r_k = A_kᵀ r_{k+1} + Cᵀ x_k,    x_k = L_kᵀ E_k - K_kᵀ A_kᵀ r_{k+1}
 
     Args:
         A: as of `filter_innovations`.
@@ -95,13 +97,13 @@ def transpose_filter(
         E: shape (n, ny) for n <= N samples.
 
     Returns:
-        x, shape (n, ny).
+        x, shape (n, ny), and r, shape (n, nz).
     """
     n, ny = E.shape
-    out = np.empty((n, ny))
+    out, r = np.empty((n, ny)), np.empty((n, A.shape[1]))
     given = (np.ascontiguousarray(a, float) for a in (A, C, K, L, E))
-    _call(_compiled(_transposed, 6), (n, A.shape[1], ny), (*given, out))
-    return out
+    _call(_compiled(_transposed, 7), (n, A.shape[1], ny), (*given, out, r))
+    return out, r
 
 
 def propagate(A: np.ndarray, C: np.ndarray, P: np.ndarray, share: np.ndarray) -> np.ndarray:
@@ -212,24 +214,24 @@ def _innovations(  # type: ignore[no-untyped-def]
             np.dot(A[k], seen, z)
 
 
-def _transposed(n, nz, ny, A_, C_, K_, L_, E_, out_):  # type: ignore[no-untyped-def]
+def _transposed(n, nz, ny, A_, C_, K_, L_, E_, out_, r_):  # type: ignore[no-untyped-def]
     A, C = carray(A_, (max(n - 1, 0), nz, nz)), carray(C_, (ny, nz))
     K, L = carray(K_, (n, nz, ny)), carray(L_, (n, ny, ny))
-    E, out = carray(E_, (n, ny)), carray(out_, (n, ny))
-    z, later = np.zeros(nz), np.zeros(nz)
+    E, out, r = carray(E_, (n, ny)), carray(out_, (n, ny)), carray(r_, (n, nz))
+    later = np.zeros(nz)
     for k in range(n - 1, -1, -1):
         if k + 1 < n:
-            np.dot(A[k].T, z, later)
+            np.dot(A[k].T, r[k + 1], later)
         for i in range(ny):
             out[k, i] = 0.0
             for j in range(ny):
                 out[k, i] += L[k, j, i] * E[k, j]
             for j in range(nz):
-                out[k, i] += K[k, j, i] * later[j]
+                out[k, i] -= K[k, j, i] * later[j]
         for j in range(nz):
-            z[j] = later[j]
+            r[k, j] = later[j]
             for i in range(ny):
-                z[j] -= C[i, j] * out[k, i]
+                r[k, j] += C[i, j] * out[k, i]
 
 
 @cache

@@ -1,8 +1,18 @@
 """Scores are those of the slow way: every candidate under every noise, one after the other."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from discovery_cases import OPTIONS, STEP, linear_plant, point_of, scored, sensitivity
+from discovery_cases import (
+    OPTIONS,
+    STEP,
+    linear_plant,
+    point_of,
+    refit_at,
+    scored,
+    sensitivity,
+)
 from scipy.stats import chi2
 from scipy.stats import f as f_distribution
 
@@ -119,3 +129,31 @@ def test_other_noises_are_tried_only_where_they_may_be_likelier(monkeypatch):
     assert found[0].level.noise.ratio < noise.ratio
     assert sum(n for share, n in tried if share == 1.0) == 10
     assert sum(n for share, n in tried if share != 1.0) < 5 * 10
+
+
+def test_on_the_same_fit_only_new_candidates_are_scored(monkeypatch):
+    rng = np.random.default_rng(7)
+    plant, J, columns = linear_plant(rng, N), rng.standard_normal((N, NY, P)), []
+    level = NoiseLevel(Noise(0.0, 0.1), SIGMA, 0.0)
+    fit = refit_at(point_of(plant, rng.standard_normal((N, NY)), J), level, PRIOR, MEAN)
+    every, products = candidates(rng, J), Projection.products
+
+    def counted(self, S, starts):
+        columns.append(S.shape[2])
+        return products(self, S, starts)
+
+    monkeypatch.setattr(Projection, "products", counted)
+    first = module.score(fit, every[:9], OPTIONS)
+    assert sum(columns) == 9
+    both = module.score(fit, every[4:], OPTIONS)
+    assert sum(columns) == len(every)
+    assert {id(s) for s in first} & {id(s) for s in both}
+    assert [s.gain for s in both] == sorted((s.gain for s in both), reverse=True)
+    again = module.score(replace(fit), every[4:], OPTIONS)
+    assert sum(columns) == 2 * len(every) - 4
+    for one, other in zip(both, again, strict=True):
+        assert (one.candidate, one.gain, one.p_value) == (
+            other.candidate,
+            other.gain,
+            other.p_value,
+        )

@@ -11,11 +11,7 @@ model,
 
     p_j = P(χ²_m > η̂ᵀ S⊥ᵀS⊥ η̂/σ²)          halved where physics admits one sign only,
 
-and is checked by a Wald test that needs no noise model: it takes the scatter of the scores over
-blocks of the log, with the candidate in the model (White 1980):
-
-    W = η̂ᵀ H (Σ_b g_b g_bᵀ)⁻¹ H η̂,   g_b = Σ_{k in b} S⊥ᵀ(E⊥ - S⊥ η̂),   H = S⊥ᵀS⊥
-    W (B - m)/(B m) ~ F(m, B - m)        B blocks, m sizes
+and is checked by a test that needs no noise model (`blocks`).
 
 All columns are whitened by the nominal noise and by the largest one, which mostly are the same. The
 covariance V of another, smaller ρ is less, so that H(ρ) is no less than that of the largest, and
@@ -29,13 +25,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.stats import chi2
-from scipy.stats import f as f_distribution
 
 from identification.blas import one_blas_thread
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.scoring.blocks import (
+    compute_block_p_values,
+    is_one_sided,
+    is_refused,
+)
 from identification.discovery.scoring.projection import Products, Projection
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.effects.effect import Candidate
@@ -44,7 +45,7 @@ from identification.kalman.refit import Refit
 from identification.pool import run_parts, split
 
 SHORTEST = 10  # samples of a block at least
-TOGETHER = 96  # columns that are projected at once: bounds the memory that they take
+TOGETHER, MEMORY = 96, 2**24  # columns that are projected at once, and bytes of them, at most
 NEAR = 1e-6  # of twice a log likelihood: far more than rounding, and of no account
 SMALLER = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # ρ that are tried, in units of the nominal model's
 
@@ -84,18 +85,35 @@ def score(
         sensitivities: of the candidates, on the fitted samples.
         options: the number of blocks.
     """
+    blocks = max(1, min(options.score_blocks, len(fit.point.e) // SHORTEST))
+    known = _known(fit, blocks)
+    new = [s for s in sensitivities if id(s) not in known]
+    if new:
+        with one_blas_thread():
+            found = _scores(fit, new, blocks)
+        known |= {id(s): (s, one) for s, one in zip(new, found, strict=True)}
+    return tuple(sorted((known[id(s)][1] for s in sensitivities), key=lambda s: -s.gain))
+
+
+@lru_cache(maxsize=1)
+def _known(fit: Refit, blocks: int) -> dict[int, tuple[Sensitivity, Score]]:
+    """Scores on the last fit, with what they are of: a score does not depend on the others."""
+    del fit, blocks
+    return {}
+
+
+def _scores(fit: Refit, sensitivities: Sequence[Sensitivity], blocks: int) -> list[Score]:
+    """Scores of candidates, in their order."""
     noise, samples = fit.level.noise, len(fit.point.e)
-    blocks = max(1, min(options.score_blocks, samples // SHORTEST))
     starts = np.linspace(0, samples, blocks, endpoint=False).astype(int)
-    with one_blas_thread():
-        shares = SMALLER if noise.ratio else (1.0,)
-        each = run_parts(lambda share: Projection(fit, noise.scaled(share)), shares)
-        scorer = _Scorer(each, starts)
-        places = [some for m in _numbers(sensitivities) for some in _groups(sensitivities, m)]
-        found = run_parts(lambda some: scorer.scores([sensitivities[j] for j in some]), places)
+    shares = SMALLER if noise.ratio else (1.0,)
+    each = run_parts(lambda share: Projection(fit, noise.scaled(share)), shares)
+    scorer = _Scorer(each, starts)
+    places = [some for m in _numbers(sensitivities) for some in _groups(sensitivities, m)]
+    found = run_parts(lambda some: scorer.scores([sensitivities[j] for j in some]), places)
     order = [j for some in places for j in some]
     out = dict(zip(order, (s for scores in found for s in scores), strict=True))
-    return tuple(sorted((out[j] for j in sorted(out)), key=lambda s: -s.gain))
+    return [out[j] for j in sorted(out)]
 
 
 def _numbers(sensitivities: Sequence[Sensitivity]) -> list[int]:
@@ -106,7 +124,8 @@ def _numbers(sensitivities: Sequence[Sensitivity]) -> list[int]:
 def _groups(sensitivities: Sequence[Sensitivity], m: int) -> list[list[int]]:
     """Places of candidates with m sizes, as many at a time as are projected at once."""
     places = [j for j, s in enumerate(sensitivities) if s.S.shape[2] == m]
-    return [places[some] for some in split(len(places), max(1, TOGETHER // m))]
+    most = min(TOGETHER // m, MEMORY // max(1, sensitivities[0].S[..., 0].nbytes * m))
+    return [places[some] for some in split(len(places), max(1, most))]
 
 
 @dataclass
@@ -171,7 +190,7 @@ class _Scorer:
         inverse = np.linalg.pinv(products.H, rcond=1e-12, hermitian=True)
         size = np.einsum("jpq,jq->jp", inverse, products.b)
         fall = np.einsum("jp,jp->j", products.b, size)
-        fall[_is_refused(size, signs)] = 0.0
+        fall[is_refused(size, signs)] = 0.0
         squares = np.maximum(level.rest - fall, 1e-12 * level.rest)
         return _Best(np.full(len(size), k), level.log_likelihood(squares), squares, size, products)
 
@@ -198,7 +217,7 @@ class _Scorer:
         """p-values, and which share of the sensitivities re-tuning cannot imitate."""
         level, m = self.levels[self.null], signs.shape[1]
         statistic = (level.rest - null.squares) / (level.rest / level.samples)
-        p = chi2.sf(statistic, m) * np.where(_is_one_sided(signs), 0.5, 1.0)
+        p = chi2.sf(statistic, m) * np.where(is_one_sided(signs), 0.5, 1.0)
         own = np.trace(null.products.H, axis1=1, axis2=2)
         return p, own / np.maximum(null.products.raw, 1e-300)
 
@@ -210,7 +229,7 @@ class _Scorer:
         sigma, nominal = np.sqrt(best.squares / samples), self.without.max()
         inverse = np.linalg.pinv(best.products.H, rcond=1e-12, hermitian=True)
         std = sigma[:, None] * np.sqrt(np.diagonal(inverse, axis1=1, axis2=2))
-        blocks = _by_blocks(best, signs)
+        blocks = compute_block_p_values(best.products, best.size, signs)
         return [
             Score(
                 candidate=s.candidate, size=best.size[j], std=std[j],
@@ -222,26 +241,3 @@ class _Scorer:
             )
             for j, s in enumerate(some)
         ]  # fmt: skip
-
-
-def _by_blocks(best: _Best, signs: np.ndarray) -> np.ndarray:
-    """p-values of the Wald test by blocks, shape (J,)."""
-    m, blocks = signs.shape[1], len(best.products.a)
-    g = best.products.a - np.einsum("bjpq,jq->bjp", best.products.G, best.size)
-    moved = np.einsum("jpq,jq->jp", best.products.H, best.size)
-    spread = np.einsum("bjp,bjq->jpq", g, g)
-    inverse = np.linalg.pinv(spread, rcond=1e-12, hermitian=True)
-    W = np.einsum("jp,jpq,jq->j", moved, inverse, moved)
-    p = f_distribution.sf(W * (blocks - m) / (blocks * m), m, blocks - m)
-    p = np.where(_is_one_sided(signs), p / 2, p)
-    return np.where(_is_refused(best.size, signs), 1.0, p)
-
-
-def _is_one_sided(signs: np.ndarray) -> np.ndarray:
-    """Which candidates have one size, of which physics admits one sign only, shape (J,)."""
-    return np.asarray((signs.shape[1] == 1) & (signs[:, 0] != 0))
-
-
-def _is_refused(size: np.ndarray, signs: np.ndarray) -> np.ndarray:
-    """Which candidates have one size, of a sign that physics does not admit, shape (J,)."""
-    return np.asarray((signs.shape[1] == 1) & (signs[:, 0] * size[:, 0] < 0))
