@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from identification.kalman.recursion import propagate
+
 
 def propagate_input_error(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -> np.ndarray:
     """Variance over σ² that input errors cause in a free run, of each output, shape (N, ny).
@@ -22,10 +24,5 @@ def propagate_input_error(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -
         return np.zeros((0, len(C)))
     P = np.zeros(A.shape[1:])
     P[-nu:, -nu:] = ratio**2 * np.eye(nu)
-    out = [np.zeros(len(C))]
-    for step in A:
-        a = step[-1, -1]
-        P = step @ P @ step.T
-        P[-nu:, -nu:] += (1 - a**2) * ratio**2 * np.eye(nu)
-        out.append(np.einsum("ij,jk,ik->i", C, P, C))
-    return np.array(out)
+    moved = propagate(A, C, P, 1 - A[:, -1, -1] ** 2)
+    return np.vstack([np.zeros(len(C)), moved])

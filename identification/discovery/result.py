@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -17,7 +18,8 @@ from identification.discovery.effect_results import (
     RejectedEffect,
 )
 from identification.discovery.findings.finding import Finding
-from identification.discovery.missing_forces import MissingForce
+from identification.discovery.findings.location import locate_error
+from identification.discovery.missing_forces import MissingForce, estimate_missing_forces
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import Score
 from identification.kalman.refit import Refit
@@ -55,9 +57,7 @@ class Discovery(Shown):
         remaining: of the other candidates on the final fit, the best first.
         detectable: the smallest effects that this log would have shown.
         hidden: how large effects may be that the fitted noise hides, the likeliest first.
-        located: where the nominal model fails; empty when nothing is missing.
         findings: what the final model leaves unexplained; empty when it explains all.
-        missing_forces: the forces that the nominal model lacks, by where they act.
         seconds: wall time by stage [s].
         failed: what was tried and could not be evaluated.
     """
@@ -82,8 +82,20 @@ class Discovery(Shown):
     remaining: tuple[Score, ...]
     detectable: tuple[Detectable, ...]
     hidden: tuple[Hidden, ...]
-    located: tuple[Finding, ...]
     findings: tuple[Finding, ...]
-    missing_forces: tuple[MissingForce, ...]
     seconds: Mapping[str, float]
     failed: tuple[Failed, ...] = ()
+
+    @cached_property
+    def missing_forces(self) -> tuple[MissingForce, ...]:
+        """The forces that the nominal model lacks, by where they act; computed when asked for."""
+        if self.verdict == "nothing missing":
+            return ()
+        return estimate_missing_forces(self.nominal, self.options)
+
+    @cached_property
+    def located(self) -> tuple[Finding, ...]:
+        """Where the nominal model fails; empty when nothing is missing; computed when asked for."""
+        if self.verdict == "nothing missing":
+            return ()
+        return locate_error(self.nominal, self.missing_forces, self.options)

@@ -13,11 +13,9 @@ from identification.discovery.findings.doubts import find_doubtful_effect, find_
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.findings.input_error import find_input_error
 from identification.discovery.findings.input_hold import find_input_hold
-from identification.discovery.findings.location import locate_error
 from identification.discovery.findings.robot_change import find_robot_change
 from identification.discovery.findings.structure import find_structure
 from identification.discovery.fitted_model import FittedModel, is_proven, score_candidates
-from identification.discovery.missing_forces import estimate_missing_forces
 from identification.discovery.once import listed_once
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.proof import prove
@@ -136,9 +134,6 @@ def conclude(state: SearchState) -> Discovery:
         RejectedEffect(n.candidate, n.parameters, n.gain, n.proof, n.outside) for n in unnamed
     )
     rejected = listed_once((*refused, *state.rejected))
-    is_missing = verdict != "nothing missing"
-    forces = estimate_missing_forces(nominal.refit, options) if is_missing else ()
-    located = locate_error(nominal.refit, forces, options) if is_missing else ()
     is_random = not _has(findings, FindingKind.STRUCTURED_INPUT_ERROR)
     disturbed = by_unit(model.validation.disturbances, log)
     return Discovery(
@@ -162,9 +157,7 @@ def conclude(state: SearchState) -> Discovery:
         remaining=scores,
         detectable=list_detectable(scores, options),
         hidden=list_hidden(scores, model.refit.level, options),
-        located=located,
         findings=findings,
-        missing_forces=forces,
         seconds=state.seconds,
         failed=state.failed,
     )

@@ -17,6 +17,8 @@ from functools import cached_property
 from inspect import signature
 from typing import Any, Literal
 
+import numpy as np
+
 from identification.errors import InputError
 
 Sign = Literal[-1, 0, 1]
@@ -94,6 +96,28 @@ BEFORE = Shape("before", "", (0.0, 1.0), -2.0, 2.0, usual=0.0, of_log=True,
 
 
 @dataclass(frozen=True)
+class Onset:
+    """When an effect begins: a factor of all that it adds, from 0 to 1 about a time.
+
+        c(t) = clip(½ + (t - t_s)/w, 0, 1)
+
+    An effect with an onset is one law behind a course in time, so its law is evaluated once for
+    all times at which it may begin.
+
+    Attributes:
+        shape: name of the shape that is t_s, a time of the record [s].
+        lasts: w [s].
+    """
+
+    shape: str
+    lasts: float
+
+    def course(self, time: np.ndarray, begins: float) -> np.ndarray:
+        """Returns the factor at some times [s], where the effect begins at `begins` [s]."""
+        return np.clip(0.5 + (time - begins) / self.lasts, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
 class Effect:
     """What may be missing from a model.
 
@@ -114,6 +138,7 @@ class Effect:
             which then reads no parameter: what happens to a thing whichever effect looks at it.
         own: whether its size is each record's own, such as a shift of that record's time stamps;
             one record cannot tell it from what is the same in all.
+        onset: where what it adds is multiplied by a course in time, that course.
         hooks: where it adds to the law of a robot, e.g. "force", and the njit function (state,
             parameters) that says what. None are needed where its sizes are paths into a model.
 
@@ -133,6 +158,7 @@ class Effect:
     needs: str = ""
     shares: bool = False
     own: bool = False
+    onset: Onset | None = None
     hooks: Mapping[str, Callable[..., Any]] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:

@@ -2,8 +2,9 @@
 
     S_j = (ŷ(q + h e_j) - ŷ(q))/h        by simulations, or by the sensitivity equations
 
-Few columns are simulated, which is exact. Where many are asked, they come from the sensitivity
-equations if these agree with a simulation along all of them at once.
+Few columns are simulated, which is exact. Where many are asked, or where others are borrowed from a
+point nearby, they come from the sensitivity equations if these agree with a simulation along all of
+them at once.
 """
 
 from __future__ import annotations
@@ -27,9 +28,9 @@ WRONG = 0.1  # share by which a simulation may differ from the sensitivity equat
 
 def compute_columns(
     predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
-    known: Mapping[str, np.ndarray],
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """Outputs and their sensitivities to the free parameters.
+    known: Mapping[str, np.ndarray], predicted: np.ndarray,
+) -> np.ndarray:  # fmt: skip
+    """Computes the sensitivities of the outputs to the free parameters.
 
     Args:
         predictor: plant, log and free parameters.
@@ -37,9 +38,10 @@ def compute_columns(
         q: shape (p,).
         records: the linearisation of each record there.
         known: columns that need not be computed, by name, each (N, ny).
+        predicted: ŷ, shape (N, ny).
 
     Returns:
-        ŷ, shape (N, ny), and J, shape (N, ny, p).
+        J, shape (N, ny, p).
 
     Raises:
         DivergenceError: a simulation left the finite numbers.
@@ -49,18 +51,21 @@ def compute_columns(
     for j in np.flatnonzero(~asked):
         J[..., j] = known[space.names[j]]
     moves = np.diag(np.where(q + STEP > space.upper, -STEP, STEP))[asked]
-    if len(moves) > MANY and can_solve(predictor, records):
+    # Columns that are borrowed are of a point nearby: those beside them need not be exact either.
+    if (len(moves) > MANY or known) and can_solve(predictor, records):
         short = SHORTER * moves
         S = _solve(predictor, space, q, records, short, short.sum(axis=1))
         to = space.inside(q + STEP * _along(S, asked))
-        predicted, ahead = predictor.predict(space.decode(np.vstack([q, to])))
+        (ahead,) = predictor.predict(space.decode(to[None]))
         if _agree(S @ (to - q)[asked], ahead - predicted):
             J[..., asked] = S
-            return predicted, J
-    runs = predictor.predict(space.decode(np.vstack([q, q + moves])))
-    moved = (runs[1:] - runs[0]) / moves.sum(axis=1)[:, None, None]
+            return J
+    if not len(moves):
+        return J
+    runs = predictor.predict(space.decode(q + moves))
+    moved = (runs - predicted) / moves.sum(axis=1)[:, None, None]
     J[..., asked] = np.moveaxis(moved, 0, -1)
-    return runs[0], J
+    return J
 
 
 def _solve(

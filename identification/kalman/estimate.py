@@ -24,11 +24,10 @@ from identification.estimation.information import information_of
 from identification.estimation.options import Options, Progress, Status, prior_weight
 from identification.estimation.residuals import residual_tests
 from identification.estimation.resolution import resolve
-from identification.kalman.linear import linearise
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Noise, build_whitener
 from identification.kalman.options import KalmanOptions
-from identification.kalman.point import Point, evaluate_point
+from identification.kalman.point import Point, evaluate_point, extend_point
 from identification.kalman.refit import Refit, conclude, descend
 from identification.logs.log import Log
 from identification.model.coordinates import coordinates
@@ -163,12 +162,10 @@ def _search(
 
 def compute_innovations(end: Refit, whole: Log) -> np.ndarray:
     """Innovations over a log whose beginning was fitted, shape (N, ny)."""
-    point = end.point
-    predictor = replace(point.predictor, log=whole)
-    values = point.space.decode(point.q)
+    there = extend_point(end.point, whole)
     with one_blas_thread():
-        filter_ = build_whitener(linearise(predictor, values), end.level.noise, whole.sampling_time)
-        return filter_(whole.outputs - predictor.predict(values)[0])
+        filter_ = build_whitener(there.linear, end.level.noise, whole.sampling_time)
+        return filter_(there.e)
 
 
 def _fitted_innovations(end: Refit) -> np.ndarray:

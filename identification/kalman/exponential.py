@@ -19,6 +19,8 @@ from math import factorial
 import numpy as np
 from scipy.linalg import matrix_balance
 
+from identification.pool import run_parts, split
+
 LONGEST = 0.5  # 1-norm; 0.5^15/16! is below the rounding of doubles
 GROUP, GROUPS = 4, 4
 SERIES = np.array([1 / factorial(k + 1) for k in range(GROUP * GROUPS)]).reshape(GROUPS, GROUP)
@@ -36,19 +38,19 @@ def transitions(F: np.ndarray, duration: np.ndarray) -> tuple[np.ndarray, np.nda
         A and Γ, both of shape (n, nx, nx).
     """
     with np.errstate(over="ignore", invalid="ignore"):  # what grows beyond all numbers is inf
-        return _transitions(F, duration)
-
-
-def _transitions(F: np.ndarray, duration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    X = F * duration[:, None, None]
-    D = _balance(X)
-    X *= D / D[:, None]
-    A, φ = np.empty_like(X), np.empty_like(X)
-    for k in range(0, len(X), TOGETHER):
-        some = slice(k, k + TOGETHER)
-        A[some], φ[some] = _exponential(X[some])
+        X = F * duration[:, None, None]
+        D = _balance(X)
     back = D[:, None] / D
-    return A * back, duration[:, None, None] * φ * back
+    A, Γ = np.empty_like(X), np.empty_like(X)
+
+    def part(some: slice) -> None:
+        with np.errstate(over="ignore", invalid="ignore"):
+            A[some], φ = _exponential(X[some] * back.T)
+            A[some] *= back
+            Γ[some] = duration[some, None, None] * φ * back
+
+    run_parts(part, split(len(X), TOGETHER))
+    return A, Γ
 
 
 def _balance(X: np.ndarray) -> np.ndarray:

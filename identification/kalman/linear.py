@@ -24,7 +24,7 @@ from identification.kalman.trajectory import COARSE, Trajectory, follow
 from identification.model.predictor import Predictor, output_columns
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LinearPlant:
     """Linearisation at the N samples of a log.
 
@@ -33,11 +33,13 @@ class LinearPlant:
             record of a joined log begins.
         B: effect of an input held over the sample, shape (N-1, nx, nu).
         C: outputs from the state, shape (ny, nx).
+        felt: which entries of the state are x, shape (2 nv + na,); None where nobody knows.
     """
 
     A: np.ndarray
     B: np.ndarray
     C: np.ndarray
+    felt: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,7 @@ class Linearisation:
         A, B = self.A[::parts], self.B[::parts]
         for i in range(1, parts):
             A, B = self.A[i::parts] @ A, self.A[i::parts] @ B + self.B[i::parts]
-        return LinearPlant(A, B, self.C)
+        return LinearPlant(A, B, self.C, self.felt)
 
 
 def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = ()) -> LinearPlant:
@@ -103,14 +105,19 @@ def linearise_records(
 
 def join(records: Sequence[Linearisation]) -> LinearPlant:
     """The plants of several records, one after the other; nothing passes from one to the next."""
-    each = [record.at_samples() for record in records]
+    return join_plants([record.at_samples() for record in records])
+
+
+def join_plants(each: Sequence[LinearPlant]) -> LinearPlant:
+    """The same of plants at samples."""
     if len(each) == 1:
         return each[0]
     gap = LinearPlant(np.zeros_like(each[0].A[:1]), np.zeros_like(each[0].B[:1]), each[0].C)
     parts = [part for plant in each for part in (gap, plant)][1:]
     return LinearPlant(
-        np.concatenate([p.A for p in parts]), np.concatenate([p.B for p in parts]), each[0].C
-    )
+        np.concatenate([p.A for p in parts]), np.concatenate([p.B for p in parts]),
+        each[0].C, each[0].felt,
+    )  # fmt: skip
 
 
 def linearise_along(
@@ -128,11 +135,44 @@ def linearise_along(
         forces = range(along.model.nv)  # what disturbs a free swing, for it has no inputs
     if forces:
         G = along.average(force_derivatives(along, list(forces)))
-    C = np.zeros((predictor.log.outputs.shape[1], F.shape[1]))
-    columns = output_columns(predictor.plant.model, predictor.log.output_names)
-    for row, (field, i) in enumerate(columns):
-        C[row, tangent_index(along.model, field, i)] = 1
-    felt = _felt(F, C)
+    C = _outputs(predictor, along)
+    return _linearisation(along, F, G, C, _felt(F, C))
+
+
+def extend(known: LinearPlant, predictor: Predictor, along: Trajectory) -> LinearPlant:
+    """The plant along one record, of whose beginning it is known: only the rest is linearised.
+
+    Args:
+        known: the plant at the first samples of the record.
+        predictor: whose outputs are asked for.
+        along: the trajectory of the whole record.
+    """
+    rest = along.after(len(known.A))
+    if known.felt is None:
+        return linearise_along(predictor, along).at_samples()
+    if not len(rest.begins):
+        return known
+    F, G = state_derivatives(rest)
+    if (np.abs(F).max(axis=0) > 0)[known.felt][:, ~known.felt].any():  # it feels more states
+        return linearise_along(predictor, along).at_samples()
+    new = _linearisation(rest, F, G, _outputs(predictor, along), known.felt).at_samples()
+    A, B = np.concatenate([known.A, new.A]), np.concatenate([known.B, new.B])
+    return LinearPlant(A, B, known.C, known.felt)
+
+
+def _outputs(predictor: Predictor, along: Trajectory) -> np.ndarray:
+    """C of the whole state, shape (ny, 2 nv + na)."""
+    model, names = along.model, predictor.log.output_names
+    C = np.zeros((len(names), 2 * model.nv + model.na))
+    for row, (field, i) in enumerate(output_columns(predictor.plant.model, names)):
+        C[row, tangent_index(model, field, i)] = 1
+    return C
+
+
+def _linearisation(
+    along: Trajectory, F: np.ndarray, G: np.ndarray, C: np.ndarray, felt: np.ndarray
+) -> Linearisation:
+    """The linearisation by the derivatives of the whole state, for the states that are felt."""
     F, G, C = F[:, felt][:, :, felt], G[:, felt], C[:, felt]
     positions = int(felt[: along.model.nv].sum())
     with one_blas_thread():

@@ -11,14 +11,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from threading import Lock
 
 import numpy as np
 
 from identification.blas import one_blas_thread
 from identification.kalman.linear import LinearPlant
-from identification.kalman.noise_model import Noise, Whitener, augment, build_whitener
+from identification.kalman.noise_model import Noise, Whitener, augment
 from identification.kalman.options import KalmanOptions
+from identification.kalman.recursion import propagate
+from identification.kalman.whitened import Whitened, keep, whiten
+from identification.pool import run_parts, split
 
+TOGETHER = 4  # noises that are tried at once: each takes the memory of the sensitivities
 FIRST, LAST = 1.6, 1.15  # factors with which the pattern search begins and ends
 # Multiples of the ρ of a point nearby that are tried; the last two where the second beats the first
 AROUND = (1.0, 0.3, 0.05, 0.0)
@@ -54,13 +59,8 @@ def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) ->
         sampling_time: [s].
         time: correlation time of the inputs' error [s].
     """
-    n, nx, _ = plant.B.shape
-    A, _, P, Q = augment(plant, Noise(1.0, time), sampling_time)
-    moved = 0.0
-    for k in range(n):
-        P = A[k] @ P @ A[k].T + Q[k]
-        moved += np.einsum("ij,jk,ik->", plant.C, P[:nx, :nx], plant.C)
-    return 1 / np.sqrt(moved / (n * len(plant.C)))
+    moved = propagate(*augment(plant, Noise(1.0, time), sampling_time))
+    return float(1 / np.sqrt(moved.mean()))
 
 
 def evaluate_noise(
@@ -76,13 +76,20 @@ def evaluate_noise(
         prior: 1/std of each parameter's prior, shape (p,).
     """
     E, F = filter_(e).ravel(), filter_(J).reshape(e.size, -1)
-    sigma = np.sqrt(E @ E / E.size)
+    return _level(E, F, F.T @ F, noise, prior, filter_.log_determinant)
+
+
+def _level(
+    E: np.ndarray, F: np.ndarray, H: np.ndarray, noise: Noise, prior: np.ndarray,
+    log_determinant: float,
+) -> NoiseLevel:  # fmt: skip
+    """The likelihood of whitened residuals E and sensitivities F, H = FᵀF."""
+    sigma, b = np.sqrt(E @ E / E.size), F.T @ E
     for _ in range(2):  # the weight of the prior depends on σ
-        H = F.T @ F + np.diag((prior * sigma) ** 2)
-        c = _solve(H, F.T @ E)
+        c = _solve(H + np.diag((prior * sigma) ** 2), b)
         sigma = np.sqrt(np.sum((E - F @ c) ** 2) / E.size)
     return NoiseLevel(
-        noise, float(sigma), float(-0.5 * (2 * E.size * np.log(sigma) + filter_.log_determinant))
+        noise, float(sigma), float(-0.5 * (2 * E.size * np.log(sigma) + log_determinant))
     )
 
 
@@ -109,7 +116,7 @@ def fit_noise(
     levels: Sequence[float] = LEVELS,
     largest: float = np.inf,
 ) -> NoiseLevel:
-    """The most likely noise of a residual.
+    """The most likely noise of a residual; what it whitens of J is kept (see `whiten`).
 
     Args:
         plant: the linearised plant.
@@ -123,14 +130,21 @@ def fit_noise(
         levels: the grid of ρ/ρ₀ where no noise is known.
         largest: largest error of the inputs that is believed on the grid, in the inputs' unit.
     """
-    time = options.start_correlation_time
+    time, likeliest = options.start_correlation_time, _Likeliest()
     with one_blas_thread():
 
         def at(noise: Noise) -> NoiseLevel:
-            return evaluate_noise(build_whitener(plant, noise, sampling_time), noise, e, J, prior)
+            white = whiten(plant, J, noise, sampling_time)
+            E, log_determinant = white.filter(e).ravel(), white.filter.log_determinant
+            level = _level(E, white.F, white.H, noise, prior, log_determinant)
+            if level.input_std <= largest or fine:
+                likeliest.update(level, white)
+            return level
 
         def believed(noise: Noise, factors: Sequence[float]) -> list[NoiseLevel]:
-            tried = [at(noise.scaled(f)) for f in factors]
+            each = [noise.scaled(f) for f in factors]
+            some = split(len(each), TOGETHER)
+            tried = [level for few in some for level in run_parts(at, each[few])]
             return [level for level in tried if level.input_std <= largest]
 
         found: list[NoiseLevel] = []
@@ -144,7 +158,29 @@ def fit_noise(
             found = believed(unit, ROUGH if silent and not fine else levels)
         best = _best(found)
         times = sampling_time / 3, options.max_correlation_time  # below the first it is white
-        return refine_noise(best, at, times) if fine and best.noise.ratio else best
+        best = refine_noise(best, at, times) if fine and best.noise.ratio else best
+    likeliest.keep(best)
+    return best
+
+
+class _Likeliest:
+    """The whitened sensitivities of the likeliest noise that was tried yet, from any thread."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._level: NoiseLevel | None = None
+        self._white: Whitened | None = None
+
+    def update(self, level: NoiseLevel, white: Whitened) -> None:
+        """Take those of a noise if it is likelier."""
+        with self._lock:
+            if self._level is None or level.log_likelihood > self._level.log_likelihood:
+                self._level, self._white = level, white
+
+    def keep(self, best: NoiseLevel) -> None:
+        """Keep them if they are those of the noise that was chosen."""
+        if self._white is not None and self._white.noise == best.noise:
+            keep(self._white)
 
 
 def refine_noise(
@@ -163,7 +199,8 @@ def refine_noise(
     while step > LAST:
         near = [(step, 1.0), (1 / step, 1.0)]
         near += [] if alone else [(1.0, step**2), (1.0, step**-2)]
-        new = _best([best, *(at(_moved(best.noise, r, τ, times)) for r, τ in near)])
+        moved = [_moved(best.noise, r, τ, times) for r, τ in near]
+        new = _best([best, *run_parts(at, moved)])
         if new is best:
             step, alone = (step, False) if alone else (step**0.5, False)
         best = new

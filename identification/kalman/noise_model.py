@@ -13,11 +13,12 @@ last.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from identification.kalman.linear import LinearPlant
-from identification.kalman.recursion import filter_gains, filter_innovations
+from identification.kalman.recursion import filter_gains, filter_innovations, transpose_filter
 
 
 @dataclass(frozen=True)
@@ -63,8 +64,14 @@ class Whitener:
         """Innovations of e, shape (n, ny) or (n, ny, p) for n <= N samples, of std σ each."""
         if not self.A.size:
             return np.array(e)
-        columns = filter_innovations(self.A, self.C, self.K, e.reshape(*e.shape[:2], -1))
-        return np.asarray(self.L[: len(columns)] @ columns).reshape(e.shape)
+        columns = e.reshape(*e.shape[:2], -1)
+        return filter_innovations(self.A, self.C, self.K, self.L, columns).reshape(e.shape)
+
+    def transposed(self, E: np.ndarray) -> np.ndarray:
+        """The x with x · e = E · (innovations of e) for any residual e; both of shape (n, ny)."""
+        if not self.A.size:
+            return np.array(E)
+        return transpose_filter(self.A, self.C, self.K, self.L, E)[0]
 
 
 def augment(
@@ -73,21 +80,30 @@ def augment(
     """The linear system of the state z = (x, w) of plant and input error.
 
     Returns:
-        A, shape (N-1, nz, nz), C, shape (ny, nz), and the covariances over σ² of the first state,
-        P, shape (nz, nz), and of the process noise of each sample, Q, shape (N-1, nz, nz). Where
-        another record begins, A is zero and Q is P: nothing is known of its inputs' error.
+        A, shape (N-1, nz, nz), C, shape (ny, nz), the covariance over σ² of the first state, P,
+        shape (nz, nz), and that of the process noise of each sample in units of P, shape (N-1,).
+        Where another record begins, A is zero and the share is 1: nothing is known of its inputs'
+        error.
     """
-    n, nx, nu = plant.B.shape
-    a = np.exp(-sampling_time / noise.time)
-    A = np.zeros((n, nx + nu, nx + nu))
-    A[:, :nx, :nx], A[:, :nx, nx:] = plant.A, plant.B
-    A[:, nx:, nx:] = a * np.eye(nu)
+    nx, nu = plant.B.shape[1:]
+    a = float(np.exp(-sampling_time / noise.time))
+    A = _transitions(plant, a)
     C = np.hstack([plant.C, np.zeros((len(plant.C), nu))])
     P = np.zeros((nx + nu, nx + nu))
     P[nx:, nx:] = noise.ratio**2 * np.eye(nu)
-    begins = np.asarray(~plant.A.any(axis=(1, 2)))
-    A[begins] = 0
-    return A, C, P, np.where(begins[:, None, None], P, (1 - a**2) * P)
+    return A, C, P, np.where(A.any(axis=(1, 2)), 1 - a**2, 1.0)
+
+
+@lru_cache(maxsize=1)
+def _transitions(plant: LinearPlant, a: float) -> np.ndarray:
+    """The transitions of the state (x, w); noises of one correlation time share them."""
+    n, nx, nu = plant.B.shape
+    A = np.zeros((n, nx + nu, nx + nu))
+    A[:, :nx, :nx], A[:, :nx, nx:] = plant.A, plant.B
+    A[:, nx:, nx:] = a * np.eye(nu)
+    A[~plant.A.any(axis=(1, 2))] = 0
+    A.flags.writeable = False
+    return A
 
 
 def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
@@ -97,5 +113,5 @@ def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Wh
     """
     if noise.ratio == 0:
         return Whitener(np.empty((0, 0, 0)), plant.C, np.empty(0), np.empty(0), 0.0)
-    A, C, P, Q = augment(plant, noise, sampling_time)
-    return Whitener(A, C, *filter_gains(A, C, P, Q))
+    A, C, P, share = augment(plant, noise, sampling_time)
+    return Whitener(A, C, *filter_gains(A, C, P, share))

@@ -5,15 +5,27 @@ e = y - ŷ(q),   Φ = ∂ŷ/∂q,   δx_{k+1} = A_k δx_k + B_k δu_k
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from identification.kalman.columns import MANY, compute_columns
-from identification.kalman.linear import LinearPlant, join, linearise, linearise_records
+from identification.kalman.linear import (
+    Linearisation,
+    LinearPlant,
+    extend,
+    join,
+    join_plants,
+    linearise_along,
+    linearise_records,
+)
+from identification.kalman.trajectory import COARSE, Trajectory, follow
+from identification.logs.joined import records_of
 from identification.logs.log import Log
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
+from identification.model.protocol import with_states
 
 HOLDS = 0.1  # share by which outputs may miss what the columns of a point say of a short step
 
@@ -78,9 +90,11 @@ def evaluate_point(
         DivergenceError: a simulation left the finite numbers.
     """
     inside = space.inside(q)
-    records = linearise_records(predictor, space.decode(inside))
+    values = space.decode(inside)
+    records = linearise_records(predictor, values)
     known = _known(near, small)
-    predicted, J = compute_columns(predictor, space, inside, records, known)
+    predicted = _predict_along(predictor, values, records)
+    J = compute_columns(predictor, space, inside, records, known, predicted)
     return Point(
         predictor=predictor,
         space=space,
@@ -130,16 +144,76 @@ def _known(near: Point | None, small: frozenset[str]) -> dict[str, np.ndarray]:
 def evaluate_sensitivities(point: Point, whole: Log) -> np.ndarray:
     """J of the same point on a longer log, shape (N, ny, p)."""
     predictor = replace(point.predictor, log=whole)
-    records = linearise_records(predictor, point.space.decode(point.q))
-    return compute_columns(predictor, point.space, point.q, records, {})[1]
+    values = point.space.decode(point.q)
+    records = linearise_records(predictor, values)
+    predicted = _predict_along(predictor, values, records)
+    return compute_columns(predictor, point.space, point.q, records, {}, predicted)
 
 
 def extend_point(point: Point, whole: Log) -> Point:
-    """The same point on a longer log, of which its own log is a part; without J."""
+    """The same point on a longer log, of which its own log is a part; without J.
+
+    The linearisation of its own log is kept where that is the beginning of a record.
+
+    Args:
+        point: the plant on its own log.
+        whole: the longer log.
+
+    Raises:
+        DivergenceError: the simulation of the longer log left the finite numbers.
+    """
     predictor = replace(point.predictor, log=whole)
-    values = point.space.decode(point.q)
-    e = whole.outputs - predictor.predict(values)[0]
-    linear = linearise(predictor, values)
+    values, known = point.space.decode(point.q), _known_plants(point)
+    each, predicted = [], []
+    for (number, log), (record, columns) in zip(
+        records_of(whole), predictor.records(), strict=True
+    ):
+        own = values[..., columns]
+        along = follow(record, own, COARSE)
+        begun, plant = known.get(number, (None, None))
+        if plant is None or begun != log.begun:
+            plant = linearise_along(record, along).at_samples()
+        else:
+            plant = extend(plant, record, along)
+        each.append(plant)
+        predicted.append(_outputs_along(record, own, along))
+    e = whole.outputs - np.concatenate(predicted)
     return Point(
-        predictor=predictor, space=point.space, q=point.q, e=e, J=point.J[:0], linear=linear
+        predictor=predictor,
+        space=point.space,
+        q=point.q,
+        e=e,
+        J=point.J[:0],
+        linear=join_plants(each),
     )
+
+
+def _predict_along(
+    predictor: Predictor, values: np.ndarray, records: Sequence[Linearisation]
+) -> np.ndarray:
+    """Returns the outputs of all records, shape (N, ny), along which they were linearised."""
+    each = zip(predictor.records(), records, strict=True)
+    return np.concatenate([
+        _outputs_along(record, values[columns], linear.along) for (record, columns), linear in each
+    ])  # fmt: skip
+
+
+def _outputs_along(record: Predictor, values: np.ndarray, along: Trajectory) -> np.ndarray:
+    """Returns the outputs along a trajectory, shape (N, ny), without another simulation.
+
+    A plant whose sensors see states that no model file has is simulated: a trajectory lacks these.
+    """
+    if with_states(record.plant) is not None:
+        return record.predict(values)[0]
+    states = {field: x[None] for field, x in along.states.items()}
+    return record.outputs(np.atleast_2d(values), states)[0]
+
+
+def _known_plants(point: Point) -> dict[int, tuple[float, LinearPlant]]:
+    """Where each record of a point's log begins [s], and its linearisation, by its number."""
+    out, done, linear = {}, 0, point.linear
+    for number, log in records_of(point.log):
+        own = slice(done, done + len(log) - 1)
+        out[number] = log.begun, replace(linear, A=linear.A[own], B=linear.B[own])
+        done += len(log)
+    return out

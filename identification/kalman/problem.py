@@ -12,18 +12,24 @@ second derivative of the residual ("geodesic acceleration", Transtrum and Sethna
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from identification.errors import DivergenceError, InputError
 from identification.estimation.levenberg_marquardt import Cost
 from identification.kalman.noise_fit import NoiseLevel
-from identification.kalman.noise_model import Whitener, build_whitener
+from identification.kalman.noise_model import Whitener
 from identification.kalman.point import Point
+from identification.kalman.whitened import keep, whiten
 
 LARGEST = 0.5  # largest step of a logarithm: a parameter changes by at most 65 % at a time
 ALONG = 0.1  # h: the share of the step at which the second derivative is taken
+# Condition of the columns up to which their products are taken in place of themselves: the products
+# lose 1e-16 SOUND² of a step, far less than the columns, which are differences, are off themselves.
+SOUND = 1e5
 SHORT = 0.5  # share of the expected fall below which a step is bent
 
 
@@ -39,6 +45,7 @@ class Problem:
         filter: the whitening filter of the noise.
         rows: F, shape (N ny + p, p).
         target: -r, shape (N ny + p,).
+        curvature: FᵀF, shape (p, p).
     """
 
     point: Point
@@ -48,6 +55,7 @@ class Problem:
     filter: Whitener
     rows: np.ndarray
     target: np.ndarray
+    curvature: np.ndarray
 
     @property
     def cost(self) -> float:
@@ -95,12 +103,31 @@ class Problem:
         point, size = self.point, np.where(self.point.space.logarithmic, LARGEST, np.inf)
         lower = np.minimum(np.maximum(point.space.lower - point.q, -size) - begun, 0.0)
         upper = np.maximum(np.minimum(point.space.upper - point.q, size) - begun, 0.0)
-        scale = np.linalg.norm(self.rows, axis=0) + 1e-300
-        Q, R = np.linalg.qr(self.rows / scale)
+        scale, R, Q = self._factor
+        if Q is None:
+            along = solve_triangular(R, self.rows.T @ target / scale, trans=1)
+        else:
+            along = Q.T @ target
         square = np.vstack([R, np.sqrt(μ) * np.eye(len(scale))])
-        both = np.concatenate([Q.T @ target, np.zeros(len(scale))])
+        both = np.concatenate([along, np.zeros(len(scale))])
         bounds = (lower * scale - 1e-12, upper * scale + 1e-12)
         return np.asarray(lsq_linear(square, both, bounds).x / scale)
+
+    @cached_property
+    def _factor(self) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+        """Lengths of the columns of F, R and Q of F with columns of length 1; Q may be left out.
+
+        The normal equations give R where they lose no digit that matters.
+        """
+        scale = np.sqrt(np.diag(self.curvature)) + 1e-300
+        try:
+            R = np.linalg.cholesky(self.curvature / np.outer(scale, scale)).T
+            if np.linalg.cond(R) < SOUND:
+                return scale, R, None
+        except np.linalg.LinAlgError:
+            pass
+        Q, R = np.linalg.qr(self.rows / scale)
+        return scale, R, Q
 
     def residual(self, q: np.ndarray) -> np.ndarray | None:
         """-r at another q with the same filter, shape (N ny + p,); None where it diverges."""
@@ -120,7 +147,7 @@ class Problem:
     @property
     def covariance(self) -> np.ndarray:
         """Of q by the curvature of the criterion, shape (p, p)."""
-        return np.linalg.pinv(self.rows.T @ self.rows, rcond=1e-14, hermitian=True)
+        return np.linalg.pinv(self.curvature, rcond=1e-14, hermitian=True)
 
     def std(self) -> np.ndarray:
         """Std of q by the curvature of the criterion, shape (p,)."""
@@ -138,12 +165,12 @@ def linearise_criterion(
         mean: q̄ of the priors, shape (p,).
         prior: 1/std of each prior, zero where there is none, shape (p,).
     """
-    filter_ = build_whitener(point.linear, level.noise, point.log.sampling_time)
-    E, F = (
-        filter_(point.e).ravel() / level.sigma,
-        filter_(point.J).reshape(point.e.size, -1) / level.sigma,
-    )
-    rows, target = np.vstack([F, np.diag(prior)]), np.concatenate([E, prior * (mean - point.q)])
+    white = whiten(point.linear, point.J, level.noise, point.log.sampling_time)
+    keep(white)
+    E = white.filter(point.e).ravel() / level.sigma
+    rows = np.vstack([white.F / level.sigma, np.diag(prior)])
+    target = np.concatenate([E, prior * (mean - point.q)])
     return Problem(
-        point=point, level=level, mean=mean, prior=prior, filter=filter_, rows=rows, target=target
-    )
+        point=point, level=level, mean=mean, prior=prior, filter=white.filter, rows=rows,
+        target=target, curvature=white.H / level.sigma**2 + np.diag(prior**2),
+    )  # fmt: skip

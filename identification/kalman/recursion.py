@@ -1,12 +1,15 @@
 """The recursions of the Kalman filter over the samples of a log, compiled.
 
     S_k = C P_k Cᵀ + I = F Fᵀ,    L_k = F⁻¹,    W = P_k Cᵀ L_kᵀ,    K_k = W L_k
-    P_{k+1} = A_k (P_k - W Wᵀ) A_kᵀ + Q_k
+    P_{k+1} = A_k (P_k - W Wᵀ) A_kᵀ + s_k P_0
 
-    ε_k = e_k - C z_k,    z_{k+1} = A_k (z_k + K_k ε_k),    z_0 = 0
+    ε_k = e_k - C z_k,    E_k = L_k ε_k,    z_{k+1} = A_k (z_k + K_k ε_k),    z_0 = 0
+
+    D_{k+1} = A_k D_k A_kᵀ + s_k P_0,    D_0 = P_0          the same without any measurement
 
 K: gains, L: inverted Cholesky factors of the covariances S of the innovations ε over σ². A sample
 of a plant with few states costs less than a call of numpy, of which the loop would need a dozen.
+Columns are filtered on all threads at once.
 """
 
 from __future__ import annotations
@@ -21,13 +24,18 @@ from numba import carray, types
 
 from identification.native.cache import compile_once
 from identification.native.decorators import internal
+from identification.pool import run_parts, split
+
+# Columns that are filtered together: their states stay in a processor's own cache, and the
+# transitions, which are read again for the next ones, cost little against the products.
+TOGETHER = 96
 
 _DOUBLES: Any = types.CPointer(types.float64)
 _SIZE: Any = types.int64
 
 
 def filter_gains(
-    A: np.ndarray, C: np.ndarray, P: np.ndarray, Q: np.ndarray
+    A: np.ndarray, C: np.ndarray, P: np.ndarray, share: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """Gains of the Kalman filter at each sample.
 
@@ -35,40 +43,91 @@ def filter_gains(
         A: transitions of the state, shape (N-1, nz, nz).
         C: outputs from the state, shape (ny, nz).
         P: covariance over σ² of the first state, shape (nz, nz).
-        Q: covariance over σ² of the process noise, shape (N-1, nz, nz).
+        share: s, the covariance of each sample's process noise in units of P, shape (N-1,).
 
     Returns:
         K, shape (N, nz, ny), L, shape (N, ny, ny), and Σ log det S.
     """
     n, nz, ny = len(A), len(P), len(C)
     K, L = np.empty((n + 1, nz, ny)), np.empty((n + 1, ny, ny))
-    given = (np.ascontiguousarray(a, float) for a in (A, C, P, Q))
+    given = (np.ascontiguousarray(a, float) for a in (A, C, P, share))
     _call(_compiled(_gains, 6), (n, nz, ny), (*given, K, L))
     return K, L, -2 * float(np.log(np.diagonal(L, axis1=1, axis2=2)).sum())
 
 
-def filter_innovations(A: np.ndarray, C: np.ndarray, K: np.ndarray, e: np.ndarray) -> np.ndarray:
-    """Innovations of residuals, not yet scaled by L.
+def filter_innovations(
+    A: np.ndarray, C: np.ndarray, K: np.ndarray, L: np.ndarray, e: np.ndarray
+) -> np.ndarray:
+    """Innovations of residuals, of std σ each.
 
     Args:
         A: transitions of the state, shape (N-1, nz, nz).
         C: outputs from the state, shape (ny, nz).
         K: gains, shape (N, nz, ny).
+        L: inverted factors, shape (N, ny, ny).
         e: residuals, shape (n, ny, p) for n <= N samples.
 
     Returns:
-        ε, shape (n, ny, p).
+        E, shape (n, ny, p).
     """
     n, ny, p = e.shape
     out = np.empty((n, ny, p))
-    given = (np.ascontiguousarray(a, float) for a in (A, C, K, e))
-    _call(_compiled(_innovations, 5), (n, A.shape[1], ny, p), (*given, out))
+    given = [np.ascontiguousarray(a, float) for a in (A, C, K, L, e)]
+    run = _compiled(_innovations, 6)
+
+    def part(some: slice) -> None:
+        _call(run, (n, A.shape[1], ny, p, some.start, some.stop), (*given, out))
+
+    run_parts(part, split(p, TOGETHER))
     return out
 
 
-def _gains(n, nz, ny, A_, C_, P_, Q_, K_, L_):  # type: ignore[no-untyped-def]
-    A, Q = carray(A_, (n, nz, nz)), carray(Q_, (n, nz, nz))
-    C, P = carray(C_, (ny, nz)), carray(P_, (nz, nz)).copy()
+def transpose_filter(
+    A: np.ndarray, C: np.ndarray, K: np.ndarray, L: np.ndarray, E: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The transposed filter, backwards in time: x with x · e = E · (innovations of e) for any e.
+
+        r_k = A_kᵀ r_{k+1} + Cᵀ x_k,    x_k = L_kᵀ E_k - K_kᵀ A_kᵀ r_{k+1}
+
+    Args:
+        A: as of `filter_innovations`.
+        C: as of `filter_innovations`.
+        K: as of `filter_innovations`.
+        L: as of `filter_innovations`.
+        E: shape (n, ny) for n <= N samples.
+
+    Returns:
+        x, shape (n, ny), and r, shape (n, nz).
+    """
+    n, ny = E.shape
+    out, r = np.empty((n, ny)), np.empty((n, A.shape[1]))
+    given = (np.ascontiguousarray(a, float) for a in (A, C, K, L, E))
+    _call(_compiled(_transposed, 7), (n, A.shape[1], ny), (*given, out, r))
+    return out, r
+
+
+def propagate(A: np.ndarray, C: np.ndarray, P: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Variances over σ² of the outputs that the process noise causes where nothing is measured.
+
+    Args:
+        A: as of `filter_gains`.
+        C: as of `filter_gains`.
+        P: as of `filter_gains`.
+        share: as of `filter_gains`.
+
+    Returns:
+        Of each output at each sample but the first, shape (N-1, ny).
+    """
+    n, nz, ny = len(A), len(P), len(C)
+    out = np.empty((n, ny))
+    given = (np.ascontiguousarray(a, float) for a in (A, C, P, share))
+    _call(_compiled(_propagate, 5), (n, nz, ny), (*given, out))
+    return out
+
+
+def _gains(n, nz, ny, A_, C_, P_, share_, K_, L_):  # type: ignore[no-untyped-def]
+    A, share, first = carray(A_, (n, nz, nz)), carray(share_, n), carray(P_, (nz, nz))
+    C, P = carray(C_, (ny, nz)), first.copy()
     K, L = carray(K_, (n + 1, nz, ny)), carray(L_, (n + 1, ny, ny))
     PC, W, M, AM = np.empty((nz, ny)), np.empty((nz, ny)), np.empty((nz, nz)), np.empty((nz, nz))
     S, F = np.empty((ny, ny)), np.empty((ny, ny))
@@ -82,11 +141,33 @@ def _gains(n, nz, ny, A_, C_, P_, Q_, K_, L_):  # type: ignore[no-untyped-def]
         np.dot(W, L[k], K[k])
         if k < n:
             np.dot(W, W.T, M)
-            np.dot(A[k], P - M, AM)
-            np.dot(AM, A[k].T, M)
             for i in range(nz):
                 for j in range(nz):
-                    P[i, j] = (M[i, j] + M[j, i]) / 2 + Q[k, i, j]
+                    P[i, j] -= M[i, j]
+            _step(A[k], P, first, share[k], M, AM)
+
+
+def _propagate(n, nz, ny, A_, C_, P_, share_, out_):  # type: ignore[no-untyped-def]
+    A, share, first = carray(A_, (n, nz, nz)), carray(share_, n), carray(P_, (nz, nz))
+    C, P, out = carray(C_, (ny, nz)), first.copy(), carray(out_, (n, ny))
+    CP, M, AM = np.empty((ny, nz)), np.empty((nz, nz)), np.empty((nz, nz))
+    for k in range(n):
+        _step(A[k], P, first, share[k], M, AM)
+        np.dot(C, P, CP)
+        for i in range(ny):
+            out[k, i] = 0.0
+            for j in range(nz):
+                out[k, i] += CP[i, j] * C[i, j]
+
+
+@internal
+def _step(A, P, first, share, M, AM):  # type: ignore[no-untyped-def]
+    """P of the next sample, in its place; M and AM are scratch."""
+    np.dot(A, P, AM)
+    np.dot(AM, A.T, M)
+    for i in range(len(P)):
+        for j in range(len(P)):
+            P[i, j] = (M[i, j] + M[j, i]) / 2 + share * first[i, j]
 
 
 @internal
@@ -107,21 +188,50 @@ def _inverted_factor(S, F, L):  # type: ignore[no-untyped-def]
             L[i, j] = s / F[i, i]
 
 
-def _innovations(n, nz, ny, p, A_, C_, K_, e_, out_):  # type: ignore[no-untyped-def]
+def _innovations(  # type: ignore[no-untyped-def]
+    n, nz, ny, columns, begin, end, A_, C_, K_, L_, e_, out_
+):
+    p = end - begin
     A, C = carray(A_, (max(n - 1, 0), nz, nz)), carray(C_, (ny, nz))
-    K, e, out = carray(K_, (n, nz, ny)), carray(e_, (n, ny, p)), carray(out_, (n, ny, p))
-    z, seen, predicted = np.zeros((nz, p)), np.empty((nz, p)), np.empty((ny, p))
+    K, L = carray(K_, (n, nz, ny)), carray(L_, (n, ny, ny))
+    e, out = carray(e_, (n, ny, columns)), carray(out_, (n, ny, columns))
+    z, seen, new = np.zeros((nz, p)), np.empty((nz, p)), np.empty((ny, p))
+    scaled = np.empty((ny, p))
     for k in range(n):
-        np.dot(C, z, predicted)
+        np.dot(C, z, new)
         for i in range(ny):
             for j in range(p):
-                out[k, i, j] = e[k, i, j] - predicted[i, j]
+                new[i, j] = e[k, i, begin + j] - new[i, j]
+        np.dot(L[k], new, scaled)
+        for i in range(ny):
+            for j in range(p):
+                out[k, i, begin + j] = scaled[i, j]
         if k + 1 < n:
-            np.dot(K[k], out[k], seen)
+            np.dot(K[k], new, seen)
             for i in range(nz):
                 for j in range(p):
                     seen[i, j] += z[i, j]
             np.dot(A[k], seen, z)
+
+
+def _transposed(n, nz, ny, A_, C_, K_, L_, E_, out_, r_):  # type: ignore[no-untyped-def]
+    A, C = carray(A_, (max(n - 1, 0), nz, nz)), carray(C_, (ny, nz))
+    K, L = carray(K_, (n, nz, ny)), carray(L_, (n, ny, ny))
+    E, out, r = carray(E_, (n, ny)), carray(out_, (n, ny)), carray(r_, (n, nz))
+    later = np.zeros(nz)
+    for k in range(n - 1, -1, -1):
+        if k + 1 < n:
+            np.dot(A[k].T, r[k + 1], later)
+        for i in range(ny):
+            out[k, i] = 0.0
+            for j in range(ny):
+                out[k, i] += L[k, j, i] * E[k, j]
+            for j in range(nz):
+                out[k, i] -= K[k, j, i] * later[j]
+        for j in range(nz):
+            r[k, j] = later[j]
+            for i in range(ny):
+                r[k, j] += C[i, j] * out[k, i]
 
 
 @cache

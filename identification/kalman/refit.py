@@ -41,7 +41,7 @@ FEWER = 2  # the same where columns are borrowed, which are then computed anew
 PATIENCE = 2  # successive steps without progress after which a search ends
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Refit:
     """The estimate at which a search ended.
 

@@ -13,22 +13,24 @@ also changes that course, such as a creep with another time constant, is simulat
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import mujoco
 import numpy as np
 
 from identification.kalman.linear import Linearisation, tangent_index
+from identification.kalman.response import respond
 from identification.kalman.trajectory import average_inputs
 from identification.linear.points import Change, Points
-from identification.model.numbers import each_with_numbers
+from identification.model.numbers import list_differences
 from identification.model.predictor import Predictor, output_columns
-from identification.model.protocol import with_states
-from identification.model.rollout import hold, substeps
+from identification.model.protocol import Numbers, with_states
+from identification.model.rollout import State, hold, substeps
 
+Courses = Sequence[Callable[[np.ndarray], np.ndarray]]  # from times [s] to factors
+ALWAYS: Courses = (np.ones_like,)
 SHIFT = 1e-3  # of states that no output feels, to see whether a candidate reads them
-_NO_TIME = ((0, 1), (0, 0), (0, 0), (0, 0))  # the time of a reading does not change
 FEW = 50  # points at which this is seen
 
 
@@ -49,8 +51,9 @@ def solve_sensitivities(
     values: np.ndarray,
     changed: np.ndarray,
     change: np.ndarray,
+    courses: Sequence[Courses] = (),
 ) -> np.ndarray:
-    """The change of all outputs per unit of some changes of the parameters.
+    """Computes the change of all outputs per unit of some changes of the parameters.
 
     Args:
         predictor: plant and log, with p parameters.
@@ -58,64 +61,81 @@ def solve_sensitivities(
         values: shape (p,), in the parameters' units.
         changed: values of the parameters after each of m changes, shape (m, p).
         change: the size of each change, shape (m,).
+        courses: of each change the courses in time that multiply what it adds, one or more; none
+            where each change counts throughout.
 
     Returns:
-        Shape (N, ny, m); NaN in the columns of changes that the equations do not describe.
+        Shape (N, ny, c), a column for each course; NaN in the columns of changes that the
+        equations do not describe.
 
     Raises:
         DivergenceError: accelerations along the trajectory are not finite.
     """
     rows = np.vstack([values, changed])
     each = [
-        _of_record(record, linear, rows[:, columns], change)
+        _of_record(record, linear, rows[:, columns], change, courses or [ALWAYS] * len(change))
         for (record, columns), linear in zip(predictor.records(), records, strict=True)
     ]
     return np.concatenate(each)
 
 
 def _of_record(
-    predictor: Predictor, linear: Linearisation, rows: np.ndarray, change: np.ndarray
-) -> np.ndarray:
+    predictor: Predictor, linear: Linearisation, rows: np.ndarray, change: np.ndarray,
+    courses: Sequence[Courses],
+) -> np.ndarray:  # fmt: skip
     """The sensitivities of one record; of columns that are zero in it nothing is computed."""
-    out = np.zeros((*predictor.log.outputs.shape, len(change)))
-    moved = np.flatnonzero((rows[1:] != rows[0]).any(axis=1))
+    is_moved = (rows[1:] != rows[0]).any(axis=1)
+    moved = np.flatnonzero(is_moved)
+    counts = np.array([len(of) for of in courses])
+    out = np.zeros((*predictor.log.outputs.shape, counts.sum()))
     if moved.size:
         rows, change = rows[[0, *(1 + moved)]], change[moved]
-        g, known = _forcing(predictor, linear, rows, change)
-        x = _respond(linear, _first(predictor, linear, rows, change), g)
-        out[..., moved] = _outputs(predictor, linear, rows, change, x)
-        out[..., moved[~known]] = np.nan
+        some = [courses[int(k)] for k in moved]
+        start, numbers = predictor.settings(rows)
+        g, known = _forcing(predictor, linear, rows, numbers, some)
+        here = predictor.log.begun
+        begun = np.array([float(course(np.array([here]))[0]) for of in some for course in of])
+        which = np.repeat(np.arange(len(moved)), counts[moved])
+        first = _first(linear, start, len(change))[which] * begun[:, None]
+        size = change[which]
+        g /= size[:, None, None]
+        first /= size[:, None]
+        y = _outputs(predictor, linear, rows[[0, *(1 + which)]], size, first, g)
+        y[~known[which]] = np.nan
+        out[..., np.repeat(is_moved, counts)] = np.moveaxis(y, 0, -1)
     return out
 
 
 def _forcing(
-    predictor: Predictor, linear: Linearisation, rows: np.ndarray, change: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """∂f/∂θ of each change, shape (L, nx, m), and whether that is all of it, shape (m,)."""
+    predictor: Predictor, linear: Linearisation, rows: np.ndarray, numbers: Numbers,
+    courses: Sequence[Courses],
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """How each change moves the rates.
+
+    Returns:
+        Means over the intervals, shape (c, L, nf), a row for each course, and whether that is all
+        that each change does, shape (m,).
+    """
     along, log, model = linear.along, predictor.log, predictor.plant.model
     felt = linear.felt[model.nv :]
     every = substeps(log.sampling_time, model.opt.timestep)
-    numbers = predictor.settings(rows)[1]
     sent = predictor.inputs(rows)(hold(log.inputs, every, log.hold))
     inputs = average_inputs(sent, along.steps, model.nu)
-    others = range(1, 1 + len(change))
+    differences = [*list_differences(numbers, 0, range(1, len(rows)))]
 
     def changes(**fields: np.ndarray) -> Iterator[Change]:
-        models = each_with_numbers(along.model, numbers, 0, others)
-        return (Change(fields, *own) for own in models)
+        return (Change(fields, entries) for entries in differences)
 
-    def with_inputs() -> Iterator[Change]:
-        for row, own in zip(others, changes(), strict=True):
-            is_moved = len(inputs) > 1 and not np.array_equal(inputs[row], inputs[0])
-            yield replace(own, fields={"ctrl": inputs[row]}) if is_moved else own
+    def on_course() -> Iterator[Change]:
+        for row, (own, of) in enumerate(zip(changes(), courses, strict=True), 1):
+            if len(inputs) > 1 and not np.array_equal(inputs[row], inputs[0]):
+                own = replace(own, fields={"ctrl": inputs[row]})
+            times = None if of is ALWAYS else np.array([course(along.time) for course in of])
+            yield replace(own, courses=times)
 
-    points = Points(along)
-    f = points.rates()[:, felt]
-    g = np.empty((len(linear.A), f.shape[1], len(change)))
-    for j, (moved, size) in enumerate(zip(points.each(with_inputs()), change, strict=True)):
-        g[..., j] = along.average((moved[:, felt] - f) / size)
+    g = np.array([*Points(along).each(on_course(), along.weighted)])[..., felt]
     if felt.all():
-        return g, np.ones(len(change), bool)
+        return g, np.ones(len(courses), bool)
     some = along.some(FEW)
     away = changes(act=some.act + SHIFT * ~felt[model.nv :])
     return g, ~_read_what_they_change(Points(some), changes(), away, felt)
@@ -140,32 +160,16 @@ def _read_what_they_change(
     ])  # fmt: skip
 
 
-def _first(
-    predictor: Predictor, linear: Linearisation, rows: np.ndarray, change: np.ndarray
-) -> np.ndarray:
-    """∂x₀/∂θ of each change, shape (nx, m)."""
-    start = predictor.settings(rows)[0]
+def _first(linear: Linearisation, start: State, n: int) -> np.ndarray:
+    """How n changes move the first state, shape (n, nx)."""
     model = linear.along.model
-    n = len(change)
     first = [np.broadcast_to(x, (n + 1, np.shape(x)[-1])) for x in
              (start.qpos, start.qvel, start.act)]  # fmt: skip
     δ = np.zeros((n, 2 * model.nv + model.na))
     for row, qpos in zip(δ[:, : model.nv], first[0][1:], strict=True):
         mujoco.mj_differentiatePos(model, row, 1.0, first[0][0], qpos)
     δ[:, model.nv :] = np.hstack([x[1:] - x[0] for x in first[1:]])
-    return (δ / change[:, None]).T[linear.felt]
-
-
-def _respond(linear: Linearisation, first: np.ndarray, g: np.ndarray) -> np.ndarray:
-    """δx at the samples, shape (N, nx, m), of velocities and activations that are forced by g."""
-    parts, forced = linear.along.intervals, linear.Γ @ g
-    x = np.empty((len(forced) // parts + 1, *first.shape))
-    x[0] = now = first
-    for k, (A, b) in enumerate(zip(linear.A, forced, strict=True)):
-        now = A @ now + b
-        if (k + 1) % parts == 0:
-            x[(k + 1) // parts] = now
-    return x
+    return δ[:, linear.felt]
 
 
 def _outputs(
@@ -173,16 +177,26 @@ def _outputs(
     linear: Linearisation,
     rows: np.ndarray,
     change: np.ndarray,
-    x: np.ndarray,
+    first: np.ndarray,
+    g: np.ndarray,
 ) -> np.ndarray:
-    """The change of what the sensors say, shape (N, ny, m)."""
+    """The change of what the sensors say, shape (m, N, ny)."""
     here = predictor.readings({field: each[None] for field, each in linear.along.states.items()})
-    δx = np.zeros((*x.shape[::2], len(linear.felt)))
-    δx[..., linear.felt] = np.moveaxis(x, 1, 2)
-    δ = np.stack([np.stack([δx[..., i] for i in of], axis=-1) for of in _indices(predictor)])
-    there = here + np.pad(np.swapaxes(δ, 1, 2), _NO_TIME) * change[:, None, None]
-    said = predictor.said(rows[1:], there) - predictor.said(rows[:1], here)
-    return np.moveaxis(said / change[:, None, None], 0, -1)
+    place = np.cumsum(linear.felt) - 1  # of an entry of the state among those that are felt
+    wanted, where = np.unique(_indices(predictor), return_inverse=True)
+    δx = respond(linear.A, linear.Γ, first, g, linear.along.intervals, place[wanted])
+    y, q, v = (δx[..., own] for own in where.reshape(3, -1))
+    nominal = predictor.said(rows[:1], here)
+    out = np.empty_like(y)
+    for k, row in enumerate(rows[1:, None]):
+        if np.shares_memory(predictor.said(row, here), here):  # its sensors are perfect
+            out[k] = y[k]
+            continue
+        there = here.copy()
+        for reading, δ in zip(there, (y, q, v), strict=False):  # the time does not change
+            reading += δ[k] * change[k]
+        out[k] = (predictor.said(row, there) - nominal)[0] / change[k]
+    return out
 
 
 def _indices(predictor: Predictor) -> list[list[int]]:

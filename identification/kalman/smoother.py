@@ -1,9 +1,12 @@
 """The most likely errors of the inputs, given a whole log: the fixed-interval smoother.
 
-    ẑ_{k|N} = ẑ_{k|k} + G_k (ẑ_{k+1|N} - ẑ_{k+1|k}),    G_k = P_{k|k} A_kᵀ P_{k+1|k}⁻¹
+    u = Wᵀ W e,    e - u = C ẑ                          W: the whitening filter
+    r_k = (A_k - A_k K_k C)ᵀ r_{k+1} + Cᵀ S_k⁻¹ ε_k
+    ŵ_{k+1} = a ŵ_k + q_k r_{k+1},    ŵ_0 = ρ² r_0      of r the part that belongs to w
 
-z = (x, w) is the state of `noise_model`: that of the plant and the error of the inputs (Rauch, Tung
-and Striebel 1965).
+z = (x, w) is the state of `noise_model`: that of the plant and the error of the inputs (Durbin and
+Koopman 2012, section 4.6). Nothing but vectors is propagated: the covariances of the filter and of
+the smoother are not needed.
 """
 
 from __future__ import annotations
@@ -12,6 +15,7 @@ import numpy as np
 
 from identification.kalman.linear import LinearPlant
 from identification.kalman.noise_model import Noise, augment
+from identification.kalman.recursion import filter_gains, filter_innovations, transpose_filter
 
 
 def smooth(
@@ -31,22 +35,13 @@ def smooth(
     n, nu = len(e), plant.B.shape[2]
     if noise.ratio == 0:
         return np.zeros((n, nu)), np.zeros_like(e)
-    A, C, P, Q = augment(plant, noise, sampling_time)
-    z = np.zeros(len(P))
-    seen, later = [], []  # (z, P) given the samples up to k, and given those up to k - 1
-    for k in range(n):
-        later.append((z, P))
-        PC = P @ C.T
-        K = np.linalg.solve(C @ PC + np.eye(len(C)), PC.T).T
-        z, P = z + K @ (e[k] - C @ z), P - K @ PC.T
-        seen.append((z, P))
-        if k + 1 < n:
-            z, P = A[k] @ z, A[k] @ P @ A[k].T + Q[k]
-            P = (P + P.T) / 2
-    out = np.empty((n, len(z)))
-    out[-1] = seen[-1][0]
-    for k in range(n - 2, -1, -1):
-        (z, P), (ahead, spread) = seen[k], later[k + 1]
-        gain = P @ A[k].T @ np.linalg.pinv(spread, rcond=1e-12, hermitian=True)
-        out[k] = z + gain @ (out[k + 1] - ahead)
-    return out[:, -nu:], out @ C.T
+    A, C, P, share = augment(plant, noise, sampling_time)
+    K, L, _ = filter_gains(A, C, P, share)
+    E = filter_innovations(A, C, K, L, e[..., None])[..., 0]
+    u, r = transpose_filter(A, C, K, L, E)
+    fresh = noise.ratio**2 * np.concatenate([[1.0], share])[:, None] * r[:, -nu:]
+    w = np.empty((n, nu))
+    w[0] = now = fresh[0]
+    for k, a in enumerate(A[:, -1, -1]):
+        w[k + 1] = now = a * now + fresh[k + 1]
+    return w, e - u

@@ -17,6 +17,7 @@ import numpy as np
 from identification.model.numbers import with_numbers
 from identification.model.predictor import Predictor
 from identification.model.rollout import hold, rollout, substeps, without_sensors
+from identification.native.forward import Intervals
 
 # Intervals of a sample, where the step of the simulation allows as many: a state of the rate
 # 100 1/s that is sampled at 100 Hz changes by half over one of them.
@@ -68,6 +69,23 @@ class Trajectory:
         length = self.timestep * np.diff(self.steps)
         total = np.add.reduceat(values * length.reshape(each), self.begins)
         return np.asarray(total / self.duration.reshape(each))
+
+    @property
+    def weighted(self) -> Intervals:
+        """The intervals, with the share of each point in its own."""
+        length = self.timestep * np.diff(self.steps)
+        places = np.searchsorted(self.begins, np.arange(len(length)), side="right") - 1
+        return Intervals(self.begins, length / self.duration[places])
+
+    def after(self, sample: int) -> Trajectory:
+        """The same from one of its samples on."""
+        begins = self.begins[self.intervals * sample :]
+        first = int(begins[0]) if len(begins) else len(self.time)
+        points = {
+            f: getattr(self, f)[first:] for f in ("qpos", "qvel", "act", "inputs", "time", "steps")
+        }
+        states = {field: x[sample:] for field, x in self.states.items()}
+        return replace(self, begins=begins - first, states=states, **points)
 
     def some(self, most: int) -> Trajectory:
         """The same at no more than `most` of its points, which stand for no intervals."""

@@ -1,10 +1,11 @@
 """States at which a model, and changes of it, are evaluated.
 
-What moves no position shares the positions of the states (`identification.native.forward`).
+A change shares with the states what it leaves as it was (`identification.native.forward`).
 """
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
@@ -15,8 +16,10 @@ import numpy as np
 
 from identification.engine import quiet, untimed
 from identification.errors import DivergenceError
-from identification.model.rollout import threads
-from identification.native.forward import STATE, Case, evaluate
+from identification.model.numbers import with_entries
+from identification.model.paths import Slot
+from identification.model.rollout import UNDERIVED, threads
+from identification.native.forward import STATE, Base, Case, Intervals, evaluate
 
 RATES = ("qacc", "act_dot")
 TOGETHER = 32  # changes that share the positions of a point; more would save little more
@@ -57,13 +60,19 @@ class Change:
 
     Attributes:
         fields: other values of `qpos`, `qvel`, `act` or `ctrl`, one row or a row for each point.
-        model: with other numbers; that of the states when None.
-        is_derived: whether those numbers matter to what follows from positions alone.
+        numbers: entries of the model that differ, one each, and their values.
+        courses: factors of its increments at the points, shape (k, M): each gives a result of its
+            own; one that is 1 throughout when None.
     """
 
     fields: Mapping[str, np.ndarray] = field(default_factory=dict)
-    model: mujoco.MjModel | None = None
-    is_derived: bool = True
+    numbers: Sequence[tuple[Slot, float]] = ()
+    courses: np.ndarray | None = None
+
+    @property
+    def is_derived(self) -> bool:
+        """Whether MuJoCo derives other numbers from those that differ (see `UNDERIVED`)."""
+        return any(slot.field not in UNDERIVED for slot, _ in self.numbers)
 
 
 class Points:
@@ -76,16 +85,22 @@ class Points:
 
     def __init__(self, at: AtPoints, results: Sequence[str] = RATES) -> None:
         parts = (at.time[:, None], at.qpos, at.qvel, at.act, at.inputs)
-        self._base = Case(at.model, np.ascontiguousarray(np.concatenate(parts, axis=1), float))
+        states = np.ascontiguousarray(np.concatenate(parts, axis=1), float)
+        # Numbers are written into copies, of which each thread has one.
+        models = tuple(copy.copy(at.model) for _ in range(threads()))
+        self._base = Base(models, states)
         ends = np.cumsum([part.shape[1] for part in parts])
         self._places = {f: slice(*ends[k : k + 2]) for k, f in enumerate(STATE[1:])}
         self._results = results
 
     def rates(self, **changed: np.ndarray) -> np.ndarray:
-        """The results, by default accelerations and rates of activations, shape (M, nv + na).
+        """Returns the results, by default accelerations and rates of activations.
 
         Args:
             changed: values of `qpos`, `qvel`, `act` or `ctrl` that differ from the states' own.
+
+        Returns:
+            Shape (M, nv + na).
 
         Raises:
             DivergenceError: they are not finite.
@@ -93,49 +108,54 @@ class Points:
         (one,) = self.each([Change(changed)])
         return one
 
-    def each(self, changes: Iterable[Change]) -> Iterator[np.ndarray]:
-        """The results of changes, in their order, each of shape (M, nv + na).
+    def each(
+        self, changes: Iterable[Change], intervals: Intervals | None = None
+    ) -> Iterator[np.ndarray]:
+        """Yields the results of changes, in their order.
+
+        Args:
+            changes: of the model and its states.
+            intervals: L intervals, where averages of the increments over the unchanged model are
+                asked for, and not the results themselves.
+
+        Yields:
+            Shape (M, nv + na), or (L, nv + na), of each course of a change one.
 
         Raises:
             DivergenceError: they are not finite.
         """
         changes = iter(changes)
-        together = max(1, min(TOGETHER, MEMORY // int(self._base.model.nbuffer)))
+        together = max(1, min(TOGETHER, MEMORY // int(self._base.models[0].nbuffer)))
         while some := list(islice(changes, together)):
-            yield from self._together(some)
-
-    def _together(self, changes: Sequence[Change]) -> list[np.ndarray]:
-        """The results of a few changes at once."""
-        own = np.array([self._moves_positions(change) for change in changes])
-        cases = [self._case(change) for change in changes]
-        out: list[np.ndarray] = [np.empty(0)] * len(cases)
-        for shares in (True, False):
-            places = np.flatnonzero(own != shares)
-            if not places.size:
-                continue
             with quiet(), untimed():
-                found = evaluate(
-                    self._base, [cases[k] for k in places], self._results, shares=shares,
-                    threads=threads(),
-                )  # fmt: skip
+                cases = [self._case(change) for change in some]
+                found = evaluate(self._base, cases, self._results, intervals)
             if not np.isfinite(found).all():
                 raise DivergenceError(
                     "the accelerations along the trajectory are not finite; use values nearer to"
                     " the nominal ones"
                 )
-            for k, one in zip(places, found, strict=True):
-                out[k] = one
-        return out
-
-    def _moves_positions(self, change: Change) -> bool:
-        """Whether a change needs its own positions; sensors of positions are read with them."""
-        others = change.model is not None and change.is_derived
-        return others or "qpos" in change.fields or not {*self._results} <= {*RATES}
+            yield from found
 
     def _case(self, change: Change) -> Case:
-        states = self._base.states
+        states = None
         if change.fields:
-            states = states.copy()
+            states = self._base.states.copy()
             for name, value in change.fields.items():
                 states[:, self._places[name]] = value
-        return Case(change.model or self._base.model, states)
+        # Sensors of positions are read with the positions.
+        if change.is_derived or "qpos" in change.fields or not {*self._results} <= {*RATES}:
+            shares = "nothing"
+        else:
+            shares = "positions" if "qvel" in change.fields else "velocities"
+        if not change.is_derived:
+            numbers = [_entry(*number) for number in change.numbers]
+            return Case(states, numbers, None, shares, change.courses)
+        other = with_entries(self._base.models[0], change.numbers)
+        return Case(states, (), other, shares, change.courses)
+
+
+def _entry(slot: Slot, value: float) -> tuple[str, tuple[int, ...], float]:
+    """An entry of a model as `Case` takes it."""
+    (row,) = slot.rows
+    return slot.field, (row,) if slot.column is None else (row, slot.column), value

@@ -8,48 +8,54 @@ from collections.abc import Iterator, Sequence
 import mujoco
 import numpy as np
 
+from identification.model.paths import Slot
 from identification.model.protocol import Numbers
 from identification.model.rollout import UNDERIVED
 
+Entries = Sequence[tuple[Slot, float]]
+
 
 def with_numbers(model: mujoco.MjModel, numbers: Numbers, row: int) -> mujoco.MjModel:
-    """A copy of a model with the numbers of one value set.
+    """Returns a copy of a model with the numbers of one value set.
 
     Args:
         model: the model.
         numbers: slots and their values, one for each value set.
         row: which value set.
     """
-    return _written(model, numbers, range(len(numbers)), row)[0]
+    return with_entries(model, [(slot, float(values[row])) for slot, values in numbers])
 
 
-def each_with_numbers(
-    model: mujoco.MjModel, numbers: Numbers, like: int, rows: Sequence[int]
-) -> Iterator[tuple[mujoco.MjModel, bool]]:
-    """Copies of a model that has the numbers of one value set, each with those of another.
+def with_entries(model: mujoco.MjModel, entries: Entries) -> mujoco.MjModel:
+    """Returns a copy of a model with other numbers, and with what MuJoCo derives from them.
 
     Args:
         model: the model.
+        entries: slots, each with its value.
+    """
+    out = copy.copy(model)
+    for slot, value in entries:
+        getattr(out, slot.field)[slot.index()] = value
+    if any(slot.field not in UNDERIVED for slot, _ in entries):
+        mujoco.mj_setConst(out, mujoco.MjData(out))
+    return out
+
+
+def list_differences(numbers: Numbers, like: int, rows: Sequence[int]) -> Iterator[Entries]:
+    """Yields the entries in which value sets differ from one of them.
+
+    Args:
         numbers: slots and their values, one for each value set.
-        like: the value set that the model has already; only what differs from it is written.
+        like: the value set that they are compared with.
         rows: the value sets.
 
     Yields:
-        A copy, and whether a number differs from which MuJoCo derives others (see `UNDERIVED`).
+        Of each value set the entries that differ; a slot of several rows gives one entry each.
     """
     every = np.array([values for _, values in numbers]).reshape(len(numbers), -1)
     for row in rows:
-        yield _written(model, numbers, np.flatnonzero(every[:, row] != every[:, like]), row)
-
-
-def _written(
-    model: mujoco.MjModel, numbers: Numbers, places: Sequence[int] | np.ndarray, row: int
-) -> tuple[mujoco.MjModel, bool]:
-    out, is_derived = copy.copy(model), False
-    for place in places:
-        slot, values = numbers[place]
-        getattr(out, slot.field)[slot.index()] = values[row]
-        is_derived |= slot.field not in UNDERIVED
-    if is_derived:
-        mujoco.mj_setConst(out, mujoco.MjData(out))
-    return out, is_derived
+        yield [
+            (Slot(numbers[k][0].field, (i,), numbers[k][0].column), float(every[k, row]))
+            for k in np.flatnonzero(every[:, row] != every[:, like]).tolist()
+            for i in numbers[k][0].rows
+        ]

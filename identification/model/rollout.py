@@ -10,7 +10,6 @@ one `Batch.rollout`, on native threads.
 from __future__ import annotations
 
 import copy
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -21,6 +20,7 @@ from mujoco.batch import Batch, SimulationError
 from identification.engine import quiet, untimed
 from identification.errors import DivergenceError, InputError
 from identification.model.paths import Slot
+from identification.pool import threads
 
 # MuJoCo derives no other number from these entries: after writing them, no mj_setConst is needed.
 # Nor does anything depend on them that follows from positions alone.
@@ -49,14 +49,6 @@ class State:
     qpos: np.ndarray
     qvel: np.ndarray
     act: np.ndarray
-
-
-def threads() -> int:
-    """The processors that this process may use, or fewer if `INCA_MJ_THREADS` says so."""
-    own = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else ()
-    said = os.environ.get("INCA_MJ_THREADS", "")
-    most = len(own) or os.cpu_count() or 1
-    return min(most, int(said)) if said.isdigit() and int(said) else most
 
 
 def substeps(sampling_time: float, timestep: float) -> int:

@@ -28,7 +28,7 @@ from typing import Any
 
 from numba import njit
 
-from identification.effects.effect import Effect, Shape, Size
+from identification.effects.effect import Effect, Onset, Shape, Size
 from inca_mj.effects.hooks import DRIVES_EACH, ONE_DRIVE
 from inca_mj.robot.geometry import DRIVES
 from inca_mj.robot.spread import AXES
@@ -171,6 +171,7 @@ def _jump(rule: _Rule) -> Effect:
         places=ONE_DRIVE,
         phrase=f"{rule.phrase} jumps",
         reference="thesis Table 3.2",
+        onset=Onset("t_s", LASTS),
         hooks={rule.hook: jump},
     )
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from identification.effects.effect import Effect
-from inca_mj.effects.hooks import Drive, Platform
+from inca_mj.effects.hooks import DRIVE, PLATFORM, Drive, Platform
 from inca_mj.effects.layout import Layout
 from inca_mj.effects.values import drive_values, present
 from inca_mj.kinematics.rotations import rotation
@@ -73,7 +73,7 @@ class Change:
                 s = _drive(time=0.0, strain=strain[k], strain_rate=0.0, omega=0.0, x=x,
                            d=self.d[k], d_0=self.d[k] / (1 + strain[k]),
                            R=R[k], lambda_=lambda_[k], b=b[k])  # fmt: skip
-                out[k] += effect.hooks["tension"](s, tuple(p[:, k]))
+                out[k] += _evaluate(effect, "tension", s, p[:, k])
         return out
 
 
@@ -101,15 +101,15 @@ def change_at_rest(
             s = _drive(rx=r[k, 0], ry=r[k, 1], rz=r[k, 2], d=float(np.linalg.norm(r[k])),
                        phi=0.0, omega=0.0, x=0.0, R=radius[k])  # fmt: skip
             if "path" in effect.hooks:
-                way[k] += effect.hooks["path"](s, tuple(p[:, k]))
+                way[k] += _evaluate(effect, "path", s, p[:, k])
             if "force" in effect.hooks:
-                F = np.array(effect.hooks["force"](s, tuple(p[:, k])))
+                F = np.array(_evaluate(effect, "force", s, p[:, k]))
                 load -= np.concatenate([F, np.cross(geometry.B[k] @ R.T, F)])
             if "radius" in effect.hooks:
-                wider[k] += effect.hooks["radius"](s, tuple(p[:, k]))
+                wider[k] += _evaluate(effect, "radius", s, p[:, k])
         if "wrench" in effect.hooks:
             still = Platform(0.0, *pose[:3], *np.zeros(6), *R.ravel())
-            load -= np.array(effect.hooks["wrench"](still, tuple(p[:, 0])))
+            load -= np.array(_evaluate(effect, "wrench", still, p[:, 0]))
     d = np.linalg.norm(r, axis=1) + way[:, 0]
     at_rest = layout.settled
     return Change(
@@ -121,6 +121,20 @@ def change_at_rest(
         values=values,
         stiffening=tuple(e for e in there if "tension" in e.hooks) if at_rest else (),
     )
+
+
+def _evaluate(effect: Effect, hook: str, s: Drive | Platform, p: np.ndarray) -> Any:
+    """Returns what a hook of an effect adds; NaN where its law has no value.
+
+    The law is called a few times for each start, as a function of Python: to compile it by itself
+    would take a process a thousand times as long.
+    """
+    law: Any = effect.hooks[hook]
+    try:
+        return law.py_func(s, tuple(p.tolist()))
+    except (ValueError, ZeroDivisionError, OverflowError):  # compiled laws give NaN or infinity
+        element = PLATFORM if hook == "wrench" else DRIVE
+        return np.nan * np.asarray(element.hook(hook).zero)
 
 
 def own_states(values: Mapping[str, float], strain: np.ndarray, layout: Layout) -> np.ndarray:

@@ -55,3 +55,16 @@ def test_it_is_linear_and_treats_columns_alone():
     both = filter_(np.stack([a, 2 * a - 3 * b], axis=2))
     np.testing.assert_allclose(both[..., 0], filter_(a), atol=1e-12)
     np.testing.assert_allclose(both[..., 1], 2 * filter_(a) - 3 * filter_(b), atol=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.5])
+def test_the_transposed_filter_is_the_transpose(ratio):
+    rng = np.random.default_rng(8)
+    filter_ = build_whitener(linear_plant(rng), Noise(ratio, 0.1), STEP)
+    every = np.eye(80).reshape(40, 2, 80)
+    dense = filter_(every).reshape(80, 80)
+    E = rng.standard_normal((40, 2))
+    found = filter_.transposed(E).ravel()
+    np.testing.assert_allclose(found, dense.T @ E.ravel(), atol=1e-9)
+    part = filter_.transposed(E[:15]).ravel()
+    np.testing.assert_allclose(part, dense[:30, :30].T @ E[:15].ravel(), atol=1e-9)

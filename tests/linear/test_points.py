@@ -14,9 +14,9 @@ from identification.errors import DivergenceError
 from identification.linear import points as of_points
 from identification.linear.operating_points import OperatingPoints
 from identification.linear.points import Change, Points
-from identification.model.numbers import each_with_numbers, with_numbers
+from identification.model.numbers import list_differences, with_entries, with_numbers
 from identification.model.rollout import without_sensors
-from identification.native.forward import evaluate
+from identification.native.forward import Intervals, evaluate
 
 LIMITED = """<mujoco><option timestep="0.001"/><worldbody><body>
   <joint name="hinge" axis="0 1 0" range="-0.5 0.5" limited="true" frictionloss="0.05"/>
@@ -48,7 +48,7 @@ def drawn(model, qpos, act, count=7, seed=0):
 
 def one_by_one(at, change):
     """The slow obvious way: a new mjData for each point."""
-    model = change.model or at.model
+    model = with_entries(at.model, change.numbers)
     own = {f: change.fields.get(f, getattr(at, there)) for f, there in FIELDS.items()}
     rows = []
     for k, time in enumerate(at.time):
@@ -76,14 +76,42 @@ def test_the_twin_with_parameters_effects_states_and_inputs_moved(threads):
     values[1:] += np.diag([1e-3 * v or 1e-3 for v in values[0]])
     numbers = robot.settings(names, values)[1]
     rows = range(1, 1 + len(names))
-    changes = [Change({}, *own) for own in each_with_numbers(at.model, numbers, 0, rows)]
+    changes = [Change({}, entries) for entries in list_differences(numbers, 0, rows)]
     assert {change.is_derived for change in changes} == {False, True}
     changes += [Change({f: 1.001 * getattr(at, there)}) for f, there in FIELDS.items()]
-    changes += [Change(), Change({"ctrl": 0.9 * at.inputs}, changes[0].model)]
+    changes += [Change(), Change({"ctrl": 0.9 * at.inputs}, changes[0].numbers)]
     with mock.patch.object(of_points, "threads", return_value=threads):
         together = list(Points(at).each(changes))
     for change, rates in zip(changes, together, strict=True):
         np.testing.assert_array_equal(rates, one_by_one(at, change))
+
+
+def test_increments_are_averaged_over_intervals_with_each_course():
+    robot, at = twin()
+    values = np.array([[robot.parameters["lambda"].value]] * 2) * [[1.0], [1.001]]
+    (entries,) = list_differences(robot.settings(("lambda",), values)[1], 0, [1])
+    begins, weight = np.array([0, 2, 6]), np.array([0.3, 0.7, 0.1, 0.2, 0.3, 0.4, 1.0])
+    courses = np.random.default_rng(1).uniform(size=(3, 7))
+    changes = [Change({}, entries, courses), Change({"qpos": at.qpos + 1e-5}, entries)]
+    unmoved = one_by_one(at, Change())
+    with mock.patch.object(of_points, "threads", return_value=3):
+        *each, whole = Points(at).each(changes, Intervals(begins, weight))
+    for course, found in zip(courses, each, strict=True):
+        moved = (one_by_one(at, changes[0]) - unmoved) * (course * weight)[:, None]
+        np.testing.assert_allclose(found, np.add.reduceat(moved, begins), rtol=1e-9, atol=1e-9)
+    moved = (one_by_one(at, changes[1]) - unmoved) * weight[:, None]
+    np.testing.assert_allclose(whole, np.add.reduceat(moved, begins), rtol=1e-9, atol=1e-9)
+
+
+def test_a_model_is_as_it_was_after_its_numbers_were_exchanged():
+    robot, at = twin()
+    values = np.array([[robot.parameters["lambda"].value]] * 2) * [[1.0], [1.1]]
+    (entries,) = list_differences(robot.settings(("lambda",), values)[1], 0, [1])
+    points = Points(at)
+    before = points.rates()
+    (moved,) = points.each([Change({}, entries)])
+    assert not np.array_equal(moved, before)
+    np.testing.assert_array_equal(points.rates(), before)
 
 
 @pytest.mark.parametrize("xml", [PENDULUM, LIMITED], ids=["free", "constrained"])
@@ -115,16 +143,15 @@ def test_large_models_are_taken_a_few_at_a_time():
     np.testing.assert_array_equal(few, want)
 
 
-def test_copies_have_the_numbers_of_their_value_set():
+def test_differences_written_into_a_copy_give_the_model_of_a_value_set():
     robot, _ = twin()
     own, names = robot.parameters.values(), ("m", "lambda", "b_c")
     values = np.array([own[n] for n in names]) * [[1.0, 1, 1], [1.1, 1, 1], [1, 1, 1.2]]
     numbers = robot.settings(names, values)[1]
     first = with_numbers(robot.model, numbers, 0)
-    copies = [*each_with_numbers(first, numbers, 0, (1, 2))]
-    assert [is_derived for _, is_derived in copies] == [True, False]
-    for row, (copy, _) in zip((1, 2), copies, strict=True):
-        whole = with_numbers(robot.model, numbers, row)
+    for row, entries in zip((1, 2), list_differences(numbers, 0, (1, 2)), strict=True):
+        copy, whole = with_entries(first, entries), with_numbers(robot.model, numbers, row)
+        assert Change({}, entries).is_derived == (row == 1)
         for field in ("body_mass", "body_inertia", "dof_invweight0", "actuator_user", "qpos0"):
             np.testing.assert_array_equal(getattr(copy, field), getattr(whole, field))
 

@@ -11,31 +11,42 @@ model,
 
     p_j = P(χ²_m > η̂ᵀ S⊥ᵀS⊥ η̂/σ²)          halved where physics admits one sign only,
 
-and is checked by a Wald test that needs no noise model: it takes the scatter of the scores over
-blocks of the log, with the candidate in the model (White 1980):
+and is checked by a test that needs no noise model (`blocks`).
 
-    W = η̂ᵀ H (Σ_b g_b g_bᵀ)⁻¹ H η̂,   g_b = Σ_{k in b} S⊥ᵀ(E⊥ - S⊥ η̂),   H = S⊥ᵀS⊥
-    W (B - m)/(B m) ~ F(m, B - m)        B blocks, m sizes
+All columns are whitened by the nominal noise and by the largest one, which mostly are the same. The
+covariance V of another, smaller ρ is less, so that H(ρ) is no less than that of the largest, and
+
+    LR_j under ρ  ≤  that with a fall of  bᵀ H⁻¹ b         b of ρ, H of the largest ρ
+
+Only where this bound comes near the best noise yet, columns are whitened by ρ too.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.stats import chi2
-from scipy.stats import f as f_distribution
 
 from identification.blas import one_blas_thread
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.scoring.blocks import (
+    compute_block_p_values,
+    is_one_sided,
+    is_refused,
+)
+from identification.discovery.scoring.projection import Products, Projection
 from identification.discovery.scoring.sensitivities import Sensitivity
 from identification.effects.effect import Candidate
 from identification.kalman.noise_fit import NoiseLevel
-from identification.kalman.noise_model import Noise, build_whitener
 from identification.kalman.refit import Refit
+from identification.pool import run_parts, split
 
 SHORTEST = 10  # samples of a block at least
+TOGETHER, MEMORY = 96, 2**24  # columns that are projected at once, and bytes of them, at most
+NEAR = 1e-6  # of twice a log likelihood: far more than rounding, and of no account
 SMALLER = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # ρ that are tried, in units of the nominal model's
 
 
@@ -74,111 +85,159 @@ def score(
         sensitivities: of the candidates, on the fitted samples.
         options: the number of blocks.
     """
-    point, noise = fit.point, fit.level.noise
-    stacked = np.concatenate([point.e[..., None], point.J, *(s.S for s in sensitivities)], axis=2)
-    with one_blas_thread():
-        seen = [
-            _Projected(fit, noise.scaled(share), stacked, sensitivities)
-            for share in (SMALLER if noise.ratio else (1.0,))
-        ]
-        nominal = max(p.log_likelihood(p.rest) for p in seen)
-        out = [_score(j, s, seen, nominal, options) for j, s in enumerate(sensitivities)]
-    return tuple(sorted(out, key=lambda s: -s.gain))
+    blocks = max(1, min(options.score_blocks, len(fit.point.e) // SHORTEST))
+    known = _known(fit, blocks)
+    new = [s for s in sensitivities if id(s) not in known]
+    if new:
+        with one_blas_thread():
+            found = _scores(fit, new, blocks)
+        known |= {id(s): (s, one) for s, one in zip(new, found, strict=True)}
+    return tuple(sorted((known[id(s)][1] for s in sensitivities), key=lambda s: -s.gain))
 
 
-class _Projected:
-    """Residual and sensitivities under one noise, with the free parameters projected out."""
-
-    def __init__(
-        self, fit: Refit, noise: Noise, stacked: np.ndarray, each: Sequence[Sensitivity]
-    ) -> None:
-        point = fit.point
-        filter_ = build_whitener(point.linear, noise, point.log.sampling_time)
-        W = filter_(stacked)
-        p = point.J.shape[2]
-        self.noise, self.samples = noise, point.e.size
-        self.log_determinant = filter_.log_determinant
-        rest = np.delete(W, np.s_[1 : 1 + p], axis=2)
-        flat = rest.reshape(point.e.size, -1)
-        self.raw = np.einsum("ij,ij->j", flat, flat)[1:]
-        # The priors enter as further measurements: rows below the samples, in units of σ.
-        ridge = fit.prior * fit.level.sigma
-        F = np.vstack([W[..., 1 : 1 + p].reshape(-1, p), np.diag(ridge)])
-        below = np.zeros((p, flat.shape[1]))
-        below[:, 0] = ridge * (fit.mean - point.q)
-        flat = np.vstack([flat, below])
-        C = np.linalg.lstsq(F.T @ F, F.T @ flat, rcond=1e-14)[0]
-        flat = flat - F @ C
-        self.gram = flat.T @ flat
-        self.rest = float(self.gram[0, 0])
-        self.perpendicular = flat[: point.e.size].reshape(*rest.shape)
-        counts = [s.S.shape[2] for s in each]
-        ends = 1 + np.cumsum(counts)
-        self.slices = [slice(e - m, e) for m, e in zip(counts, ends, strict=True)]
-
-    def log_likelihood(self, sum_of_squares: float) -> float:
-        n = self.samples
-        return -0.5 * (n * np.log(sum_of_squares / n) + self.log_determinant)
-
-    def solve(self, j: int, signs: Sequence[int]) -> tuple[np.ndarray, np.ndarray, float]:
-        """η̂, its Gram matrix, and the sum of squares with the candidate."""
-        s = self.slices[j]
-        H, b = self.gram[s, s], self.gram[s, 0]
-        size = np.linalg.lstsq(H, b, rcond=1e-12)[0]
-        if len(signs) == 1 and signs[0] * size[0] < 0:
-            return size, H, self.rest  # physics does not admit the sign
-        return size, H, max(self.rest - float(b @ size), 1e-12 * self.rest)
+@lru_cache(maxsize=1)
+def _known(fit: Refit, blocks: int) -> dict[int, tuple[Sensitivity, Score]]:
+    """Scores on the last fit, with what they are of: a score does not depend on the others."""
+    del fit, blocks
+    return {}
 
 
-def _score(
-    j: int,
-    sensitivity: Sensitivity,
-    seen: Sequence[_Projected],
-    nominal: float,
-    options: DiscoveryOptions,
-) -> Score:
-    signs = [s.sign for s in sensitivity.candidate.effect.sizes]
-    solved = [(p, *p.solve(j, signs)) for p in seen]
-    best = max(solved, key=lambda s: s[0].log_likelihood(s[3]))
-    with_it, size, H, squares = best
-    sigma = np.sqrt(squares / with_it.samples)
-    gain = 2 * (with_it.log_likelihood(squares) - nominal)
-    null = max(solved, key=lambda s: s[0].log_likelihood(s[0].rest))
-    m = len(signs)
-    statistic = (null[0].rest - null[3]) / (null[0].rest / null[0].samples)
-    one_sided = m == 1 and signs[0] != 0
-    s = null[0].slices[j]
-    e, S = with_it.perpendicular[..., 0], with_it.perpendicular[..., s]
-    own = np.trace(null[2])
-    return Score(
-        candidate=sensitivity.candidate,
-        size=size,
-        std=sigma * np.sqrt(np.diag(np.linalg.pinv(H, rcond=1e-12, hermitian=True))),
-        gain=float(gain),
-        p_value=float(chi2.sf(statistic, m)) * (0.5 if one_sided else 1.0),
-        block_p_value=_by_blocks(e, S, size, H, signs, options.score_blocks),
-        identifiable=float(own / max(null[0].raw[s.start - 1 : s.stop - 1].sum(), 1e-300)),
-        level=NoiseLevel(with_it.noise, float(sigma), with_it.log_likelihood(squares)),
-    )
+def _scores(fit: Refit, sensitivities: Sequence[Sensitivity], blocks: int) -> list[Score]:
+    """Scores of candidates, in their order."""
+    noise, samples = fit.level.noise, len(fit.point.e)
+    starts = np.linspace(0, samples, blocks, endpoint=False).astype(int)
+    shares = SMALLER if noise.ratio else (1.0,)
+    each = run_parts(lambda share: Projection(fit, noise.scaled(share)), shares)
+    scorer = _Scorer(each, starts)
+    places = [some for m in _numbers(sensitivities) for some in _groups(sensitivities, m)]
+    found = run_parts(lambda some: scorer.scores([sensitivities[j] for j in some]), places)
+    order = [j for some in places for j in some]
+    out = dict(zip(order, (s for scores in found for s in scores), strict=True))
+    return [out[j] for j in sorted(out)]
 
 
-def _by_blocks(
-    e: np.ndarray,
-    S: np.ndarray,
-    size: np.ndarray,
-    H: np.ndarray,
-    signs: Sequence[int],
-    most: int,
-) -> float:
-    """p-value of the Wald test by `most` blocks, or by fewer where they would be too short."""
-    m = S.shape[2]
-    if m == 1 and signs[0] * size[0] < 0:
-        return 1.0
-    blocks = min(most, len(e) // SHORTEST)
-    starts = np.linspace(0, len(e), blocks, endpoint=False).astype(int)
-    scores = np.einsum("nip,ni->np", S, e - S @ size)
-    g = np.add.reduceat(scores, starts, axis=0)
-    moved = H @ size
-    W = float(moved @ np.linalg.pinv(g.T @ g, rcond=1e-12, hermitian=True) @ moved)
-    p = float(f_distribution.sf(W * (blocks - m) / (blocks * m), m, blocks - m))
-    return p / 2 if m == 1 and signs[0] != 0 else p
+def _numbers(sensitivities: Sequence[Sensitivity]) -> list[int]:
+    """How many sizes candidates have."""
+    return sorted({s.S.shape[2] for s in sensitivities})
+
+
+def _groups(sensitivities: Sequence[Sensitivity], m: int) -> list[list[int]]:
+    """Places of candidates with m sizes, as many at a time as are projected at once."""
+    places = [j for j, s in enumerate(sensitivities) if s.S.shape[2] == m]
+    most = min(TOGETHER // m, MEMORY // max(1, sensitivities[0].S[..., 0].nbytes * m))
+    return [places[some] for some in split(len(places), max(1, most))]
+
+
+@dataclass
+class _Best:
+    """What is known of J candidates under the likeliest noise that was tried for each.
+
+    Attributes:
+        level: index of that noise, shape (J,).
+        likely: log likelihood with the candidate, shape (J,).
+        squares: the sum of squares, shape (J,).
+        size: η̂, shape (J, m).
+        products: under that noise.
+    """
+
+    level: np.ndarray
+    likely: np.ndarray
+    squares: np.ndarray
+    size: np.ndarray
+    products: Products
+
+    def improve(self, places: np.ndarray, other: _Best) -> None:
+        """Take over what another noise has found for the candidates at some places."""
+        better = other.likely > self.likely[places]
+        better |= (other.likely == self.likely[places]) & (other.level < self.level[places])
+        to, took = places[better], np.flatnonzero(better)
+        for name in ("level", "likely", "squares", "size"):
+            getattr(self, name)[to] = getattr(other, name)[took]
+        for name, axis in (("H", 0), ("G", 1), ("a", 1)):
+            mine, its = getattr(self.products, name), getattr(other.products, name)
+            np.moveaxis(mine, axis, 0)[to] = np.moveaxis(its, axis, 0)[took]
+
+
+class _Scorer:
+    """Scores of candidates that have the same number of sizes."""
+
+    def __init__(self, levels: Sequence[Projection], starts: np.ndarray) -> None:
+        self.levels, self.starts = levels, starts
+        self.without = np.array([float(p.log_likelihood(np.array(p.rest))) for p in levels])
+        self.null = int(self.without.argmax())
+        self.largest = int(np.argmax([p.noise.ratio for p in levels]))
+
+    def scores(self, some: Sequence[Sensitivity]) -> list[Score]:
+        """Scores of candidates, in their order."""
+        S = np.stack([s.S for s in some], axis=2)
+        signs = np.array([[size.sign for size in s.candidate.effect.sizes] for s in some])
+        null = self._try(self.null, S, signs)
+        first = null if self.largest == self.null else self._try(self.largest, S, signs)
+        bound = self._bound(S, first.products)
+        p_value, identifiable = self._under_null(null, signs)
+        best, every = null, np.arange(len(some))
+        best.improve(every, first)
+        for k in range(len(self.levels)):
+            near = every[2 * (bound[k] - best.likely) > -NEAR]
+            if k not in (self.null, self.largest) and near.size:
+                best.improve(near, self._try(k, S[:, :, near], signs[near]))
+        return self._made(some, best, signs, p_value, identifiable)
+
+    def _try(self, k: int, S: np.ndarray, signs: np.ndarray) -> _Best:
+        """What candidates explain under a noise."""
+        level = self.levels[k]
+        products = level.products(S, self.starts)
+        inverse = np.linalg.pinv(products.H, rcond=1e-12, hermitian=True)
+        size = np.einsum("jpq,jq->jp", inverse, products.b)
+        fall = np.einsum("jp,jp->j", products.b, size)
+        fall[is_refused(size, signs)] = 0.0
+        squares = np.maximum(level.rest - fall, 1e-12 * level.rest)
+        return _Best(np.full(len(size), k), level.log_likelihood(squares), squares, size, products)
+
+    def _bound(self, S: np.ndarray, largest: Products) -> np.ndarray:
+        """Bounds of the log likelihood with each candidate under each noise, shape (levels, J).
+
+        Args:
+            S: the sensitivities.
+            largest: the products under the largest noise.
+        """
+        N, ny, J, m = S.shape
+        duals = np.stack([p.dual.ravel() for p in self.levels])
+        b = (duals @ S.reshape(N * ny, J * m)).reshape(-1, J, m)
+        inverse = np.linalg.pinv(largest.H, rcond=1e-12, hermitian=True)
+        fall = np.einsum("kjp,jpq,kjq->kj", b, inverse, b)
+        # Where H says nothing of a direction, nothing bounds what another noise makes of it.
+        is_open = np.linalg.matrix_rank(largest.H, rtol=1e-12, hermitian=True) < m
+        fall[is_open & np.any(b != 0, axis=2)] = np.inf
+        rest = np.array([p.rest for p in self.levels])[:, None]
+        squares = np.maximum(rest - fall, 1e-12 * rest)
+        return np.stack([p.log_likelihood(s) for p, s in zip(self.levels, squares, strict=True)])
+
+    def _under_null(self, null: _Best, signs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """p-values, and which share of the sensitivities re-tuning cannot imitate."""
+        level, m = self.levels[self.null], signs.shape[1]
+        statistic = (level.rest - null.squares) / (level.rest / level.samples)
+        p = chi2.sf(statistic, m) * np.where(is_one_sided(signs), 0.5, 1.0)
+        own = np.trace(null.products.H, axis1=1, axis2=2)
+        return p, own / np.maximum(null.products.raw, 1e-300)
+
+    def _made(
+        self, some: Sequence[Sensitivity], best: _Best, signs: np.ndarray, p_value: np.ndarray,
+        identifiable: np.ndarray,
+    ) -> list[Score]:  # fmt: skip
+        samples = self.levels[0].samples
+        sigma, nominal = np.sqrt(best.squares / samples), self.without.max()
+        inverse = np.linalg.pinv(best.products.H, rcond=1e-12, hermitian=True)
+        std = sigma[:, None] * np.sqrt(np.diagonal(inverse, axis1=1, axis2=2))
+        blocks = compute_block_p_values(best.products, best.size, signs)
+        return [
+            Score(
+                candidate=s.candidate, size=best.size[j], std=std[j],
+                gain=float(2 * (best.likely[j] - nominal)), p_value=float(p_value[j]),
+                block_p_value=float(blocks[j]), identifiable=float(identifiable[j]),
+                level=NoiseLevel(
+                    self.levels[best.level[j]].noise, float(sigma[j]), float(best.likely[j])
+                ),
+            )
+            for j, s in enumerate(some)
+        ]  # fmt: skip

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from itertools import product
+from typing import Any
 
 import numpy as np
 
@@ -17,12 +18,13 @@ from identification.effects.effect import Candidate, Effect
 from identification.kalman.columns import do_equations_hold
 from identification.kalman.linear import Linearisation, linearise_records
 from identification.kalman.point import Point
-from identification.kalman.sensitivity_equations import solve_sensitivities
+from identification.kalman.sensitivity_equations import ALWAYS, Courses, solve_sensitivities
 from identification.kalman.trajectory import FINE
 from identification.model.predictor import Predictor
 from identification.progress import counted
 
-BATCH = 48  # columns that are computed at once, which bounds the memory of their trajectories
+LONG_AGO = 1e6  # before a record [s], later than any ramp lasts
+BATCH = 128  # columns that are computed at once, which bounds the memory of their trajectories
 # Share of its probe at which an effect enters the equations: large accelerations nearly cancel each
 # other there, such as those of an anchor that moves and of the cable that is longer at rest for it.
 SHORTER = 1e-2
@@ -186,9 +188,44 @@ def _solve(
     point: Point, records: tuple[Linearisation, ...], group: list[Candidate]
 ) -> list[Sensitivity | None]:
     """Sensitivities by the equations; None of a candidate that they do not describe."""
-    predictor, values, rows, probes = _probe(point, group, SHORTER)
-    S = solve_sensitivities(predictor, records, values, rows, probes)
-    return [s if np.isfinite(s.S).all() else None for s in _each(group, np.moveaxis(S, 2, 0))]
+    families: dict[tuple[Any, ...], list[int]] = {}
+    for i, candidate in enumerate(group):
+        families.setdefault(_family(candidate), []).append(i)
+    one_each = [_long_begun(group[members[0]]) for members in families.values()]
+    courses = [_courses([group[i] for i in members]) for members in families.values()]
+    predictor, values, rows, probes = _probe(point, one_each, SHORTER)
+    of_rows = [of for c, of in zip(one_each, courses, strict=True) for _ in c.sizes]
+    S = solve_sensitivities(predictor, records, values, rows, probes, of_rows)
+    out: list[Sensitivity | None] = [None] * len(group)
+    end = 0
+    for c, members in zip(one_each, families.values(), strict=True):
+        first, end = end, end + len(c.sizes) * len(members)
+        own = S[..., first:end].reshape(*S.shape[:2], len(c.sizes), len(members))
+        for k, i in enumerate(members):
+            if np.isfinite(own[..., k]).all():
+                out[i] = Sensitivity(group[i], own[..., k].copy())
+    return out
+
+
+def _family(c: Candidate) -> tuple[Any, ...]:
+    """What candidates have in common that differ only in when they begin."""
+    begins = c.effect.onset.shape if c.effect.onset else None
+    return (*c.key, c.probe, *((n, v) for n, v in c.shape.items() if n != begins))
+
+
+def _long_begun(c: Candidate) -> Candidate:
+    """The candidate as one that began long before the record."""
+    if c.effect.onset is None:
+        return c
+    return replace(c, shape={**c.shape, c.effect.onset.shape: -LONG_AGO})
+
+
+def _courses(family: list[Candidate]) -> Courses:
+    """The courses in time of candidates that differ only in when they begin."""
+    onset = family[0].effect.onset
+    if onset is None:
+        return ALWAYS
+    return [partial(onset.course, begins=c.shape[onset.shape]) for c in family]
 
 
 def _simulate(point: Point, predicted: np.ndarray, group: list[Candidate]) -> list[Sensitivity]:

@@ -1,0 +1,110 @@
+"""Residual and sensitivities under one noise, with the free parameters projected out.
+
+    r⊥ = r - Φ (ΦᵀΦ + P)⁻¹ Φᵀ r        whitened; the priors P enter as further measurements
+    H = S⊥ᵀS⊥,   b = S⊥ᵀE⊥,   and the same of each block of samples:   G_b,  a_b
+    b = Sᵀu,   u = Wᵀ E⊥               W: the whitening filter; no sensitivity is whitened for it
+
+A candidate has few sizes. Of its sensitivities nothing is needed but products of few columns, never
+a product with those of another candidate.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from identification.kalman.noise_model import Noise
+from identification.kalman.refit import Refit
+from identification.kalman.whitened import whiten
+
+LEAST = 1e-14  # of the largest eigenvalue of ΦᵀΦ: less is no direction that the outputs feel
+
+
+@dataclass(frozen=True)
+class Products:
+    """Products of the sensitivities of J candidates with m sizes each, under one noise.
+
+    Attributes:
+        raw: sum of squares before the projection, shape (J,).
+        H: shape (J, m, m).
+        b: shape (J, m).
+        G: of each block, shape (B, J, m, m).
+        a: of each block, shape (B, J, m).
+    """
+
+    raw: np.ndarray
+    H: np.ndarray
+    b: np.ndarray
+    G: np.ndarray
+    a: np.ndarray
+
+
+class Projection:
+    """Residual and free parameters of a fit under one noise.
+
+    Args:
+        fit: the model.
+        noise: what the residual and the sensitivities are whitened with.
+
+    Attributes:
+        noise: the same.
+        samples: number of measured values.
+        rest: sum of squares of the residual, without what the free parameters explain.
+        dual: u, shape (N, ny).
+    """
+
+    def __init__(self, fit: Refit, noise: Noise) -> None:
+        point = fit.point
+        self.noise, self.samples = noise, point.e.size
+        white = whiten(point.linear, point.J, noise, point.log.sampling_time)
+        self._filter, self._F = white.filter, white.F
+        E = self._filter(point.e).ravel()
+        # The priors enter as further measurements: rows below the samples, in units of σ.
+        self._ridge = fit.prior * fit.level.sigma
+        below = self._ridge * (fit.mean - point.q)
+        w, V = np.linalg.eigh(white.H + np.diag(self._ridge**2))
+        kept = w > LEAST * w.max(initial=0.0)
+        self._w, self._V = w[kept], V[:, kept]
+        c = self._coefficients(self._F.T @ E + self._ridge * below)
+        self._e, self._below = E - self._F @ c, below - self._ridge * c
+        self.rest = float(self._e @ self._e + self._below @ self._below)
+        self.dual = self._filter.transposed(self._e.reshape(point.e.shape))
+
+    def log_likelihood(self, squares: np.ndarray) -> np.ndarray:
+        """Log likelihood of sums of squares, up to a constant of the log."""
+        n = self.samples
+        log_determinant = self._filter.log_determinant
+        return np.asarray(-0.5 * (n * np.log(squares / n) + log_determinant))
+
+    def products(self, S: np.ndarray, starts: np.ndarray) -> Products:
+        """The products of some candidates.
+
+        Args:
+            S: sensitivities, shape (N, ny, J, m).
+            starts: the first sample of each block, shape (B,).
+        """
+        N, ny, J, m = S.shape
+        W = self._filter(S.reshape(N, ny, -1)).reshape(self.samples, -1)
+        raw = np.einsum("ij,ij->j", W, W).reshape(J, m).sum(axis=1)
+        C = self._coefficients(self._F.T @ W)
+        W -= self._F @ C
+        e, X = self._e, W.reshape(-1, J, m)
+        rows = [slice(*pair) for pair in pairwise([*(ny * starts), len(e)])]
+        a = np.stack([e[some] @ W[some] for some in rows]).reshape(-1, J, m)
+        G = np.stack([_gram(X[some]) for some in rows])
+        below = (-self._ridge[:, None] * C).reshape(-1, J, m)
+        b = a.sum(axis=0) + np.einsum("p,pjm->jm", self._below, below)
+        return Products(raw, G.sum(axis=0) + _gram(below), b, G, a)
+
+    def _coefficients(self, FtX: np.ndarray) -> np.ndarray:
+        """(ΦᵀΦ + P)⁻¹ ΦᵀX; the shortest where outputs do not feel every direction."""
+        return np.asarray((self._V / self._w) @ (self._V.T @ FtX))
+
+
+def _gram(X: np.ndarray) -> np.ndarray:
+    """XᵀX of each candidate, shape (J, m, m), of rows (n, J, m)."""
+    if X.shape[2] == 1:
+        return np.einsum("njm,njm->jm", X, X)[..., None]
+    return np.einsum("njp,njq->jpq", X, X)

@@ -1,0 +1,159 @@
+"""Scores are those of the slow way: every candidate under every noise, one after the other."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from discovery_cases import (
+    OPTIONS,
+    STEP,
+    linear_plant,
+    point_of,
+    refit_at,
+    scored,
+    sensitivity,
+)
+from scipy.stats import chi2
+from scipy.stats import f as f_distribution
+
+from identification.discovery.scoring import scores as module
+from identification.discovery.scoring.projection import Projection
+from identification.discovery.scoring.scores import SHORTEST, SMALLER
+from identification.kalman.noise_fit import NoiseLevel
+from identification.kalman.noise_model import Noise, build_whitener
+
+N, NY, P = 90, 2, 4
+SIGMA, PRIOR, MEAN = 1.3, np.array([0.0, 2.0, 5.0, 0.0]), np.array([7.0, 0.4, -0.3, 0.0])
+
+
+def candidates(rng, J):
+    """With one to three sizes and signs; some that change nothing or that the base imitates."""
+    S = [(rng.standard_normal((N, NY, m)), sign) for m in (1, 2, 3) for sign in (0, 0, 1, -1)]
+    S += [(np.zeros((N, NY, 1)), 0), ((J @ np.arange(P))[..., None], 0)]
+    slow = np.cumsum(rng.standard_normal((N, NY, 5)), axis=0)
+    S += [(slow[..., k : k + 1], 0) for k in range(5)]
+    S += [(np.concatenate([slow[..., :1], 2 * slow[..., :1]], axis=2), 0)]  # twice the same
+    return [sensitivity(s, sign, f"e{k}") for k, (s, sign) in enumerate(S)]
+
+
+def slow_score(plant, noise, e, J, s):
+    """Gain, size, std, p-values, identifiable share and noise of one candidate."""
+    m, signs = s.S.shape[2], [size.sign for size in s.candidate.effect.sizes]
+    n, found = e.size, []
+    for share in SMALLER if noise.ratio else (1.0,):
+        filter_ = build_whitener(plant, noise.scaled(share), STEP)
+        W = filter_(np.concatenate([e[..., None], J, s.S], axis=2)).reshape(n, -1)
+        ridge = PRIOR * SIGMA
+        below = np.zeros((P, 1 + P + m))
+        below[:, 0], below[:, 1 : 1 + P] = ridge * MEAN, np.diag(ridge)
+        W, raw = np.vstack([W, below]), np.sum(W[:, 1 + P :] ** 2)
+        F, X = W[:, 1 : 1 + P], np.delete(W, np.s_[1 : 1 + P], axis=1)
+        X = X - F @ np.linalg.lstsq(F.T @ F, F.T @ X, rcond=1e-14)[0]
+        r, S = X[:, 0], X[:, 1:]
+        H = S.T @ S
+        size = np.linalg.lstsq(H, S.T @ r, rcond=1e-12)[0]
+        refused = m == 1 and signs[0] * size[0] < 0
+        squares = r @ r - (0.0 if refused else r @ S @ size)
+
+        def likely(q, filter_=filter_):
+            return -0.5 * (n * np.log(q / n) + filter_.log_determinant)
+
+        left = (S[:n] * (r - S @ size)[:n, None]).reshape(N, NY, m).sum(axis=1)
+        found.append((likely(squares), likely(r @ r), squares, r @ r, size, H, left, refused, raw))
+    k, null = (max(range(len(found)), key=lambda i, of=of: found[i][of]) for of in (0, 1))
+    likely, _, squares, _, size, H, left, refused, _ = found[k]
+    half = 0.5 if m == 1 and signs[0] != 0 else 1.0
+    B = min(OPTIONS.score_blocks, N // SHORTEST)
+    starts = np.linspace(0, N, B, endpoint=False).astype(int)
+    g, moved = np.add.reduceat(left, starts, axis=0), H @ size
+    W = moved @ np.linalg.pinv(g.T @ g, rcond=1e-12, hermitian=True) @ moved
+    by_blocks = half * f_distribution.sf(W * (B - m) / (B * m), m, B - m)
+    fall = (found[null][3] - found[null][2]) / (found[null][3] / n)
+    H = np.linalg.pinv(H, rcond=1e-12, hermitian=True)
+    return {
+        "gain": 2 * (likely - found[null][1]),
+        "size": size,
+        "std": np.sqrt(np.diag(H) * squares / n),
+        "p_value": half * chi2.sf(fall, m),
+        "block_p_value": 1.0 if refused else by_blocks,
+        "identifiable": np.trace(found[null][5]) / max(found[null][8], 1e-300),
+        "ratio": noise.ratio * SMALLER[k],
+    }
+
+
+@pytest.mark.parametrize("together", [2, 128])
+@pytest.mark.parametrize(
+    ("seed", "ratio", "missing"),
+    [(1, 0.0, 1.0), (2, 0.5, 0.0), (3, 0.5, 0.3), (4, 2.0, 1.0), (5, 2.0, 10.0)],
+)
+def test_every_score_is_that_of_the_slow_way(seed, ratio, missing, together, monkeypatch):
+    monkeypatch.setattr(module, "TOGETHER", together)
+    rng = np.random.default_rng(seed)
+    plant, noise = linear_plant(rng, N), Noise(ratio, 0.1)
+    J = rng.standard_normal((N, NY, P))
+    every = candidates(rng, J)
+    e = rng.standard_normal((N, NY)) + missing * every[-3].S[..., 0]
+    found = scored(point_of(plant, e, J), NoiseLevel(noise, SIGMA, 0.0), PRIOR, every, MEAN)
+    assert [s.gain for s in found] == sorted((s.gain for s in found), reverse=True)
+    of = {s.candidate.effect.name: s for s in found}
+    for one in every:
+        s, slow = of[one.candidate.effect.name], slow_score(plant, noise, e, J, one)
+        if slow["identifiable"] < 1e-9 and one.S.any():  # what is left of it is rounding
+            assert s.identifiable < 1e-9
+            continue
+        assert s.level.noise.ratio == pytest.approx(slow.pop("ratio"))
+        for name, value in slow.items():
+            # a difference of log likelihoods, each some hundreds, cannot be known better
+            atol = 1e-9 if name == "gain" else 1e-12
+            np.testing.assert_allclose(getattr(s, name), value, rtol=1e-6, atol=atol, err_msg=name)
+
+
+def test_other_noises_are_tried_only_where_they_may_be_likelier(monkeypatch):
+    """An effect that explains much makes the error of the inputs small; others are not tried."""
+    rng = np.random.default_rng(6)
+    plant, noise = linear_plant(rng, N), Noise(2.0, 0.1)
+    J, tried = rng.standard_normal((N, NY, P)), []
+    true = np.cumsum(rng.standard_normal((N, NY, 1)), axis=0)
+    useless = [sensitivity(1e-3 * rng.standard_normal((N, NY, 1)), name=f"u{k}") for k in range(9)]
+    e = 5 * true[..., 0] + 1e-2 * rng.standard_normal((N, NY))
+    products = Projection.products
+
+    def counted(self, S, starts):
+        tried.append((self.noise.ratio / noise.ratio, S.shape[2]))
+        return products(self, S, starts)
+
+    monkeypatch.setattr(Projection, "products", counted)
+    level = NoiseLevel(noise, SIGMA, 0.0)
+    found = scored(point_of(plant, e, J), level, PRIOR, [sensitivity(true, name="true"), *useless])
+    assert found[0].candidate.effect.name == "true"
+    assert found[0].level.noise.ratio < noise.ratio
+    assert sum(n for share, n in tried if share == 1.0) == 10
+    assert sum(n for share, n in tried if share != 1.0) < 5 * 10
+
+
+def test_on_the_same_fit_only_new_candidates_are_scored(monkeypatch):
+    rng = np.random.default_rng(7)
+    plant, J, columns = linear_plant(rng, N), rng.standard_normal((N, NY, P)), []
+    level = NoiseLevel(Noise(0.0, 0.1), SIGMA, 0.0)
+    fit = refit_at(point_of(plant, rng.standard_normal((N, NY)), J), level, PRIOR, MEAN)
+    every, products = candidates(rng, J), Projection.products
+
+    def counted(self, S, starts):
+        columns.append(S.shape[2])
+        return products(self, S, starts)
+
+    monkeypatch.setattr(Projection, "products", counted)
+    first = module.score(fit, every[:9], OPTIONS)
+    assert sum(columns) == 9
+    both = module.score(fit, every[4:], OPTIONS)
+    assert sum(columns) == len(every)
+    assert {id(s) for s in first} & {id(s) for s in both}
+    assert [s.gain for s in both] == sorted((s.gain for s in both), reverse=True)
+    again = module.score(replace(fit), every[4:], OPTIONS)
+    assert sum(columns) == 2 * len(every) - 4
+    for one, other in zip(both, again, strict=True):
+        assert (one.candidate, one.gain, one.p_value) == (
+            other.candidate,
+            other.gain,
+            other.p_value,
+        )

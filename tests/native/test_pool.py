@@ -1,0 +1,60 @@
+"""Work in parts gives what the same work gives in one piece, and waits for nothing of its own."""
+
+import os
+import threading
+
+import pytest
+
+from identification.pool import run_parts, split, threads
+
+
+@pytest.mark.parametrize("number", ["1", "2"])
+def test_results_come_in_the_order_of_the_parts(number, monkeypatch):
+    monkeypatch.setenv("INCA_MJ_THREADS", number)
+    assert run_parts(lambda part: part**2, range(20)) == [k**2 for k in range(20)]
+
+
+def test_a_part_may_have_parts_of_its_own():
+    """More of them than there are threads, each of which would wait for others."""
+
+    def outer(k):
+        return sum(run_parts(lambda part: k * part, range(8)))
+
+    assert run_parts(outer, range(8)) == [28 * k for k in range(8)]
+
+
+def test_the_pool_lives_on():
+    if threads() < 2:
+        pytest.skip("one processor has no pool")
+    names = {n for _ in range(5) for n in run_parts(lambda _: threading.get_ident(), range(8))}
+    assert len(names) <= threads()
+
+
+def test_an_error_of_a_part_is_that_of_the_work():
+    def fail(part):
+        if part == 3:
+            raise ValueError("the third")
+        return part
+
+    with pytest.raises(ValueError, match="third"):
+        run_parts(fail, range(6))
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_a_process_that_was_forked_off_has_a_pool_of_its_own():
+    run_parts(abs, range(8))
+    child = os.fork()
+    if child == 0:
+        os._exit(run_parts(abs, [-1, -2]) != [1, 2])
+    assert os.waitpid(child, 0)[1] == 0
+
+
+@pytest.mark.parametrize(("count", "most"), [(0, 5), (1, 5), (5, 5), (6, 5), (100, 9)])
+def test_ranges_cover_all_things_once(count, most):
+    parts = split(count, most)
+    assert [k for part in parts for k in range(part.start, part.stop)] == list(range(count))
+    sizes = {part.stop - part.start for part in parts}
+    assert max(sizes) - min(sizes) <= 1
+    assert max(sizes) <= most
+    assert len(parts) == max(1, -(-count // most))
