@@ -22,7 +22,7 @@ STEP = 1e-4  # of q, for forward differences of simulations
 # The same for differences of accelerations, as a share: large ones nearly cancel each other, such
 # as those of an anchor that moves and of the cable that is longer at rest for it.
 SHORTER = 1e-2
-MANY = 30  # columns, beyond which the equations are worth it
+MANY = 12  # columns, beyond which the equations are worth it
 WRONG = 0.1  # share by which a simulation may differ from the sensitivity equations
 
 

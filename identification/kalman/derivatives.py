@@ -32,7 +32,7 @@ def state_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
         DivergenceError: the accelerations are not finite.
     """
     nv = along.model.nv
-    of_state, of_inputs = differences(along, Points(along), FORWARD, along.average)
+    of_state, of_inputs = differences(along, Points(along), FORWARD, along.weighted)
     rows = along.average(position_rows(along.model, along.qvel))
     return (
         np.concatenate([rows, of_state], axis=1),

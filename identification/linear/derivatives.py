@@ -13,13 +13,14 @@ The rates of positions need no differences:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
 from identification.linear.points import AtPoints, Change, Points
+from identification.native.forward import Intervals
 
 FREE, BALL = int(mujoco.mjtJoint.mjJNT_FREE), int(mujoco.mjtJoint.mjJNT_BALL)
 
@@ -46,7 +47,7 @@ def differences(
     at: AtPoints,
     points: Points,
     scheme: Scheme,
-    mean: Callable[[np.ndarray], np.ndarray] = lambda each: each,
+    intervals: Intervals | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Derivatives of the results of `points` with respect to the state and the inputs.
 
@@ -54,23 +55,22 @@ def differences(
         at: the states.
         points: evaluates the model there.
         scheme: how differences are taken.
-        mean: from values at the points to what is kept of them, such as means over intervals.
+        intervals: over which forward differences are averaged; each point for itself when None.
 
     Returns:
         With respect to the state, shape (L, results, nx), nx = 2 nv + na, and to the inputs, shape
-        (L, results, nu); L points are left by `mean`.
+        (L, results, nu), for L intervals or points.
 
     Raises:
         DivergenceError: the results are not finite.
     """
     h, nx = scheme.step, 2 * at.model.nv + at.model.na
-    ahead = points.each(_shifted(at, h))
     if scheme.is_central:
-        pairs = zip(ahead, points.each(_shifted(at, -h)), strict=True)
-        each = [mean((there - back) / (2 * h)) for there, back in pairs]
+        pairs = zip(points.each(_shifted(at, h)), points.each(_shifted(at, -h)), strict=True)
+        each = [(there - back) / (2 * h) for there, back in pairs]
     else:
-        f = points.rates()
-        each = [mean((there - f) / h) for there in ahead]
+        alone = Intervals(np.arange(len(at.time)), np.ones(len(at.time)))
+        each = [moved / h for moved in points.each(_shifted(at, h), intervals or alone)]
     of_state, of_inputs = np.stack(each[:nx], axis=-1), each[nx:]
     if not of_inputs:
         return of_state, np.zeros((*of_state.shape[:-1], 0))
