@@ -63,6 +63,7 @@ def discovery_to_json(found: Discovery | RecordsDiscovery) -> dict[str, Any]:
             for m in found.missing_forces
         ],
         "options": asdict(found.options),
+        "stages": [{"stage": name, "seconds": t} for name, t in found.seconds.items()],
         "seconds": float(sum(found.seconds.values())),
     }  # fmt: skip
     return {key: finite(value) for key, value in record.items()}

@@ -51,6 +51,7 @@ def records_to_json(found: RecordsDiscovery) -> dict[str, Any]:
         "nominal": _values_to_json(found.nominal),
         "final": _values_to_json(found.final),
         "options": asdict(found.options),
+        "stages": [{"stage": name, "seconds": t} for name, t in found.seconds.items()],
         "seconds": float(sum(found.seconds.values())),
     }
     return {key: finite(value) for key, value in record.items()}
