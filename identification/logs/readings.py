@@ -21,6 +21,7 @@ from identification.logs.cures import how_to_exchange, how_to_turn, unit_lines
 from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.logs.units import UNITS
+from identification.progress import counted
 
 UNEXPLAINED = 0.05  # least ε of an output that is not what it says
 NEARER = 0.2  # of ε, that another reading must leave
@@ -73,7 +74,7 @@ def misread(
         None where no reading is far better.
     """
     best, least = None, np.inf
-    for reading in readings:
+    for reading in counted(readings, "other readings of the log"):
         left, k = unexplained(reading.log), list(reading.columns)
         if left is None or not (left[k] < np.minimum(EXPLAINED, NEARER * own[k])).all():
             continue
