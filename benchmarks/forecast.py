@@ -1,11 +1,13 @@
 """What a discovery said that it would take, and what it took then: memory and processor time.
 
     python benchmarks/forecast.py [--samples 500 1000 2000] [--spread none usual]
+    python benchmarks/forecast.py --joints 1 --samples 2000 20000 200000
 
-Each log is simulated by the twin with other values than those of its drawing and with the noise of
-its encoders, so that nothing is missing. Each search is a process of its own, whose memory is what
-it holds at most beyond what it held when it began to search. A row is added to
-results/forecast.jsonl; benchmarks/robustness.py makes the page.
+Each log is simulated with other values than those of the drawing and with the noise of encoders, so
+that nothing is missing: of the twin, or of a chain of bodies with a motor and an encoder at each
+joint. Each search is a process of its own, whose memory is what it holds at most beyond what it
+held when it began to search. A row is added to results/forecast.jsonl; benchmarks/robustness.py
+makes the page.
 """
 
 from __future__ import annotations
@@ -16,9 +18,12 @@ import os
 import resource
 import subprocess
 import sys
+import tempfile
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from identification.sweep.code import commit
 
@@ -27,6 +32,20 @@ RATE = 100.0  # [Hz]
 NOISE = 5e-4  # [rad]
 VALUES = {"m": 0.18, "lambda": 24_000.0, "b_c": 0.0055, "K_t": 0.079}
 UNIT = 1024 if sys.platform != "darwin" else 1  # [bytes] of ru_maxrss
+HELD = 15  # samples for which the motors of a chain keep a torque
+TORQUE = 0.6  # [N m], std
+BODY = """<body name="body{k}" pos="0 0 {below}">
+<joint name="joint{k}" axis="{axis}" damping="0.2" stiffness="3" armature="0.02"/>
+<inertial pos="0 0 -0.05" mass="0.2" diaginertia="0.001 0.001 0.0005"/>"""
+ROBOT = """model = "chain.xml"
+free = ["mass", "damping"]
+[parameters.mass]
+path = "body/body0.mass"
+unit = "kg"
+[parameters.damping]
+path = "joint/joint0.damping"
+unit = "N m s/rad"
+"""
 
 
 def main() -> int:
@@ -34,32 +53,55 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--samples", type=int, nargs="*", default=[500, 1000, 2000])
     parser.add_argument("--spread", nargs="*", default=["none"])
+    parser.add_argument("--joints", type=int, nargs="*", default=[0], help="of a chain; 0: INCA")
     parser.add_argument("--record", type=Path, default=RECORD)
     parser.add_argument("--one", action="store_true", help="search in this process, print the row")
     options = parser.parse_args()
-    for spread in options.spread:
-        for samples in options.samples:
-            if options.one:
-                print(json.dumps(measured(samples, spread)))
-                continue
-            line = [sys.executable, __file__, "--one", "--samples", str(samples)]
-            alone = {**os.environ, "OMP_NUM_THREADS": "1"}
-            done = subprocess.run([*line, "--spread", spread], stdout=subprocess.PIPE, text=True,
-                                  check=True, env=alone)  # fmt: skip
-            row = done.stdout.splitlines()[-1]
-            print(row, flush=True)
-            with options.record.open("a") as record:
-                record.write(row + "\n")
+    each = [(j, s, n) for j in options.joints for s in options.spread for n in options.samples]
+    for joints, spread, samples in each:
+        if options.one:
+            print(json.dumps(measured(joints, samples, spread)))
+            continue
+        line = [sys.executable, __file__, "--one", "--joints", str(joints), "--spread", spread]
+        alone = {**os.environ, "OMP_NUM_THREADS": "1"}
+        done = subprocess.run([*line, "--samples", str(samples)], stdout=subprocess.PIPE,
+                              text=True, check=True, env=alone)  # fmt: skip
+        row = done.stdout.splitlines()[-1]
+        print(row, flush=True)
+        with options.record.open("a") as record:
+            record.write(row + "\n")
     return 0
 
 
-def measured(samples: int, spread: str) -> dict[str, object]:
+def measured(joints: int, samples: int, spread: str) -> dict[str, object]:
     """Forecast and measurement of one search."""
-    import numpy as np
-
     from identification.discovery import search
     from identification.discovery.forecast import Forecast
     from identification.discovery.task import DiscoveryTask
+
+    run: Callable[[], Any] = chain(joints, samples) if joints else twin(samples, spread)
+    told: list[tuple[Forecast, float, float]] = []
+    own = search.forecast
+
+    def forecast(task: DiscoveryTask) -> Forecast:
+        told.append((own(task), peak(), time.process_time()))
+        return told[-1][0]
+
+    search.forecast = forecast
+    found = run()
+    needs, before, began = told[0]
+    return {
+        "joints": joints, "samples": samples, "spread": spread, "verdict": found.verdict,
+        "memory": {"forecast": needs.memory, "measured": peak() - before},
+        "seconds": {"forecast": needs.seconds, "measured": time.process_time() - began},
+        "commit": commit(),
+    }  # fmt: skip
+
+
+def twin(samples: int, spread: str) -> Callable[[], Any]:
+    """A search of the INCA."""
+    import numpy as np
+
     from inca_mj import build_twin, discover, make_input, simulate
     from inca_mj.twin.logs import run_to_log
     from inca_mj.workflows.spread import spread_of
@@ -69,22 +111,45 @@ def measured(samples: int, spread: str) -> dict[str, object]:
     noise = NOISE * np.random.default_rng(samples).standard_normal((samples, 8))
     clean = run_to_log(run)
     log = replace(clean, outputs=clean.outputs + noise)
-    told: list[tuple[Forecast, float, float]] = []
-    own = search.forecast
+    return lambda: discover(log, spread=spread_of(spread))
 
-    def forecast(task: DiscoveryTask) -> Forecast:
-        told.append((own(task), peak(), time.process_time()))
-        return told[-1][0]
 
-    search.forecast = forecast
-    found = discover(log, spread=spread_of(spread))
-    needs, before, began = told[0]
-    return {
-        "samples": len(log), "spread": spread, "verdict": found.verdict,
-        "memory": {"forecast": needs.memory, "measured": peak() - before},
-        "seconds": {"forecast": needs.seconds, "measured": time.process_time() - began},
-        "commit": commit(),
-    }  # fmt: skip
+def chain(joints: int, samples: int) -> Callable[[], Any]:
+    """A search of a chain with so many joints, whose files are read as a user's are."""
+    import mujoco
+    import numpy as np
+
+    from identification import discover, read_robot
+
+    bodies = "".join(
+        BODY.format(k=k, below=-0.1 if k else 0, axis=("0 1 0", "1 0 0")[k % 2])
+        for k in range(joints)
+    )
+    motors = "".join(f'<general name="u{k}" joint="joint{k}"/>' for k in range(joints))
+    sensors = "".join(f'<jointpos name="y{k}" joint="joint{k}"/>' for k in range(joints))
+    text = (
+        '<mujoco><option timestep="0.005" integrator="RK4"><flag contact="disable"/></option>'
+        f"<worldbody>{bodies}{'</body>' * joints}</worldbody><actuator>{motors}</actuator>"
+        f"<sensor>{sensors}</sensor></mujoco>"
+    )
+    model = mujoco.MjModel.from_xml_string(text)
+    model.body_mass[1], model.dof_damping[0] = 0.22, 0.17
+    data, rng = mujoco.MjData(model), np.random.default_rng(samples)
+    u = np.repeat(TORQUE * rng.standard_normal((samples // HELD + 1, joints)), HELD, axis=0)
+    rows = np.empty((samples, 1 + 2 * joints))
+    for k, row in enumerate(rows):
+        seen = data.qpos + NOISE * rng.standard_normal(joints)
+        row[:] = np.concatenate([[k / RATE], u[k], seen])
+        data.ctrl[:] = u[k]
+        mujoco.mj_step(model, data, round(1 / (RATE * model.opt.timestep)))
+    names = ["time", *(f"u{k}" for k in range(joints)), *(f"y{k}" for k in range(joints))]
+    with tempfile.TemporaryDirectory() as folder:
+        at = Path(folder)
+        (at / "chain.xml").write_text(text)
+        (at / "chain.toml").write_text(ROBOT)
+        np.savetxt(at / "log.csv", rows, "%.9g", ",", header=",".join(names), comments="")
+        robot = read_robot(at / "chain.toml", at / "log.csv")
+    return lambda: discover(robot)
 
 
 def peak() -> float:

@@ -109,27 +109,31 @@ def forecast(record: Sequence[Row]) -> list[str]:
         "## Forecast of memory and time", "",
         "What `discover` says before it begins (`identification/discovery/forecast.py`), and what"
         " it then took, on logs of the twin",
-        "in which nothing is missing. Memory is beside that of the program, time is that of the"
-        " processor.", "",
-        "    python benchmarks/forecast.py --samples 500 1000 2000", "",
-        "| samples | spread | verdict | memory: forecast | taken | time: forecast | taken"
+        "and of chains of bodies, in which nothing is missing. Memory is beside that of the"
+        " program, time is that of the processor.", "",
+        "    python benchmarks/forecast.py --samples 500 1000 2000",
+        "    python benchmarks/forecast.py --joints 1 5 --samples 2000 20000", "",
+        "| robot | samples | spread | verdict | memory: forecast | taken | time: forecast | taken"
         " | commit |",
-        "|---|---|---|---|---|---|---|---|",
+        "|---|---|---|---|---|---|---|---|---|",
     ]  # fmt: skip
     for row in record:
         memory, seconds = row["memory"], row["seconds"]
         said.append(
-            f"| {row['samples']} | {row['spread']} | {row['verdict']} |"
+            f"| {_robot(row)} | {row['samples']} | {row['spread']} | {row['verdict']} |"
             f" {memory['forecast'] / 1e6:.0f} MB | {memory['measured'] / 1e6:.0f} MB |"
             f" {seconds['forecast']:.0f} s | {seconds['measured']:.0f} s | {row['commit']} |"
         )
     said += [
         "",
-        "The time of the first three was forecast with constants that were then replaced: with"
-        " those of today it is",
-        "34, 64 and 104 s. They are fitted to these three; the other rows are a check.",
+        "The first four rows are of an earlier search and of an earlier law of the forecast.",
     ]
     return said
+
+
+def _robot(row: Row) -> str:
+    joints = row.get("joints", 0)
+    return f"chain, joints: {joints}" if joints else "INCA"
 
 
 if __name__ == "__main__":

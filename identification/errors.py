@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
@@ -59,7 +60,7 @@ def _printable(letter: str) -> str:
 
 def repeated(names: Sequence[str]) -> list[str]:
     """The names that occur more than once, in alphabetical order."""
-    return sorted({name for name in names if names.count(name) > 1})
+    return sorted(name for name, count in Counter(names).items() if count > 1)
 
 
 def refuse_negative(name: str, value: int) -> None:

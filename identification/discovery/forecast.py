@@ -1,11 +1,15 @@
 """How much memory and time a search will take, told before it takes them.
 
-    bytes   = COPIES · 8 N n_y (p + m)    N samples, n_y outputs, p parameters, m sizes of effects
-    seconds = BASE + t₁ (FITS p + SCORES m)     t₁ the processor time of one simulation of the log
+    bytes   = BASE + MODELS b + 8 n (n_y (p + m) + COLUMNS c (2 n_f + 3 n_y)) + 8 N STATES n_z²
+    seconds = BEGUN + t₁ (FITS p + SCORES m)     t₁ the processor time of one simulation of the log
 
-The constants are fitted to processor time and peak memory of searches of INCA's logs of 500, 1000
-and 2000 samples (benchmarks/forecast.py). The time is that of a search that finds nothing; each
-effect that is found is refitted, beside others, and adds to it.
+of N samples, n of them fitted, with n_y outputs, p parameters, m sizes of effects, c = min(m, 128)
+columns that are computed at once, n_f velocities and activations, n_z states of the plant and of
+its inputs' errors, and a model of b bytes.
+
+The constants are fitted to processor time and peak memory of searches of the INCA and of chains of
+bodies, with up to 200 000 samples (benchmarks/forecast.py). The time is that of a search that finds
+nothing; each effect that is found is refitted, beside others, and adds to it.
 """
 
 from __future__ import annotations
@@ -17,16 +21,20 @@ from pathlib import Path
 
 import numpy as np
 
-from identification.discovery.scoring.sensitivities import list_common, list_single
+from identification.discovery.scoring.sensitivities import BATCH, list_common, list_single
 from identification.discovery.task import DiscoveryTask
 from identification.errors import InputError
 from identification.files import read_text
+from identification.logs.joined import rows_of
 from identification.model.predictor import Predictor
 
-COPIES = 5.75  # of the sensitivities to all candidates, that a search holds at once
-BASE = 12.0  # [s] that a search takes, however short the log
-FITS = 1.6  # simulations that a parameter costs
-SCORES = 0.25  # simulations that a size of a candidate costs; many are simulated at once
+BASE = 28e6  # [bytes] of compiled code and libraries that only a search loads
+MODELS = 96  # copies of the model, for changes of it that are evaluated together
+COLUMNS = 1.77  # copies of the forcings and responses of the columns that are computed at once
+STATES = 1.75  # squares of n_z for each sample: transitions, and filters of several noises
+BEGUN = 2.0  # [s] that a search takes, however short the log
+FITS = 1.0  # simulations that a parameter costs
+SCORES = 0.15  # simulations that a size of a candidate costs; many are simulated at once
 _SHORT = 400  # samples of the simulation that is timed
 _TOLD = 60.0, 2.0**30  # [s] and [bytes] from which a forecast is worth a line
 
@@ -39,11 +47,13 @@ class Forecast:
         samples: of the log.
         memory: [bytes], beside those of the program.
         seconds: of processor time, of a search that finds nothing [s].
+        fixed: part of the memory that does not depend on the samples [bytes].
     """
 
     samples: int
     memory: float
     seconds: float
+    fixed: float = 0.0
 
     def __str__(self) -> str:
         return (
@@ -68,14 +78,19 @@ def forecast(task: DiscoveryTask) -> Forecast:
     Raises:
         DivergenceError: the nominal model cannot be simulated.
     """
-    log = task.log
+    log, model = task.log, task.nominal_model.plant.model
     common = list_common(task.effects)
     first = {c.effect.name: c for c in common}
     sizes = sum(len(c.sizes) for c in (*common, *list_single([*first.values()])))
     parameters = len(task.nominal_model.names)
-    memory = COPIES * 8 * log.outputs.size * (parameters + sizes)
-    seconds = BASE + (FITS * parameters + SCORES * sizes) * _simulated(task)
-    return Forecast(len(log), memory, seconds)
+    fitted, outputs = int(rows_of(log, "estimation").sum()), log.outputs.shape[1]
+    forced, states = model.nv + model.na, 2 * model.nv + model.na + log.inputs.shape[1]
+    columns = COLUMNS * min(sizes, BATCH) * (2 * forced + 3 * outputs)
+    a_fitted_one = outputs * (parameters + sizes) + columns
+    numbers = fitted * a_fitted_one + len(log) * STATES * states**2
+    fixed = BASE + MODELS * float(model.nbuffer)
+    seconds = BEGUN + (FITS * parameters + SCORES * sizes) * _simulated(task)
+    return Forecast(len(log), fixed + 8 * numbers, seconds, fixed)
 
 
 def refuse_large(found: Forecast, share: float, least: int) -> None:
@@ -91,7 +106,8 @@ def refuse_large(found: Forecast, share: float, least: int) -> None:
     """
     free = free_memory()
     if found.memory > share * free:
-        most = int(found.samples * share * free / found.memory)
+        room, needed = share * free - found.fixed, found.memory - found.fixed
+        most = int(found.samples * room / needed) if needed > 0 else 0
         cut = f"cut the log to {most} samples, or export it at a lower rate, or"
         cure = cut if most >= least else "close other programs, or"
         raise InputError(

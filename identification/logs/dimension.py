@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 from math import isclose, pi
 
 from identification.errors import InputError
@@ -63,6 +64,7 @@ class Dimension:
         return Dimension(self.factor**power, tuple(power * a for a in self.powers))
 
 
+@lru_cache(maxsize=1024)  # each of thousands of parameters has one of a few units
 def dimension(unit: str) -> Dimension | None:
     """The dimension of a unit; None where it has a symbol that is not known.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import inf, isfinite
 
 from identification.errors import InputError, repeated, unknown_name
@@ -109,11 +110,15 @@ class ParameterSet:
         if twice:
             raise InputError(f"parameter set {self.name!r} names {', '.join(twice)} twice")
 
+    @cached_property
+    def _by_name(self) -> dict[str, Parameter]:
+        # A robot with 50 joints has thousands of parameters, each of which is asked for by name.
+        return {p.name: p for p in self.records}
+
     def __getitem__(self, name: str) -> Parameter:
-        for parameter in self.records:
-            if parameter.name == name:
-                return parameter
-        raise unknown_name("parameter", name, (p.name for p in self.records))
+        if name not in self._by_name:
+            raise unknown_name("parameter", name, self._by_name)
+        return self._by_name[name]
 
     def __iter__(self) -> Iterator[Parameter]:
         return iter(self.records)

@@ -103,7 +103,7 @@ def _free(
     said = file.records.get(name, {})
     given: dict[str, Any] = {k: said[k] for k in ("unit", "about") if k in said}
     given |= {k: float(said[k]) for k in ("value", "lower", "upper", "scale") if k in said}
-    sizes = effect_sizes(effects)
+    sizes = effect_sizes([e for e in effects if name.startswith(f"{e.name}.")])
     if name in sizes:
         own, largest = sizes[name]
         refuse_other_unit(said.get("unit", own.unit), own.unit, "it")

@@ -9,8 +9,9 @@ gravity, friction or mass lets the log be explained as it is read nearly as well
 that balance cannot be had, the other reading must explain nearly all. Two mistakes in one log, a
 sign and a unit, an exchange or another sign, are looked for where no reading with one of them is
 far better, and only where the balance does not explain the log as it is read. These are many, so
-that a few windows of each are simulated first. A motion that is too large for the forces of the
-drives is refused without any simulation (`identification.robot.scale`).
+that a few windows of each are simulated first, and none of a log with very many columns. A motion
+that is too large for the forces of the drives is refused without any simulation
+(`identification.robot.scale`).
 """
 
 from __future__ import annotations
@@ -57,6 +58,9 @@ from identification.windows.windows import spread, windows
 MOST_WINDOWS = 60  # of a log that are simulated; a wrong reading is wrong everywhere
 FEW_WINDOWS = 15  # that are simulated first of a reading with two mistakes
 MARGIN = 2.0  # times as much as of all windows, that these few may leave
+# Inputs and outputs of a log in which two mistakes are looked for: exchanges with another sign grow
+# as the third power of the columns, and for 50 joints would be simulated for half a day.
+MOST_COLUMNS = 32
 LENGTHS = (0.1, 1.0)  # of windows, shares of a log, where the robot has no horizon of its own
 
 
@@ -79,6 +83,7 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
     balance = _Balance(plant.model, log)
     if "units" not in file.trust and (cure := different_units(plant.model, log, column)):
         raise InputError(f'log {log.name!r}: {cure}, or write trust = ["units"] into {file.path}')
+    is_small = len(column) <= MOST_COLUMNS
     is_explained = is_nearer = False
     for length in lengths:
         own = unexplained(plant, length, log)
@@ -97,7 +102,7 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
         read = (r for word, kind in kinds.items() if word not in file.trust for r in kind)
         readings = chain(*(r(log, bad, column) for r in read))
         found = misread(log, own, readings, explain, balance.confirms)
-        if found is None and is_judged and balance.contradicts:
+        if found is None and is_judged and is_small and balance.contradicts:
             units = () if "units" in file.trust else turned_units(log, bad, column, wanted)
             # Over the shorter windows only: an exchange is seen in both, and these are many.
             pairs = (two_turns, turned_exchanges) if length == lengths[0] else ()

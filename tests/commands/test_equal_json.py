@@ -16,6 +16,8 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "INCA_M
 LINES = (
     "identification fit robot.toml log.csv",
     "identification fit horizon.toml log.csv",
+    "identification discover robot.toml long.csv",
+    "identification discover few.toml long.csv",
     "identification linearize robot.toml",
     f"inca_mj compare {LOG}",
     "inca_mj cite",
@@ -31,7 +33,10 @@ def folder(tmp_path_factory):
     (folder / "slider.xml").write_text(SLIDER)
     (folder / "robot.toml").write_text(TOML)
     (folder / "horizon.toml").write_text("horizon = 0.3\nown = ['qpos[0]', 'qvel[0]']\n" + TOML)
+    few = "[effects]\nonly = ['coulomb_friction', 'stiffness', 'encoder_scale']\n"
+    (folder / "few.toml").write_text("horizon = 0.3\nown = ['qpos[0]', 'qvel[0]']\n" + TOML + few)
     write_log(simulated({"damping": 3.3, "mass": 2.2}, 300), folder / "log.csv")
+    write_log(simulated({"damping": 3.3, "mass": 2.2}, 600), folder / "long.csv")
     return folder
 
 

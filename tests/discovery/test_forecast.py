@@ -9,6 +9,7 @@ from identification.discovery import forecast as module
 from identification.discovery.forecast import Forecast, forecast, free_memory, refuse_large
 from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.scoring.sensitivities import BATCH, list_common, list_single
 from identification.discovery.search import discover
 from identification.discovery.task import DiscoveryTask
 
@@ -22,15 +23,46 @@ def task(samples, effects=None):
     return DiscoveryTask(model, slider_log(np.ones((samples, 1))), chosen, DiscoveryOptions())
 
 
-def test_memory_is_that_of_the_sensitivities():
-    one = forecast(task(300, ())).memory
-    assert one == module.COPIES * 8 * 300 * 1 * len(FREE)  # no candidate: the parameters alone
-    assert forecast(task(300)).memory > one
+def without_fixed(samples, effects=None):
+    needs = forecast(task(samples, effects))
+    return needs.memory - needs.fixed
+
+
+def test_memory_grows_with_the_candidates_and_their_sizes():
+    without, few, every = ((), slider().effects[:3], slider().effects)
+    assert 0 < without_fixed(300, without) < without_fixed(300, few) < without_fixed(300, every)
+
+
+def test_a_candidate_beyond_a_batch_costs_its_sensitivity_alone():
+    every = slider().effects
+    fewer = every[:-1]
+    sizes = [
+        sum(len(c.sizes) for c in (*list_common(some), *list_single([*first(some)])))
+        for some in (fewer, every)
+    ]
+    assert sizes[1] > sizes[0] >= BATCH  # on one output, of the half that is fitted
+    more = without_fixed(300) - without_fixed(300, fewer)
+    assert more == pytest.approx(8 * 150 * (sizes[1] - sizes[0]))
+
+
+def first(effects):
+    return {c.effect.name: c for c in list_common(effects)}.values()
 
 
 @pytest.mark.parametrize("effects", [(), None])
-def test_memory_grows_with_the_samples(effects):
-    assert forecast(task(900, effects)).memory == 3 * forecast(task(300, effects)).memory
+def test_memory_is_linear_in_the_samples(effects):
+    assert without_fixed(900, effects) == pytest.approx(3 * without_fixed(300, effects))
+    one, other = (forecast(task(n, effects)).fixed for n in (300, 900))
+    assert one == other > 0  # code, libraries and copies of the model
+
+
+def test_a_log_that_is_cut_as_it_says_is_not_refused_again(monkeypatch):
+    monkeypatch.setattr(module, "free_memory", lambda: 2.0**30)
+    needs = Forecast(1000, 2.0**31, 1.0, fixed=2.0**28)
+    with pytest.raises(InputError, match="cut the log to 428 samples"):
+        refuse_large(needs, 1.0, 200)
+    each = (needs.memory - needs.fixed) / needs.samples
+    refuse_large(Forecast(428, needs.fixed + 428 * each, 1.0, needs.fixed), 1.0, 200)
 
 
 @pytest.mark.parametrize(("least", "said"), [(200, "cut the log to 250 samples"),
