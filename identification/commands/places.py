@@ -5,7 +5,6 @@ Nothing that a user made is replaced: neither an input of the command nor anothe
 
 from __future__ import annotations
 
-import errno
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
@@ -40,6 +39,7 @@ def refuse_place(command: Any) -> None:
             did not make.
     """
     from identification.errors import InputError
+    from identification.files import exists
     from identification.folders import try_folder
 
     output = getattr(command, "output", None)
@@ -48,16 +48,16 @@ def refuse_place(command: Any) -> None:
         return
     try:
         there = next(p for p in (out, *out.absolute().parents) if os.path.lexists(p))
-        leads, is_folder, real = there.exists(), there.is_dir(), out.resolve()
-    except (OSError, RuntimeError) as error:  # a name that is too long, a loop of links
-        reason = error.strerror if isinstance(error, OSError) else os.strerror(errno.ELOOP)
-        raise InputError(f"cannot make folder {out}: {reason}; choose another") from error
-    if not leads:
+        is_folder = there.is_dir()
+    except OSError as error:  # a name that is too long
+        raise InputError(f"cannot make folder {out}: {error.strerror}; choose another") from error
+    if not exists(there):  # also where links lead round in a loop
         raise InputError(
             f"cannot make folder {out}: {there} is a link that leads nowhere; choose another"
         )
     if not is_folder:
         raise InputError(f"cannot make folder {out}: {there} is a file; choose another")
+    real = out.resolve()
     for path in _inputs(command):
         if (path if path.is_dir() else path.parent).resolve() == real:
             raise InputError(

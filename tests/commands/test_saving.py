@@ -324,8 +324,8 @@ def loop_of_links(folder):
 
 @pytest.mark.parametrize(("place", "reason"), [
     (long_name, "File name too long"), (deep_long_name, "File name too long"),
-    (result_is_a_folder, "result.json is a folder"), (link_to_nothing, "Not a directory"),
-    (loop_of_links, "ymbolic link"),
+    (result_is_a_folder, "result.json is a folder"), (link_to_nothing, "leads nowhere"),
+    (loop_of_links, "leads nowhere"),
 ])  # fmt: skip
 def test_a_folder_that_cannot_be_is_named_before_any_work(
     tmp_path, capsys, monkeypatch, place, reason

@@ -134,7 +134,7 @@ def test_an_archive_that_unpacks_to_gigabytes_is_refused(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", ["a\0b", "a\0b/c", 300 * "a", "loop"])
 def test_a_name_that_no_file_can_have_is_told(tmp_path, name):
     (tmp_path / "loop").symlink_to(tmp_path / "loop")
-    with pytest.raises(InputError, match=r"cannot read|no such file"):
+    with pytest.raises(InputError, match=r"cannot read|no such f(ile|older)"):
         read_bytes(tmp_path / name)
 
 

@@ -14,7 +14,7 @@ OPTIONS = DiscoveryOptions()
 LEAST = 1 + OPTIONS.min_gap_share  # rms over the noise beyond which something is left
 DOUBTFUL = SimpleNamespace(
     candidate=SimpleNamespace(
-        effect=SimpleNamespace(name="spring", phrase="spring"), where="joint"
+        effect=SimpleNamespace(name="spring", phrase="spring", sizes=()), where="joint"
     ),
     prediction=SimpleNamespace(is_everywhere=True, fall=0.07, t=OPTIONS.min_proof_t + 0.4),
     doubt="chance",

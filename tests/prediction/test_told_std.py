@@ -13,8 +13,10 @@ from identification.prediction.told_std import FEWEST, degrees_of_freedom, told_
 def fitted(monkeypatch, S, weight):
     """A fit of windows whose sensitivities are S (W, m, p), with a std of one of each value."""
     monkeypatch.setattr(module, "projected", lambda t: (t, None))
-    prior = SimpleNamespace(weight=np.asarray(weight, float))
+    free = SimpleNamespace(on_bound=lambda q: np.zeros(len(q), bool))
+    prior = SimpleNamespace(weight=np.asarray(weight, float), space=free)
     return SimpleNamespace(
+        q=np.zeros(len(weight)),
         tangents=S if isinstance(S, list) else [S],
         problem=SimpleNamespace(prior=prior),
         std=np.ones(len(weight)),

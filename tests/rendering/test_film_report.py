@@ -73,6 +73,6 @@ def test_what_cannot_be_shown_is_refused(tmp_path):
     with pytest.raises(InputError, match="row of 1 cells"):
         Table(("a", "b"), ((1,),))
     missing = Section("film", video=tmp_path / "missing.mp4")
-    with pytest.raises(InputError, match="cannot read the film"):
+    with pytest.raises(InputError, match=r"no such file: .*missing\.mp4"):
         write_report(tmp_path / "r.html", "t", [], [missing])
     assert list(tmp_path.iterdir()) == []

@@ -77,7 +77,7 @@ def test_every_path_resolves_to_its_value(parameter):
         ("motor/motor_1.damping", "unknown kind of object 'motor'.* known: actuator, body"),
         ("joint/moter_1.damping", "unknown joint 'moter_1'; did you mean 'motor_1'"),
         ("joint/drum_*.damping", r"unknown joint 'drum_\*'"),
-        ("joint/motor_1.viscosity", "no jnt_viscosity"),
+        ("joint/motor_1.viscosity", "unknown attribute of a joint 'viscosity'"),
         ("body/platform.inertia", "has columns 0 to 2, write one as"),
         ("body/platform.inertia[3]", "has columns 0 to 2"),
         ("body/platform.mass[0]", r"one number, write no \[column\]"),

@@ -190,7 +190,8 @@ def _solve(
     """Sensitivities by the equations; None of a candidate that they do not describe."""
     families: dict[tuple[Any, ...], list[int]] = {}
     for i, candidate in enumerate(group):
-        families.setdefault(_family(candidate), []).append(i)
+        alone = candidate.effect.onset is None
+        families.setdefault((i,) if alone else _family(candidate), []).append(i)
     one_each = [_long_begun(group[members[0]]) for members in families.values()]
     courses = [_courses([group[i] for i in members]) for members in families.values()]
     predictor, values, rows, probes = _probe(point, one_each, SHORTER)
@@ -208,8 +209,8 @@ def _solve(
 
 
 def _family(c: Candidate) -> tuple[Any, ...]:
-    """What candidates have in common that differ only in when they begin."""
-    begins = c.effect.onset.shape if c.effect.onset else None
+    """What candidates of an effect with an onset have in common if they differ in its time only."""
+    begins = c.effect.onset.shape if c.effect.onset else ""
     return (*c.key, c.probe, *((n, v) for n, v in c.shape.items() if n != begins))
 
 
