@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from identification.discovery.attempts import attempt
+from identification.discovery.attempts import attempt, refuse_infinite
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.records import Record
@@ -85,4 +85,5 @@ def _moved(
         model.plant, confirm, horizon, model.scale, fit, fixed, model.unseen,
         [o.unseen for o in others],
     )  # fmt: skip
+    refuse_infinite(fit.cost, *seen.at_horizon)
     return replace(model, fit=fit, unseen=seen)
