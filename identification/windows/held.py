@@ -70,6 +70,11 @@ class HeldWindows:
             first=State(*(getattr(self.first, f.name)[keep] for f in fields(State))),
         )  # fmt: skip
 
+    @property
+    def size(self) -> int:
+        """Outputs of a window, L ny."""
+        return int(np.prod(self.outputs.shape[1:]))
+
     def residual(self, d: np.ndarray) -> np.ndarray:
         """r of all windows at d (W, nx), shape (W, L ny + nx); NaN where one diverges."""
         return self._joined(self._simulated(self.model, [d])[0], d)
