@@ -17,6 +17,7 @@ from identification.errors import DivergenceError
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.records import Record
+from identification.prediction.unseen import LENGTHS, Unseen
 from identification.windows.crossing import Starts, best_starts, sought_from_others
 
 
@@ -66,15 +67,54 @@ def at_their_best(
     return parent, tuple(best)
 
 
+def at_all_lengths(
+    parent: WindowModel, children: Sequence[WindowModel], horizon: float, confirm: Sequence[Record]
+) -> tuple[WindowModel, tuple[WindowModel, ...]]:
+    """A model and models with one effect more, which predict windows of every length at their best.
+
+    Args:
+        parent: the model without the effects.
+        children: models with one of them each, of which some have predicted the horizon alone.
+        horizon: [s].
+        confirm: records that no fit may see.
+    """
+    whole = []
+    for c in children:
+        rest = [n for n in parent.unseen.lengths if n not in c.unseen.lengths]
+        if rest:
+            more = _predicted(c, horizon, confirm, parent.unseen, lengths=rest)
+            c = replace(c, unseen=c.unseen.plus(more))
+        whole.append(c)
+    if not whole:
+        return parent, ()
+    lengths = [n for n in parent.unseen.lengths if n != 1.0]
+
+    def best(model: WindowModel, others: Sequence[WindowModel]) -> WindowModel:
+        theirs = [o.unseen for o in others]
+        seen = _predicted(model, horizon, confirm, model.unseen, theirs, lengths)
+        return replace(model, unseen=seen)
+
+    parent = best(parent, whole)
+    return parent, tuple(best(c, [parent, *(o for o in whole if o is not c)]) for c in whole)
+
+
 def _crossed(
     model: WindowModel, others: Sequence[WindowModel], horizon: float, confirm: Sequence[Record]
 ) -> WindowModel:
     """A model whose windows begin where they are best, of what its searches and others found."""
-    fit = crossed(model.fit, [o.fit for o in others])
-    names = fit.problem.unknowns.local.names
+    model = replace(model, fit=crossed(model.fit, [o.fit for o in others]))
+    theirs = [o.unseen for o in others]
+    seen = _predicted(model, horizon, confirm, model.unseen, theirs, model.unseen.lengths)
+    return replace(model, unseen=seen)
+
+
+def _predicted(
+    model: WindowModel, horizon: float, confirm: Sequence[Record], near: Unseen,
+    others: Sequence[Unseen] = (), lengths: Sequence[float] = LENGTHS,
+) -> Unseen:  # fmt: skip
+    """Errors of a fitted model on unseen records, as `predict_fitted` has them."""
+    names = model.fit.problem.unknowns.local.names
     fixed = {n: v for n, v in model.values.items() if n not in names}
-    seen = predict_fitted(
-        model.plant, confirm, horizon, model.scale, fit, fixed, model.unseen,
-        [o.unseen for o in others],
-    )  # fmt: skip
-    return replace(model, fit=fit, unseen=seen)
+    return predict_fitted(
+        model.plant, confirm, horizon, model.scale, model.fit, fixed, near, others, lengths
+    )

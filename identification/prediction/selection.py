@@ -23,7 +23,7 @@ from identification.prediction.contenders import (
     list_simpler,
     list_starts,
 )
-from identification.prediction.crossing import at_their_best
+from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import Begun, begin
@@ -34,6 +34,8 @@ from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction, Unseen, compare
 from identification.progress import counted
 from identification.quantities import fall_words
+
+REFUTED: tuple[Doubt, ...] = ("numbers", "chance")  # by windows of the horizon alone
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,7 +102,13 @@ def refit_contenders(
         parent: WindowModel, children: Sequence[WindowModel]
     ) -> tuple[WindowModel, list[Contender]]:
         parent, best = at_their_best(parent, children, horizon, confirm)
-        return parent, [_judged(parent, c, refits, options, worse_fit) for c in best]
+        each = [_judged(parent, c, refits, options, worse_fit) for c in best]
+        # the other lengths decide nothing where the horizon itself refutes
+        some = [k for k, c in enumerate(each) if c.doubt not in REFUTED]
+        parent, whole = at_all_lengths(parent, [best[k] for k in some], horizon, confirm)
+        for k, c in zip(some, whole, strict=True):
+            each[k] = _judged(parent, c, refits, options, worse_fit)
+        return parent, each
 
     children = refit(_near_best(_begun(model, chosen, scores, options, progress), options))
     parent, out = judge(model, children)
