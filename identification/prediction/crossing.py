@@ -35,7 +35,8 @@ def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:
     starts = [best_starts(one, rest) for one, *rest in zip(mine, *theirs, strict=True)]
     if not any(is_better.any() for _, is_better in starts):
         return fit
-    found = sought_from_others(fit.problem.held(fit.q), fit.moves, starts)
+    known = [t.r for t in fit.tangents]
+    found = sought_from_others(fit.problem.held(fit.q), fit.moves, starts, known)
     moves, r = tuple(s.d for s in found), [s.r for s in found]
     try:
         tangents = fit.problem.tangents(fit.q, moves, r)

@@ -78,8 +78,8 @@ def exchanged(model: WindowModel, records: Sequence[Record], horizon: float) -> 
             model.plant, fitted, old.shared, old.own, horizon, model.values, model.scale, STEPS
         )
         q = _begin(task, model)
-        moves, _ = task.settled(q, no_moves(task), is_thorough=True)
-        found = solve(task, q, moves, tolerance=FINE, most=MOST_REFIT)
+        moves, r = task.settled(q, no_moves(task), is_thorough=True)
+        found = solve(task, q, moves, tolerance=FINE, most=MOST_REFIT, known=r)
         fixed = {n: v for n, v in model.values.items() if n not in old.local.names}
         unseen = predict_fitted(model.plant, confirm, horizon, model.scale, found, fixed,
                                 lengths=HORIZON)  # fmt: skip

@@ -42,8 +42,8 @@ def with_effect(
         InputError: it cannot be simulated on all windows.
     """
     fit = begun.parent.fit
-    moves, _ = begun.task.settled(begun.q, fit.moves, fit.tangents, is_thorough=True)
-    found = solve(begun.task, begun.q, moves, tolerance=FINE, most=MOST_REFIT)
+    moves, r = begun.task.settled(begun.q, fit.moves, fit.tangents, is_thorough=True)
+    found = solve(begun.task, begun.q, moves, tolerance=FINE, most=MOST_REFIT, known=r)
     if found.cost >= parent.fit.cost:
         return None
     values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}

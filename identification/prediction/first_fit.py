@@ -88,16 +88,17 @@ def _begun(parent: WindowModel, score: WindowScore, shape_std: float) -> Begun |
     for share in SHARES:
         q = _begin(task, parent, score, share)
         try:  # the states have made up for what was missing
-            moves, cost = few.settled(q, begun, near)
+            moves, r = few.settled(q, begun, near)
         except InputError:
             continue
-        tried.append((cost, q, moves))
+        cost = few.cost_of(q, r)
+        tried.append((cost, q, moves, r))
         if cost < least or not c.free:
             break
     if not tried:
         return None
-    _, q, moves = min(tried, key=lambda t: t[0])
-    found = solve(few, q, moves, tolerance=FINE)
+    _, q, moves, r = min(tried, key=lambda t: t[0])
+    found = solve(few, q, moves, tolerance=FINE, known=r)
     windows = sum(len(rows) for rows in at)
     return Begun(found.cost, windows, c, parent, fixed, task, found.q)
 

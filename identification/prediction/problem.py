@@ -112,8 +112,8 @@ class Problem:
     def settled(
         self, q: np.ndarray, d: Sequence[np.ndarray], near: Sequence[Tangent] | None = None,
         is_thorough: bool = False,
-    ) -> tuple[tuple[np.ndarray, ...], float]:  # fmt: skip
-        """The moves of the states that are best at q, each window for itself, and V there.
+    ) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:  # fmt: skip
+        """The moves of the states that are best at q, each window for itself, and residuals there.
 
         Args:
             q: shape (p,).
@@ -125,7 +125,8 @@ class Problem:
             DivergenceError: a window left the finite numbers at q and d.
         """
         each = settle(self.held(q), d, near, is_thorough)
-        return tuple(s.d for s in each), self.cost_of(q, [s.r for s in each])
+        self.cost_of(q, [s.r for s in each])  # it is finite
+        return tuple(s.d for s in each), tuple(s.r for s in each)
 
 
 def best_of(

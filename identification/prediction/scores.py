@@ -92,11 +92,10 @@ def find_imitated(
         options: of how little they must leave.
     """
     base, asked = _Base(fit), {s.candidate.key: s.candidate for s in reversed(scores)}
-    return {
-        key
-        for key, candidate in asked.items()
-        if base.is_imitated(candidate, options.imitated_share)
-    }
+    imitated: list[Candidate] = []
+    for group in _groups([*asked.values()]):
+        imitated += base.imitated(group, options.imitated_share)
+    return {c.key for c in imitated}
 
 
 def _groups(candidates: Sequence[Candidate]) -> Iterator[list[Candidate]]:
@@ -145,16 +144,17 @@ class _Base:
             out.append(self._score(c, np.vstack([S, below])))
         return out
 
-    def is_imitated(self, candidate: Candidate, share: float) -> bool:
-        """Whether free parameters of the model imitate all columns, whatever priors say.
+    def imitated(self, group: Sequence[Candidate], share: float) -> list[Candidate]:
+        """Candidates all of whose columns free parameters imitate, whatever priors say.
 
-        Its step is as small as that of the free parameters: where joints stick, a large one shows
-        something else.
+        Their steps are as small as those of the free parameters: where joints stick, a large one
+        shows something else.
         """
-        S = np.vstack(self._columns([candidate], SMALL))
+        S = np.vstack(self._columns(group, SMALL))
         size = np.linalg.norm(S, axis=0)
         left = np.linalg.norm(S - self.free @ (self.free.T @ S), axis=0)
-        return bool(np.all(left < share * size))
+        each = np.split(left < share * size, np.cumsum([len(c.sizes) for c in group])[:-1])
+        return [c for c, own in zip(group, each, strict=True) if own.all()]
 
     def _columns(self, group: Sequence[Candidate], share: float = 1.0) -> list[np.ndarray]:
         """-∂r/∂η of the sizes of candidates, without the states' part, (rows, k) a record.
