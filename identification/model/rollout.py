@@ -19,6 +19,7 @@ from mujoco.batch import Batch, SimulationError
 
 from identification.engine import quiet, untimed
 from identification.errors import DivergenceError, InputError
+from identification.model.lean import lean
 from identification.model.paths import Slot
 from identification.pool import threads
 
@@ -148,7 +149,7 @@ def rollout(
     if len(own) not in (1, n):
         raise InputError(f"{len(own)} input sequences for {n} simulations; give one, or one each")
 
-    model = without_sensors(model)
+    model = lean(model, numbers)
     batch = Batch(model, n, nthread or min(threads(), n))
     _expand(batch, numbers)
     for field, row in zip(("qpos", "qvel", "act"), rows, strict=True):

@@ -114,8 +114,8 @@ def _alone(model: WindowModel, record: Record, horizon: float) -> WindowFit:
     task = problem(
         model.plant, [record], Prior(), Prior(), horizon, values, model.scale, MOST_STEPS // SHARE
     )
-    moves, _ = task.settled(np.zeros(0), no_moves(task), is_thorough=True)
-    return solve(task, np.zeros(0), moves)
+    moves, r = task.settled(np.zeros(0), no_moves(task), is_thorough=True)
+    return solve(task, np.zeros(0), moves, known=r)
 
 
 def _told(

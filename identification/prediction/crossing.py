@@ -18,6 +18,7 @@ from identification.discovery.attempts import attempt, refuse_infinite
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.records import Record
+from identification.prediction.unseen import LENGTHS, Unseen
 from identification.windows.crossing import Starts, best_starts, sought_from_others
 
 
@@ -35,7 +36,8 @@ def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:
     starts = [best_starts(one, rest) for one, *rest in zip(mine, *theirs, strict=True)]
     if not any(is_better.any() for _, is_better in starts):
         return fit
-    found = sought_from_others(fit.problem.held(fit.q), fit.moves, starts)
+    known = [t.r for t in fit.tangents]
+    found = sought_from_others(fit.problem.held(fit.q), fit.moves, starts, known)
     moves, r = tuple(s.d for s in found), [s.r for s in found]
     tangents = fit.problem.tangents(fit.q, moves, r)
     return replace(
@@ -64,6 +66,52 @@ def at_their_best(
     return parent, tuple(best)
 
 
+def at_all_lengths(
+    parent: WindowModel, children: Sequence[WindowModel], horizon: float, confirm: Sequence[Record]
+) -> tuple[WindowModel, tuple[WindowModel | None, ...]]:
+    """A model and models with one effect more, which predict windows of every length at their best.
+
+    Args:
+        parent: the model without the effects.
+        children: models with one of them each, of which some have predicted the horizon alone.
+        horizon: [s].
+        confirm: records that no fit may see.
+
+    Returns:
+        The model, and the others in their order; None for one that cannot be simulated over the
+        other lengths, which is told.
+    """
+    found = [
+        attempt(c.candidates[-1], partial(_completed, c, parent, horizon, confirm))
+        for c in children
+    ]
+    whole = [c for c in found if c is not None]
+    if not whole:
+        return parent, tuple(found)
+    lengths = [n for n in parent.unseen.lengths if n != 1.0]
+
+    def best(model: WindowModel, others: Sequence[WindowModel]) -> WindowModel:
+        moved = partial(_begun_best, model, others, horizon, confirm, lengths)
+        return attempt(None, moved) or model
+
+    parent = best(parent, whole)
+    return parent, tuple(
+        None if c is None else best(c, [parent, *(o for o in whole if o is not c)]) for c in found
+    )
+
+
+def _completed(
+    model: WindowModel, parent: WindowModel, horizon: float, confirm: Sequence[Record]
+) -> WindowModel:
+    """The model which predicts windows of every length that its parent predicts."""
+    rest = [n for n in parent.unseen.lengths if n not in model.unseen.lengths]
+    if not rest:
+        return model
+    more = _predicted(model, horizon, confirm, parent.unseen, lengths=rest)
+    refuse_infinite(*(s for of_length in more.squares for s in of_length))
+    return replace(model, unseen=model.unseen.plus(more))
+
+
 def _crossed(
     model: WindowModel, others: Sequence[WindowModel], horizon: float, confirm: Sequence[Record]
 ) -> WindowModel:
@@ -78,12 +126,28 @@ def _moved(
     model: WindowModel, others: Sequence[WindowModel], horizon: float, confirm: Sequence[Record]
 ) -> WindowModel:
     """The model whose windows begin there; an error where it cannot be simulated."""
-    fit = crossed(model.fit, [o.fit for o in others])
-    names = fit.problem.unknowns.local.names
+    model = replace(model, fit=crossed(model.fit, [o.fit for o in others]))
+    return _begun_best(model, others, horizon, confirm, model.unseen.lengths)
+
+
+def _begun_best(
+    model: WindowModel, others: Sequence[WindowModel], horizon: float, confirm: Sequence[Record],
+    lengths: Sequence[float],
+) -> WindowModel:  # fmt: skip
+    """The model whose unseen windows of some lengths begin where any of the models is best."""
+    theirs = [o.unseen for o in others]
+    seen = _predicted(model, horizon, confirm, model.unseen, theirs, lengths)
+    refuse_infinite(model.fit.cost, *(s for of_length in seen.squares for s in of_length))
+    return replace(model, unseen=seen)
+
+
+def _predicted(
+    model: WindowModel, horizon: float, confirm: Sequence[Record], near: Unseen,
+    others: Sequence[Unseen] = (), lengths: Sequence[float] = LENGTHS,
+) -> Unseen:  # fmt: skip
+    """Errors of a fitted model on unseen records, as `predict_fitted` has them."""
+    names = model.fit.problem.unknowns.local.names
     fixed = {n: v for n, v in model.values.items() if n not in names}
-    seen = predict_fitted(
-        model.plant, confirm, horizon, model.scale, fit, fixed, model.unseen,
-        [o.unseen for o in others],
-    )  # fmt: skip
-    refuse_infinite(fit.cost, *seen.at_horizon)
-    return replace(model, fit=fit, unseen=seen)
+    return predict_fitted(
+        model.plant, confirm, horizon, model.scale, model.fit, fixed, near, others, lengths
+    )

@@ -24,7 +24,7 @@ from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.problem import MOST_STEPS, Problem, no_moves, problem
 from identification.prediction.records import Record
 from identification.prediction.selection import Contender
-from identification.prediction.unseen import compare
+from identification.prediction.unseen import HORIZON, compare
 
 STEPS = MOST_STEPS // 3  # of the fit's windows, as of rough fits: it need not be proven once more
 
@@ -61,6 +61,8 @@ def without_contradicted(
 def exchanged(model: WindowModel, records: Sequence[Record], horizon: float) -> WindowModel | None:
     """The same model fitted to the records that confirm; its unseen ones are those of its fit.
 
+    Only the horizon is predicted: nothing else is asked of it.
+
     Args:
         model: where the search begins.
         records: to fit and to confirm.
@@ -77,10 +79,11 @@ def exchanged(model: WindowModel, records: Sequence[Record], horizon: float) -> 
             model.plant, fitted, old.shared, old.own, horizon, model.values, model.scale, STEPS
         )
         q = _begin(task, model)
-        moves, _ = task.settled(q, no_moves(task), is_thorough=True)
-        found = solve(task, q, moves, tolerance=FINE, most=MOST_REFIT)
+        moves, r = task.settled(q, no_moves(task), is_thorough=True)
+        found = solve(task, q, moves, tolerance=FINE, most=MOST_REFIT, known=r)
         fixed = {n: v for n, v in model.values.items() if n not in old.local.names}
-        unseen = predict_fitted(model.plant, confirm, horizon, model.scale, found, fixed)
+        unseen = predict_fitted(model.plant, confirm, horizon, model.scale, found, fixed,
+                                lengths=HORIZON)  # fmt: skip
         refuse_infinite(found.cost, *unseen.at_horizon)
         return WindowModel(model.candidates, found, unseen, model.scale)
 

@@ -20,6 +20,7 @@ from identification.prediction.fit import solve
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.problem import with_longer_steps, with_unknowns
 from identification.prediction.records import Record
+from identification.prediction.unseen import HORIZON
 
 MOST_REFIT = 12  # its linearisations; an effect that takes more is not what is missing
 
@@ -28,6 +29,8 @@ def with_effect(
     parent: WindowModel, begun: Begun, horizon: float, confirm: Sequence[Record]
 ) -> WindowModel | None:
     """The model with one effect more, refitted; None where it explains no more than its parent.
+
+    Of unseen records it predicts the horizon alone (see `identification.prediction.unseen`).
 
     Args:
         parent: the model without it.
@@ -39,13 +42,14 @@ def with_effect(
         InputError: it cannot be simulated on all windows.
     """
     fit = begun.parent.fit
-    moves, _ = begun.task.settled(begun.q, fit.moves, fit.tangents, is_thorough=True)
-    found = solve(begun.task, begun.q, moves, tolerance=FINE, most=MOST_REFIT)
+    moves, r = begun.task.settled(begun.q, fit.moves, fit.tangents, is_thorough=True)
+    found = solve(begun.task, begun.q, moves, tolerance=FINE, most=MOST_REFIT, known=r)
     if not found.cost < parent.fit.cost:
         return None
     values = {n: v for o in parent.candidates for n, v in (*o.fixed.items(), *o.whole.items())}
     fixed, plant = {**values, **begun.fixed}, begun.parent.plant
-    seen = predict_fitted(plant, confirm, horizon, parent.scale, found, fixed, parent.unseen)
+    seen = predict_fitted(plant, confirm, horizon, parent.scale, found, fixed, parent.unseen,
+                          lengths=HORIZON)  # fmt: skip
     return WindowModel((*parent.candidates, begun.candidate), found, seen, parent.scale)
 
 

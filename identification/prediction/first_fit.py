@@ -93,14 +93,15 @@ def _begun(parent: WindowModel, score: WindowScore, shape_std: float) -> Begun |
         settled = attempt(None, partial(few.settled, q, begun, near))
         if settled is None:
             continue
-        moves, cost = settled
-        tried.append((cost, q, moves))
+        moves, r = settled
+        cost = few.cost_of(q, r)
+        tried.append((cost, q, moves, r))
         if cost < least or not c.free:
             break
     if not tried:
         return None
-    _, q, moves = min(tried, key=lambda t: t[0])
-    found = solve(few, q, moves, tolerance=FINE)
+    _, q, moves, r = min(tried, key=lambda t: t[0])
+    found = solve(few, q, moves, tolerance=FINE, known=r)
     windows = sum(len(rows) for rows in at)
     return Begun(found.cost, windows, c, parent, fixed, task, found.q)
 

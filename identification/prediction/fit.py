@@ -122,6 +122,7 @@ def solve(
     tolerance: float = 1e-4,
     most: int = 25,
     progress: Progress | None = None,
+    known: Sequence[np.ndarray] | None = None,
 ) -> WindowFit:
     """Search the least V from a start.
 
@@ -132,11 +133,14 @@ def solve(
         tolerance: relative fall of V at which the search ends, had or promised.
         most: linearisations at most.
         progress: is told one line per linearisation.
+        known: residuals at the start, one array (W, m) a record; they are computed when None.
 
     Raises:
         DivergenceError: the start cannot be simulated.
     """
-    at = linearised(problem, problem.prior.space.inside(q), tuple(moves), tolerance)
+    begun = problem.prior.space.inside(q)
+    there = known if np.array_equal(begun, q) else None  # on a bound: it begins beside the start
+    at = linearised(problem, begun, tuple(moves), tolerance, there)
     converged, steps = False, 1
     trials = levenberg_marquardt(at, AtPoint.moved, DAMPING)
     for _ in counted(count(), "steps of a fit"):

@@ -19,7 +19,7 @@ from identification.prediction.own_values import Own
 from identification.prediction.records import Record
 from identification.prediction.step_shift import StepShift, step_shift
 from identification.prediction.told_std import told_std
-from identification.prediction.unseen import Unseen, predict
+from identification.prediction.unseen import LENGTHS, Unseen, predict
 from identification.windows.coarse import own_step
 
 
@@ -98,6 +98,7 @@ class WindowModel:
 def predict_fitted(
     plant: Plant, confirm: Sequence[Record], horizon: float, scale: np.ndarray, found: WindowFit,
     fixed: Mapping[str, float], near: Unseen | None = None, others: Sequence[Unseen] = (),
+    lengths: Sequence[float] = LENGTHS,
 ) -> Unseen:  # fmt: skip
     """Errors on unseen records; of parameters that each has for itself, its own halves tell.
 
@@ -110,6 +111,7 @@ def predict_fitted(
         fixed: values that are neither the plant's own nor fitted.
         near: errors of a model nearby, at whose states the windows' search begins.
         others: of other models, see `predict`.
+        lengths: of the windows, in units of the horizon.
 
     Raises:
         InputError: no window of the horizon fits a record.
@@ -121,4 +123,4 @@ def predict_fitted(
     if m:
         start = found.q[len(unknowns.shared.names) :].reshape(-1, m).mean(axis=0)
     own = Own(unknowns.own, start)
-    return predict(plant, confirm, horizon, scale, values, near, own, others)
+    return predict(plant, confirm, horizon, scale, values, near, own, others, lengths)

@@ -108,10 +108,11 @@ def as_begun(nominal_model: NominalModel, fitted: WindowModel, unseen: Unseen) -
     """
     task = fitted.fit.problem
     q = begin(nominal_model, task.unknowns)
-    moves, cost = task.settled(q, fitted.fit.moves, is_thorough=True)
+    moves, r = task.settled(q, fitted.fit.moves, is_thorough=True)
     fit = replace(
-        fitted.fit, q=q, moves=moves, tangents=task.tangents(q, moves), cost=cost, steps=0
-    )
+        fitted.fit, q=q, moves=moves, tangents=task.tangents(q, moves, r), cost=task.cost_of(q, r),
+        steps=0,
+    )  # fmt: skip
     return replace(fitted, fit=fit, unseen=unseen)
 
 

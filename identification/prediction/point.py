@@ -88,7 +88,7 @@ class AtPoint:
         moves = tuple(d + more for d, more in zip(self.moves, dd, strict=True))
         try:
             held = self.problem.held(q)
-            moves, r = best_of(held, moves, self.moves)
+            moves, r = best_of(held, moves, self.moves, self._enough(expected))
             cost = self.problem.cost_of(q, r)
             hoped = self.cost - promised
             is_short = hoped > self.tolerance * self.cost and self.cost - cost < KEPT * hoped
@@ -126,6 +126,17 @@ class AtPoint:
         """
         known = [t.r for t in self.tangents]
         return linearised(self.problem, self.q, self.moves, self.tolerance, known)
+
+    def _enough(self, expected: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """Sums of squares with which windows have followed a step, one array (W,) a record.
+
+        A window that keeps the state it had can gain little more than these leave.
+        """
+        before = [np.sum(t.r**2, axis=1) for t in self.tangents]
+        least = self.tolerance * float(np.mean(np.concatenate(before)))
+        return [
+            e + (1 - KEPT) * np.abs(b - e) + least for b, e in zip(before, expected, strict=True)
+        ]
 
     def _expected(self, dq: np.ndarray, dd: Sequence[np.ndarray]) -> list[np.ndarray]:
         """Sums of squares by the linearisation after a step, one array (W,) a record."""

@@ -112,8 +112,8 @@ class Problem:
     def settled(
         self, q: np.ndarray, d: Sequence[np.ndarray], near: Sequence[Tangent] | None = None,
         is_thorough: bool = False,
-    ) -> tuple[tuple[np.ndarray, ...], float]:  # fmt: skip
-        """The moves of the states that are best at q, each window for itself, and V there.
+    ) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:  # fmt: skip
+        """The moves of the states that are best at q, each window for itself, and residuals there.
 
         Args:
             q: shape (p,).
@@ -125,27 +125,36 @@ class Problem:
             DivergenceError: a window left the finite numbers at q and d.
         """
         each = settle(self.held(q), d, near, is_thorough)
-        return tuple(s.d for s in each), self.cost_of(q, [s.r for s in each])
+        self.cost_of(q, [s.r for s in each])  # it is finite
+        return tuple(s.d for s in each), tuple(s.r for s in each)
 
 
 def best_of(
-    held: HeldRecords, moves: Sequence[np.ndarray], others: Sequence[np.ndarray]
-) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
+    held: HeldRecords, moves: Sequence[np.ndarray], others: Sequence[np.ndarray],
+    enough: Sequence[np.ndarray],
+) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:  # fmt: skip
     """Of two moves of the states the better one, each window for itself, and the residuals there.
 
     Args:
         held: the windows.
         moves: one array (W, nx) a record.
         others: likewise.
+        enough: sums of squares, one array (W,) a record: a window that has no more at `moves` is
+            not simulated at `others`.
     """
-    d, r = [], []
-    each = zip(moves, others, held.residuals(moves), held.residuals(others), strict=True)
-    for one, other, r_one, r_other in each:
-        squares = np.nan_to_num([np.sum(x**2, axis=1) for x in (r_one, r_other)], nan=np.inf)
-        first = (squares[0] <= squares[1])[:, None]
-        d.append(np.where(first, one, other))
-        r.append(np.where(first, r_one, r_other))
-    return tuple(d), tuple(r)
+    residuals = held.residuals(moves)
+    # NaN, of a window that diverges, is more than enough
+    at = [~(np.sum(r**2, axis=1) <= most) for r, most in zip(residuals, enough, strict=True)]
+    best = []
+    for one, other, r, r_other, rows in zip(
+        moves, others, residuals, held.residuals(others, at), at, strict=True
+    ):
+        d, r, places = np.array(one), np.array(r), np.flatnonzero(rows)
+        squares = np.nan_to_num([np.sum(x**2, axis=1) for x in (r[rows], r_other)], nan=np.inf)
+        better = squares[1] < squares[0]
+        d[places[better]], r[places[better]] = other[rows][better], r_other[better]
+        best.append((d, r))
+    return tuple(d for d, _ in best), tuple(r for _, r in best)
 
 
 def problem(

@@ -90,11 +90,14 @@ def find_imitated(
         options: of how little they must leave.
     """
     base, asked = _Base(fit), {s.candidate.key: s.candidate for s in reversed(scores)}
-    return {
-        key
-        for key, candidate in asked.items()
-        if attempt(candidate, partial(base.is_imitated, candidate, options.imitated_share))
-    }
+    imitated: list[Candidate] = []
+    for group in _groups([*asked.values()]):
+        found = attempt(None, partial(base.imitated, group, options.imitated_share))
+        if found is None:  # one of them: the others are asked for without it
+            each = (attempt(c, partial(base.imitated, [c], options.imitated_share)) for c in group)
+            found = [c for some in each if some for c in some]
+        imitated += found
+    return {c.key for c in imitated}
 
 
 def _groups(candidates: Sequence[Candidate]) -> Iterator[list[Candidate]]:
@@ -143,16 +146,17 @@ class _Base:
             out.append(self._score(c, np.vstack([S, below])))
         return out
 
-    def is_imitated(self, candidate: Candidate, share: float) -> bool:
-        """Whether free parameters of the model imitate all columns, whatever priors say.
+    def imitated(self, group: Sequence[Candidate], share: float) -> list[Candidate]:
+        """Candidates all of whose columns free parameters imitate, whatever priors say.
 
-        Its step is as small as that of the free parameters: where joints stick, a large one shows
-        something else.
+        Their steps are as small as those of the free parameters: where joints stick, a large one
+        shows something else.
         """
-        S = np.vstack(self._columns([candidate], SMALL))
+        S = np.vstack(self._columns(group, SMALL))
         size = np.linalg.norm(S, axis=0)
         left = np.linalg.norm(S - self.free @ (self.free.T @ S), axis=0)
-        return bool(np.all(left < share * size))
+        each = np.split(left < share * size, np.cumsum([len(c.sizes) for c in group])[:-1])
+        return [c for c, own in zip(group, each, strict=True) if own.all()]
 
     def _columns(self, group: Sequence[Candidate], share: float = 1.0) -> list[np.ndarray]:
         """-∂r/∂η of the sizes of candidates, without the states' part, (rows, k) a record.

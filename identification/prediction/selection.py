@@ -24,7 +24,7 @@ from identification.prediction.contenders import (
     list_simpler,
     list_starts,
 )
-from identification.prediction.crossing import at_their_best
+from identification.prediction.crossing import at_all_lengths, at_their_best
 from identification.prediction.evidence import all_gains, count_windows, evidence
 from identification.prediction.extension import with_effect
 from identification.prediction.first_fit import Begun, begin
@@ -35,6 +35,8 @@ from identification.prediction.scores import WindowScore
 from identification.prediction.unseen import Prediction, Unseen, compare
 from identification.progress import counted
 from identification.quantities import fall_words
+
+REFUTED: tuple[Doubt, ...] = ("numbers", "chance")  # by windows of the horizon alone
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,7 +103,16 @@ def refit_contenders(
         parent: WindowModel, children: Sequence[WindowModel]
     ) -> tuple[WindowModel, list[Contender]]:
         parent, best = at_their_best(parent, children, horizon, confirm)
-        return parent, [_judged(parent, c, refits, options, worse_fit) for c in best]
+        each = {k: _judged(parent, c, refits, options, worse_fit) for k, c in enumerate(best)}
+        # the other lengths decide nothing where the horizon itself refutes
+        some = [k for k, c in each.items() if c.doubt not in REFUTED]
+        parent, whole = at_all_lengths(parent, [best[k] for k in some], horizon, confirm)
+        for k, c in zip(some, whole, strict=True):
+            if c is None:
+                del each[k]
+            else:
+                each[k] = _judged(parent, c, refits, options, worse_fit)
+        return parent, [*each.values()]
 
     children = refit(_near_best(_begun(model, chosen, scores, options), options))
     parent, out = judge(model, children)

@@ -37,7 +37,7 @@ from identification.prediction.selection import (
     Contender,
     refit_contenders,
 )
-from identification.prediction.unseen import Unseen, compare, predict
+from identification.prediction.unseen import HORIZON, Unseen, compare, predict
 
 FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
 
@@ -73,7 +73,8 @@ class RecordsState:
     Attributes:
         task: what is asked.
         is_finished: whether there is nothing left to try.
-        begun: errors of the values with which the fit began, on the records that confirm.
+        begun: errors of the values with which the fit began, on the records that confirm; over the
+            horizon alone where that refutes them.
         nominal: the fitted model without effects.
         nominal_scores: of all candidates on it, the best first.
         model: the fitted model with the accepted effects.
@@ -120,9 +121,14 @@ def first_state(task: RecordsTask, progress: Progress) -> RecordsState:
     base = task.nominal_model
     nominal = fit_nominal(base, task.records, progress)
     _refuse_few(nominal.unseen, task.horizon)
-    begun = predict(nominal.plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen)
-    worse = None
-    if find_doubt(compare(nominal.unseen, begun), 1, task.options) is None:
+    begun = predict(nominal.plant, task.confirm, task.horizon, nominal.scale, {}, nominal.unseen,
+                    lengths=HORIZON)  # fmt: skip
+    worse, refuted = None, find_doubt(compare(nominal.unseen, begun), 1, task.options)
+    if refuted is None:  # over the other lengths too?
+        begun = predict(nominal.plant, task.confirm, task.horizon, nominal.scale, {},
+                        nominal.unseen)  # fmt: skip
+        refuted = find_doubt(compare(nominal.unseen, begun), 1, task.options)
+    if refuted is None:
         worse = nominal.unseen
         progress(
             "the fitted values predict unseen records worse (mean square"

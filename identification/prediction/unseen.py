@@ -1,13 +1,14 @@
 """Prediction of records that no fit has seen: two models over windows of several lengths.
 
-Both models begin each window at the state that explains it best, found by the same smoother. Gains
-of blocks of neighbouring windows (`identification.prediction.blocks`) are the sample of a t-test.
+The horizon is predicted first: what it refutes is not predicted over the other lengths. Both models
+begin each window at the state that explains it best, found by the same smoother. Gains of blocks of
+neighbouring windows (`identification.prediction.blocks`) are the sample of a t-test.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.stats import ttest_1samp
@@ -28,6 +29,7 @@ from identification.windows.shooting import Shooting
 from identification.windows.windows import Windows, first_states, spread, windows
 
 LENGTHS = (0.5, 1.0, 2.0)  # of the horizon
+HORIZON = (1.0,)  # alone
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,6 +62,20 @@ class Unseen:
         """Where windows of a length begin, in units of the horizon, and their errors, by record."""
         k = self.lengths.index(length)
         return tuple(Starts(*pair) for pair in zip(self.moves[k], self.squares[k], strict=True))
+
+    def plus(self, other: Unseen) -> Unseen:
+        """The same with other lengths; those of the other one count where both have them.
+
+        Args:
+            other: of the same model, on the same records.
+        """
+        pairs = {n: (u.squares[k], u.moves[k]) for u in (self, other)
+                 for k, n in enumerate(u.lengths)}  # fmt: skip
+        lengths = tuple(sorted(pairs))
+        return replace(
+            other if 1.0 in other.lengths else self, lengths=lengths,
+            squares=tuple(pairs[n][0] for n in lengths), moves=tuple(pairs[n][1] for n in lengths),
+        )  # fmt: skip
 
     @property
     def floor(self) -> float:
@@ -118,6 +134,7 @@ def predict(
     near: Unseen | None = None,
     own: Own | None = None,
     others: Sequence[Unseen] = (),
+    lengths: Sequence[float] = LENGTHS,
 ) -> Unseen:
     """Errors of a model on records, over windows of several lengths.
 
@@ -134,15 +151,21 @@ def predict(
         own: parameters that each record has for itself.
         others: errors of other models; `near` is then of this model itself, and only windows that
             others begin with less error are sought again, from there.
+        lengths: which, in units of the horizon; one that fits no record is left out, but for the
+            horizon itself.
 
     Raises:
         InputError: no window of the horizon fits a record.
         DivergenceError: the model cannot be simulated.
     """
-    squares, moves, lengths = [], [], []
+    if near is not None and others:
+        lengths = [n for n in lengths if _is_better_elsewhere(near, others, n)]
+        if not lengths:
+            return near
+    squares, moves, told = [], [], []
     percent, of_outputs = np.zeros(len(scale)), ()
     halves = [own_values(plant, r, horizon, scale, values, own or Own()) for r in records]
-    for factor in LENGTHS:
+    for factor in lengths:
         try:
             length = factor * horizon
             steps = MOST_STEPS if factor == 1.0 else MOST_STEPS // 3  # the others only agree or not
@@ -152,34 +175,47 @@ def predict(
             if factor == 1.0:
                 raise
             continue  # fewer than 3 samples, or longer than a record
-        begun = None if near is None else near.begun(factor)
+        begun = near.begun(factor) if near is not None and factor in near.lengths else None
         each = _settled(plant, records, cuts, scale, values, halves, begun,
-                        [o.begun(factor) for o in others])  # fmt: skip
+                        [o.begun(factor) for o in others if factor in o.lengths])  # fmt: skip
         if factor == 1.0:
             measured = np.concatenate([c.outputs.reshape(-1, len(scale)) for c in cuts])
             errors = np.concatenate([e.reshape(-1, len(scale)) for _, e in each])
             percent = fit_percent(measured, measured - errors)
             of_outputs = tuple(np.mean((e / scale) ** 2, axis=1) for _, e in each)
-        lengths.append(factor)
+        told.append(factor)
         moves.append(tuple(d for d, _ in each))
         squares.append(tuple(np.mean((e / scale) ** 2, axis=(1, 2)) for _, e in each))
     noise = np.median([noise_floor(r.log.outputs) for r in records], axis=0)
-    return Unseen(
-        lengths=tuple(lengths), squares=tuple(squares), moves=tuple(moves),
+    found = Unseen(
+        lengths=tuple(told), squares=tuple(squares), moves=tuple(moves),
         of_outputs=of_outputs, noise=(noise / scale) ** 2, fit_percent=percent,
         own={r.log.name: of_halves(*h) for r, h in zip(records, halves, strict=True)},
     )  # fmt: skip
+    return found if near is None or not others else near.plus(found)
+
+
+def _is_better_elsewhere(own: Unseen, others: Sequence[Unseen], length: float) -> bool:
+    """Whether other models begin any window of a length with less error."""
+    return any(
+        (theirs.squares < mine.squares).any()
+        for o in others
+        if length in o.lengths
+        for mine, theirs in zip(own.begun(length), o.begun(length), strict=True)
+    )
 
 
 def compare(without: Unseen, with_it: Unseen) -> Prediction:
-    """What the second of two models predicts better than the first."""
+    """What the second of two models predicts better than the first, over lengths that both have."""
     falls, typical, gains = [], [], []
-    for a, b in zip(without.squares, with_it.squares, strict=True):
+    lengths = [n for n in without.lengths if n in with_it.lengths]
+    for length in lengths:
+        a, b = (u.squares[u.lengths.index(length)] for u in (without, with_it))
         falls.append(1 - float(np.concatenate(b).mean() / np.concatenate(a).mean()))
         ratios = [np.log(y.mean() / x.mean()) for x, y in zip(a, b, strict=True)]
         typical.append(1 - float(np.exp(np.mean(ratios))))
         gains.append(block_gains(a, b, without.floor))
-    at = without.lengths.index(1.0)
+    at = lengths.index(1.0)
     blocks, means = gains[at], tuple(float(np.concatenate(g).mean()) for g in gains)
     every = np.concatenate(blocks)
     t, chance = 0.0, 1.0

@@ -48,14 +48,17 @@ def best_starts(own: Starts, others: Sequence[Starts]) -> tuple[np.ndarray, np.n
 
 
 def sought_from_others(
-    held: HeldRecords, moves: Sequence[np.ndarray], starts: Sequence[tuple[np.ndarray, np.ndarray]]
-) -> tuple[Settled, ...]:
+    held: HeldRecords, moves: Sequence[np.ndarray],
+    starts: Sequence[tuple[np.ndarray, np.ndarray]], known: Sequence[np.ndarray] | None = None,
+) -> tuple[Settled, ...]:  # fmt: skip
     """Windows at given states, some of them sought again from others: the best of both.
 
     Args:
         held: the windows.
         moves: their states, one array (W, nx) a record.
         starts: of each record, other states and the mask of the windows that are sought from there.
+        known: residuals at the given states, one array (W, m) a record; they are computed when
+            None.
 
     Returns:
         The windows of each record; NaN in the residual of one that diverges at given states.
@@ -63,19 +66,17 @@ def sought_from_others(
     out: dict[int, Settled] = {}
     for records, windows in held.groups:
         d = np.concatenate([moves[k] for k in records])
-        r = windows.residual(d)
+        r = windows.residual(d) if known is None else np.concatenate([known[k] for k in records])
         begun = np.concatenate([starts[k][0] for k in records])
         at = np.flatnonzero(np.concatenate([starts[k][1] for k in records]))
-        at = at[_finite(windows.rows(at).residual(begun[at]))] if at.size else at
+        first = windows.rows(at).residual(begun[at]) if at.size else r[at]
+        finite = np.isfinite(first).all(axis=1)
+        at, first = at[finite], first[finite]
         if at.size:
-            there, left = search(windows.rows(at), begun[at])
+            there, left = search(windows.rows(at), begun[at], first)
             better = ~(np.sum(left**2, axis=1) >= np.sum(r[at] ** 2, axis=1))
             d[at[better]], r[at[better]] = there[better], left[better]
         for i, k in enumerate(records):
             own = windows.record == i
             out[k] = Settled(d[own], r[own])
     return tuple(out[k] for k in range(len(held.parts)))
-
-
-def _finite(r: np.ndarray) -> np.ndarray:
-    return np.asarray(np.isfinite(r).all(axis=1))

@@ -16,9 +16,10 @@ import numpy as np
 
 from identification.errors import DivergenceError
 from identification.model.coordinates import NOTHING
+from identification.model.lean import lean
 from identification.model.paths import Slot
 from identification.model.predictor import Predictor, with_states
-from identification.model.rollout import State, rollout, without_sensors
+from identification.model.rollout import State, rollout
 from identification.model.sensitivity import FORWARD_STEP
 from identification.windows.shooting import Shooting, at_own_steps, rough, slower
 from identification.windows.tangents import Tangent, decomposed
@@ -69,6 +70,11 @@ class HeldWindows:
             numbers=tuple((slot, column[keep]) for slot, column in self.numbers),
             first=State(*(getattr(self.first, f.name)[keep] for f in fields(State))),
         )  # fmt: skip
+
+    @property
+    def size(self) -> int:
+        """Outputs of a window, L ny."""
+        return int(np.prod(self.outputs.shape[1:]))
 
     def residual(self, d: np.ndarray) -> np.ndarray:
         """r of all windows at d (W, nx), shape (W, L ny + nx); NaN where one diverges."""
@@ -139,10 +145,10 @@ def held_windows(part: Shooting) -> HeldWindows:
     predictor, W = part.predictor, len(part.cut.starts)
     _, numbers = predictor.settings(_NONE)
     inputs, every, hold_kind = part.held_inputs(_NONE)
-    exact = without_sensors(predictor.plant.model)
+    exact = lean(predictor.plant.model, numbers)
     return HeldWindows(
         predictors=(predictor,), model=exact, every=every, hold_kind=hold_kind,
-        for_slopes=rough(predictor.plant) if part.has_rough_slopes else exact,
+        for_slopes=lean(rough(predictor.plant), numbers) if part.has_rough_slopes else exact,
         record=np.zeros(W, int), times=part.times, inputs=inputs, outputs=part.cut.outputs,
         numbers=tuple((slot, np.repeat(column, W)) for slot, column in numbers),
         first=part.first.states, weight=np.tile(part.first.weight, (W, 1)), whitener=part.whitener,

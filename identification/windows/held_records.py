@@ -24,16 +24,24 @@ class HeldRecords:
     parts: tuple[Shooting, ...]
     groups: tuple[tuple[tuple[int, ...], HeldWindows], ...]
 
-    def residuals(self, moves: Sequence[np.ndarray]) -> tuple[np.ndarray, ...]:
+    def residuals(
+        self, moves: Sequence[np.ndarray], at: Sequence[np.ndarray] | None = None
+    ) -> tuple[np.ndarray, ...]:
         """r at moves of the states (W, nx), shape (W, L ny + nx) a record; NaN where one diverges.
 
         Args:
             moves: one array a record.
+            at: masks of the windows that are simulated, shape (W,) a record, whose rows alone are
+                returned; all of them when None.
         """
+        masks = at or [np.ones(len(d), bool) for d in moves]
         out: dict[int, np.ndarray] = {}
         for records, held in self.groups:
-            r = held.residual(np.concatenate([moves[k] for k in records]))
-            out |= {k: r[held.record == i] for i, k in enumerate(records)}
+            some = np.concatenate([masks[k] for k in records])
+            d = np.concatenate([moves[k] for k in records])[some]
+            part = held if some.all() else held.rows(some)
+            r = part.residual(d) if some.any() else np.zeros((0, held.size + d.shape[1]))
+            out |= {k: r[part.record == i] for i, k in enumerate(records)}
         return tuple(out[k] for k in range(len(self.parts)))
 
 

@@ -84,13 +84,13 @@ def settle(
     return tuple(out[k] for k in range(len(held.parts)))
 
 
-def search(held: HeldWindows, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The best states of windows and the residuals there, sought from d (W, nx).
+def search(held: HeldWindows, d: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The best states of windows and the residuals there, sought from d (W, nx), where it is r.
 
     Raises:
-        DivergenceError: the simulation of a window diverged where the search begins.
+        DivergenceError: the simulation of a window diverged beside where the search begins.
     """
-    return _searched(_begun(held, d, held.residual(d), None))
+    return _searched(_begun(held, d, r, None))
 
 
 def _begun(

@@ -84,6 +84,7 @@ def test_a_candidate_whose_columns_fail_is_told_and_the_others_are_scored(how, m
         (selection, "begin", "diverges"), (selection, "begin", "gives NaN"),
         (selection, "with_effect", "is refused"), (selection, "with_effect", "cannot be solved"),
         (extension, "predict_fitted", "diverges"), (extension, "predict_fitted", "gives NaN"),
+        (selection, "at_all_lengths", "diverges"), (selection, "at_all_lengths", "gives NaN"),
         (state, "with_fitting_steps", "divides by zero"),
     ],
 )  # fmt: skip

@@ -1,0 +1,88 @@
+"""A model whose steps leave out what cannot act moves as the whole one does."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from identification.model.lean import CONSTRAINTS, is_constrained, lean
+from identification.model.paths import resolve
+from identification.model.rollout import State, rollout
+
+STEPS = 100
+PLAIN = """<mujoco><option timestep="0.002" integrator="RK4"/>
+  <worldbody>{floor}<body name="a" pos="0 0 0.2"><joint name="j" type="{kind}" axis="0 1 0"
+    {joint}/><geom size="0.1" mass="1" {geom}/>
+    <body name="b" pos="0 0 -0.4"><joint name="k" axis="0 1 0" damping="0.1"/>
+      <geom size="0.05" mass="0.5" contype="0" conaffinity="0"/></body></body></worldbody>
+  {more}<actuator><motor joint="k"/></actuator></mujoco>"""
+
+
+def compiled(floor="", kind="hinge", joint="", geom="", more=""):
+    text = PLAIN.format(floor=floor, kind=kind, joint=joint, geom=geom, more=more)
+    return mujoco.MjModel.from_xml_string(text)
+
+
+def stepped(model, v):
+    """Positions after each step of the whole model, shape (STEPS, 2)."""
+    data, out = mujoco.MjData(model), []
+    data.qvel[:] = v
+    for _ in range(STEPS):
+        data.ctrl[:] = 0.2
+        mujoco.mj_step(model, data)
+        out.append(data.qpos.copy())
+    return np.array(out)
+
+
+def simulated(model, v, numbers=()):
+    u = np.full((STEPS + 1, 1), 0.2)
+    start = State(np.zeros(2), np.asarray(v), np.zeros(0))
+    return rollout(model, start, u, model.opt.timestep, numbers=numbers)["qpos"][0, 1:]
+
+
+CONSTRAINED = {
+    "limit": {"joint": 'limited="true" range="-5 5"'},
+    "friction": {"joint": 'frictionloss="0.3"'},
+    "contact": {"floor": '<geom type="plane" size="1 1 1"/>', "kind": "slide"},
+    "equality": {"more": '<equality><joint joint1="j" joint2="k"/></equality>'},
+    "tendon": {"more": '<tendon><fixed name="t" frictionloss="0.2"><joint joint="j" coef="1"/>'
+               "</fixed></tendon>"},
+}  # fmt: skip
+
+
+@given(st.floats(-5, 5), st.floats(-5, 5), st.sampled_from(["hinge", "slide"]))
+@settings(max_examples=20, deadline=None)
+def test_what_nothing_constrains_moves_the_same_to_the_bit_without_constraints(v, w, kind):
+    model = compiled(kind=kind)
+    assert not is_constrained(model)
+    assert lean(model).opt.disableflags & CONSTRAINTS == CONSTRAINTS
+    np.testing.assert_array_equal(simulated(model, (v, w)), stepped(model, (v, w)))
+
+
+@pytest.mark.parametrize("kind", CONSTRAINED)
+def test_a_model_that_something_may_constrain_keeps_its_constraints(kind):
+    model = compiled(**CONSTRAINED[kind])
+    assert is_constrained(model)
+    assert not lean(model).opt.disableflags & CONSTRAINTS
+    np.testing.assert_array_equal(simulated(model, (3.0, -2.0)), stepped(model, (3.0, -2.0)))
+
+
+def test_dry_friction_that_only_a_value_set_has_acts_on_it():
+    model = compiled()
+    slot = resolve(model, "joint/j.frictionloss")
+    assert is_constrained(model, [(slot, np.array([0.4]))])
+    there = compiled(joint='frictionloss="0.4"')
+    moved = simulated(model, (3.0, -2.0), [(slot, np.array([0.4]))])
+    np.testing.assert_allclose(moved, stepped(there, (3.0, -2.0)), rtol=1e-12, atol=1e-12)
+
+
+def test_the_model_of_the_user_stays_as_it_is_and_a_lean_one_is_not_copied():
+    model = compiled()
+    before = int(model.opt.disableflags)
+    one = lean(model)
+    assert one is not model
+    assert lean(one) is one
+    assert int(model.opt.disableflags) == before
