@@ -85,6 +85,19 @@ def quiet() -> Iterator[None]:
         yield
 
 
+def derive(model: mujoco.MjModel) -> None:
+    """Writes the numbers that MuJoCo derives from others into a model, without its warnings.
+
+    A body without mass would be warned of on stderr and in a file MUJOCO_LOG.TXT; whoever reads the
+    values refuses it in a sentence.
+
+    Args:
+        model: whose numbers were changed.
+    """
+    with quiet():
+        mujoco.mj_setConst(model, mujoco.MjData(model))
+
+
 @contextmanager
 def untimed() -> Iterator[None]:
     """Let MuJoCo's engine take no times; `mjData.timer` stays as it is."""

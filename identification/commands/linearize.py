@@ -37,8 +37,8 @@ class Linearize:
     rate: Annotated[float | None, tyro.conf.arg(metavar="HZ")] = None
     """Samples a second of the discrete model [Hz]; that of the log when not given."""
     trust: Annotated[tuple[str, ...], tyro.conf.arg(metavar="WORD")] = ()
-    """What you know better than a check of the log: contacts, joints, sensors, start, steps, time,
-    units, wiring."""
+    """What you know better than a check of the log: contacts, gaps, joints, rows, sensors, start,
+    steps, time, units, wiring."""
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
     def run(self) -> int:

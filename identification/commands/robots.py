@@ -29,8 +29,8 @@ class OnRobot:
     trust: Annotated[
         tuple[tuple[str, ...], ...], tyro.conf.UseAppendAction, tyro.conf.arg(metavar="WORD")
     ] = ()
-    """What you know better than a check: contacts, joints, sensors, start, steps, time, units,
-    wiring."""
+    """What you know better than a check: contacts, gaps, joints, rows, sensors, start, steps, time,
+    units, wiring."""
     spread: str = "usual"
     """How much values that are alike differ: usual (the robot's TOML), none, or a TOML file."""
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field

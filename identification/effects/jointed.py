@@ -30,6 +30,7 @@ from identification.effects.joint_layout import JointLayout
 from identification.effects.joint_states import JointState, fitting, with_actuators
 from identification.effects.moving_bodies import MovingBody, moving_bodies
 from identification.effects.rows import changed_rows, with_rows
+from identification.engine import derive
 from identification.model.parameter import ParameterSet
 from identification.model.paths import write
 from identification.model.plant import ModelPlant
@@ -102,7 +103,7 @@ class JointPlant:
         model.opt.timestep *= steps
         for slot, values in numbers:
             write(model, slot, float(values[0]))
-        mujoco.mj_setConst(model, mujoco.MjData(model))
+        derive(model)
         return model
 
     @cached_property

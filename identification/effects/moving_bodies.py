@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from identification.engine import quiet
+from identification.engine import derive, quiet
 
 POSES = 4  # random states in which forces are compared
 FELT = 1e-9  # of the largest force: a smaller change of it is round-off
@@ -106,7 +106,7 @@ class Felt:
     def _is(self, field: str, body: int, k: int, more: float) -> bool:
         other = copy.copy(self.model)
         getattr(other, field)[body, k] += more
-        mujoco.mj_setConst(other, mujoco.MjData(other))
+        derive(other)
         change = np.abs(_forces(other, self.states) - self.nominal).max()
         return bool(change > FELT * max(float(np.abs(self.nominal).max()), 1e-300))
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 import mujoco
 import numpy as np
 
+from identification.engine import derive
 from identification.model.paths import Slot
 from identification.model.protocol import Numbers
 from identification.model.rollout import UNDERIVED
@@ -37,7 +38,7 @@ def with_entries(model: mujoco.MjModel, entries: Entries) -> mujoco.MjModel:
     for slot, value in entries:
         getattr(out, slot.field)[slot.index()] = value
     if any(slot.field not in UNDERIVED for slot, _ in entries):
-        mujoco.mj_setConst(out, mujoco.MjData(out))
+        derive(out)
     return out
 
 

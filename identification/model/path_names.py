@@ -81,7 +81,8 @@ def unknown_attribute(model: mujoco.MjModel, kind: str, row: int, attribute: str
         attribute: of the path.
     """
     meant = _meant(_around(model, kind, row, attribute))
-    error = unknown_name(f"attribute of a {kind}", attribute, attributes(model, kind))
+    a = "an" if kind[0] in "aeiou" else "a"
+    error = unknown_name(f"attribute of {a} {kind}", attribute, attributes(model, kind))
     return InputError(f"{error}{'; or' if meant else ''}{meant}")
 
 

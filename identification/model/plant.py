@@ -22,6 +22,7 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
+from identification.engine import derive
 from identification.errors import InputError
 from identification.model.dcmotor import refuse_unread
 from identification.model.parameter import DEVIATION, ParameterSet
@@ -84,7 +85,7 @@ class ModelPlant:
                     start[place[0]][place[1]] = value
         for slot, inertia in with_spreads(model, spread, 1):
             write(model, slot, float(inertia[0]))
-        mujoco.mj_setConst(model, mujoco.MjData(model))
+        derive(model)
         object.__setattr__(self, "model", model)
         object.__setattr__(self, "start", State(**start))
 

@@ -80,11 +80,10 @@ class Simulate:
         }
         # Figures take longer than a short run, so that they are drawn where they are asked for.
         is_drawn = self.output.out is not None or self.figure is not None
-        files = "log.csv, run.npz and model.xml are in"
-        if is_drawn:
-            files = "log.csv, run.npz, figures, model.xml and report.html are in"
-        more = "" if is_drawn else "; --out DIR adds figures and a report"
-        text = f"{_text(result)}\n{files} {now.output.out}{more}"
+        more = (
+            "figures and report.html follow" if is_drawn else "--out DIR adds figures and a report"
+        )
+        text = f"{_text(result)}\nlog.csv, run.npz and model.xml are in {now.output.out}; {more}"
         notes = now._notes()
         drawn = partial(draw, result, notes) if is_drawn else None
         conclude(now, summary, text, partial(keep, result, notes), drawn)

@@ -82,8 +82,8 @@ class Track:
         )
         text = _text(result)
         if self.output.out is not None:
-            files = "log.csv, run.npz, figures, model.xml and report.html"
-            text += f"\n{files} are in {self.output.out}"
+            files = "log.csv, run.npz and model.xml are in"
+            text += f"\n{files} {self.output.out}; figures and report.html follow"
         conclude(self, summary(result), text, partial(keep, result), partial(draw, result))
         return 0
 

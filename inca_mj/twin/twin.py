@@ -13,6 +13,7 @@ import numpy as np
 
 from identification.effects.effect import Effect
 from identification.effects.values import merged
+from identification.engine import derive
 from identification.model.export import write_xml
 from identification.model.parameter import ParameterSet
 from identification.model.paths import Slot, write
@@ -81,7 +82,7 @@ class Twin:
         state = start_state(begin)
         model.qpos0[:] = model.key("start").qpos[:] = state.qpos
         model.key("start").act[:] = state.act
-        mujoco.mj_setConst(model, mujoco.MjData(model))
+        derive(model)
         return replace(self, parameters=parameters, model=model)
 
     def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:

@@ -15,6 +15,7 @@ from identification.commands.examples import examples_of
 from identification.commands.meter import metered
 from identification.commands.refusals import SHELLS, _commands, parsed
 from identification.progress import USUAL, counted, stage, watched
+from identification.robot.trust import TRUST
 from inca_mj.cli import EXAMPLES, Command
 from inca_mj.cli import main as inca
 
@@ -130,3 +131,11 @@ def test_bars_are_drawn_on_a_terminal_only(monkeypatch):
             advance()
             advance()  # more than it was said to take
         assert ("refits" in screen.getvalue()) is drawn
+
+
+@pytest.mark.parametrize("verb", ["fit", "discover", "linearize"])
+def test_the_help_of_trust_lists_every_word(verb, capsys):
+    with pytest.raises(SystemExit):
+        identification([verb, "--help"])
+    said = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    assert f"{', '.join(sorted(TRUST))}." in said

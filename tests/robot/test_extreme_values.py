@@ -18,11 +18,13 @@ def files(folder, said):
     return folder / "robot.toml", folder / "log.csv"
 
 
-def test_a_moving_body_without_mass_is_refused(tmp_path):
+def test_a_moving_body_without_mass_is_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # where MuJoCo would write a file of warnings
     said = TOML.replace("[parameters.mass]", "[parameters.mass]\nvalue = 0.0")
     assert said != TOML
     with pytest.raises(InputError, match="moves, and its mass is 0 kg; give it a value"):
         read_robot(*files(tmp_path, said))
+    assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
 
 
 @pytest.mark.parametrize("key", ["known", "scale"])
