@@ -112,7 +112,7 @@ def forecast(record: Sequence[Row]) -> list[str]:
         "and of chains of bodies, in which nothing is missing. Memory is beside that of the"
         " program, time is that of the processor.", "",
         "    python benchmarks/forecast.py --samples 500 1000 2000",
-        "    python benchmarks/forecast.py --joints 1 5 --samples 2000 20000", "",
+        "    python benchmarks/forecast.py --joints 1 5 --samples 2000", "",
         "| robot | samples | spread | verdict | memory: forecast | taken | time: forecast | taken"
         " | commit |",
         "|---|---|---|---|---|---|---|---|---|",
@@ -124,11 +124,16 @@ def forecast(record: Sequence[Row]) -> list[str]:
             f" {memory['forecast'] / 1e6:.0f} MB | {memory['measured'] / 1e6:.0f} MB |"
             f" {seconds['forecast']:.0f} s | {seconds['measured']:.0f} s | {row['commit']} |"
         )
-    said += [
-        "",
-        "The first four rows are of an earlier search and of an earlier law of the forecast.",
-    ]
+    if record:
+        memory, seconds = (_ratios(record, key) for key in ("memory", "seconds"))
+        said += ["", f"Taken over forecast: memory {memory}, time {seconds}."]
     return said
+
+
+def _ratios(record: Sequence[Row], key: str) -> str:
+    """The smallest and the largest ratio of what was taken to its forecast, in words."""
+    each = [row[key]["measured"] / row[key]["forecast"] for row in record]
+    return f"{min(each):.2f} to {max(each):.2f}"
 
 
 def _robot(row: Row) -> str:
