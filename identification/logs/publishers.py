@@ -27,6 +27,11 @@ SAME = 1e-3  # of the mean interval: stamps so near each other are one, as they 
 USUAL = 1.5  # of the usual interval: rows so near each other have none missing between them
 SINGLE = 2.5  # of the usual interval, that two rows with one between them are apart
 VARIED = 4.0  # times the farthest motion, that the places vary by from which it goes to zero
+CHANCE = 0.05  # of the rows, that may give an input two values at one time by chance
+MOST = (
+    0.5  # of the stamps: if more have rows that contradict each other, no trust tells which counts
+)
+UNTOLD = ", for no trust in rows tells which of them count"
 RATES = ("rad/s", "m/s")
 
 
@@ -36,6 +41,7 @@ def refuse_second_publisher(
     outputs: Sequence[str],
     units: Mapping[str, str],
     overrule: str,
+    trusted: bool = False,
 ) -> None:
     """Refuse rows that are not of the robot whose other rows the log has.
 
@@ -45,6 +51,7 @@ def refuse_second_publisher(
         outputs: which of them are outputs.
         units: SI unit by column, where known.
         overrule: how a user may overrule this, for the message.
+        trusted: whether the user overrules this: then a few rows may contradict each other.
 
     Raises:
         InputError: two rows with one stamp contradict each other, or rows are zero in all columns
@@ -52,14 +59,49 @@ def refuse_second_publisher(
     """
     positions = [name for name in outputs if units.get(name) not in RATES]
     for name in positions:
-        _refuse_twice(table, name, units.get(name, ""), overrule)
+        _refuse_twice(table, name, units.get(name, ""), overrule, trusted)
+    if trusted:
+        return
     zero = np.flatnonzero(_zero_rows(table, inputs, outputs))
     if zero.size:
         for name in positions:
             _refuse_zeros(table, name, zero, units.get(name, ""), overrule)
 
 
-def _refuse_twice(table: Table, name: str, unit: str, overrule: str) -> None:
+def refuse_two_inputs(
+    table: Table, inputs: Sequence[str], overrule: str, trusted: bool = False
+) -> None:
+    """Refuse inputs with two values at one time, of which only one can be kept.
+
+    A step that is written as its two values at one time is right: its first value is the one that
+    held before.
+
+    Args:
+        table: columns in SI; NaN where nothing stands, and finite stamps.
+        inputs: which of them are inputs.
+        overrule: how a user may overrule this, for the message.
+        trusted: whether the user overrules this: then up to half of the stamps may have two values.
+
+    Raises:
+        InputError: rows with one stamp give an input several values, and too many for mere chance.
+    """
+    for name in inputs:
+        rows, u, t = _seen(table, name)
+        same = np.append(False, t[1:] == t[:-1])
+        first = np.maximum.accumulate(np.where(same, 0, np.arange(len(t))))  # of each stamp's rows
+        is_step = u[first] == u[np.maximum(first - 1, 0)]
+        bad = np.flatnonzero(same & (u != np.roll(u, 1)) & ~is_step)
+        if len(bad) > (MOST * int(np.sum(~same)) if trusted else CHANCE * len(t)):
+            k = int(bad[0])
+            raise InputError(
+                f"{table.place(int(rows[k]))}: there are two rows with one stamp, {t[k]:.9g} s, in"
+                f" which {name} is {u[k - 1]:.4g} and {u[k]:.4g}{_more(len(bad), 'pair')}, and"
+                " nothing says which of them the robot had; keep the rows of one publisher"
+                + (UNTOLD if trusted else overrule)
+            )
+
+
+def _refuse_twice(table: Table, name: str, unit: str, overrule: str, trusted: bool) -> None:
     """Refuse two rows with one stamp between which an output goes farther than it ever moves."""
     rows, x, t = _seen(table, name)
     if len(t) < FEWEST:
@@ -73,16 +115,20 @@ def _refuse_twice(table: Table, name: str, unit: str, overrule: str) -> None:
     ends = [np.minimum.reduceat(x, first), np.maximum.reduceat(x, first)]
     least = [np.ptp([a[:-2], b[1:-1], c[2:]], axis=0) for a, b, c in product(ends, repeat=3)]
     moved = float(np.min(least, axis=0).max())
-    noise = min(float(noise_floor(y[:, None])[0]) for y in (*ends, x[first], x[last]))
-    allowed = max(BEYOND * moved, NOISE * noise, STEPS * _encoder(x), ALLOWED * float(np.ptp(x)))
+    # Each publisher's rows by themselves are no rougher than the robot.
+    alone = (*ends, x[first], x[last])
+    noise = min(float(noise_floor(y[:, None])[0]) for y in alone)
+    encoder = min(map(_encoder, alone))
+    allowed = max(BEYOND * moved, NOISE * noise, STEPS * encoder, ALLOWED * float(np.ptp(x)))
     bad = same[np.abs(x[same + 1] - x[same]) > allowed]
-    if bad.size:
+    if len(bad) > (MOST * len(first) if trusted else 0):
         k = int(bad[0])
         raise InputError(
             f"{table.place(int(rows[k + 1]))}: there are two rows with one stamp, {t[k]:.9g} s, and"
             f" they contradict each other: {name} is {x[k]:.4g} and {x[k + 1]:.4g} {unit}".rstrip()
             + f", though it moves by {moved:.2g} at most between such stamps"
-            f"{_more(len(bad), 'pair')}; keep the rows of one publisher{overrule}"
+            f"{_more(len(bad), 'pair')}; keep the rows of one publisher"
+            + (UNTOLD if trusted else overrule)
         )
 
 

@@ -12,15 +12,17 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.files import read_bytes, readable
+from identification.logs.coarse import evened_stamps
 from identification.logs.conversion import conversions, converted
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible, check_possible
-from identification.logs.publishers import refuse_second_publisher
+from identification.logs.publishers import refuse_second_publisher, refuse_two_inputs
 from identification.logs.read_csv import parse_csv
 from identification.logs.read_mat import parse_mat
 from identification.logs.resampling import Even, even_out
 from identification.logs.sampling import FloatArray, check_time, grid
+from identification.logs.shared_stamps import without_repeated
 from identification.logs.sidecar import Sidecar, read_sidecar
 from identification.logs.stamps import wanted_columns, with_time
 from identification.logs.table import Table, check_columns, check_finite, check_stamps, renamed
@@ -63,7 +65,7 @@ def read_log(
         said: keys of the sidecar that hold where it does not say otherwise.
         overrule: how a user may overrule `limits` and `rates`, for their messages.
         trust_rows: whether rows that look like those of a second publisher are read; else they are
-            refused where `lenient`.
+            refused where `lenient`, and in any case where most stamps have such rows.
 
     Returns:
         The log in SI units, named after the file.
@@ -110,10 +112,17 @@ def read_log(
     gaps: tuple[tuple[float, float], ...] = ()
     if lenient:
         check_stamps(table)
-        if not trust_rows:
-            cure = f', or write trust = ["rows"] into {named_in}' if named_in else ""
-            refuse_second_publisher(table, inputs, outputs, si, cure)
+        cure = f', or write trust = ["rows"] into {named_in}' if named_in else ""
+        refuse_second_publisher(table, inputs, outputs, si, cure, trust_rows)
+    if not _is_even(table, sidecar):
+        if lenient:
+            table, remark = without_repeated(table)
+            remarks = (*remarks, remark) if remark else remarks
+        if not _is_even(table, sidecar):
+            table, remark = evened_stamps(table, outputs, sidecar, trust_rows)
+            remarks = (*remarks, remark) if remark else remarks
     if lenient and not _is_even(table, sidecar):
+        refuse_two_inputs(table, inputs, cure, trust_rows)
         table, even = _evened(table, inputs, sidecar)
         remarks, gaps = (*remarks, even.sentence), even.gaps
     check_finite(table)

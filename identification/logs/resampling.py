@@ -90,7 +90,8 @@ def even_out(
     gaps = [gap for c in timed for gap in find_gaps(name, c, out[c.name], h)]
     gaps += [gap for c in steady for gap in find_pauses(name, c, n, h)]
     why = _why(time, channels)
-    said = _sentence(name, why, [*timed, *steady], t, h) + _gaps_sentence(gaps)
+    said = _sentence(name, why, [*timed, *steady], t, h) + _shared_sentence(time, channels)
+    said += _gaps_sentence(gaps)
     return Even(t, out, said, tuple(dict.fromkeys((gap.begin, gap.end) for gap in gaps)))
 
 
@@ -138,6 +139,21 @@ def _why(time: FloatArray, channels: Mapping[str, FloatArray]) -> str:
     if empty and gaps.max() - gaps.min() <= EVEN * gaps.max():
         return f"has {empty} empty cell{'s' * (empty > 1)}"
     return "is uneven in time" + (f", with {empty} empty cells," if empty else "")
+
+
+def _shared_sentence(time: FloatArray, channels: Mapping[str, FloatArray]) -> str:
+    """Tells of rows that do not count because another one has their stamp; "" where none has."""
+    lost = np.zeros(len(time), dtype=bool)
+    for x in channels.values():
+        rows = np.flatnonzero(np.isfinite(x))
+        lost[rows[:-1][np.diff(time[rows]) == 0]] = True
+    n = int(lost.sum())
+    if not n:
+        return ""
+    return (
+        f" {n} row{'s have' if n > 1 else ' has'} the stamp of another one, and the last of each"
+        " counts."
+    )
 
 
 def _gaps_sentence(gaps: Sequence[Gap]) -> str:

@@ -18,7 +18,7 @@ FloatArray = NDArray[np.float64]
 MIN_ROWS = 3  # two intervals are the fewest that can show constant sampling
 
 # A joint at 50 rad/s moves 0.5 mrad, the noise of its encoder, in 1e-3 of a 10 ms step.
-_JITTER = 1e-3
+JITTER = 1e-3
 # Rounding of the printed stamps is forgiven up to this part of a step ...
 _ROUNDING = 0.02
 # ... or this, when the user has said what the sampling time is.
@@ -57,14 +57,18 @@ def snapped(time: FloatArray) -> FloatArray:
     Stamps that are a regular grid already, but for the rounding of a float, stay as they are.
     """
     step = (float(time[-1]) - float(time[0])) / (len(time) - 1)
-    off, least = np.abs(time - grid(time[0], step, len(time))), _float_resolution(time)
-    if np.all(off <= least) and least <= 0.5 * _JITTER * step:
+    off, least = np.abs(time - grid(time[0], step, len(time))), float_resolution(time)
+    if np.all(off <= least) and least <= 0.5 * JITTER * step:
         return time
     return grid(time[0], sampling_time(time), len(time))
 
 
-def _float_resolution(time: FloatArray) -> float:
-    """Returns how far floats leave a grid [s]: a stamp, the step, k h and their sum are rounded."""
+def float_resolution(time: FloatArray) -> float:
+    """Returns how far floats leave a grid [s]: a stamp, the step, k h and their sum are rounded.
+
+    Args:
+        time: stamps, shape (n,) [s].
+    """
     return 4.0 * float(np.spacing(np.abs(time).max()))
 
 
@@ -107,7 +111,7 @@ def _check_even(time: FloatArray, place: Callable[[int], str], declared: float |
     off = np.abs(time - grid(time[0], step, len(time)))
     forgiven = _ROUNDING_DECLARED if declared else _ROUNDING
     rounding = min(_printed_resolution(time), forgiven * step)
-    if np.all(off <= _JITTER * step + rounding + _float_resolution(time)):
+    if np.all(off <= JITTER * step + rounding + float_resolution(time)):
         return
     steps = np.diff(time)
     usual, jump = float(np.median(steps)), int(np.argmax(steps)) + 1
@@ -125,7 +129,7 @@ def _check_even(time: FloatArray, place: Callable[[int], str], declared: float |
         )
     raise InputError(
         f"{place(row)}: sampling is not even: time is {size} off a regular grid (allowed: "
-        f"{100 * _JITTER:g} %); resample the log to a constant step"
+        f"{100 * JITTER:g} %); resample the log to a constant step"
     )
 
 

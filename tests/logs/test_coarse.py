@@ -1,0 +1,224 @@
+"""A log whose stamps lost digits has all its rows and its right step, or is refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from identification import InputError, read_log
+from identification.logs.coarse import EXACT, evened_stamps, judged
+from identification.logs.sampling import sampling_time
+from identification.logs.sidecar import Sidecar
+from identification.logs.table import Table
+
+FORMS = ("%.4g", "%.5g", "%.6g", "%.7g", "%.8g", "%.1f", "%.2f", "%.3f", "%.4f")
+
+
+def motion(n, step, noise=1e-3, seed=0):
+    """A position that a log shows well, whatever its rate: five periods of two sines."""
+    s = np.arange(n) / n
+    return (np.sin(10 * np.pi * s) + 0.3 * np.cos(26 * np.pi * s)
+            + noise * np.random.default_rng(seed).standard_normal(n))  # fmt: skip
+
+
+def table(time, *columns, names=("time", "u", "y")):
+    return Table(Path("log.csv"), names, np.column_stack([time, *columns]), lambda k: f"row {k}")
+
+
+def put(csv, stamps, u, y, sidecar=""):
+    rows = (f"{t},{a!r},{b!r}\n" for t, a, b in zip(stamps, u.tolist(), y.tolist(), strict=True))
+    path = csv("time,u,y\n" + "".join(rows))
+    path.with_suffix(".toml").write_text(sidecar)
+    return path
+
+
+def read(path):
+    return read_log(path, ["u"], ["y"], lenient=True)
+
+
+@st.composite
+def rounded(draw):
+    """Even stamps as they are printed, their sampling time, and an output."""
+    n = draw(st.integers(100, 4000))
+    step = draw(st.one_of(
+        st.floats(-3.5, -0.5).map(lambda x: 10**x),
+        st.sampled_from([30, 50, 60, 100, 125, 200, 300, 500]).map(lambda rate: 1 / rate),
+    ))  # fmt: skip
+    start = draw(st.sampled_from([0.0, 1.0, 99.0, 12345.0, 20000.005, 1e5, 1e6]))
+    start += step * draw(st.floats(0, 1))
+    form = draw(st.sampled_from(FORMS))
+    stamps = [form % t for t in (start + step * np.arange(n)).tolist()]
+    noise = draw(st.sampled_from([0.0, 1e-3]))
+    return stamps, step, motion(n, step, noise, draw(st.integers(0, 999)))
+
+
+@given(log=rounded())
+def test_all_rows_and_the_step_or_a_refusal(tmp_path_factory, log):
+    stamps, step, y = log
+    time = np.array([float(t) for t in stamps])
+    folder = tmp_path_factory.mktemp("log")
+    path = put(lambda text: _written(folder, text), stamps, np.sign(y), y)
+    assume(time[-1] > time[0])
+    try:
+        found = read(path)
+    except InputError:
+        return
+    known = judged(time)
+    if known.is_coarse and not known.steps:
+        raise AssertionError("an even log has a sampling time that fits its stamps")
+    steps = np.diff(time)
+    if len(found) != len(time) or not np.array_equal(found.outputs[:, 0], y):
+        # Rounding moved no row by more than a quarter of a step; or it made one step or two that
+        # dropped samples make, too, and a sentence tells how many were made up.
+        usual = np.median(steps)
+        odd = int(np.sum(np.abs(steps - usual) > 0.25 * usual))
+        assert not known.is_coarse or (odd <= 2 and steps.min() > 0)
+        assert "were made up" in found.remarks[0]
+        return
+    assert found.sampling_time == pytest.approx(step, rel=max(EXACT, 4e-2 / len(time)))
+
+
+def _written(folder, text):
+    path = folder / "log.csv"
+    path.write_text(text)
+    return path
+
+
+@given(log=rounded())
+def test_a_declared_sampling_time_wins_where_it_is_the_right_one(tmp_path_factory, log):
+    stamps, step, y = log
+    time = np.array([float(t) for t in stamps])
+    assume(time[-1] > time[0])
+    sidecar = Sidecar(path=Path("log.toml"), sampling_time=step)
+    found, said = evened_stamps(table(time, np.sign(y), y), ["y"], sidecar)
+    np.testing.assert_array_equal(found.data[:, 1:], np.column_stack([np.sign(y), y]))
+    assert sampling_time(found["time"]) == pytest.approx(step, rel=1e-9)
+    assert said
+
+
+@pytest.mark.parametrize(("rate", "start", "form"), [
+    (100, 20000.005, "%.7g"), (200, 12345.0, "%.7g"), (250, 1e6, "%.9g"), (1000, 40.0, "%.2f"),
+])  # fmt: skip
+def test_stamps_that_are_shared_by_rows(csv, rate, start, form):
+    n, step = 5000, 1 / rate
+    stamps = [form % (start + k * step) for k in range(n)]
+    y = motion(n, step)
+    log = read(put(csv, stamps, np.sign(y), y))
+    np.testing.assert_array_equal(log.outputs[:, 0], y)
+    assert log.sampling_time == pytest.approx(step, rel=1e-9)
+    (said,) = log.remarks
+    assert "are multiples of 0.01 s; all its rows were kept" in said
+    assert f"({rate} Hz)" in said
+
+
+@pytest.mark.parametrize("tick", [1 / 64, 0.004, 0.03])
+def test_the_ticks_of_a_clock_that_prints_all_digits(csv, tick):
+    n, step = 6000, 0.0021
+    stamps = [f"{tick * np.floor((7.0 + k * step) / tick):.6f}" for k in range(n)]
+    y = motion(n, step)
+    log = read(put(csv, stamps, np.sign(y), y))
+    np.testing.assert_array_equal(log.outputs[:, 0], y)
+    assert log.sampling_time == pytest.approx(step, rel=EXACT)
+
+
+def test_what_is_declared_and_cannot_be_is_refused_and_told(csv, refusal):
+    y = motion(600, 0.01)
+    stamps = [f"{20000.005 + 0.01 * k:.7g}" for k in range(600)]
+    path = put(csv, stamps, np.sign(y), y, "sampling_time = 0.005")
+    said = refusal(read, path)
+    assert "are multiples of 0.01 s, too coarse for rows that come every 0.01 s" in said
+    assert "sampling_time = 0.005 does not fit all rows; correct sampling_time in" in said
+
+
+def test_a_log_that_is_too_short_to_tell_its_step_is_told_what_to_write(csv, refusal):
+    y = motion(120, 0.005)
+    stamps = [f"{0.01 * (k // 2):.2f}" for k in range(120)]
+    path = put(csv, stamps, np.sign(y), y)
+    said = refusal(read, path)
+    assert said.startswith("line 2 of")
+    assert "the stamps 0 and 0 s" in said
+    assert "60 rows have the stamp of the row before them and other values" in said
+    low, high = judged(np.array([float(t) for t in stamps])).steps
+    assert low < 0.005 < high
+    assert f"each sampling time from {low:.6g} to {high:.6g} s fits all rows" in said
+    assert "write sampling_time = ... [s] into" in said
+    path.with_suffix(".toml").write_text("sampling_time = 0.005")
+    assert read(path).sampling_time == 0.005
+
+
+def test_a_clock_that_wanders_beside_coarse_stamps_is_refused(csv, refusal):
+    n = 3000
+    y, k = motion(n, 0.01), np.arange(n)
+    stamps = [f"{t:.2f}" for t in 0.01 * k + 0.03 * np.sin(k / 200)]
+    path = put(csv, stamps, np.sign(y), y)
+    assert "no sampling time fits all rows" in refusal(read, path)
+    path.with_suffix(".toml").write_text("sampling_time = 0.01")
+    (said,) = read(path).remarks  # the user insists: what is lost is told
+    time = np.array([float(t) for t in stamps])
+    same = int(np.sum(np.diff(time) == 0))
+    assert f"{same} rows have the stamp of another one, and the last of each counts" in said
+
+
+@given(jitter=st.sampled_from([0.0, 3.5e-3, 4.9e-3]), seed=st.integers(0, 99))
+def test_jitter_that_scatters_rounded_stamps_does_no_harm(jitter, seed):
+    n = 3000
+    y = motion(n, 0.01)
+    late = np.random.default_rng(seed).uniform(-jitter, jitter, n)
+    time = np.round(0.0025 + 0.01 * np.arange(n) + late, 2)
+    whole = table(time, np.sign(y), y)
+    found, said = evened_stamps(whole, ["y"], Sidecar(path=Path("log.toml")))
+    np.testing.assert_array_equal(found["y"], y)
+    assert sampling_time(found["time"]) == pytest.approx(0.01, rel=EXACT)
+    assert bool(said) == bool(np.any(np.diff(time) == 0))
+
+
+@given(
+    dropped=st.lists(st.integers(5, 990), min_size=1, max_size=30, unique=True),
+    every=st.sampled_from([0.01, 0.02, 0.005]),
+)
+def test_rows_that_are_missing_by_chance_are_gaps_and_no_digits(dropped, every):
+    keep = np.delete(np.arange(1000), dropped)
+    time = np.array([float(f"{every * k:.3f}") for k in keep])
+    y = motion(1000, every)[keep]
+    stamps = judged(time)
+    assume(stamps.steps is None or len(dropped) <= 2)
+    whole = table(time, np.sign(y), y)
+    found, said = evened_stamps(whole, ["y"], Sidecar(path=Path("log.toml")))
+    assert (found, said) == (whole, "")
+
+
+@given(noise=st.sampled_from([1e-4, 1e-2]), seed=st.integers(0, 99))
+def test_a_sensor_that_is_read_twice_with_one_stamp_is_no_log_of_twice_the_rate(noise, seed):
+    n = 2000
+    rng = np.random.default_rng(seed)
+    y = np.repeat(motion(n, 0.01, 0.0), 2) + noise * rng.standard_normal(2 * n)
+    whole = table(np.repeat(0.01 * np.arange(n), 2), np.sign(y), y)
+    try:
+        found, _ = evened_stamps(whole, ["y"], Sidecar(path=Path("log.toml")))
+    except InputError:  # so much noise that nothing is known
+        assert noise > 1e-3
+        return
+    assert found is whole
+
+
+@given(
+    n=st.integers(3, 400),
+    width=st.floats(0, 2),
+    seed=st.integers(0, 9999),
+)
+def test_the_steps_that_fit_are_those_of_all_pairs_of_rows(n, width, seed):
+    rng = np.random.default_rng(seed)
+    time = np.maximum.accumulate(np.round(np.arange(n) + width * rng.uniform(-1, 1, n)))
+    assume(time[-1] > time[0])
+    known = judged(time)
+    near = known.quanta / 2 + 1e-3 * known.mean
+    i, j = np.triu_indices(n, 1)
+    least = ((time[j] - near[j]) - (time[i] + near[i])) / (j - i)
+    most = ((time[j] + near[j]) - (time[i] - near[i])) / (j - i)
+    low, high = least.max(), most.min()
+    if known.steps is None:
+        assert low > high - 1e-9 or high <= 0 or low <= 0
+    else:
+        assert known.steps == (pytest.approx(low, rel=1e-9), pytest.approx(high, rel=1e-9))
