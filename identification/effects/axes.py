@@ -100,10 +100,11 @@ def axes(model: mujoco.MjModel, log: Log, trust: Sequence[str] = ()) -> tuple[Ax
         seen.setdefault(int(np.flatnonzero(at == i)[0]), {})[field] = k
     for j, own in seen.items():
         inputs = [_control(model, i) for i in drives_of(model, j)] or [*range(logged_inputs(model))]
-        for k in own.values():
+        for field, k in own.items():
             others = [i for i in own.values() if i != k]
             if "sensors" not in trust:
-                refuse_frozen(log, k, log.inputs[:, inputs], log.outputs[:, others], OVERRULE)
+                refuse_frozen(log, k, log.inputs[:, inputs], log.outputs[:, others], OVERRULE,
+                              is_rate=field != "qpos")  # fmt: skip
     return tuple(
         _axis(model, log, j, {field: log.outputs[:, k] for field, k in seen[j].items()})
         for j in sorted(seen)

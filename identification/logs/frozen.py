@@ -2,6 +2,11 @@
 
 The output of a joint at rest repeats one value too, but then its inputs have changed. An encoder
 whose steps are too coarse for a slow motion also repeats values, but it does not stop suddenly.
+
+A sensor that wakes up again jumps to where its joint has gone meanwhile. A joint that rested, stuck
+by friction or at an end stop, or moved by less than a step of its encoder, begins to move from
+where it was, and no faster than elsewhere in the log. So a position that does not jump is never
+told as one that froze for a while, such as that of a joint that is back when its sensor wakes up.
 """
 
 from __future__ import annotations
@@ -16,6 +21,8 @@ SHARE = 0.2  # and at least this share of the log
 AS_BEFORE = 0.5  # of the std before; a signal that still varies by as much counts as moving
 ROUNDED = 1e-6  # of its width, below which a difference is rounding and no step of an encoder
 FEW = 0.1  # of the differences may be smaller than a step
+SPAN = 2  # samples that a jump takes: one where it is measured, two where it is put on a grid
+BEYOND = 2.0  # times the farthest motion in as many samples elsewhere, from which a jump is none
 STEPS = 3  # that the encoder crosses in the `FEWEST` samples before it freezes
 
 
@@ -53,9 +60,14 @@ def still_sentence(log: Log) -> str | None:
 
 
 def refuse_frozen(
-    log: Log, output: int, inputs: np.ndarray, others: np.ndarray, overrule: str = ""
+    log: Log,
+    output: int,
+    inputs: np.ndarray,
+    others: np.ndarray,
+    overrule: str = "",
+    is_rate: bool = False,
 ) -> None:
-    """Refuse an output that froze.
+    """Refuse an output that froze, for a while or to the end.
 
     Args:
         log: what was measured.
@@ -65,11 +77,14 @@ def refuse_frozen(
         others: other outputs of its joint, shape (n, m); the joint counts as moving where one of
             these varies as before.
         overrule: how a user may overrule this, for the message.
+        is_rate: whether the output is a rate, which may jump: it is judged at the end only.
 
     Raises:
         InputError: the output froze.
     """
     y = log.outputs[:, output]
+    if not is_rate:
+        _refuse_stuck(log, output, inputs, others, overrule)
     moved = np.flatnonzero(np.diff(y))
     first = int(moved[-1]) + 1 if moved.size else 0
     if first == 0 or len(y) - first < max(FEWEST, SHARE * len(y)):
@@ -85,7 +100,53 @@ def refuse_frozen(
         )
 
 
+def _refuse_stuck(
+    log: Log, output: int, inputs: np.ndarray, others: np.ndarray, overrule: str
+) -> None:
+    """Refuse a position that repeats one value for a while and then jumps; see `refuse_frozen`."""
+    y = log.outputs[:, output]
+    stops = _stops(y)
+    if not stops:
+        return
+    far = np.abs(y[SPAN:] - y[:-SPAN])
+    # Spans that hold a part of a wake-up tell nothing of the joint's speed.
+    wakes = np.unique([end + k for _, end in stops for k in range(-SPAN, SPAN - 1)])
+    moved = float(np.delete(far, wakes).max(initial=0.0))
+    steps = np.abs(np.diff(y))
+    encoder = float(steps[steps > ROUNDED * np.ptp(y)].min())
+    for first, end in stops:
+        jump = float(far[end - 1])
+        if jump <= max(BEYOND * moved, STEPS * encoder) or moved == 0:
+            continue
+        part = np.zeros(len(y), dtype=bool)
+        part[first:end] = True
+        driven, seen = (_varies(signals, part) for signals in (inputs, others))
+        if (driven.size and driven.all()) or seen.any():
+            raise InputError(
+                f"{log.output_names[output]} of log {log.name!r} repeats {y[first]:g} from"
+                f" {log.time[first]:.6g} s to {log.time[end - 1]:.6g} s while its joint is driven"
+                f" on, and then jumps by {jump:.3g} where it moves by {moved:.2g} at most in as"
+                " many samples: a sensor that was stuck; save the rows before it and behind it as"
+                f" two logs, or record again{overrule}"
+            )
+
+
+def _stops(y: np.ndarray) -> list[tuple[int, int]]:
+    """Returns where a channel repeats a value: the first sample of each stop and the one behind.
+
+    Stops at the beginning and at the end are left out: nothing stands before, or behind, them.
+    """
+    moves = np.flatnonzero(np.abs(np.diff(y)) > ROUNDED * np.ptp(y)) + 1
+    pairs = zip(moves[:-1].tolist(), moves[1:].tolist(), strict=True)
+    return [(a, b) for a, b in pairs if b - a >= FEWEST and b + SPAN < len(y)]
+
+
 def _goes_on(signals: np.ndarray, first: int) -> np.ndarray:
-    """Which signals vary after a sample as much as before it, shape (k,)."""
-    before, after = signals[:first].std(axis=0), signals[first:].std(axis=0)
-    return np.asarray((after > 0) & (after >= AS_BEFORE * before))
+    """Returns which signals vary after a sample as much as before it, shape (k,)."""
+    return _varies(signals, np.arange(len(signals)) >= first)
+
+
+def _varies(signals: np.ndarray, part: np.ndarray) -> np.ndarray:
+    """Returns which signals vary in a part of the samples as much as in the others, shape (k,)."""
+    within, without = signals[part].std(axis=0), signals[~part].std(axis=0)
+    return np.asarray((within > 0) & (within >= AS_BEFORE * without))

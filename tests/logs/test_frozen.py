@@ -6,10 +6,12 @@ import mujoco
 import numpy as np
 import pytest
 from joint_cases import SLIDER, STEP, arm, arm_log, run, slider, slider_log, steps
+from stuck_cases import joint_log, stuck
 
 from identification import InputError, write_log
 from identification.__main__ import main
 from identification.effects.axes import axes
+from identification.logs.frozen import BEYOND, FEWEST, SPAN, refuse_frozen
 
 FROM = 300  # sample of 400
 NOISE = 1e-4  # [m]
@@ -92,3 +94,82 @@ def test_the_commands_refuse_in_one_sentence(tmp_path, capsys, command):
     assert said.count("\n") == 1
     assert "position of log 'stuck' repeats" in said
     assert "from 3 s to the end" in said
+
+
+def judged(log):
+    refuse_frozen(log, 0, log.inputs, log.outputs[:, 1:])
+
+
+@pytest.mark.parametrize("encoder", [0.0, 1e-3])
+@pytest.mark.parametrize("length", [60, 120])
+def test_a_sensor_that_is_stuck_for_a_while_is_told_with_both_times(encoder, length):
+    u = steps(400)
+    y = moved(u, encoder)
+    first = 140
+    y[first : first + length] = y[first]
+    with pytest.raises(InputError, match=r"a sensor that was stuck") as refusal:
+        seen(u, y)
+    moves = np.flatnonzero(np.diff(y[:, 0])) + 1
+    begin, end = moves[moves <= first][-1], moves[moves > first][0]
+    told = f"repeats {y[first, 0]:g} from {begin * STEP:.6g} s to {(end - 1) * STEP:.6g} s"
+    assert told in str(refusal.value)
+    assert abs(begin - first) <= 3
+    assert abs(end - first - length) <= 3
+    # Both logs that are told to save are right.
+    seen(u[:begin], y[:begin])
+    seen(u[end:], y[end:])
+
+
+def test_other_robots_with_a_sensor_that_is_stuck_are_refused_where_it_jumps_back():
+    found = clear = 0
+    for seed in range(60):
+        log = joint_log(seed)
+        outputs, first, last = stuck(log, seed + 7)
+        y = log.outputs[:, 0]
+        jump = abs(y[last + 1] - y[first])
+        moved = np.abs(y[SPAN:] - y[:-SPAN]).max()
+        # Varied forces go on, and the place that it jumps to is far away.
+        driven = log.inputs[first : last + 1].std() > log.inputs.std()
+        try:
+            judged(replace(log, outputs=outputs))
+        except InputError:
+            found += 1
+        else:
+            assert not (driven and jump > 2 * BEYOND * moved)
+        clear += driven and jump > 2 * BEYOND * moved
+    assert clear > 10
+    assert found >= clear
+
+
+def test_right_logs_with_rests_stiction_end_stops_and_coarse_encoders_are_not_stuck():
+    stopped = 0
+    for seed in range(100):
+        log = joint_log(seed)
+        y = log.outputs[:, 0]
+        moves = np.flatnonzero(np.diff(y)) + 1
+        stopped += bool(np.any(np.diff(moves) >= FEWEST))
+        try:
+            judged(log)
+        except InputError as error:  # only a joint that its drive cannot move to the end
+            assert "to the end" in str(error)  # noqa: PT017
+    assert stopped > 30
+
+
+def test_a_rate_may_jump_and_a_user_may_overrule_it():
+    u = steps(400)
+    y = moved(u)
+    y[140:260] = y[140]
+    log = slider_log(u, y)
+    refuse_frozen(log, 0, log.inputs, log.outputs[:, :0], is_rate=True)
+    axes(slider().model, log, ("sensors",))
+
+
+def test_a_stuck_sensor_on_another_grid_is_found():
+    # Its log was uneven: the jump is spread over two samples of the grid.
+    u = steps(400)
+    y = moved(u)
+    y[140:260] = y[140]
+    t = np.arange(400)
+    between = np.interp(np.arange(399) + 0.5, t, y[:, 0])[:, None]
+    with pytest.raises(InputError, match="was stuck"):
+        seen(u[:399], between)
