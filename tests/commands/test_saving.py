@@ -295,6 +295,17 @@ def test_two_at_once_leave_the_results_of_one(tmp_path):
     refuse_foreign(out)
 
 
+def test_a_new_folder_is_there_once_it_has_results(tmp_path):
+    """A program that is ended before leaves no empty folder, whatever ends it."""
+    out = tmp_path / "new" / "out"
+    with draft_of(out) as draft:
+        assert not out.exists()
+        (draft.folder / "a").write_text("new")
+        draft.save()
+        assert content(out) == {"a": "new"}
+    assert content(out) == {"a": "new"}
+
+
 # before any work
 
 
