@@ -29,9 +29,9 @@ from identification.drafts import (
 )
 from identification.errors import InputError
 from identification.exchange import IMPOSSIBLE, alone, exchange, make_alike
-from identification.files import to_disk
 from identification.made import MADE, Content, list_content, write_made
 from identification.moves import finish_moves, move_all
+from identification.writing import to_disk
 
 _TRIED = 4096  # bytes that are written to try a folder, a page of most disks
 _SHOWN = 3  # names in a message
