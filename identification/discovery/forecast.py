@@ -48,7 +48,7 @@ MOST_KEPT = 3 * 32 * 2.0**20  # [bytes]
 BEGUN = 1.5  # [s] that a search takes, however short the log
 # Simulations that fits cost: each linearises the model, whitens its residuals, and evaluates each
 # parameter. A search that finds nothing makes one fit, and one of each candidate that it rejects.
-FIT, FITS = 23.0, 4.0
+FIT, FITS = 43.0, 1.7
 SCORES = 0.07  # simulations that a size of a candidate costs; it shares the linearisation
 _SHORT = 400  # samples of the simulation that is timed
 _TRIES = 6  # simulations, of which the fastest counts: programs beside it make others slower
