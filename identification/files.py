@@ -1,20 +1,18 @@
-"""Files are refused before they are read, and written whole or not at all."""
+"""Files are refused before they are read; `identification.writing` writes them."""
 
 from __future__ import annotations
 
-import errno
 import io
 import json
 import os
 import stat
 import tomllib
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from difflib import get_close_matches
 from hashlib import file_digest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
-from uuid import uuid4
 from zipfile import ZipFile
 
 from identification.errors import InputError
@@ -90,11 +88,11 @@ def read_bytes(path: Path, largest: int = MAX_BYTES, what: str = LOG) -> bytes:
 
     Args:
         path: of the file.
-        largest: sane size [bytes].
-        what: kind of file that is wanted, for messages.
+        largest: as of `opened`.
+        what: as of `opened`.
 
     Raises:
-        InputError: there is no such file, it is something else, too large, or cannot be read.
+        InputError: as of `opened`.
     """
     with opened(path, largest, what) as stream:
         content = stream.read(largest + 1)
@@ -172,11 +170,11 @@ def digest(path: Path, largest: int = 8 * MAX_BYTES, what: str = "file") -> str:
 
     Args:
         path: of the file.
-        largest: sane size [bytes].
-        what: kind of file that is wanted, for messages.
+        largest: as of `opened`.
+        what: as of `opened`.
 
     Raises:
-        InputError: there is no such file, it is something else, too large, or cannot be read.
+        InputError: as of `opened`.
     """
     with opened(path, largest, what) as stream:
         return file_digest(stream, "sha256").hexdigest()  # type: ignore[arg-type]
@@ -270,56 +268,3 @@ def _missing(path: Path) -> str:
     near = get_close_matches(path.name, others, n=3, cutoff=_ALIKE)
     hint = f"did you mean {' or '.join(near)}?" if near else "check its name and folder"
     return f"no such file: {path}; {hint}"
-
-
-@contextmanager
-def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """A temporary path beside `path` that becomes `path` when the block ends well.
-
-    Raises:
-        InputError: the folder does not exist or cannot be written to.
-    """
-    path = Path(path)
-    if not path.parent.is_dir():
-        raise InputError(f"no such folder: {path.parent}; make it before {path.name} is written")
-    draft = path.with_name(f".{uuid4().hex}{path.suffix}")
-    try:
-        yield draft
-        to_disk(draft)
-        draft.replace(path)
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise InputError(
-            f"cannot write {path}: {reason}; choose a folder with room and permission"
-        ) from error
-    finally:
-        with suppress(OSError):
-            draft.unlink(missing_ok=True)
-
-
-def to_disk(path: Path) -> None:
-    """Bring a file, or the names in a folder, to the disk, so that a loss of power loses nothing.
-
-    Args:
-        path: of the file or folder.
-
-    Raises:
-        OSError: the disk is full or broken.
-    """
-    if os.name != "posix":  # other systems bring nothing to the disk that is open to be read
-        return
-    number = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(number)
-    except OSError as error:
-        if error.errno not in (errno.EINVAL, errno.EROFS, errno.EOPNOTSUPP):  # no such step here
-            raise
-    finally:
-        os.close(number)
-
-
-def write_text(path: str | os.PathLike[str], text: str) -> Path:
-    """Write UTF-8 text to a file, whole or not at all; returns its path."""
-    with whole_file(path) as draft:
-        draft.write_text(text, encoding="utf-8", errors="backslashreplace", newline="")
-    return Path(path)

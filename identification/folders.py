@@ -13,25 +13,28 @@ from __future__ import annotations
 
 import os
 import shutil
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from shutil import rmtree
-from uuid import uuid4
 
+from identification.drafts import (
+    free_beside,
+    make_folders,
+    make_hidden,
+    make_hidden_beside,
+    make_hidden_inside,
+    remove_empty,
+)
 from identification.errors import InputError
 from identification.exchange import IMPOSSIBLE, alone, exchange, make_alike
-from identification.files import to_disk
 from identification.made import MADE, Content, list_content, write_made
 from identification.moves import finish_moves, move_all
+from identification.writing import to_disk
 
-_DRAFT = ".draft-"
-_OLD = 86400.0  # [s] after which the draft of an unknown process is left over
 _TRIED = 4096  # bytes that are written to try a folder, a page of most disks
 _SHOWN = 3  # names in a message
-_TAIL = 80  # bytes of a folder's name in that of its draft; a name may have 255
 _RESULTS = ("result.json", "report.html", MADE)  # no folder may bear these names
 
 
@@ -97,12 +100,12 @@ class Draft:
                 now = list_content(self.place)
                 taken = {f.name for f in self.folder.iterdir()} & (now.others | now.folders)
                 if taken:
-                    self.taken, self.place = tuple(sorted(taken)), _free_beside(self.place)
+                    self.taken, self.place = tuple(sorted(taken)), free_beside(self.place)
                     self.place.mkdir()
                     now = Content()
                 place = self.place.resolve()
                 if not _replace(self.folder, place, now):
-                    with _filled(self.folder, _make_hidden_inside(place)) as fresh:
+                    with _filled(self.folder, make_hidden_inside(place)) as fresh:
                         move_all(fresh, place)
         except OSError as error:
             raise InputError(
@@ -126,10 +129,14 @@ def draft_of(path: str | os.PathLike[str]) -> Iterator[Draft]:
     refuse_foreign(path)
     made: list[Path] = []
     try:
-        _make_folders(path, made)
-        folder = _make_hidden(path)
+        make_folders(path.parent, made)
+        with alone(path.resolve().parent):
+            make_folders(path, made)
+            folder = make_hidden(path)
+            if folder.parent != path.resolve():
+                remove_empty(made[-1:])  # a program that is killed leaves no empty folder
     except OSError as error:
-        _remove_empty(made)
+        remove_empty(made)
         raise InputError(f"cannot make folder {path}: {_reason(error)}; choose another") from None
     draft = Draft(folder, path)
     try:
@@ -140,7 +147,7 @@ def draft_of(path: str | os.PathLike[str]) -> Iterator[Draft]:
         raise InputError(str(error).replace(str(folder), str(draft.place))) from error.__cause__
     finally:
         rmtree(folder, ignore_errors=True)
-        _remove_empty(made)
+        remove_empty(made)
     if draft.taken:
         raise InputError(
             f"{', '.join(draft.taken[:_SHOWN])} came into {path} or changed there while the program"
@@ -186,7 +193,7 @@ def _replace(draft: Path, place: Path, now: Content) -> bool:
     if now.folders or _stands_in(place):
         return False  # folders cannot be in two places until the step is done
     try:
-        with _filled(draft, _make_hidden_beside(place)) as fresh:
+        with _filled(draft, make_hidden_beside(place)) as fresh:
             for name in now.others:
                 os.link(place / name, fresh / name, follow_symlinks=False)
             make_alike(fresh, place)
@@ -240,91 +247,6 @@ def _filled(draft: Path, fresh: Path) -> Iterator[Path]:
         yield fresh
     finally:
         rmtree(fresh, ignore_errors=True)
-
-
-def _make_hidden(path: Path) -> Path:
-    """Make a hidden folder for a draft, and remove those that are left of programs."""
-    path = path.resolve()
-    for draft in _drafts(path, path.parent):
-        number = draft.name.removeprefix(_DRAFT).partition("-")[0]
-        known = number.isdecimal() and number.isascii() and os.name == "posix"
-        if not _is_running(int(number)) if known else time.time() - draft.stat().st_mtime > _OLD:
-            rmtree(draft, ignore_errors=True)
-    inside = _make_hidden_inside(path)  # the folder itself must be writable, not only its parent
-    try:
-        beside = _make_hidden_beside(path)
-    except OSError as error:
-        if error.errno in IMPOSSIBLE:
-            return inside
-        rmtree(inside, ignore_errors=True)
-        raise
-    rmtree(inside, ignore_errors=True)
-    return beside
-
-
-def _make_hidden_beside(path: Path) -> Path:
-    folder = path.parent / f"{_DRAFT}{os.getpid()}-{uuid4().hex[:8]}-{_tail(path)}"
-    folder.mkdir()
-    return folder
-
-
-def _make_hidden_inside(path: Path) -> Path:
-    folder = path / f"{_DRAFT}{os.getpid()}-{uuid4().hex[:8]}"
-    folder.mkdir()
-    return folder
-
-
-def _tail(path: Path) -> str:
-    return os.fsdecode(os.fsencode(path.name)[-_TAIL:])
-
-
-def _drafts(path: Path, parent: Path) -> list[Path]:
-    """The drafts of results of a folder, those of programs that still run among them."""
-    found = [each for each in path.iterdir() if each.name.startswith(_DRAFT)]
-    with suppress(OSError):  # what is above may be written and not read
-        found += [
-            each
-            for each in parent.iterdir()
-            if each.name.startswith(_DRAFT) and each.name.endswith(f"-{_tail(path)}")
-        ]
-    return found
-
-
-def _is_running(process: int) -> bool:
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except (PermissionError, OverflowError):
-        return True
-    return True
-
-
-def _make_folders(path: Path, made: list[Path]) -> None:
-    """Make a folder and those above it; lists those that were not there."""
-    missing = [each for each in (path, *path.parents) if not each.exists()]
-    for each in reversed(missing):
-        with suppress(FileExistsError):
-            each.mkdir()
-            made.append(each)
-    if not path.is_dir():
-        raise NotADirectoryError(20, os.strerror(20))
-
-
-def _remove_empty(made: list[Path]) -> None:
-    """Remove folders that were made and stayed empty."""
-    for each in reversed(made):
-        with suppress(OSError):
-            each.rmdir()
-
-
-def _free_beside(path: Path) -> Path:
-    """The first of path-2, path-3, … that is not there."""
-    path = path if path.name.strip(".") else path.resolve()
-    number = 2
-    while path.with_name(f"{path.name}-{number}").exists():
-        number += 1
-    return path.with_name(f"{path.name}-{number}")
 
 
 def _reason(error: OSError) -> str:

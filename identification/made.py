@@ -13,7 +13,8 @@ from pathlib import Path
 
 from identification.errors import InputError
 from identification.files import digest as digest_of
-from identification.files import read_json, write_text
+from identification.files import read_json
+from identification.writing import write_text
 
 MADE = ".made.json"
 

@@ -34,7 +34,10 @@ def run_program(
     given = sys.argv[1:] if arguments is None else arguments
     try:
         with stoppable(name):
-            return _run(commands, name, description, given, examples)
+            try:
+                return _run(commands, name, description, given, examples)
+            finally:
+                sys.stdout.flush()  # the help too may not find room
     except ValueError as error:
         from identification.errors import InputError
 
@@ -46,7 +49,9 @@ def run_program(
         sys.stderr.close()
         return 0
     except OSError as error:
-        sys.stderr.write(f"{name}: {error.strerror or error}; make room or choose another place\n")
+        reason = error.strerror or type(error).__name__
+        what = f"cannot write to {error.filename}: {reason}" if error.filename else reason
+        sys.stderr.write(f"{name}: {what}; make room or choose another place\n")
         return 2
     except KeyboardInterrupt:
         return STOPPED

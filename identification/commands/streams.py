@@ -14,13 +14,19 @@ import warnings
 from contextlib import suppress
 
 STREAMS = ("stdin", "stdout", "stderr")
+STANDARD_OUTPUT = "standard output"
 
 
-class _Lenient(io.RawIOBase):
-    """Writes to a file descriptor as far as it can, and is silent where it cannot."""
+class _Plain(io.RawIOBase):
+    """Writes to a file descriptor; its one error says by its file name that it is standard output.
+
+    What is written after that error is lost: Python would write it again as it ends, and end with
+    an exit code of its own.
+    """
 
     def __init__(self, number: int) -> None:
         self._number = number
+        self._is_full = False
 
     def writable(self) -> bool:
         return True
@@ -30,6 +36,20 @@ class _Lenient(io.RawIOBase):
 
     def isatty(self) -> bool:
         return os.isatty(self._number)
+
+    def write(self, content: object) -> int:
+        data = memoryview(content)  # type: ignore[arg-type]
+        if self._is_full:
+            return len(data)
+        try:
+            return os.write(self._number, data)
+        except OSError as error:
+            self._is_full, error.filename = True, STANDARD_OUTPUT
+            raise
+
+
+class _Lenient(_Plain):
+    """Writes to a file descriptor as far as it can, and is silent where it cannot."""
 
     def write(self, content: object) -> int:
         data = memoryview(content)  # type: ignore[arg-type]
@@ -55,8 +75,10 @@ def settle_streams() -> None:
         if getattr(sys, name) is None:
             mode = "w" if number else "r"
             setattr(sys, name, os.fdopen(number, mode, encoding="utf-8", closefd=False))
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")
+    sys.stdout = io.TextIOWrapper(
+        io.BufferedWriter(_Plain(1)), encoding=sys.stdout.encoding, errors="backslashreplace",
+        line_buffering=sys.stdout.isatty(),
+    )  # fmt: skip
     sys.stderr = io.TextIOWrapper(
         io.BufferedWriter(_Lenient(2)), encoding=sys.stderr.encoding, errors="backslashreplace",
         line_buffering=True, write_through=True,

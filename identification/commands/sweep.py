@@ -97,7 +97,8 @@ class SweepCommand:
         text = "\n".join([*found.sentences, f"The records are in {path}."])
         conclude(kept, record, text, draw=partial(_draw, sweep, found))
         if found.record["failed"] == found.record["records"]:
-            note("every task met an error; the column error of the records tells which")
+            (most, *others) = found.record["errors"]
+            note(f"every task met an error: {most}" + (", and others" if others else ""))
             return 1
         return 0
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
@@ -54,8 +55,27 @@ class Gap:
     rms_by_unit: Mapping[str, float] = field(default_factory=dict)
 
 
+class _HasCandidate(Protocol):
+    @property
+    def candidate(self) -> Candidate: ...
+
+
+class OfCandidate:
+    """A result on a candidate effect: it has the effect's name and its place."""
+
+    @property
+    def name(self: _HasCandidate) -> str:
+        """Name of the effect."""
+        return self.candidate.effect.name
+
+    @property
+    def where(self: _HasCandidate) -> str:
+        """Where it acts, in words."""
+        return self.candidate.where
+
+
 @dataclass(frozen=True)
-class Rival:
+class Rival(OfCandidate):
     """Another effect that may explain the same data.
 
     Attributes:
@@ -71,16 +91,6 @@ class Rival:
     confidence: float
     alike: float
     values: Mapping[str, float] = field(default_factory=dict)
-
-    @property
-    def name(self) -> str:
-        """Name of the effect."""
-        return self.candidate.effect.name
-
-    @property
-    def where(self) -> str:
-        """Where it acts, in words."""
-        return self.candidate.where
 
 
 @dataclass(frozen=True)
@@ -114,7 +124,7 @@ class Outside:
 
 
 @dataclass(frozen=True)
-class RejectedEffect:
+class RejectedEffect(OfCandidate):
     """An effect that was refitted and not accepted.
 
     Attributes:
@@ -131,19 +141,9 @@ class RejectedEffect:
     proof: Proof
     outside: Outside | None = None
 
-    @property
-    def name(self) -> str:
-        """Name of the effect."""
-        return self.candidate.effect.name
-
-    @property
-    def where(self) -> str:
-        """Where it acts, in words."""
-        return self.candidate.where
-
 
 @dataclass(frozen=True, kw_only=True)
-class NamedEffect:
+class NamedEffect(OfCandidate):
     """An effect that is missing from the nominal model.
 
     Attributes:
@@ -170,16 +170,6 @@ class NamedEffect:
     retuned: Retuned
     advice: str = ""
     outside: Outside | None = None
-
-    @property
-    def name(self) -> str:
-        """Name of the effect."""
-        return self.candidate.effect.name
-
-    @property
-    def where(self) -> str:
-        """Where it acts, in words."""
-        return self.candidate.where
 
     @property
     def odds(self) -> float:

@@ -1,15 +1,22 @@
 """How much memory and time a search will take, told before it takes them.
 
-    bytes   = BASE + MODELS b + 8 n (n_y (p + m) + COLUMNS c (2 n_f + 3 n_y)) + 8 N STATES n_z²
-    seconds = BEGUN + t₁ (FITS p + SCORES m)     t₁ the processor time of one simulation of the log
+    bytes   = BASE + MODELS b + (1 + KEPT) D
+    D       = 8 max(N LINEAR n_x²,  n (n_y (p + m) + LINEAR n_x² + c F + c_u n_u (s + P)))
+    F       = max(2 I n_f, 2 I n_v + OUTPUTS n_y)
+    seconds = BEGUN + t₁ (FIT + FITS p + SCORES m)        t₁ the processor time of one simulation
 
-of N samples, n of them fitted, with n_y outputs, p parameters, m sizes of effects, c = min(m, 128)
-columns that are computed at once, n_f velocities and activations, n_z states of the plant and of
-its inputs' errors, and a model of b bytes.
+of N samples, n of them fitted, with n_y outputs, n_u inputs, p parameters, m sizes of effects,
+c = min(m, 128) columns that are computed at once, at most c_u of them for effects of inputs, n_v
+velocities, n_f velocities and activations, n_x states, s steps of the simulation in a sample, P
+points and I intervals of the trajectory in one, and a model of b bytes. A sensitivity of each
+output to each size is kept. The model is linearised at n samples in a fit, and at N where it is
+validated. The forcings of c columns lie in memory twice while they are put together; after that
+only those that outputs feel, beside what the columns do to the outputs. Inputs are kept at each
+step and at each point.
 
-The constants are fitted to processor time and peak memory of searches of the INCA and of chains of
-bodies, with up to 200 000 samples (benchmarks/forecast.py). The time is that of a search that finds
-nothing; each effect that is found is refitted, beside others, and adds to it.
+The constants follow the arrays that a search allocates, and were compared with the peak memory and
+the processor time of searches of the INCA and of chains of bodies (benchmarks/forecast.py). The
+time is that of a search that finds nothing; each effect that is found is refitted, beside others.
 """
 
 from __future__ import annotations
@@ -25,17 +32,26 @@ from identification.discovery.scoring.sensitivities import BATCH, list_common, l
 from identification.discovery.task import DiscoveryTask
 from identification.errors import InputError
 from identification.files import read_text
+from identification.kalman.trajectory import FINE, INTERVALS
 from identification.logs.joined import rows_of
 from identification.model.predictor import Predictor
+from identification.model.rollout import substeps
 
 BASE = 28e6  # [bytes] of compiled code and libraries that only a search loads
 MODELS = 96  # copies of the model, for changes of it that are evaluated together
-COLUMNS = 1.77  # copies of the forcings and responses of the columns that are computed at once
-STATES = 1.75  # squares of n_z for each sample: transitions, and filters of several noises
-BEGUN = 2.0  # [s] that a search takes, however short the log
-FITS = 1.0  # simulations that a parameter costs
-SCORES = 0.15  # simulations that a size of a candidate costs; many are simulated at once
+LINEAR = 4  # matrices of n_x² for a sample: transitions and effects of rates over the intervals
+OUTPUTS = 6  # copies of the outputs of c columns: of sensors, of q and v, and what they sum up to
+# The C library keeps freed arrays below 32 MiB for the process (M_MMAP_THRESHOLD of glibc): the
+# share is as measured of what was in use, and no more than three arrays of that size.
+KEPT = 0.7
+MOST_KEPT = 3 * 32 * 2.0**20  # [bytes]
+BEGUN = 1.5  # [s] that a search takes, however short the log
+# Simulations that fits cost: each linearises the model, whitens its residuals, and evaluates each
+# parameter. A search that finds nothing makes one fit, and one of each candidate that it rejects.
+FIT, FITS = 43.0, 1.7
+SCORES = 0.07  # simulations that a size of a candidate costs; it shares the linearisation
 _SHORT = 400  # samples of the simulation that is timed
+_TRIES = 6  # simulations, of which the fastest counts: programs beside it make others slower
 _TOLD = 60.0, 2.0**30  # [s] and [bytes] from which a forecast is worth a line
 
 
@@ -70,7 +86,7 @@ class Forecast:
 
 
 def forecast(task: DiscoveryTask) -> Forecast:
-    """What a search will take, from one short simulation.
+    """Computes what a search will take, from one short simulation.
 
     Args:
         task: what is asked.
@@ -81,16 +97,33 @@ def forecast(task: DiscoveryTask) -> Forecast:
     log, model = task.log, task.nominal_model.plant.model
     common = list_common(task.effects)
     first = {c.effect.name: c for c in common}
-    sizes = sum(len(c.sizes) for c in (*common, *list_single([*first.values()])))
+    every = (*common, *list_single([*first.values()]))
+    sizes = sum(len(c.sizes) for c in every)
+    on_inputs = sum(len(c.sizes) for c in every if "input" in c.effect.hooks)
     parameters = len(task.nominal_model.names)
-    fitted, outputs = int(rows_of(log, "estimation").sum()), log.outputs.shape[1]
-    forced, states = model.nv + model.na, 2 * model.nv + model.na + log.inputs.shape[1]
-    columns = COLUMNS * min(sizes, BATCH) * (2 * forced + 3 * outputs)
-    a_fitted_one = outputs * (parameters + sizes) + columns
-    numbers = fitted * a_fitted_one + len(log) * STATES * states**2
+    numbers = _numbers(task, sizes, on_inputs)
+    seconds = BEGUN + (FIT + FITS * parameters + SCORES * sizes) * _simulated(task)
+    kept = min(KEPT * 8 * numbers, MOST_KEPT)
     fixed = BASE + MODELS * float(model.nbuffer)
-    seconds = BEGUN + (FITS * parameters + SCORES * sizes) * _simulated(task)
-    return Forecast(len(log), fixed + 8 * numbers, seconds, fixed)
+    memory = fixed + 8 * numbers + kept
+    # A log that is a little shorter keeps no less, where it keeps as much as it can.
+    fixed += kept if kept == MOST_KEPT else 0.0
+    return Forecast(len(log), memory, seconds, fixed)
+
+
+def _numbers(task: DiscoveryTask, sizes: int, on_inputs: int) -> float:
+    """Returns how many numbers are in memory at once, for effects of so many sizes."""
+    log, model = task.log, task.nominal_model.plant.model
+    fitted, outputs = int(rows_of(log, "estimation").sum()), log.outputs.shape[1]
+    steps = substeps(log.sampling_time, model.opt.timestep)
+    intervals, points = min(INTERVALS, steps), min(FINE, steps)
+    forced = 2 * intervals * (model.nv + model.na)
+    felt = 2 * intervals * model.nv + OUTPUTS * outputs
+    inputs = log.inputs.shape[1] * (steps + points)
+    linear = LINEAR * (2 * model.nv + model.na) ** 2
+    kept = outputs * (len(task.nominal_model.names) + sizes)
+    columns = min(sizes, BATCH) * max(forced, felt) + min(on_inputs, BATCH) * inputs
+    return float(max(len(log) * linear, fitted * (kept + linear + columns)))
 
 
 def refuse_large(found: Forecast, share: float, least: int) -> None:
@@ -108,11 +141,16 @@ def refuse_large(found: Forecast, share: float, least: int) -> None:
     if found.memory > share * free:
         room, needed = share * free - found.fixed, found.memory - found.fixed
         most = int(found.samples * room / needed) if needed > 0 else 0
-        cut = f"cut the log to {most} samples, or export it at a lower rate, or"
+        thin = -(-found.samples // max(most, 1))
+        cut = (
+            f"cut the log to {most} samples, or keep one sample of {thin} (every = {thin} in a"
+            " robot's TOML, or an export at that rate), or"
+        )
         cure = cut if most >= least else "close other programs, or"
         raise InputError(
-            f"{found.samples} samples need about {found.memory / 2**30:.2g} GB of memory, and"
-            f" {free / 2**30:.2g} GB are free; {cure} allow more by the option max_memory_share"
+            f"{found.samples} samples need about {found.memory / 2**30:.2g} GB of memory and"
+            f" {_duration(found.seconds)} of processor time, and {free / 2**30:.2g} GB are free;"
+            f" {cure} allow more by the option max_memory_share"
         )
 
 
@@ -137,7 +175,7 @@ def _simulated(task: DiscoveryTask) -> float:
     predictor = Predictor(task.nominal_model.plant, task.log, names)
     samples = min(_SHORT, len(task.log))
     seconds = []
-    for _ in range(3):
+    for _ in range(_TRIES):
         began = time.process_time()  # other programs may have the processor meanwhile
         predictor.predict(values, samples)
         seconds.append(time.process_time() - began)

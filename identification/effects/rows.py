@@ -51,7 +51,7 @@ def read_model(source: str | Path | mujoco.MjSpec) -> mujoco.MjSpec:
     else:
         amount = refuse_hostile(read_bytes(Path(text), what=MODEL), where, Path(text).parent)
     if amount.may_be_large:
-        refuse_endless(text if given else Path(text), where)
+        refuse_endless(text if given else Path(text), where, amount)
     try:
         spec = mujoco.MjSpec.from_string(text) if given else mujoco.MjSpec.from_file(text)
         with catch_warnings():

@@ -74,18 +74,21 @@ def _amount(raw: str | bytes, where: str, folder: Path | None, depth: int) -> Am
         raise InputError(f"{where} cannot be read ({said}); correct it there") from error
     grids = [_product(" ".join(e.get(name, "1") for name in _GRIDS[e.tag]))
              for e in root.iter() if e.tag in _GRIDS]  # fmt: skip
-    users = [_product(number) for e in root.iter("size") for name, number in e.items()
+    users = [(_product(number), name) for e in root.iter("size") for name, number in e.items()
              if name.startswith("nuser_")]  # fmt: skip
-    here = Amount(elements, sum(grids), max(users, default=0.0), len(raw))
+    numbers, user_data = max(users, default=(0.0, ""))
+    here = Amount(elements, sum(grids), numbers, len(raw), user_data)
     included = () if folder is None else _included(root, folder)
     parts = [_amount(read_bytes(file, what=MODEL), f"the model {file}", folder, depth + 1)
              for file in included]  # fmt: skip
     size = 0 if folder is None else sum(_sizes(root, folder))
+    most = max((here, *parts), key=lambda part: part.numbers)
     return Amount(
         elements=sum(part.elements for part in (here, *parts)),
         cells=sum(part.cells for part in (here, *parts)),
-        numbers=max(part.numbers for part in (here, *parts)),
+        numbers=most.numbers,
         size=size + sum(part.size for part in (here, *parts)),
+        user_data=most.user_data,
     )
 
 

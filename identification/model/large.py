@@ -23,7 +23,10 @@ NUMBERS = 10_000  # of user data of one kind of element
 BYTES = 2**24  # of the text, of what it includes, and of the files that it names
 LARGEST = 2**27  # [bytes] of a compiled model; a search simulates some hundred copies at once
 _WAITING = 20  # times as long for a process whose machine has others to serve
-_CURE = "lower its counts of replicate, or make its heightfields, meshes and user data smaller"
+_REPLICATE = "lower its counts of replicate"
+_GRIDS = "make its heightfields and textures smaller"
+_FILES = "make the meshes and other files that it names smaller"
+_ANY = f"{_REPLICATE} and its sizes nuser_*, or make its heightfields and meshes smaller"
 
 
 @dataclass(frozen=True)
@@ -35,30 +38,38 @@ class Amount:
         cells: of heightfields and textures.
         numbers: of user data, of the kind of element that has most.
         size: of the text, of what it includes, and of the files that it names [bytes].
+        user_data: the attribute of <size> that asks for these numbers, such as "nuser_body".
     """
 
     elements: float = 0.0
     cells: float = 0.0
     numbers: float = 0.0
     size: int = 0
+    user_data: str = ""
+
+    @property
+    def much(self) -> tuple[str, ...]:
+        """What to make smaller, a clause for each count that is far beyond that of robots."""
+        lower = f"lower {self.user_data}, which asks for {self.numbers:.3g} numbers of each element"
+        each = (
+            (self.numbers > NUMBERS, lower), (self.elements > ELEMENTS, _REPLICATE),
+            (self.cells > CELLS, _GRIDS), (self.size > BYTES, _FILES),
+        )  # fmt: skip
+        return tuple(clause for is_large, clause in each if is_large)
 
     @property
     def may_be_large(self) -> bool:
         """Whether it is compiled by another process first."""
-        return (
-            self.elements > ELEMENTS
-            or self.cells > CELLS
-            or self.numbers > NUMBERS
-            or self.size > BYTES
-        )
+        return bool(self.much)
 
 
-def refuse_size(size: int, where: str) -> None:
+def refuse_size(size: int, where: str, amount: Amount | None = None) -> None:
     """Refuses a compiled model of which a search cannot hold its copies.
 
     Args:
         size: of the compiled model [bytes].
         where: the model in messages, such as "the model slider.xml".
+        amount: what its text asks for, where that is known.
 
     Raises:
         InputError: it is too large.
@@ -66,21 +77,22 @@ def refuse_size(size: int, where: str) -> None:
     if size > LARGEST:
         raise InputError(
             f"{where} has {size / 2**20:.0f} MB when it is compiled, more than the"
-            f" {LARGEST / 2**20:.0f} MB of which a search can hold its copies; {_CURE}"
+            f" {LARGEST / 2**20:.0f} MB of which a search can hold its copies; {_cure(amount)}"
         )
 
 
-def refuse_endless(source: str | Path, where: str) -> None:
+def refuse_endless(source: str | Path, where: str, amount: Amount) -> None:
     """Refuses a model that is not compiled within a bound of time and memory.
 
     Args:
         source: path of the model, or its text.
         where: the model in messages, such as "the model slider.xml".
+        amount: what its text asks for.
 
     Raises:
         InputError: the bound of time or of memory was reached, or it is too large.
     """
-    is_file = isinstance(source, Path)
+    cure, is_file = _cure(amount), isinstance(source, Path)
     words = [str(source)] if is_file else []
     try:
         done = subprocess.run(
@@ -89,15 +101,20 @@ def refuse_endless(source: str | Path, where: str) -> None:
             timeout=_WAITING * compile_child.SECONDS, check=False,
         )  # fmt: skip
     except subprocess.TimeoutExpired:
-        raise InputError(f"{where} is not compiled by MuJoCo in time; {_CURE}") from None
+        raise InputError(f"{where} is not compiled by MuJoCo in time; {cure}") from None
     if done.returncode == compile_child.FULL:
         raise InputError(
             f"{where} takes more than {compile_child.MEMORY / 2**30:.0f} GB of memory while MuJoCo"
-            f" compiles it; {_CURE}"
+            f" compiles it; {cure}"
         )
     if done.returncode == 0:
-        refuse_size(int(done.stdout), where)
+        refuse_size(int(done.stdout), where, amount)
     elif done.returncode != compile_child.REFUSED:  # ended by its limit, or a crash
         raise InputError(
-            f"{where} is not compiled by MuJoCo within {compile_child.SECONDS} s; {_CURE}"
+            f"{where} is not compiled by MuJoCo within {compile_child.SECONDS} s; {cure}"
         )
+
+
+def _cure(amount: Amount | None) -> str:
+    """What to make smaller: what the text asks much of, or whatever makes a model large."""
+    return " and ".join(amount.much) if amount and amount.much else _ANY

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from identification.discovery.attempts import Failed
-from identification.discovery.effect_results import Gap
+from identification.discovery.effect_results import Gap, OfCandidate
 from identification.discovery.findings.finding import Finding
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.options import DiscoveryOptions
@@ -26,7 +26,7 @@ Verdict = Literal["named", "nothing missing", "unknown effect", "unlisted effect
 
 
 @dataclass(frozen=True, kw_only=True)
-class RefittedEffect:
+class RefittedEffect(OfCandidate):
     """An effect as it was refitted, and what it does for unseen records.
 
     Attributes:
@@ -45,19 +45,9 @@ class RefittedEffect:
     confidence: float
     doubt: Doubt | None
 
-    @property
-    def name(self) -> str:
-        """Name of the effect."""
-        return self.candidate.effect.name
-
-    @property
-    def where(self) -> str:
-        """Where it acts, in words."""
-        return self.candidate.where
-
 
 @dataclass(frozen=True, kw_only=True)
-class NamedByPrediction:
+class NamedByPrediction(OfCandidate):
     """An effect that is missing from the nominal model.
 
     Attributes:
@@ -94,16 +84,6 @@ class NamedByPrediction:
     def confidence(self) -> float:
         """Its share of the odds among its rivals, 0 to 1."""
         return self.effect.confidence
-
-    @property
-    def name(self) -> str:
-        """Name of the effect."""
-        return self.candidate.effect.name
-
-    @property
-    def where(self) -> str:
-        """Where it acts, in words."""
-        return self.candidate.where
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

@@ -75,16 +75,24 @@ def _weak(found: RecordsFit) -> list[str]:
 
 
 def _unknown_std(found: RecordsFit) -> list[str]:
-    """Values whose std too few windows tell."""
+    """Returns the sentence on values that are fitted and whose std too few windows tell."""
     rows = zip(found.values, found.std, found.at_bound, strict=True)
     few = [n for n, std, at_bound in rows if np.isnan(std) and not at_bound]
     if not few:
         return []
     count = sum(len(part.cut.starts) for part in found.model.fit.problem.parts)
-    told = "the only window tells" if count == 1 else f"too few of {count} windows tell"
+    one = len(few) == 1
+    it, is_fitted = ("it", "is") if one else ("them", "are")
+    told = (
+        "the only window cannot be compared with another"
+        if count == 1
+        else f"too few of the {count} windows tell of {it}"
+    )
     return [
-        f"The std of {', '.join(few)} cannot be known: {told} of"
-        f" {'it' if len(few) == 1 else 'them'}. Record longer, or give more logs."
+        f"The value{'' if one else 's'} of {', '.join(few)} {is_fitted} fitted, but how far off"
+        f" {'it' if one else 'they'} may be is not known: a std comes from how much windows differ,"
+        f" and {told}. Record longer or give more logs for a std, or compare the"
+        f" value{'' if one else 's'} with those of a fit of another log."
     ]
 
 

@@ -22,6 +22,7 @@ from identification.engine import quiet
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
 from identification.model.predictor import output_columns
+from identification.robot.bounded import solve_bounded
 from identification.robot.moving import follow_bodies, inertial_force, point_force, weights
 from identification.robot.tendon_forces import tendon_forces
 
@@ -90,12 +91,9 @@ def unbalanced_share(
     norm = np.linalg.norm(flat, axis=0)
     used = norm > 1e-9 * norm.max()
     b = (force / size).ravel()
-    from scipy.optimize import lsq_linear  # slow to import
-
-    x = lsq_linear(
-        flat[:, used] / norm[used], b, (low[used] * norm[used], high[used] * norm[used])
-    ).x
-    left = (b - flat[:, used] / norm[used] @ x).reshape(force.shape)
+    flat = flat[:, used] / norm[used]
+    x = solve_bounded(flat, b, low[used] * norm[used], high[used] * norm[used])
+    left = (b - flat @ x).reshape(force.shape)
     eta = np.mean(left**2, axis=0)
     joint = [i if field == "qvel" else int(model.jnt_dofadr[model.jnt_qposadr == i][0])
              for field, i in columns]  # fmt: skip

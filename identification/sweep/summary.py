@@ -52,7 +52,7 @@ def summarise(sweep: Sweep, rows: Iterable[Record]) -> Summary:
         sections += found.sections
         sentences += found.sentences
     first = f"{len(every)} of {len(sweep)} tasks have a record"
-    first += f"; {failed.total()} of them met an error." if failed else "."
+    first += f"; {failed.total()} of them met an error{_most(failed)}." if failed else "."
     if failed:
         sections.append(_errors(failed))
     record = {
@@ -61,6 +61,12 @@ def summarise(sweep: Sweep, rows: Iterable[Record]) -> Summary:
         "digest": digest(every), "studies": studies,
     }  # fmt: skip
     return Summary(record, [*sections, _times(sweep, every)], [first, *sentences])
+
+
+def _most(failed: Counter[str]) -> str:
+    """Returns the text of the error that most tasks met, and how many of them where not all."""
+    ((text, count),) = failed.most_common(1)
+    return f" ({text})" if len(failed) == 1 else f", {count} of these ({text})"
 
 
 def _errors(failed: Counter[str]) -> Section:

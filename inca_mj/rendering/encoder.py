@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
@@ -27,6 +28,8 @@ def encoder(
     """
     import imageio_ffmpeg
 
+    # It warns of a film without frames, which an interrupt leaves; its errors are raised too.
+    logging.getLogger("imageio_ffmpeg").setLevel(logging.CRITICAL)
     writer = imageio_ffmpeg.write_frames(
         str(path), size, fps=fps, codec="libx264", quality=None, macro_block_size=2,
         ffmpeg_log_level="error",

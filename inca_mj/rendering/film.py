@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from identification.errors import InputError
-from identification.files import whole_file
 from identification.progress import counted
+from identification.writing import whole_file
 from inca_mj.rendering.checks import refuse_speed
 from inca_mj.rendering.encoder import encoder
 from inca_mj.rendering.scene import Scene, Source, make_scene

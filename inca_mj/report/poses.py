@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from identification.files import write_text
 from identification.report.page import Section, Table
+from identification.writing import write_text
 from inca_mj.kinematics.inverse_geometry import Cables
 from inca_mj.kinematics.jacobians import condition, jacobian, rank
 from inca_mj.report.poses_figures import cables_figure, poses_figure

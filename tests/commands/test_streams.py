@@ -52,6 +52,17 @@ def test_the_exit_code_is_that_of_the_work(folder, line, code):
     assert b"Traceback" not in said
 
 
+@pytest.mark.parametrize("line", [f"{GOOD} --quiet", f"{GOOD} --quiet --json", "P --help",
+                                  "P --version"])  # fmt: skip
+def test_a_full_standard_output_is_named(folder, line):
+    code, _, said = shell(folder, f"{line} >/dev/full")
+    assert code == 2
+    assert said.decode() == (
+        "identification: cannot write to standard output: No space left on device; make room or"
+        " choose another place\n"
+    )
+
+
 def test_what_is_written_goes_into_no_closed_stream(folder):
     """Else the first file that is opened gets the number of a stream, and what is said to it."""
     code, _, said = shell(folder, f"{GOOD} --quiet --out out >&- 2>&- <&-")

@@ -1,8 +1,11 @@
 """What a search will take is told before, and refused where the machine lacks it."""
 
+import tracemalloc
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from joint_cases import slider, slider_log
+from joint_cases import ARM, DAMPING, arm_log, joint_plant, run, slider, slider_log, steps
 
 from identification import InputError
 from identification.discovery import forecast as module
@@ -11,6 +14,7 @@ from identification.discovery.nominal_model import NominalModel
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.sensitivities import BATCH, list_common, list_single
 from identification.discovery.search import discover
+from identification.discovery.state import first_state
 from identification.discovery.task import DiscoveryTask
 
 FREE = ("mass", "damping")
@@ -21,6 +25,27 @@ def task(samples, effects=None):
     model = NominalModel(plant, FREE, np.full(len(FREE), 0.3))
     chosen = plant.effects if effects is None else effects
     return DiscoveryTask(model, slider_log(np.ones((samples, 1))), chosen, DiscoveryOptions())
+
+
+FACTOR = 1.5  # the goal of the forecast
+
+
+def arm_task(samples):
+    """Two joints, whose inputs both move."""
+    log = arm_log(steps(samples, 2))
+    damping = replace(DAMPING, where="joint/elbow.damping", unit="N m s/rad", value=0.1)
+    plant = joint_plant(ARM, (damping,), log)
+    model = NominalModel(plant, ("damping",), np.full(1, 0.3))
+    y = run(plant, log) + 1e-4 * np.random.default_rng(1).standard_normal(log.outputs.shape)
+    return DiscoveryTask(model, replace(log, outputs=y), plant.effects, DiscoveryOptions())
+
+
+def slider_task(samples):
+    given = task(samples)
+    log = slider_log(steps(samples))
+    y = run(given.nominal_model.plant, log)
+    y = y + 1e-4 * np.random.default_rng(1).standard_normal(y.shape)
+    return replace(given, log=replace(log, outputs=y))
 
 
 def without_fixed(samples, effects=None):
@@ -42,7 +67,7 @@ def test_a_candidate_beyond_a_batch_costs_its_sensitivity_alone():
     ]
     assert sizes[1] > sizes[0] >= BATCH  # on one output, of the half that is fitted
     more = without_fixed(300) - without_fixed(300, fewer)
-    assert more == pytest.approx(8 * 150 * (sizes[1] - sizes[0]))
+    assert more == pytest.approx((1 + module.KEPT) * 8 * 150 * (sizes[1] - sizes[0]))
 
 
 def first(effects):
@@ -56,10 +81,36 @@ def test_memory_is_linear_in_the_samples(effects):
     assert one == other > 0  # code, libraries and copies of the model
 
 
+def test_what_the_library_keeps_has_an_end(monkeypatch):
+    """Beyond it a longer log takes what its arrays take, and is cut by that."""
+    monkeypatch.setattr(module, "MOST_KEPT", 1e5)
+    one, other = (forecast(task(n)) for n in (600, 900))
+    assert one.fixed == other.fixed == pytest.approx(module.BASE + 1e5, rel=0.1)
+    each = (other.memory - one.memory) / 300
+    assert one.memory - one.fixed == pytest.approx(600 * each)
+
+
+@pytest.mark.parametrize("make", [slider_task, arm_task])
+def test_a_search_holds_the_arrays_of_its_forecast(make):
+    """The most that arrays take at once, once all code is loaded."""
+    given = make(2000)
+    needs, copies = forecast(given), float(given.nominal_model.plant.model.nbuffer)
+    data = (needs.memory - module.BASE - module.MODELS * copies) / (1 + module.KEPT)
+    first_state(given, lambda line: None)
+    tracemalloc.start()
+    try:
+        first_state(make(2000), lambda line: None)
+        held = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert data / FACTOR < held < data * FACTOR
+
+
 def test_a_log_that_is_cut_as_it_says_is_not_refused_again(monkeypatch):
     monkeypatch.setattr(module, "free_memory", lambda: 2.0**30)
     needs = Forecast(1000, 2.0**31, 1.0, fixed=2.0**28)
-    with pytest.raises(InputError, match="cut the log to 428 samples"):
+    told = "cut the log to 428 samples, or keep one sample of 3 .every = 3 in a robot's TOML"
+    with pytest.raises(InputError, match=told):
         refuse_large(needs, 1.0, 200)
     each = (needs.memory - needs.fixed) / needs.samples
     refuse_large(Forecast(428, needs.fixed + 428 * each, 1.0, needs.fixed), 1.0, 200)
@@ -69,9 +120,11 @@ def test_a_log_that_is_cut_as_it_says_is_not_refused_again(monkeypatch):
                                              (300, "close other programs")])  # fmt: skip
 def test_what_needs_more_than_is_free_is_refused(monkeypatch, least, said):
     monkeypatch.setattr(module, "free_memory", lambda: 2.0**30)
-    needs = Forecast(1000, 2 * 2.0**30, 1.0)
-    with pytest.raises(InputError, match=said):
+    needs = Forecast(1000, 2 * 2.0**30, 90.0)
+    with pytest.raises(InputError, match=said) as refused:
         refuse_large(needs, 0.5, least)
+    told = "1000 samples need about 2 GB of memory and 1.5 min of processor time, and 1 GB are free"
+    assert told in str(refused.value)
     refuse_large(needs, 2.0, least)
 
 

@@ -21,6 +21,7 @@ ALLOWED = {
     "identification/files.py: open": "the reader",
     "identification/files.py: fdopen": "the reader",
     "identification/exchange.py: open": "a folder, to lock it",
+    "identification/writing.py: open": "a file or folder, to bring it to the disk",
     "identification/folders.py: copy2": "a file of the draft that the program wrote just now",
     "identification/files.py: load": "the bytes that the reader has read",
     "identification/commands/streams.py: open": "the file that takes everything and holds nothing",

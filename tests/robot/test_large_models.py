@@ -35,7 +35,8 @@ def compiled_by_another(monkeypatch):
     """What another process was asked to compile."""
     asked = []
     monkeypatch.setattr(
-        "identification.effects.rows.refuse_endless", lambda *given: asked.append(given)
+        "identification.effects.rows.refuse_endless",
+        lambda source, where, amount: asked.append((source, where)),
     )
     return asked
 
@@ -98,16 +99,28 @@ def test_a_compilation_without_end_is_refused(tmp_path, monkeypatch, child):
     if "sleep" in child:
         monkeypatch.setattr(large, "_WAITING", 0.05)
     if not ENDS[child]:
-        large.refuse_endless("<mujoco/>", "the model")
+        large.refuse_endless("<mujoco/>", "the model", large.Amount())
         return
     with pytest.raises(InputError, match=rf"{ENDS[child]}.*lower its counts"):
-        large.refuse_endless("<mujoco/>", "the model")
+        large.refuse_endless("<mujoco/>", "the model", large.Amount())
     assert is_file(tmp_path / "child.py")
 
 
-def test_user_data_without_end_are_refused():
-    with pytest.raises(InputError, match=r"takes more than 8 GB|MB when it is compiled"):
-        read_model(with_part('<size nuser_body="200000000"/><worldbody>'))
+@pytest.mark.parametrize("name", ["nuser_body", "nuser_jnt", "nuser_sensor"])
+def test_user_data_without_end_are_refused_by_their_name(name):
+    advice = f"lower {name}, which asks for 3e\\+08 numbers of each element"
+    told = f"(takes more than 8 GB|MB when it is compiled|is not compiled by MuJoCo).*{advice}"
+    with pytest.raises(InputError, match=told):
+        read_model(with_part(f'<size nuser_geom="4" {name}="300000000"/><worldbody>'))
+
+
+def test_all_that_a_model_asks_much_of_is_named(tmp_path):
+    (tmp_path / "part.xml").write_text('<mujocoinclude><size nuser_site="30000"/></mujocoinclude>')
+    part = f'<include file="part.xml"/>{LARGE["replicas"]}'
+    said = refuse_hostile(with_part(part), "the model", tmp_path).much
+    assert [clause.split(",")[0] for clause in said] == [
+        "lower nuser_site", "lower its counts of replicate",
+    ]  # fmt: skip
 
 
 def test_a_model_too_large_to_be_copied_is_refused(monkeypatch):

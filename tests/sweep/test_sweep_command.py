@@ -105,14 +105,15 @@ def test_progress_is_told_in_lines_and_errors_are_counted(tmp_path, capsys, monk
     said = capsys.readouterr()
     assert re.search(r"1 of 2 tasks, \d+ s left", said.err)
     assert "2 of 2 tasks, 1 with an error, 0 s left" in said.err
-    assert "2 of 2 tasks have a record; 1 of them met an error." in said.out
+    met = "1 of them met an error (ValueError: this task is bad (sweep_method.py, line 42))."
+    assert f"2 of 2 tasks have a record; {met}" in said.out
     assert json.loads((out / "result.json").read_text())["errors"] == {
         "ValueError: this task is bad (sweep_method.py, line 42)": 1
     }
     assert identification([*line, "--resume", "--again", "--quiet"]) == 0
     path = write(tmp_path, "[study.settings]\nbad = true\n", 1)
     assert identification(["sweep", str(path), "--backend", "serial", "--out", str(out) + "2"]) == 1
-    assert "every task met an error" in capsys.readouterr().err
+    assert "every task met an error: ValueError: this task is bad" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,173 @@
+"""What else is in a folder of results stays as it is, and a folder that cannot be is named."""
+
+import errno
+import os
+from pathlib import Path
+
+import pytest
+
+from identification.errors import InputError
+from identification.folders import draft_of, refuse_foreign, try_folder, whole_folder
+
+
+def content(folder):
+    files = [p for p in folder.iterdir() if p.is_file() and p.name[0] != "."]
+    return {p.name: p.read_text(errors="replace") for p in files}
+
+
+def made(out, **texts):
+    with whole_folder(out) as draft:
+        for name, text in texts.items():
+            (draft / name).write_text(text)
+
+
+def test_a_file_that_comes_at_the_last_moment_stays(tmp_path, monkeypatch):
+    from identification import folders
+
+    out, exchange = tmp_path / "out", folders.exchange
+    made(out, a="old")
+
+    def late(one, other):
+        if not (one / "mine").exists() and not (other / "mine").exists():
+            (other / "mine").write_text("of the user")
+        exchange(one, other)
+
+    monkeypatch.setattr(folders, "exchange", late)
+    made(out, a="new")
+    assert content(out) == {"a": "new", "mine": "of the user"}
+
+
+def test_what_is_in_the_folder_beside_results_stays_what_it_is(tmp_path):
+    out = tmp_path / "out"
+    made(out, a="old", b="old")
+    out.chmod(0o750)
+    (out / ".hidden").write_text("of the user")
+    number = (out / ".hidden").stat().st_ino
+    made(out, a="new")
+    assert content(out) == {"a": "new"}
+    assert (out / ".hidden").stat().st_ino == number
+    assert out.stat().st_mode & 0o777 == 0o750
+    (out / "notes").mkdir()
+    folder = out.stat().st_ino
+    made(out, a="newer")
+    assert content(out) == {"a": "newer"}
+    assert (out / "notes").is_dir()
+    assert out.stat().st_ino == folder  # a folder in it cannot be in two places at once
+
+
+def test_a_link_to_a_folder_stays_a_link(tmp_path):
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").symlink_to("real")
+    made(tmp_path / "link", a="1")
+    made(tmp_path / "link", a="2")
+    assert (tmp_path / "link").is_symlink()
+    assert content(tmp_path / "real") == {"a": "2"}
+
+
+@pytest.mark.parametrize("number", [errno.EINVAL, errno.EXDEV, errno.ENOSYS])
+def test_a_file_system_without_the_step_is_filled_file_by_file(tmp_path, monkeypatch, number):
+    from identification import folders
+
+    out = tmp_path / "out"
+    made(out, a="old", b="old")
+
+    def no_step(one, other):
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(folders, "exchange", no_step)
+    made(out, a="new")
+    assert content(out) == {"a": "new"}
+    names = sorted(p.name for p in (*out.iterdir(), *tmp_path.iterdir()))
+    assert names == [".made.json", "a", "out"]
+
+
+def test_two_at_once_leave_the_results_of_one(tmp_path):
+    out = tmp_path / "out"
+    with draft_of(out) as first, draft_of(out) as second:
+        for draft, name in ((first, "first"), (second, "second")):
+            (draft.folder / "result.json").write_text(name)
+            draft.save()
+        for draft, name in ((second, "second"), (first, "first")):
+            (draft.folder / f"{name}.png").write_text(name)
+            draft.save()
+            assert content(out) == {"result.json": name, f"{name}.png": name}
+    refuse_foreign(out)
+
+
+def test_a_new_folder_is_there_once_it_has_results(tmp_path):
+    """A program that is ended before leaves no empty folder, whatever ends it."""
+    out = tmp_path / "new" / "out"
+    with draft_of(out) as draft:
+        assert not out.exists()
+        (draft.folder / "a").write_text("new")
+        draft.save()
+        assert content(out) == {"a": "new"}
+    assert content(out) == {"a": "new"}
+
+
+def long_name(folder):
+    return folder / (300 * "a")
+
+
+def deep_long_name(folder):
+    return folder / "new" / (300 * "b") / "out"
+
+
+def result_is_a_folder(folder):
+    (folder / "out" / "result.json").mkdir(parents=True)
+    return folder / "out"
+
+
+def link_to_nothing(folder):
+    (folder / "out").symlink_to("nowhere")
+    return folder / "out"
+
+
+def loop_of_links(folder):
+    (folder / "out").symlink_to("other")
+    (folder / "other").symlink_to("out")
+    return folder / "out"
+
+
+@pytest.mark.parametrize(("place", "reason"), [
+    (long_name, "File name too long"), (deep_long_name, "File name too long"),
+    (result_is_a_folder, "result.json is a folder"), (link_to_nothing, "leads nowhere"),
+    (loop_of_links, "leads nowhere"),
+])  # fmt: skip
+def test_a_folder_that_cannot_be_is_named_before_any_work(
+    tmp_path, capsys, monkeypatch, place, reason
+):
+    from inca_mj.cli import main
+
+    monkeypatch.setattr("inca_mj.commands.simulate.Simulate.run", lambda _: pytest.fail("works"))
+    out = place(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    assert main(["simulate", "--out", str(out)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert str(tmp_path) in said
+    assert reason in said
+    assert "another" in said
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+@pytest.mark.parametrize("call", ["iterdir", "mkdir"])
+def test_a_folder_that_cannot_be_read_or_written_is_named(tmp_path, monkeypatch, call):
+    def denied(path, *_, **__):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+
+    out = tmp_path / "out"
+    out.mkdir()
+    monkeypatch.setattr(Path, call, denied)
+    with pytest.raises(InputError, match=f"folder {out}: Permission denied; choose another"):
+        try_folder(out)
+
+
+def test_a_folder_that_a_command_reads_is_not_that_of_its_results(tmp_path, capsys):
+    from inca_mj.cli import main
+
+    made(tmp_path / "robot", **{"effects.json": "{}", "model.xml": "<mujoco/>"})
+    line = ["film", "examples/log.csv", "--model", str(tmp_path / "robot")]
+    assert main([*line, "--out", str(tmp_path / "robot")]) == 2
+    assert "is read by this command" in capsys.readouterr().err
+    assert {*content(tmp_path / "robot")} == {"effects.json", "model.xml"}

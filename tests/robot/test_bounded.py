@@ -1,0 +1,65 @@
+"""Least squares with bounds on some unknowns: the least there is, by a small solver of bounds."""
+
+import mujoco
+import numpy as np
+import pytest
+import scipy.optimize
+from test_right_logs import ARM, MOTION, nothing, tracked
+
+from identification.robot.balance import unbalanced_share
+from identification.robot.bounded import solve_bounded
+
+ROUNDING = 1e-8
+SAME = 1e-6  # of what is left, to which the solver of bounds goes on
+
+
+def problem(seed, free, bounded, rows=60, dependent=0):
+    """Some columns of a problem are sums of its others, as the weights of bodies in a row are."""
+    rng = np.random.default_rng(seed)
+    A = rng.standard_normal((rows, free + bounded))
+    for k in range(dependent):
+        A[:, k] = A[:, dependent:free].sum(axis=1) * (1 + k)
+    low = np.concatenate([np.full(free, -np.inf), rng.uniform(-0.2, 0.0, bounded)])
+    high = np.concatenate([np.full(free, np.inf), rng.uniform(0.0, 0.2, bounded)])
+    high[-1:] = np.inf  # a bound on one side only, where there is any
+    return A, A @ rng.standard_normal(free + bounded) + rng.standard_normal(rows), low, high
+
+
+@pytest.mark.parametrize(
+    ("free", "bounded", "rows", "dependent"),
+    [(8, 5, 60, 0), (8, 5, 60, 3), (30, 6, 20, 0), (0, 5, 60, 0), (40, 30, 60, 10)],
+)
+@pytest.mark.parametrize("seed", range(3))
+def test_no_step_within_the_bounds_leaves_less(seed, free, bounded, rows, dependent):
+    """Compared with a solver that goes from bound to bound until none can be left or reached."""
+    A, b, low, high = problem(seed, free, bounded, rows, dependent)
+    x = solve_bounded(A, b, low, high)
+    assert (low <= x).all()
+    assert (x <= high).all()
+    exact = scipy.optimize.lsq_linear(A, b, (low, high), method="bvls", max_iter=1000).x
+    assert np.linalg.norm(A @ x - b) <= np.linalg.norm(A @ exact - b) * (1 + SAME)
+
+
+def test_all_unknowns_may_be_without_bounds():
+    A, b, low, high = problem(1, 7, 0)
+    x = solve_bounded(A, b, low, high)
+    np.testing.assert_allclose(x, np.linalg.lstsq(A, b)[0], rtol=ROUNDING)
+
+
+def test_the_solver_of_bounds_gets_no_unknown_without_bounds(monkeypatch):
+    """Its work grows with the square of its columns, and with its rows: of both it needs few."""
+    seen, solve = [], scipy.optimize.lsq_linear
+
+    def counted(A, b, bounds):
+        seen.append(A.shape)
+        assert np.isfinite(bounds).any(axis=0).all()
+        return solve(A, b, bounds)
+
+    monkeypatch.setattr(scipy.optimize, "lsq_linear", counted)
+    model = mujoco.MjModel.from_xml_string(ARM)
+    nothing(model)
+    left = unbalanced_share(model, tracked(model, MOTION[ARM]))
+    assert left is not None
+    assert (left < 0.01).all()
+    ((rows, columns),) = seen
+    assert rows <= columns + 1
