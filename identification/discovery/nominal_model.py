@@ -11,7 +11,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.errors import InputError
 from identification.estimation.options import Progress
-from identification.kalman.point import evaluate_point
+from identification.kalman.point import Point, evaluate_point
 from identification.kalman.refit import Refit, refit
 from identification.logs.log import Log
 from identification.model.coordinates import Coordinates, coordinates
@@ -147,7 +147,9 @@ def fit_with_effects(
     level, beside = (None, None) if near is None else (near.level, near.point)
     predictor = Predictor(nominal_model.plant, log, names, fixed)
     small = frozenset(nominal_model.grouped)
-    point = evaluate_point(predictor, space, space.encode(first), beside, small)
+    point = _same_point(predictor, space, space.encode(first), beside)
+    if point is None:
+        point = evaluate_point(predictor, space, space.encode(first), beside, small)
     if level is not None:
         # The correlation time that was found without the effect may have been the effect's own.
         level = replace(level, noise=level.noise.lasting(options.start_correlation_time))
@@ -159,6 +161,27 @@ def fit_with_effects(
     # errors of the inputs at first, went another way.
     again = refit(point, mean, weight, options, steps, near.level, progress, True, least)
     return max(found, again, key=lambda fit: fit.log_posterior)
+
+
+def _same_point(
+    predictor: Predictor, space: Coordinates, q: np.ndarray, near: Point | None
+) -> Point | None:
+    """Returns a point that is known, where it is the one at which a fit begins; else None.
+
+    A fit under other priors begins where the one before it ended.
+    """
+    if near is None or near.space.names != space.names:
+        return None
+    known, log = near.predictor, predictor.log
+    is_same = known.plant is predictor.plant and known.log.begun == log.begun
+    is_same = is_same and np.array_equal(known.log.outputs, log.outputs)
+    is_same = is_same and np.array_equal(known.log.inputs, log.inputs)
+    is_same = is_same and known.fixed == predictor.fixed
+    is_same = is_same and np.array_equal(near.space.logarithmic, space.logarithmic)
+    is_same = is_same and np.array_equal(near.space.scale, space.scale)
+    if not is_same or not np.allclose(near.space.decode(near.q), space.decode(q), rtol=1e-9):
+        return None
+    return replace(near, predictor=predictor, space=space, q=space.inside(q))
 
 
 def _is_less_likely(found: Refit, near: Refit) -> bool:
