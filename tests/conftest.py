@@ -11,6 +11,10 @@ from hypothesis import settings
 
 from identification import InputError
 
+# There is a worker on each core. OpenBLAS would have as many threads in each of them, which wait in
+# a busy loop: they took a third of all processor time. Programs that tests start read this too.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # A busy machine is not a failure. `make fuzz` tries more than the examples of a test.
 settings.register_profile("patient", deadline=None, max_examples=50)
 settings.load_profile("patient")
