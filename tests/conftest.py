@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from xdist.remote import Producer
+from xdist.scheduler import LoadFileScheduling
 
 from identification import InputError
 
@@ -18,6 +20,22 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # A busy machine is not a failure. `make fuzz` tries more than the examples of a test.
 settings.register_profile("patient", deadline=None, max_examples=50)
 settings.load_profile("patient")
+
+
+class ByLaws(LoadFileScheduling):
+    """A file's tests run in one worker, and so do all of a folder whose files compile the same.
+
+    Hidden worlds are compiled by numba without a cache on the disk, anew in each process.
+    """
+
+    def _split_scope(self, nodeid: str) -> str:
+        file = nodeid.partition("::")[0]
+        folder = file.rpartition("/")[0]
+        return folder if folder in ("tests/worlds", "tests/worlds_of_joints") else file
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByLaws | None:
+    return ByLaws(config, log) if config.getoption("dist") == "loadfile" else None
 
 
 @pytest.fixture(autouse=True)
