@@ -73,3 +73,13 @@ def refusal() -> Callable[..., str]:
         return text
 
     return sentence
+
+
+@pytest.fixture
+def undrawn(monkeypatch) -> None:
+    """Pages of records have their words and no figures, which take a second each."""
+    from identification.report import page, records_report
+
+    monkeypatch.setattr(page, "drawing", lambda *_: "")
+    monkeypatch.setattr(records_report, "save_figures", lambda *_: [])
+    monkeypatch.setattr(records_report, "law_sections", lambda *_: [])
