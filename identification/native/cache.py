@@ -2,9 +2,9 @@
 
 The law with all effects takes numba 20 s; its machine code has 75 kB and loads in less than 0.1 s.
 The first process that needs a callback compiles it and keeps it under its key (`cache_key`); others
-wait for it, and later ones load it. An entry that cannot be used, for whatever reason, is compiled anew and replaced; a
-folder that cannot be used means compiling in memory. `INCA_MJ_CACHE=off` (or no, 0, false) switches
-the cache off.
+wait for it, and later ones load it. An entry that cannot be used, for whatever reason, is compiled
+anew and replaced; a folder that cannot be used means compiling in memory. `INCA_MJ_CACHE=off` (or
+no, 0, false) switches the cache off.
 
 An entry is a header of five lines and the object file; nothing in it is unpickled:
 

@@ -76,9 +76,10 @@ def write(name: str, content: bytes) -> None:
 
 @contextmanager
 def alone(name: str) -> Iterator[None]:
-    """Lets one process at a time make an entry, so that others find it made and do not work twice.
+    """Lets one process at a time make an entry, so that others find it made.
 
-    A process that ends in whatever way lets the next one in. Where no lock can be had, nobody waits.
+    A process that ends in whatever way lets the next one in. Where no lock can be had, nobody
+    waits, and several may make the same entry at once.
     """
     with ExitStack() as held:
         with suppress(ImportError, OSError):
