@@ -18,18 +18,13 @@ from touching_cases import (
 
 from identification import InputError, read_robot
 from identification.__main__ import main
-from identification.robot import robot as made
 from identification.robot.touch_words import FAR_BETTER
 
 HORIZONS = pytest.mark.parametrize("more", ["horizon = 0.3\n", ""], ids=["horizon", "free run"])
 
 
-@pytest.fixture(autouse=True)
-def _few_effects(monkeypatch):
-    """Contacts are judged before any effect is sought: a law of one effect compiles in a second."""
-    every = made.all_effects
-    few = lambda *args: tuple(e for e in every(*args) if "coulomb_friction" in e.name)  # noqa: E731
-    monkeypatch.setattr(made, "all_effects", few)
+# Contacts are judged before any effect is sought.
+pytestmark = pytest.mark.usefixtures("few_effects")
 
 
 def pedestal(**changes):
