@@ -8,12 +8,34 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from xdist.remote import Producer
+from xdist.scheduler import LoadFileScheduling
 
 from identification import InputError
+
+# There is a worker on each core. OpenBLAS would have as many threads in each of them, which wait in
+# a busy loop: they took a third of all processor time. Programs that tests start read this too.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # A busy machine is not a failure. `make fuzz` tries more than the examples of a test.
 settings.register_profile("patient", deadline=None, max_examples=50)
 settings.load_profile("patient")
+
+
+class ByLaws(LoadFileScheduling):
+    """A file's tests run in one worker, and so do all of a folder whose files compile the same.
+
+    Hidden worlds are compiled by numba without a cache on the disk, anew in each process.
+    """
+
+    def _split_scope(self, nodeid: str) -> str:
+        file = nodeid.partition("::")[0]
+        folder = file.rpartition("/")[0]
+        return folder if folder in ("tests/worlds", "tests/worlds_of_joints") else file
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByLaws | None:
+    return ByLaws(config, log) if config.getoption("dist") == "loadfile" else None
 
 
 @pytest.fixture(autouse=True)
@@ -51,3 +73,13 @@ def refusal() -> Callable[..., str]:
         return text
 
     return sentence
+
+
+@pytest.fixture
+def undrawn(monkeypatch) -> None:
+    """Pages of records have their words and no figures, which take a second each."""
+    from identification.report import page, records_report
+
+    monkeypatch.setattr(page, "drawing", lambda *_: "")
+    monkeypatch.setattr(records_report, "save_figures", lambda *_: [])
+    monkeypatch.setattr(records_report, "law_sections", lambda *_: [])

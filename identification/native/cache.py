@@ -1,10 +1,10 @@
 """Callbacks that are compiled once a machine and kept in the user's cache folder.
 
 The law with all effects takes numba 20 s; its machine code has 75 kB and loads in less than 0.1 s.
-The first process that needs a callback compiles it and keeps it under its key (`cache_key`); later
-ones load it. An entry that cannot be used, for whatever reason, is compiled anew and replaced; a
-folder that cannot be used means compiling in memory. `INCA_MJ_CACHE=off` (or no, 0, false) switches
-the cache off.
+The first process that needs a callback compiles it and keeps it under its key (`cache_key`); others
+wait for it, and later ones load it. An entry that cannot be used, for whatever reason, is compiled
+anew and replaced; a folder that cannot be used means compiling in memory. `INCA_MJ_CACHE=off` (or
+no, 0, false) switches the cache off.
 
 An entry is a header of five lines and the object file; nothing in it is unpickled:
 
@@ -50,14 +50,17 @@ def compile_once(function: Callable[..., Any], signature: Any) -> Any:
     except UnknownDependency as error:
         _note(f"{function.__qualname__} is compiled in memory: it depends on {error}")
         return compile_callback(function, signature)[0]
-    found = _read(key)
-    loaded = None if found is None else load_callback(found, signature)
+    loaded = _load(key, signature)
     if loaded is not None:
         return loaded
-    callback, code = compile_callback(function, signature)
-    if code is not None:
-        _write(key, code)
-    return callback
+    with cache_folder.alone(key):
+        loaded = _load(key, signature)  # what another process has compiled meanwhile
+        if loaded is not None:
+            return loaded
+        callback, code = compile_callback(function, signature)
+        if code is not None:
+            _write(key, code)
+        return callback
 
 
 def enabled() -> bool:
@@ -85,6 +88,11 @@ def decode(key: str, content: bytes) -> MachineCode | None:
 
 def _digest(key: str, rest: bytes) -> bytes:
     return hashlib.sha256(key.encode() + b"\n" + rest).hexdigest().encode()
+
+
+def _load(key: str, signature: Any) -> Any | None:
+    found = _read(key)
+    return None if found is None else load_callback(found, signature)
 
 
 def _read(key: str) -> MachineCode | None:

@@ -13,7 +13,7 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from uuid import uuid4
 
@@ -69,10 +69,34 @@ def write(name: str, content: bytes) -> None:
                 file.write(content)
             os.replace(draft, name, src_dir_fd=inside, dst_dir_fd=inside)
         except BaseException:
-            with suppress(OSError):
-                os.unlink(draft, dir_fd=inside)
+            _remove(draft, inside)
             raise
         _remove_oldest(inside)
+
+
+@contextmanager
+def alone(name: str) -> Iterator[None]:
+    """Lets one process at a time make an entry, so that others find it made.
+
+    A process that ends in whatever way lets the next one in. Where no lock can be had, nobody
+    waits, and several may make the same entry at once.
+    """
+    with ExitStack() as held:
+        with suppress(ImportError, OSError):
+            import fcntl  # not on every system
+
+            os.makedirs(folder(), mode=0o700, exist_ok=True)
+            inside, lock = held.enter_context(_opened()), f"{name}.lock"
+            flags = os.O_WRONLY | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
+            file = held.enter_context(os.fdopen(os.open(lock, flags, 0o600, dir_fd=inside), "wb"))
+            fcntl.flock(file, fcntl.LOCK_EX)
+            held.callback(_remove, lock, inside)
+        yield
+
+
+def _remove(name: str, inside: int) -> None:
+    with suppress(OSError):
+        os.unlink(name, dir_fd=inside)
 
 
 @contextmanager
@@ -106,6 +130,5 @@ def _remove_oldest(inside: int) -> None:
     for _, name, bytes_ in sorted(entries):
         if size <= LARGEST:
             return
-        with suppress(OSError):
-            os.unlink(name, dir_fd=inside)
+        _remove(name, inside)
         size -= bytes_

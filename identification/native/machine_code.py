@@ -10,7 +10,9 @@ those of two processes could be confused.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+import gc
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any
@@ -54,7 +56,8 @@ def compile_callback(
         The ctypes function, and its machine code; None where the code holds addresses of this
         process.
     """
-    compiled: Any = cfunc(signature, error_model="numpy")(function)
+    with _uncollected():
+        compiled: Any = cfunc(signature, error_model="numpy")(function)
     pointer, library = compiled.ctypes, compiled._library
     pointer.callback = compiled  # the machine code lives as long as the pointer to it
     if library.has_dynamic_globals:
@@ -66,6 +69,18 @@ def compile_callback(
     needs = tuple(sorted(name for name in declared if not name.startswith("llvm.")))
     code = MachineCode(compiled.native_name, needs, library._get_compiled_object())
     return pointer, code
+
+
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """Looks for no garbage meanwhile: numba's trees are many objects, and it took an eighth."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
 
 
 @global_compiler_lock

@@ -52,7 +52,7 @@ def write_robot_and_logs(path: Path) -> Path:
             time=STEP * np.arange(len(u)), inputs=u, outputs=0.01 * u, name=name,
             input_names=("torque", "force"), output_names=("turn", "way"),
         )  # fmt: skip
-        plant = joint_plant(MODEL, PARAMETERS, log)
+        plant = joint_plant(MODEL, PARAMETERS, log, effects=())
         y = Predictor(plant, log, (), TRUE).predict(np.empty((1, 0)))[0]
         y = y + np.array([*NOISE.values()]) * rng.standard_normal(y.shape)
         write_log(replace(log, outputs=y), path / f"{name}.csv")

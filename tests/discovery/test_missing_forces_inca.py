@@ -14,7 +14,7 @@ from inca_mj.worlds import HiddenSetting, effect, world
 
 
 def test_both_places_have_forces_in_their_units_and_sentences():
-    log, _ = world(4, [effect("cogging")], ratio=20.0, setting=HiddenSetting(duration=2.5))
+    log, _ = world(4, [effect("cogging")], ratio=20.0, setting=HiddenSetting(duration=1.5))
     plant = build_twin(timestep=2e-3, effects=(DELAY,))
     nominal_model, options = (
         NominalModel(plant, tuple(KNOWN), np.array([*KNOWN.values()])), DiscoveryOptions()

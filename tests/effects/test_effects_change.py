@@ -1,5 +1,7 @@
 """Effects by rule are a change of the model's own parameter, in motion and in time."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from effect_cases import CATALOGUE, full, simulate
@@ -8,8 +10,17 @@ from inca_mj.robot.parameters import parameter_set
 from inca_mj.robot.spread import with_spread
 from inca_mj.twin.twin import build_twin
 
-SPREAD = build_twin(with_spread(parameter_set()))
-SETTLED = build_twin(effects=CATALOGUE, settled=True)
+
+@cache
+def spread():
+    return build_twin(with_spread(parameter_set()))
+
+
+@cache
+def settled():
+    return build_twin(effects=CATALOGUE, settled=True)
+
+
 PARAMETERS = {
     "cable_elasticity": "lambda", "cable_damping": "b", "viscous_friction": "b_v",
     "friction": "b_c", "drum_radius": "R", "torque_constant": "K_t",
@@ -20,8 +31,8 @@ PARAMETERS = {
 def test_a_mismatch_is_a_deviation_of_that_drive(name):
     """On a robot that has settled with it, so that it changes the rest as a deviation does."""
     names, values = [f"{name}_mismatch.delta@3"], [[0.0], [0.05]]
-    none, ours = simulate(SETTLED, names, values, 0.5)
-    _, theirs = simulate(SPREAD, [f"{PARAMETERS[name]}@3"], values, 0.5)
+    none, ours = simulate(settled(), names, values, 0.5)
+    _, theirs = simulate(spread(), [f"{PARAMETERS[name]}@3"], values, 0.5)
     moved = np.abs(ours - none).max()
     assert moved > 1e-7
     assert np.abs(ours - theirs).max() < 1e-6 * moved
@@ -30,8 +41,8 @@ def test_a_mismatch_is_a_deviation_of_that_drive(name):
 def test_a_drum_spring_of_another_stiffness_is_one_of_another_radius():
     """The torque depends on k_s R_s² alone, but for the pretension, which R_s does not change."""
     none, ours = simulate(full(), ["drum_spring_mismatch.delta@3"], [[0.0], [0.05]], 0.5)
-    _, theirs = simulate(SPREAD, ["k_s@3"], [[0.0], [0.05]], 0.5)
-    _, radius = simulate(SPREAD, ["R_s@3"], [[0.0], [np.sqrt(1.05) - 1]], 0.5)
+    _, theirs = simulate(spread(), ["k_s@3"], [[0.0], [0.05]], 0.5)
+    _, radius = simulate(spread(), ["R_s@3"], [[0.0], [np.sqrt(1.05) - 1]], 0.5)
     moved = np.abs(ours - none).max()
     assert np.abs(ours - theirs).max() < 1e-6 * moved
     assert np.abs(theirs - radius).max() < 1e-6 * moved

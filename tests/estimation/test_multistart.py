@@ -5,11 +5,13 @@ import pytest
 from estimation_plants import record, slider
 from unlike_cases import MODEL, PARAMETERS, TRUE, write_robot_and_logs
 
-from identification import DivergenceError, InputError, joint_plant, read_robot
+from identification import DivergenceError, InputError, joint_plant
 from identification.estimation import multistart
 from identification.estimation.ended import LOSSES, cost
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.multistart import estimate_from
+from identification.robot.file import read_robot_file
+from identification.robot.robot import read_robot_log
 
 ONCE = Options(horizons=(1.0,), max_evaluations=20)
 
@@ -58,8 +60,8 @@ def test_a_start_that_the_plant_cannot_have_is_passed_over(monkeypatch):
 def test_the_best_start_is_that_of_the_weighted_criterion(monkeypatch, tmp_path):
     """An error of 1 mm is far more than noise of 20 µm, and a smaller number than one of 3 mrad."""
     folder = write_robot_and_logs(tmp_path)
-    log = read_robot(folder / "robot.toml", folder / "first.csv").log
-    plant, names = joint_plant(MODEL, PARAMETERS, log), tuple(TRUE)
+    log = read_robot_log(read_robot_file(folder / "robot.toml"), folder / "first.csv")
+    plant, names = joint_plant(MODEL, PARAMETERS, log, effects=()), tuple(TRUE)
     slide_is_off, hinge_is_off = [TRUE["d"], 1.2 * TRUE["b"]], [1.1 * TRUE["d"], TRUE["b"]]
     starts = np.array([slide_is_off, hinge_is_off])
     monkeypatch.setattr(multistart, "_around", lambda *_: starts)

@@ -5,6 +5,7 @@ import logging
 import os
 import pickle
 import stat
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -33,6 +34,28 @@ def test_each_callback_has_an_entry(folder, compiler, same_as_python):
         same_as_python(compile_once(half, SIGNATURE), half)
     assert compiler.count == 2
     assert len(list(folder.iterdir())) == 2
+
+
+def test_what_many_need_at_once_is_compiled_once(folder, compiler, same_as_python):
+    with ThreadPoolExecutor(8) as pool:
+        asked = [pool.submit(compile_once, power, SIGNATURE) for _ in range(8)]
+    for callback in asked:
+        same_as_python(callback.result())
+    assert compiler.count == 1
+    assert [e.suffix for e in folder.iterdir()] == [""]  # and no lock is left
+
+
+def test_who_may_not_compile_lets_the_next_one_in(folder, compiler, same_as_python, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setattr(cache, "compile_callback", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            compile_once(power, SIGNATURE)
+    same_as_python(compile_once(power, SIGNATURE))
+    assert compiler.count == 1
+
+
+def interrupted(function, signature):
+    raise KeyboardInterrupt
 
 
 def content(change):

@@ -92,6 +92,7 @@ def test_records_too_short_to_confirm_are_refused():
         discover_records(nominal_model(), [first], [short], effects)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_shifts_of_records_stand_in_the_report(tmp_path):
     answer = found()
     plain = write_records_report(answer, tmp_path, ["Geoms of a and b touch."]).read_text()
@@ -110,6 +111,7 @@ def test_shifts_of_records_stand_in_the_report(tmp_path):
         assert "-315" not in told
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_small_shift_that_may_be_chance_stands_in_the_json_alone(tmp_path):
     """Two and a half std, a hundredth of a step: it is nothing to look after."""
     answer = found()
@@ -142,6 +144,7 @@ def test_each_candidate_is_listed_once_and_in_words(tmp_path):
     assert page.count("the unseen mean square error") == len(tried)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_steps_that_are_longer_than_the_models_are_told(tmp_path):
     answer = found()
     own = answer.nominal.plant

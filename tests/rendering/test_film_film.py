@@ -61,8 +61,7 @@ def test_pictures_change_where_the_platform_moves(tmp_path, pulled_run):
     assert still.max() == 0
 
 
-@pytest.mark.parametrize("camera", ["front", "side", "handle"])
-@pytest.mark.parametrize("plots", [True, False])
+@pytest.mark.parametrize(("camera", "plots"), [("front", True), ("side", False), ("handle", True)])
 def test_every_camera_gives_a_picture_of_the_size(tmp_path, short_run, camera, plots):
     [path] = stills(short_run, tmp_path, [0.5], camera=camera, size=SMALL, plots=plots)
     assert pixels(path).shape == (*SMALL[::-1], 3)

@@ -15,6 +15,7 @@ from identification.kalman.hierarchy import estimate_scatter
 from identification.model.plant import ModelPlant
 from identification.robot.file import read_robot_file
 
+pytestmark = pytest.mark.usefixtures("few_effects")
 AXES = ("left", "middle", "right")
 DAMPINGS = {"left": 3.0, "middle": 6.0, "right": 1.5}  # [N s/m] as the model has them
 

@@ -42,11 +42,10 @@ def scaled(log, factor):
     return replace(log, outputs=log.outputs * factor)
 
 
-@pytest.mark.parametrize("xml", [PENDULUM, ARM], ids=["pendulum", "arm"])
 @pytest.mark.parametrize(
-    ("world", "factor", "unit"),
-    [*((world, DEG, "deg") for world in (payload, no_gravity, friction, heavy)),
-     (payload, 1e3, "mrad")],
+    ("xml", "world", "factor", "unit"),
+    [*((PENDULUM, world, DEG, "deg") for world in (payload, no_gravity, friction, heavy)),
+     (ARM, payload, 1e3, "mrad"), (ARM, friction, DEG, "deg")],
     ids=lambda x: getattr(x, "__name__", None),
 )  # fmt: skip
 def test_degrees_are_told_whatever_the_model_lacks(tmp_path, xml, world, factor, unit):

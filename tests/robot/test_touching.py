@@ -23,6 +23,10 @@ from identification.robot.touch_words import FAR_BETTER
 HORIZONS = pytest.mark.parametrize("more", ["horizon = 0.3\n", ""], ids=["horizon", "free run"])
 
 
+# Contacts are judged before any effect is sought.
+pytestmark = pytest.mark.usefixtures("few_effects")
+
+
 def pedestal(**changes):
     return PEDESTAL.format(**{**PLAIN, **changes})
 

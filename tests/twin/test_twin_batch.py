@@ -1,5 +1,7 @@
 """One compiled model serves every value: written, expanded or compiled, the bits are the same."""
 
+from functools import cache
+
 import mujoco
 import numpy as np
 import pytest
@@ -15,7 +17,12 @@ from inca_mj.robot.parameters import SETS, parameter_set
 from inca_mj.twin.run import simulate
 from inca_mj.twin.twin import build_twin
 
-NOMINAL = build_twin()
+
+@cache
+def nominal():
+    return build_twin()
+
+
 START = {"x": 0.03, "y": -0.02, "z": 1.45, "roll": 0.05, "pitch": 0.02, "yaw": -0.1}
 
 
@@ -23,7 +30,7 @@ START = {"x": 0.03, "y": -0.02, "z": 1.45, "roll": 0.05, "pitch": 0.02, "yaw": -
 @given(laws)
 def test_new_values_equal_a_new_compilation(values):
     values = values | START
-    written, compiled = NOMINAL.with_values(values), build_twin(parameter_set("trial", values))
+    written, compiled = nominal().with_values(values), build_twin(parameter_set("trial", values))
     assert differing(written.model, compiled.model) <= UNREAD
     currents = prbs(21, 0.01)
     ours, theirs = simulate(written, currents), simulate(compiled, currents)
@@ -33,25 +40,25 @@ def test_new_values_equal_a_new_compilation(values):
 
 def test_new_values_leave_the_old_twin_alone():
     before = build_twin()
-    NOMINAL.with_values({"lambda": 1e5, "m": 0.3, "z": 1.5})
-    assert differing(before.model, NOMINAL.model) == set()
+    nominal().with_values({"lambda": 1e5, "m": 0.3, "z": 1.5})
+    assert differing(before.model, nominal().model) == set()
 
 
 def value_sets(n):
     rng = np.random.default_rng(7)
-    names = [p.name for p in NOMINAL.parameters if p.where != "start"]
+    names = [p.name for p in nominal().parameters if p.where != "start"]
     return [
-        {name: NOMINAL.parameters[name].value * rng.uniform(0.92, 1.08) for name in names}
+        {name: nominal().parameters[name].value * rng.uniform(0.92, 1.08) for name in names}
         for _ in range(n)
     ]
 
 
 def slots_of(robots):
     """What `rollout` needs to give each simulation its own robot."""
-    model = NOMINAL.model
+    model = nominal().model
     numbers = [
         (resolve(model, p.where), np.array([r.parameters[p.name].value for r in robots]))
-        for p in NOMINAL.parameters
+        for p in nominal().parameters
         if p.where != "start"
     ]
     for k in range(8):
@@ -62,10 +69,10 @@ def slots_of(robots):
 
 @pytest.mark.parametrize("nthread", [1, 2])
 def test_expanded_numbers_are_in_lockstep_with_single_models(nthread):
-    robots = [NOMINAL.with_values(values) for values in value_sets(5)]
+    robots = [nominal().with_values(values) for values in value_sets(5)]
     start, currents = moving(1), prbs(11, 0.01)
     together = rollout(
-        NOMINAL.model, start, currents, 0.01, numbers=slots_of(robots),
+        nominal().model, start, currents, 0.01, numbers=slots_of(robots),
         record=("qpos", "qvel", "act"), nthread=nthread,
     )  # fmt: skip
     for k, robot in enumerate(robots):
@@ -81,9 +88,9 @@ def test_expanded_numbers_are_in_lockstep_with_single_models(nthread):
 
 def test_threads_change_no_bit():
     start, currents = moving(2), prbs(11, 0.01)
-    numbers = slots_of([NOMINAL.with_values(values) for values in value_sets(9)])
+    numbers = slots_of([nominal().with_values(values) for values in value_sets(9)])
     one, two = (
-        rollout(NOMINAL.model, start, currents, 0.01, numbers=numbers, nthread=n)["qpos"]
+        rollout(nominal().model, start, currents, 0.01, numbers=numbers, nthread=n)["qpos"]
         for n in (1, 2)
     )
     np.testing.assert_array_equal(one, two)
@@ -92,10 +99,10 @@ def test_threads_change_no_bit():
 def test_what_is_only_drawn_moves_no_bit():
     start, currents = moving(2), prbs(11, 0.01)
     bare = build_twin(visual=False)
-    assert bare.model.ngeom == 0 < NOMINAL.model.ngeom
+    assert bare.model.ngeom == 0 < nominal().model.ngeom
     drawn, plain = (
         rollout(robot.model, start, currents, 0.01, record=("qpos", "qvel", "act"))
-        for robot in (NOMINAL, bare)
+        for robot in (nominal(), bare)
     )
     for field, values in drawn.items():
         np.testing.assert_array_equal(values, plain[field])

@@ -1,5 +1,7 @@
 """The compiled law is the equations, written out slowly; a cable never pushes."""
 
+from functools import cache
+
 import numpy as np
 from hypothesis import given, settings
 from twin_cases import forward, laws, random_state, seeds, sets
@@ -7,7 +9,10 @@ from twin_cases import forward, laws, random_state, seeds, sets
 from inca_mj.robot.parameters import parameter_set
 from inca_mj.twin.twin import build_twin
 
-ROBOT = build_twin()
+
+@cache
+def nominal():
+    return build_twin()
 
 
 def slow_law(v, T_0, at, d, d_rate, J):
@@ -24,7 +29,7 @@ def slow_law(v, T_0, at, d, d_rate, J):
 @settings(deadline=None, max_examples=50)
 @given(seeds, laws)
 def test_the_callbacks_are_the_equations(seed, values):
-    robot = ROBOT.with_values(values)
+    robot = nominal().with_values(values)
     at, ctrl = random_state(seed)
     d, d_rate, sparse, passive, act_dot, sensors, driven = (
         a[0]
@@ -56,7 +61,7 @@ def test_the_callbacks_are_the_equations(seed, values):
 @settings(deadline=None, max_examples=20)
 @given(seeds, sets)
 def test_a_cable_never_pushes(seed, name):
-    robot = ROBOT.with_values(parameter_set(name).values())
+    robot = nominal().with_values(parameter_set(name).values())
     at, ctrl = random_state(seed, 100)
     (sensors,) = forward(robot.model, at, ctrl, ("sensordata",))
     first = robot.model.sensor("tension_1").adr[0]
