@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 from dataclasses import dataclass
 
 import mujoco
@@ -66,8 +67,9 @@ def moving_bodies(model: mujoco.MjModel) -> tuple[MovingBody, ...]:
         if not (label := _label(model, b)):
             continue
         points = _points(model, b) or [2 * model.body_ipos[b]]
-        reach = max(float(np.linalg.norm(p)) for p in (*points, model.body_ipos[b]))
-        far = max(_ends(model, b) or points, key=lambda p: float(np.linalg.norm(p)))
+        # The squares of a length of 1e200 m, which a damaged file may have, exceed all floats.
+        reach = max(math.hypot(*p) for p in (*points, model.body_ipos[b]))
+        far = max(_ends(model, b) or points, key=lambda p: math.hypot(*p))
         out.append(
             MovingBody(
                 label=label, index=b, mass=float(model.body_mass[b]), reach=reach,
@@ -124,7 +126,7 @@ def _points(model: mujoco.MjModel, b: int) -> list[np.ndarray]:
         (model.ngeom, model.geom_bodyid, model.geom_pos),
     ):
         own = [np.array(pos[i]) for i in range(n) if of[i] == b]
-        if any(np.linalg.norm(p) > 0 for p in own):
+        if any(p.any() for p in own):
             return own
     return []
 
@@ -132,7 +134,7 @@ def _points(model: mujoco.MjModel, b: int) -> list[np.ndarray]:
 def _ends(model: mujoco.MjModel, b: int) -> list[np.ndarray]:
     """Ends of the geoms of a body that has no site away from its frame."""
     sites = [model.site_pos[i] for i in range(model.nsite) if model.site_bodyid[i] == b]
-    if any(np.linalg.norm(p) > 0 for p in sites):
+    if any(p.any() for p in sites):
         return []
     return [
         model.geom_pos[i] + sign * half

@@ -26,13 +26,13 @@ def check_possible(table: Table) -> None:
     """Refuse a number that no robot has, in whatever unit it is.
 
     Args:
-        table: columns in SI; of time its own checks judge.
+        table: columns in SI, NaN where nothing stands; of time its own checks judge.
 
     Raises:
         InputError: there is one.
     """
     for name in (n for n in table.names if n != "time"):
-        row = int(np.argmax(np.abs(table[name])))
+        row = int(np.argmax(np.nan_to_num(np.abs(table[name]), nan=0.0, posinf=0.0)))
         if abs(table[name][row]) > HUGE:
             raise InputError(
                 f"{table.place(row)}: {name} is {table[name][row]:.4g}, beyond {HUGE:g}, which no"

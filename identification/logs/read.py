@@ -112,6 +112,7 @@ def read_log(
     gaps: tuple[tuple[float, float], ...] = ()
     if lenient:
         check_stamps(table)
+        check_possible(table)  # a log of a robot; others may hold any number
         cure = f', or write trust = ["rows"] into {named_in}' if named_in else ""
         refuse_second_publisher(table, inputs, outputs, si, cure, trust_rows)
     if not _is_even(table, sidecar):
@@ -130,8 +131,6 @@ def read_log(
     check_time(time, table.place, sidecar.sampling_time)
     if sidecar.sampling_time:  # the grid is better than coarse stamps
         time = grid(time[0], sidecar.sampling_time, len(time))
-    if lenient:  # a log of a robot; others may hold any number
-        check_possible(table)
     check_plausible(table, factors, si, limits, rates, sidecar.file_of("units"), overrule)
     return Log(
         time=time,

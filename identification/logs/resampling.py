@@ -22,6 +22,7 @@ from identification.logs.names import quoted
 from identification.logs.sampling import MIN_ROWS, FloatArray, grid
 
 EVEN = 1e-3  # of an interval, by which even stamps may differ
+MOST_PER_ROW = 100  # samples of a grid: of more all but a hundredth would be made up
 ROUND = 0.02  # of the rate, by which it may be rounded: any rate near the samples' own would do
 
 
@@ -74,7 +75,14 @@ def even_out(
     timed = [c for c in own if c.name not in inputs or hold == "foh"] or own
     h = step or _round(max(float(np.median(np.diff(c.time))) for c in timed))
     begin, end = max(c.time[0] for c in own), min(c.time[-1] for c in timed)
-    n = int((end - begin) / h + 1e-6) + 1
+    steps = float(end - begin) / float(h)
+    if steps > MOST_PER_ROW * len(time):
+        raise InputError(
+            f"log {name!r} has {len(time)} rows in {end - begin:.6g} s, and a grid of {h:.3g} s"
+            f" would have {steps:.3g}, of which nearly all were made up; see whether all stamps"
+            " have one unit, and give sampling_time where the usual step is another one"
+        )
+    n = int(steps + 1e-6) + 1
     if n < MIN_ROWS:
         raise InputError(
             f"the channels of log {name!r} overlap for {max(0.0, end - begin):.3g} s only, fewer"

@@ -69,8 +69,10 @@ def moves_on(time: FloatArray, x: FloatArray) -> bool | None:
     """
     seen = np.isfinite(x)
     t, x = time[seen], x[seen]
-    if len(t) < 4:
+    largest = np.abs(x).max(initial=0.0)
+    if len(t) < 4 or not largest:
         return None
+    x = x / largest  # the products of products of large numbers exceed all floats
     product = np.diff(x)[1:-1] * (x[3:] - x[:-3])
     inside = shared(t)[1:-1]
     (within, sure), (between, clear) = (_mean(product[rows]) for rows in (inside, ~inside))

@@ -85,6 +85,13 @@ def test_without_sites_a_payload_hangs_at_the_end_of_the_farthest_geom(geom, end
     assert lower.point == pytest.approx((0, 0, -0.05))
 
 
+def test_a_body_with_a_site_beyond_all_squares_has_its_reach():
+    tip = '<site pos="0 0 -0.05"/>'
+    model = mujoco.MjModel.from_xml_string(ARM.replace(LOWER, LOWER + tip))
+    model.site_pos[:, 1] = 1e200
+    assert max(b.reach for b in moving_bodies(model)) == pytest.approx(1e200)
+
+
 def test_an_inertia_in_axes_of_its_own_is_kept():
     tilted = LOWER.replace("/>", ' quat="0.9 0.1 0.3 -0.2"/>')
     heavy = tilted.replace('mass="0.5" diaginertia="0.01 0.01 0.005"',

@@ -8,8 +8,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from identification import InputError, read_log
-from identification.logs.coarse import EXACT, evened_stamps, judged
+from identification.logs.coarse import EXACT, evened_stamps, fits, judged
 from identification.logs.sampling import sampling_time
+from identification.logs.shared_stamps import moves_on
 from identification.logs.sidecar import Sidecar
 from identification.logs.table import Table
 
@@ -222,3 +223,12 @@ def test_the_steps_that_fit_are_those_of_all_pairs_of_rows(n, width, seed):
         assert low > high - 1e-9 or high <= 0 or low <= 0
     else:
         assert known.steps == (pytest.approx(low, rel=1e-9), pytest.approx(high, rel=1e-9))
+
+
+@pytest.mark.parametrize("size", [1e200, 1e308])
+def test_numbers_of_any_size_are_judged_without_overflow(size):
+    """Products of products of them exceed all floats, and a step of 1e308 s fits no stamps."""
+    t = 0.01 * np.floor(np.arange(200) / 2)
+    x = size * np.sin(0.3 * np.arange(200)) / 2
+    assert moves_on(t, x) == moves_on(t, x / size)
+    assert not fits(t, np.full(200, 0.01), size)

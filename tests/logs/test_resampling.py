@@ -107,6 +107,13 @@ def test_time_that_goes_back_and_channels_that_do_not_overlap_are_refused(refusa
     assert "has 1 sample and needs 3" in refusal(even, t, {"y": t, "x": late})
 
 
+@pytest.mark.parametrize("last", [5.0, 1e9, 1e300])
+def test_a_grid_that_is_nearly_all_made_up_is_refused(refusal, last):
+    """A stamp in ns among stamps in s, or a log that is written twice, 1 µs apart."""
+    t = 1e-4 * np.arange(100)
+    assert "nearly all were made up" in refusal(even, np.append(t, last), {"y": np.append(t, 0)})
+
+
 def test_a_file_is_read_with_its_cells_missing_and_its_unused_columns_left_out(csv):
     rows = [f"{0.01 * k:.2f},{k % 2 or ''},state {k},{0.1 * k},{k}\n" for k in range(40)]
     del rows[20]
