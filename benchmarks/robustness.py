@@ -46,7 +46,8 @@ def fuzzed(record: Sequence[Row]) -> list[str]:
         "## Damaged files", "",
         "Right files with one to four changes drawn by chance (`tests/fuzz`). A find is an error "
         "that is no `InputError` of one line,",
-        "a death of the process, or no end. A case is made again by its seed and number; what was found is mended, with a test.", "",
+        "a death of the process, or no end. A case is made again by its seed and number; what was "
+        "found is mended, with a test.", "",
         "    python tests/fuzz --cases 10000 --seed 100 --record benchmarks/results/fuzz.jsonl",
     ]  # fmt: skip
     for commit in dict.fromkeys(row["commit"] for row in record):
@@ -73,8 +74,8 @@ def stopped(record: Sequence[Row]) -> list[str]:
     """Interrupts of every command."""
     said = [
         "## Ctrl-C", "",
-        "Each command is interrupted at times drawn evenly from its first six seconds. Right is"
-        " exit code 130 within two seconds,",
+        "Each command is interrupted at times drawn evenly from its first 20 s. Right is"
+        " exit code 130 within four seconds,",
         "with one line that says so and no draft left; or exit code 0, where the command had ended"
         " but for its process.", "",
         "    python benchmarks/interrupts.py --seed 1 --latest 20 --within 4", "",
