@@ -140,9 +140,7 @@ def _telling(log: Log) -> Log:
     enough = MOVES * signals.std(axis=0)
     while n < len(log) and (signals[:n].std(axis=0) < enough).any():
         n *= 2
-    if (
-        n >= len(log) or log.gaps
-    ):  # a log with gaps has a horizon, of which few windows are simulated
+    if n >= len(log) or log.gaps:  # with gaps it has a horizon, and few windows are simulated
         return log
     return log.between(float(log.time[0]), float(log.time[n]))
 

@@ -42,7 +42,7 @@ def test_no_step_within_the_bounds_leaves_less(seed, free, bounded, rows, depend
 
 @pytest.mark.parametrize(("bounded", "scatter"), [(60, 1e-12), (80, 1e-12)])
 def test_columns_that_are_nearly_sums_of_others_are_solved(bounded, scatter):
-    """Without their bounds some unknowns are beyond all numbers that the others could make up for."""
+    """Without their bounds some unknowns would be huge, and a solver begins there."""
     rng = np.random.default_rng(bounded)
     few = rng.standard_normal((300, 6)) @ rng.standard_normal((6, bounded))
     A = few + scatter * rng.standard_normal(few.shape)

@@ -8,7 +8,6 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
-from joint_cases import SLIDER, run, slider, slider_log, steps
 from test_robot_wiring import robot
 
 from identification import Log
@@ -39,10 +38,11 @@ def chain_of(joints, mass, stiffness):
     )
 
 
-def measured(model, samples, torque, noise, seed=7):
-    """A right log of a chain: random torques, and encoders with noise."""
-    rng, data, joints = np.random.default_rng(seed), mujoco.MjData(model), model.nv
+def measured(model, samples, torque, noise, still=0):
+    """A right log of a chain: torques by chance, after some samples without, and noise."""
+    rng, data, joints = np.random.default_rng(7), mujoco.MjData(model), model.nv
     u = np.repeat(torque * rng.standard_normal((samples // HELD + 1, joints)), HELD, axis=0)
+    u[:still] = 0.0
     y = np.empty((samples, joints))
     for k in range(samples):
         y[k] = data.qpos + noise * rng.standard_normal(joints)
@@ -93,19 +93,9 @@ def test_a_wrong_reading_is_simulated_in_part(tmp_path, monkeypatch, joints):
     assert np.mean(parts) < 0.4
 
 
-def cart_log(samples, still=0):
-    """A right log of a slider, which stands still at first."""
-    u = steps(samples)
-    u[:still] = 0.0
-    log = slider_log(u)
-    y = run(slider(), log)
-    noise = 1e-3 * np.random.default_rng(4).standard_normal(y.shape)
-    return replace(log, outputs=y + noise, units={})
-
-
 @pytest.mark.parametrize("still", [0, 500])
 def test_of_a_long_log_a_beginning_that_moves_is_judged(tmp_path, monkeypatch, still):
-    monkeypatch.setattr(wiring, "MOST_SAMPLES", 100)
+    monkeypatch.setattr(wiring, "MOST_SAMPLES", 200)
     seen, plain = set(), wiring.first_error
 
     def counted(plant, log, *others):
@@ -113,8 +103,10 @@ def test_of_a_long_log_a_beginning_that_moves_is_judged(tmp_path, monkeypatch, s
         return plain(plant, log, *others)
 
     monkeypatch.setattr(wiring, "first_error", counted)
-    own, log = robot(tmp_path, SLIDER, cart_log(1000, still), "joint/slide.damping")
+    text = chain_of(2, 0.3, 2.0)
+    right = measured(mujoco.MjModel.from_xml_string(text), 1000, 0.5, 1e-3, still)
+    own, log = robot(tmp_path, text, right, "joint/j0.damping")
     refuse_miswired(own, log)
     assert max(seen) < len(log) if not still else min(seen) > still
-    with pytest.raises(InputError, match="other sign"):
-        refuse_miswired(own, replace(log, outputs=-log.outputs))
+    with pytest.raises(InputError, match="exchange"):
+        refuse_miswired(own, replace(log, outputs=log.outputs[:, ::-1]))
