@@ -32,8 +32,6 @@ SAME = 0.01  # of ε, within which two readings are the same: a factor of 57.3 a
 # a simulation, and of 50 columns they would take an hour; columns side by side are confused first.
 MOST_PAIRS = 66
 
-Unexplained = Callable[[Log], np.ndarray | None]  # ε, shape (ny,); None where none can be had
-
 
 @dataclass(frozen=True)
 class Reading:
@@ -54,6 +52,22 @@ class Reading:
     kinds: tuple[str, ...] = ("wiring",)
 
 
+# ε of a reading, shape (ny,); None where none can be had, or where it is not far better
+Unexplained = Callable[[Reading], np.ndarray | None]
+
+
+def is_far_better(reading: Reading, left: np.ndarray, own: np.ndarray) -> bool:
+    """Returns whether a reading explains every column that it changes far better.
+
+    Args:
+        reading: another one.
+        left: its ε, shape (ny,), without unit.
+        own: ε of the log as it is read, shape (ny,).
+    """
+    k = list(reading.columns)
+    return bool((left[k] < np.minimum(EXPLAINED, NEARER * own[k])).all())
+
+
 def misread(
     log: Log,
     own: np.ndarray,
@@ -70,7 +84,7 @@ def misread(
         log: as it is read.
         own: its ε, shape (ny,), without unit.
         readings: other ones.
-        unexplained: ε of a log.
+        unexplained: ε of a reading.
         believed: whether a reading with its ε is what no better model could be.
 
     Returns:
@@ -79,8 +93,8 @@ def misread(
     """
     best, least = None, np.inf
     for reading in counted(readings, "other readings of the log"):
-        left, k = unexplained(reading.log), list(reading.columns)
-        if left is None or not (left[k] < np.minimum(EXPLAINED, NEARER * own[k])).all():
+        left = unexplained(reading)
+        if left is None or not is_far_better(reading, left, own):
             continue
         if left.sum() < (1 - SAME) * least and believed(reading, left):
             best, least = (reading, left), float(left.sum())
@@ -201,7 +215,7 @@ def unexplained_share(y: np.ndarray, error: np.ndarray) -> np.ndarray:
 
     Args:
         y: what was measured, shape (W, L, ny), in the outputs' units.
-        error: of the model, the same shape and units.
+        error: of the model, the same shape and units; of a part of it, which leaves less.
     """
     moved = np.sum((y - y[:, :1]) ** 2, axis=(0, 1))
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -7,8 +7,7 @@
 b are the model's bodies and rotors, p points of the outermost bodies that may carry a payload. Each
 γ is the weight of a body along an axis, or of what it carries: gravity may be missing, turned or
 too much. So η is what no payload, gravity, friction or mass explains; only a wrong unit, sign or
-order of columns does. Accelerations come from the weak form, as in Brunot, Janot, Young, Carrillo
-(2018): every signal is smoothed by ψ, and q̈ by its second difference, so that noise stays small.
+order of columns does. The motion is smoothed by ψ (`identification.robot.smoothing`).
 """
 
 from __future__ import annotations
@@ -20,29 +19,19 @@ import numpy as np
 
 from identification.engine import quiet
 from identification.logs.log import Log
-from identification.logs.noise import noise_floor
 from identification.model.predictor import output_columns
 from identification.robot.bounded import solve_bounded
 from identification.robot.moving import follow_bodies, inertial_force, point_force, weights
+from identification.robot.smoothing import Smooth, is_hidden, smoothed, widths
 from identification.robot.tendon_forces import tendon_forces
 
 FACTOR = 4.0  # that a mass, an inertia or a stiffness may be off; more is a matter of units
 PAYLOAD = 1.0  # largest, of the mass of all that moves
-NOISE = 0.1  # of an acceleration that its noise may be
-WIDTHS = (2, 4, 8, 16, 32, 64)  # half the length of ψ that are tried, in samples
-ROWS = 300  # samples that are used; neighbours say the same, because ψ overlaps
+# Samples that are used; neighbours say the same, because ψ overlaps. Of many joints fewer are, as
+# each sample gives an equation a joint, and the unknowns are some twenty a joint.
+ROWS, MOST_EQUATIONS = 300, 6000
 FAR = (1.0, 1 / 3)  # of the robot's size, that a payload's points are away from its body
 SCALAR = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
-
-
-@dataclass(frozen=True)
-class Smooth:
-    """Smoothed motion and inputs of the chosen samples, shapes (n, nv) and (n, nu)."""
-
-    q: np.ndarray
-    v: np.ndarray
-    a: np.ndarray
-    u: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -70,7 +59,8 @@ def unbalanced_share(
 
     Returns:
         None where it cannot be had: a joint is not measured, is neither hinge nor slide, drives
-        have states, bodies are tied to each other, or noise hides all accelerations.
+        have states, bodies are tied to each other, or noise hides the accelerations, or the forces
+        that they need.
     """
     columns = output_columns(model, log.output_names)
     at = {i: k for k, (field, i) in enumerate(columns) if field == "qpos"}
@@ -78,10 +68,10 @@ def unbalanced_share(
     if not plain or sorted(at) != [*range(model.nq)]:
         return None
     freedom = freedom or Freedom()
-    motion = _smooth(log.outputs[:, [at[i] for i in range(model.nq)]], log, freedom.wider)
-    if motion is None:
+    found = _shortest(model, log, log.outputs[:, [at[i] for i in range(model.nq)]], freedom.wider)
+    if found is None:
         return None
-    force = _drive_forces(model, motion)
+    motion, force = found
     A, low, high = _columns(model, motion, freedom)
     size = force.std(axis=0)
     own = A[:, :, : int(np.sum(low > 0))].sum(axis=2)  # of the model's own masses
@@ -100,36 +90,28 @@ def unbalanced_share(
     return np.asarray(eta[joint])
 
 
-def _smooth(q: np.ndarray, log: Log, wider: int = 1) -> Smooth | None:
-    """The motion through the shortest ψ whose acceleration is not that of noise."""
-    h, noise = log.sampling_time, noise_floor(q)
-    u = log.inputs
-    held = (np.vstack([u[:1], u[:-1]]) + u) / 2 if log.hold == "zoh" else u
-    for w in WIDTHS:
-        _, _, bend = _kernels(w, h)
-        if 8 * w * wider > len(q):
-            return None
-        if (noise * np.linalg.norm(bend) <= NOISE * _filtered(q, bend).std(axis=0)).all():
-            psi, slope, bend = _kernels(w * wider, h)
-            parts = [_filtered(q, kernel) for kernel in (psi, slope, bend)]
-            every = max(1, len(parts[0]) // ROWS)
-            return Smooth(*(part[::every] for part in (*parts, _filtered(held, psi))))
+def _shortest(
+    model: mujoco.MjModel, log: Log, q: np.ndarray, wider: int
+) -> tuple[Smooth, np.ndarray] | None:
+    """The motion through the shortest ψ that noise does not hide, and the forces of the drives.
+
+    Args:
+        model: of the robot.
+        log: as it is read.
+        q: the measured positions, shape (n, nv).
+        wider: times as long as it need be, that ψ is.
+    """
+    rows = min(ROWS, MOST_EQUATIONS // model.nv)
+    for w in widths(q, log.sampling_time, wider):
+        motion = smoothed(q, log, w, rows)
+        force = _drive_forces(model, motion)
+        if is_hidden(model, motion, q, w, log.sampling_time, np.ptp(force, axis=0) > 0):
+            continue
+        if wider > 1:
+            motion = smoothed(q, log, w * wider, rows)
+            force = _drive_forces(model, motion)
+        return motion, force
     return None
-
-
-def _kernels(w: int, h: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """ψ of half the length w, and those of the first and the second derivative."""
-    x = np.arange(-w + 1, w) / w
-    psi = np.pad((1 - x**2) ** 3, 2)
-    psi /= psi.sum()
-    return psi[1:-1], (psi[:-2] - psi[2:]) / (2 * h), np.diff(psi, 2) / h**2
-
-
-def _filtered(signals: np.ndarray, kernel: np.ndarray) -> np.ndarray:
-    """Σ_i kernel_i y_{k+i} of columns (n, m), where the kernel fits."""
-    if not signals.shape[1]:  # of a free swing: it has samples, and no inputs
-        return np.zeros((max(0, len(signals) - len(kernel) + 1), 0))
-    return np.stack([np.correlate(y, kernel, "valid") for y in signals.T], axis=1)
 
 
 @quiet()

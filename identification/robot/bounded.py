@@ -3,6 +3,10 @@
     min ‖A x - b‖²,  low ≤ x ≤ high                A = Q R,  Qᵀ b = c:  min ‖R x - c‖², R square
     R_f z + R_b y = c,  z without bounds  ->  min ‖P (R_b y - c)‖² over y,   P = I - R_f R_f⁺
 
+Of a long chain of bodies many columns are nearly sums of others. Unknowns that hardly change what
+is left are then huge without their bounds, where a solver of bounds begins, and it does not come
+back. So they are held by a weak pull to zero.
+
 A solver of bounds takes the square of its rows and columns in each of its many steps, and an
 unknown without bounds needs none of them: it follows from the others.
 """
@@ -13,6 +17,7 @@ import numpy as np
 
 # Share of the largest diagonal of R below which a column is a sum of the others, to rounding.
 DEPENDENT = 1e-10
+PULL = 1e-4  # of an unknown, that it adds to what is left; columns are of a size of one, or more
 
 
 def solve_bounded(A: np.ndarray, b: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
@@ -36,7 +41,9 @@ def solve_bounded(A: np.ndarray, b: np.ndarray, low: np.ndarray, high: np.ndarra
     turned, goal = Q.T @ R[:, bounded], Q.T @ c
     x = np.zeros(A.shape[1])
     if bounded.any():
-        small, rest = _triangle(turned[rank:], goal[rank:])
+        n = turned.shape[1]
+        pulled = np.vstack([turned[rank:], PULL * np.eye(n)])
+        small, rest = _triangle(pulled, np.append(goal[rank:], np.zeros(n)))
         x[bounded] = lsq_linear(small, rest, (low[bounded], high[bounded])).x
     z = np.zeros(int(is_free.sum()))
     if rank:

@@ -36,7 +36,11 @@ NEEDED = 1.0  # η of a motion that the drives cannot have made
 
 
 def rescaled(
-    model: mujoco.MjModel, log: Log, column: Mapping[str, str], signs: bool = True
+    model: mujoco.MjModel,
+    log: Log,
+    column: Mapping[str, str],
+    signs: bool = True,
+    alone: bool = True,
 ) -> tuple[Reading, str] | None:
     """The unit in which the forces of the drives explain a motion that they else cannot.
 
@@ -47,6 +51,7 @@ def rescaled(
         log: as it is read.
         column: what an output or input is called in the log's file.
         signs: whether a sign may be turned besides.
+        alone: whether one column of several of a kind may be in another unit.
 
     Returns:
         Of the units that explain it the one that changes least, if none leaves a fifth of it, and
@@ -59,7 +64,7 @@ def rescaled(
     every = np.ones(len(own), bool)
     both = turned_units(log, every, column) if signs else ()
     factors = factor_readings(log, every, column)
-    for reading in chain(factors, unit_readings(log, every, column), both):
+    for reading in chain(factors, unit_readings(log, every, column, alone=alone), both):
         left = unbalanced_share(model, reading.log, FREEDOM)
         if left is None or left.max() > EXPLAINED or left.sum() > NEARER * own.sum():
             continue

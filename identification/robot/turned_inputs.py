@@ -86,9 +86,10 @@ def with_turned_ranges(model: mujoco.MjModel, log: Log, other: Log) -> mujoco.Mj
         other: the same log with other signs of some inputs.
     """
     back = (other.inputs == -log.inputs).all(axis=0) & log.inputs.any(axis=0)
-    if not back.any():
+    of = np.flatnonzero(back)
+    if not model.actuator_ctrlrange[of].any():
         return model
-    changed, of = copy.copy(model), np.flatnonzero(back)
+    changed = copy.copy(model)
     changed.actuator_ctrlrange[of] = -model.actuator_ctrlrange[of][:, ::-1]
     return changed
 

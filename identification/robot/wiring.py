@@ -9,9 +9,9 @@ gravity, friction or mass lets the log be explained as it is read nearly as well
 that balance cannot be had, the other reading must explain nearly all. Two mistakes in one log, a
 sign and a unit, an exchange or another sign, are looked for where no reading with one of them is
 far better, and only where the balance does not explain the log as it is read. These are many, so
-that a few windows of each are simulated first, and none of a log with very many columns. A motion
-that is too large for the forces of the drives is refused without any simulation
-(`identification.robot.scale`).
+that a few windows of each are simulated first, and none of a log with very many columns. Of a long
+log only its beginning is judged. A motion that is too large for the forces of the drives is refused
+without any simulation (`identification.robot.scale`).
 """
 
 from __future__ import annotations
@@ -36,6 +36,7 @@ from identification.logs.readings import (
     UNEXPLAINED,
     Reading,
     input_readings,
+    is_far_better,
     misread,
     output_readings,
     unexplained_share,
@@ -58,9 +59,15 @@ from identification.windows.windows import spread, windows
 MOST_WINDOWS = 60  # of a log that are simulated; a wrong reading is wrong everywhere
 FEW_WINDOWS = 15  # that are simulated first of a reading with two mistakes
 MARGIN = 2.0  # times as much as of all windows, that these few may leave
+# Of the windows, that are simulated of each reading one after the other: squares only add up, so
+# that a reading that leaves too much of a part leaves too much of all.
+PARTS = (1 / 8, 1 / 2, 1.0)
 # Inputs and outputs of a log in which two mistakes are looked for: exchanges with another sign grow
 # as the third power of the columns, and for 50 joints would be simulated for half a day.
 MOST_COLUMNS = 32
+# Samples of a log that are judged, from its beginning: a wrong reading is wrong everywhere, and
+# each one is simulated. More are where something moves less in them than in the rest.
+MOST_SAMPLES, MOVES = 20_000, 0.5  # MOVES: of the std of a column in the whole log
 LENGTHS = (0.1, 1.0)  # of windows, shares of a log, where the robot has no horizon of its own
 
 
@@ -79,6 +86,7 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
     column = {n: file.columns.get(n, n) for n in (*log.output_names, *log.input_names)}
     together = partial(all_inputs_turned, model=plant.model, file=file)
     is_judged = "wiring" not in file.trust
+    log = _telling(log)
     lengths = lengths_of(robot, log)
     balance = _Balance(plant.model, log)
     if "units" not in file.trust and (cure := different_units(plant.model, log, column)):
@@ -101,14 +109,15 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
         }  # fmt: skip
         read = (r for word, kind in kinds.items() if word not in file.trust for r in kind)
         readings = chain(*(r(log, bad, column) for r in read))
-        found = misread(log, own, readings, explain, balance.confirms)
+        left = partial(_if_far_better, plant, length, log, own)
+        found = misread(log, own, readings, left, balance.confirms)
         if found is None and is_judged and is_small and balance.contradicts:
             units = () if "units" in file.trust else turned_units(log, bad, column, wanted)
             # Over the shorter windows only: an exchange is seen in both, and these are many.
             pairs = (two_turns, turned_exchanges) if length == lengths[0] else ()
             both = chain(units, *(pair(log, bad, column) for pair in pairs))
             near = _promising(plant, length, log, both)
-            found = misread(log, own, near, explain, balance.confirms)
+            found = misread(log, own, near, left, balance.confirms)
         if is_judged:
             turns = (explain(reading.log) for reading in together(log, bad, column))
             is_nearer |= any(e is not None and (e[bad] < NEARER * own[bad]).all() for e in turns)
@@ -120,9 +129,20 @@ def refuse_miswired(robot: Robot, log: Log) -> None:
                 raise _refusal(robot, log, reading, said)
     # The gain of a drive that wants a position is a guess, and its force with it.
     if not (is_explained or wanted or "units" in file.trust):
-        found = rescaled(plant.model, log, column, is_judged)
+        found = rescaled(plant.model, log, column, is_judged and is_small, is_small)
         if found is not None:
             raise _refusal(robot, log, *found)
+
+
+def _telling(log: Log) -> Log:
+    """The beginning of a long log, in which every column moves as it does in all of it."""
+    signals, n = np.hstack([log.inputs, log.outputs]), MOST_SAMPLES
+    enough = MOVES * signals.std(axis=0)
+    while n < len(log) and (signals[:n].std(axis=0) < enough).any():
+        n *= 2
+    if n >= len(log) or log.gaps:  # with gaps it has a horizon, and few windows are simulated
+        return log
+    return log.between(float(log.time[0]), float(log.time[n]))
 
 
 def _of_outputs(
@@ -209,6 +229,19 @@ def lengths_of(robot: Robot, log: Log) -> list[float]:
     return [share * log.duration for share in LENGTHS] if horizon is None else [horizon]
 
 
+def _if_far_better(
+    plant: JointPlant, length: float, log: Log, own: np.ndarray, reading: Reading
+) -> np.ndarray | None:
+    """ε of a reading; None as soon as a part of the windows shows that it is not far better."""
+    of_reading = plant_of_reading(plant, log, reading.log)
+    left = None
+    for part in PARTS:
+        left = unexplained(of_reading, length, reading.log, part=part)
+        if left is None or not is_far_better(reading, left, own):
+            return None
+    return left
+
+
 def _of_reading(
     plant: JointPlant, length: float, log: Log, other: Log, most: int = MOST_WINDOWS
 ) -> np.ndarray | None:
@@ -217,7 +250,7 @@ def _of_reading(
 
 
 def unexplained(
-    plant: JointPlant, length: float, log: Log, most: int = MOST_WINDOWS
+    plant: JointPlant, length: float, log: Log, most: int = MOST_WINDOWS, part: float = 1.0
 ) -> np.ndarray | None:
     """Returns the share of each output that a model leaves unexplained, ε of shape (ny,).
 
@@ -226,6 +259,7 @@ def unexplained(
         length: of the windows [s].
         log: what was measured.
         most: windows, spread over the log.
+        part: of these, that is simulated; what the rest leaves unexplained is not counted.
 
     Returns:
         None where nothing can be simulated so.
@@ -233,7 +267,7 @@ def unexplained(
     if not MIN_ROWS * log.sampling_time <= length <= log.duration:
         return None  # too short to tell, and whoever fits it will say so
     try:
-        error = first_error(plant, log, length, most)
+        error = first_error(plant, log, length, most, part)
     except DivergenceError:
         return None
     return unexplained_share(spread(windows(log, length), most).outputs, error)

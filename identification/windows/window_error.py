@@ -20,7 +20,7 @@ from identification.model.predictor import Plant, Predictor
 from identification.windows.held_records import hold
 from identification.windows.settling import settle
 from identification.windows.shooting import Shooting
-from identification.windows.windows import first_states, spread, windows
+from identification.windows.windows import Windows, first_states, some, spread, windows
 
 
 def window_error(
@@ -41,11 +41,11 @@ def window_error(
         InputError: the windows do not fit the log, or a name is unknown.
         DivergenceError: the model cannot be simulated.
     """
-    shooting, d = _fixed(plant, log, length, values)
+    shooting, d = _fixed(plant, log, windows(log, length), values)
     return shooting.error(settle(hold([shooting]), [d])[0].r)
 
 
-def first_error(plant: Plant, log: Log, length: float, most: int) -> np.ndarray:
+def first_error(plant: Plant, log: Log, length: float, most: int, part: float = 1.0) -> np.ndarray:
     """Errors in the same windows, each from the mean of the prior of its initial state.
 
     Args:
@@ -53,6 +53,7 @@ def first_error(plant: Plant, log: Log, length: float, most: int) -> np.ndarray:
         log: what was measured.
         length: of a window [s].
         most: windows, spread over the log.
+        part: of these, that is simulated: some of the windows, or the beginning of the only one.
 
     Returns:
         Shape (W, L, ny), in the outputs' unit.
@@ -61,20 +62,16 @@ def first_error(plant: Plant, log: Log, length: float, most: int) -> np.ndarray:
         InputError: the windows do not fit the log.
         DivergenceError: the model cannot be simulated.
     """
-    shooting, d = _fixed(plant, log, length, None, most)
+    cut = some(spread(windows(log, length), most), part)
+    shooting, d = _fixed(plant, log, cut, None)
     return shooting.error(shooting.residual(np.zeros(0), d))
 
 
 def _fixed(
-    plant: Plant,
-    log: Log,
-    length: float,
-    values: Mapping[str, float] | None,
-    most: int | None = None,
+    plant: Plant, log: Log, cut: Windows, values: Mapping[str, float] | None
 ) -> tuple[Shooting, np.ndarray]:
     """Windows of a model without free parameters, and zero changes of their states (W, nx)."""
-    none, cut = np.zeros(0), windows(log, length)
-    cut = cut if most is None else spread(cut, most)
+    none = np.zeros(0)
     predictor = Predictor(plant, log, (), dict(values or {}))
     sigma = float(np.sqrt(np.mean(noise_floor(log.outputs) ** 2))) or 1.0
     believed = first_states(predictor, none, cut)

@@ -83,6 +83,20 @@ def spread(cut: Windows, most: int) -> Windows:
     return cut if n <= most else cut.rows(np.linspace(0, n - 1, most).astype(int))
 
 
+def some(cut: Windows, part: float) -> Windows:
+    """Returns a part of some windows: some of them, evenly spread; of one window its beginning.
+
+    Args:
+        cut: the windows.
+        part: about the share of their samples that is kept, in (0, 1].
+    """
+    n, samples = cut.inputs.shape[:2]
+    if n > 1:
+        return spread(cut, max(1, round(part * n)))
+    first = slice(0, max(2, round(part * samples)))
+    return Windows(cut.inputs[:, first], cut.outputs[:, first], cut.starts)
+
+
 @dataclass(frozen=True)
 class FirstStates:
     """The prior of the windows' initial states.
@@ -209,7 +223,10 @@ def moved(model: mujoco.MjModel, states: State, step: np.ndarray) -> State:
 
 def apart(model: mujoco.MjModel, states: State, others: State) -> np.ndarray:
     """The steps that move states to others, the inverse of `moved`, shape (W, nx)."""
-    turned = np.zeros((len(states.qpos), model.nv))
-    for row, qpos, other in zip(turned, states.qpos, others.qpos, strict=True):
-        mujoco.mj_differentiatePos(model, row, 1.0, qpos, other)
+    if model.nq == model.nv:  # no quaternion
+        turned = others.qpos - states.qpos
+    else:
+        turned = np.zeros((len(states.qpos), model.nv))
+        for row, qpos, other in zip(turned, states.qpos, others.qpos, strict=True):
+            mujoco.mj_differentiatePos(model, row, 1.0, qpos, other)
     return np.hstack([turned, others.qvel - states.qvel, others.act - states.act])

@@ -35,7 +35,9 @@ def other_wiring(part: Log, predicted: np.ndarray) -> tuple[Reading, str] | None
     every = np.ones(y.shape[1], bool)
     # A cable pulls and does not push: other signs of all currents are no mirror of all angles.
     readings = chain(output_readings(part, every, column, False), _several(part, y, predicted))
-    return misread(part, unexplained(part), readings, unexplained, as_right)
+    return misread(
+        part, unexplained(part), readings, lambda reading: unexplained(reading.log), as_right
+    )
 
 
 def _several(part: Log, y: np.ndarray, predicted: np.ndarray) -> Iterator[Reading]:

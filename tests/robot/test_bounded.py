@@ -40,6 +40,20 @@ def test_no_step_within_the_bounds_leaves_less(seed, free, bounded, rows, depend
     assert np.linalg.norm(A @ x - b) <= np.linalg.norm(A @ exact - b) * (1 + SAME)
 
 
+@pytest.mark.parametrize(("bounded", "scatter"), [(60, 1e-12), (80, 1e-12)])
+def test_columns_that_are_nearly_sums_of_others_are_solved(bounded, scatter):
+    """Without their bounds some unknowns would be huge, and a solver begins there."""
+    rng = np.random.default_rng(bounded)
+    few = rng.standard_normal((300, 6)) @ rng.standard_normal((6, bounded))
+    A = few + scatter * rng.standard_normal(few.shape)
+    A /= np.linalg.norm(A, axis=0)
+    low, high = np.full(bounded, 0.5), np.where(np.arange(bounded) % 2, 8.0, np.inf)
+    b = A @ rng.uniform(1.0, 2.0, bounded) + rng.standard_normal(300)
+    x = solve_bounded(A, b, low, high)
+    least = scipy.optimize.lsq_linear(few / np.linalg.norm(few, axis=0), b).cost
+    assert np.sum((A @ x - b) ** 2) / 2 < 1.001 * least
+
+
 def test_all_unknowns_may_be_without_bounds():
     A, b, low, high = problem(1, 7, 0)
     x = solve_bounded(A, b, low, high)
