@@ -10,7 +10,7 @@ from identification.errors import unknown_name
 TRUST = {  # what a user may know better than a check
     "contacts": "geoms that touch all along the log are meant to",
     "gaps": "what is made up across a gap counts as measured",
-    "joints": "free and ball joints that no sensor measures begin where the model does",
+    "joints": "joints that no sensor measures and nothing holds begin where the model does",
     "rows": "all rows are of this robot, also a few with one stamp, and those of zeros",
     "sensors": "a sensor that repeats one value is not frozen",
     "start": "simulations begin where the model does, also where the log begins elsewhere",

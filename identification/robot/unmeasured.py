@@ -1,8 +1,9 @@
-"""Free and ball joints that move what a log measures, and whose own pose no sensor of it measures.
+"""Joints that move what a log measures, and whose own pose no sensor of it measures.
 
 A simulation begins with such a joint where the model's file has it, at rest, and so does each
 window of a horizon. A base with a free joint then falls, and a search takes what the fall does for
-a force that is missing. Hinges and slides can be measured; sensors of a pose are no outputs today.
+a force that is missing. So does one on a slide that nothing holds. Hinges, and slides that rest,
+may stay unmeasured; sensors of a pose are no outputs today.
 """
 
 from __future__ import annotations
@@ -12,20 +13,24 @@ import re
 import mujoco
 import numpy as np
 
+from identification.engine import quiet
 from identification.errors import InputError
 from identification.files import MODEL, read_bytes
 from identification.logs.log import Log
 from identification.model.predictor import output_columns
 from identification.robot.file import RobotFile
 
-_WORDS = {int(mujoco.mjtJoint.mjJNT_FREE): "free", int(mujoco.mjtJoint.mjJNT_BALL): "ball"}
+_SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
+_WORDS = {int(mujoco.mjtJoint.mjJNT_FREE): "free", int(mujoco.mjtJoint.mjJNT_BALL): "ball",
+          _SLIDE: "slide"}  # fmt: skip
+FALLS = 0.1  # of gravity: a slide that a brake or a balance holds accelerates by less
 _WELD = int(mujoco.mjtEq.mjEQ_WELD)
 _TIED = (_WELD, int(mujoco.mjtEq.mjEQ_CONNECT))  # equalities between bodies or sites
 _SITE = int(mujoco.mjtObj.mjOBJ_SITE)
 
 
 def refuse_unmeasured(file: RobotFile, model: mujoco.MjModel, log: Log) -> None:
-    """Refuse a model with a free or ball joint that moves what a log measures.
+    """Refuse a model with a joint that moves what a log measures, and that only falls or drifts.
 
     Args:
         file: the robot's.
@@ -33,17 +38,39 @@ def refuse_unmeasured(file: RobotFile, model: mujoco.MjModel, log: Log) -> None:
         log: what was measured.
 
     Raises:
-        InputError: there is such a joint, nothing welds it to the world, and the file does not
-            trust its joints.
+        InputError: there is a free or ball joint that nothing measures and nothing welds to the
+            world, or a slide that nothing measures and nothing holds against gravity, and the file
+            does not trust its joints.
     """
     if "joints" in file.trust:
         return
     felt = felt_trees(model, log)
+    falling = _falling_slides(model, log)
     for j in np.flatnonzero(np.isin(model.jnt_type, [*_WORDS])):
         body = int(model.jnt_bodyid[j])
         if int(model.body_treeid[body]) not in felt or _is_welded(model, body):
             continue
+        if model.jnt_type[j] == _SLIDE and j not in falling:
+            continue
         raise _refusal(file, model, log, int(j))
+
+
+def _falling_slides(model: mujoco.MjModel, log: Log) -> set[int]:
+    """Returns the slides that fall as the model begins: nothing measures or holds them."""
+    measured = {int(i if field == "qvel" else model.jnt_dofadr[model.jnt_qposadr == i][0])
+                for field, i in output_columns(model, log.output_names)}  # fmt: skip
+    data = mujoco.MjData(model)
+    with quiet():
+        mujoco.mj_forward(model, data)
+    driven = {int(i) for i in data.moment_colind[: int(data.moment_rownnz.sum())]}
+    fast = FALLS * float(np.linalg.norm(model.opt.gravity))
+    out = set()
+    free = ~model.jnt_limited.astype(bool) & (np.ravel(model.jnt_stiffness) == 0)
+    for j in np.flatnonzero((model.jnt_type == _SLIDE) & free):
+        dof = int(model.jnt_dofadr[j])
+        if dof not in measured | driven and fast > 0 and abs(data.qacc[dof]) > fast:
+            out.add(int(j))
+    return out
 
 
 def _refusal(file: RobotFile, model: mujoco.MjModel, log: Log, j: int) -> InputError:
@@ -55,8 +82,10 @@ def _refusal(file: RobotFile, model: mujoco.MjModel, log: Log, j: int) -> InputE
     )
     name = model.body(body).name or f"number {body}"
     begin = "the simulation" if file.horizon is None else f"each window of {file.horizon:g} s"
-    falls = kind == "free" and bool(model.opt.gravity.any())
+    falls = kind == "slide" or (kind == "free" and bool(model.opt.gravity.any()))
     cure = f"weld {name} if it is fixed: delete the {kind} joint{_line(file, kind)}"
+    if kind == "slide":
+        cure += "; add a jointpos sensor and its column if the log has it"
     if kind == "ball":
         cure += "; write hinges whose angles the log measures in its place if it turns"
     return InputError(

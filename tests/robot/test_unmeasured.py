@@ -1,10 +1,12 @@
-"""A free or ball joint that moves what is measured, and that nothing measures, is refused."""
+"""A joint that moves what is measured, and that nothing measures and nothing holds, is refused."""
 
+import mujoco
 import pytest
 from robot_cases import refused
 from touching_cases import make_robot, simulated
 
 from identification import InputError, read_robot
+from identification.robot.unmeasured import refuse_unmeasured
 
 LEG = """<mujoco>
 <option timestep="0.002" integrator="RK4"/>
@@ -23,6 +25,7 @@ LEG = """<mujoco>
 <sensor><jointpos name="hip" joint="hip"/></sensor>
 </mujoco>"""
 FREE, BALL = "<freejoint/>", '<joint name="neck" type="ball"/>'
+RAIL = '<joint name="rise" type="slide" axis="0 0.2 1"/>'
 WELD = '<weld body1="{}" body2="trunk"/>'
 
 
@@ -55,6 +58,9 @@ def test_no_verb_begins_with_a_base_that_falls(tmp_path, capsys, log, verb):
         ('<joint name="root" type="free"/>', "has a free joint 'root' of body trunk"),
         (BALL, "has a ball joint 'neck' of body trunk"),
         (BALL, "delete the ball joint in line 5 of robot.xml; write hinges whose angles the log"),
+        (RAIL, "has a slide joint 'rise' of body trunk"),
+        (RAIL, "delete the slide joint in line 5 of robot.xml; add a jointpos sensor and its col"),
+        (RAIL, "and it falls from there"),
         (BALL, "so that the simulation begins with it where the model has it, at rest, and it mo"),
     ],
 )
@@ -82,6 +88,24 @@ def test_a_base_that_an_equality_welds_to_the_world_is_right(tmp_path, log):
     off = held.replace("<weld ", '<weld active="false" ')
     with pytest.raises(InputError, match="has a free joint of body trunk"):
         read(tmp_path, off, log)
+
+
+@pytest.mark.parametrize(
+    ("joint", "more"),
+    [
+        (RAIL.replace("0 0.2 1", "1 0 0"), ""),  # a cart that the leg pushes about
+        (RAIL.replace("/>", ' stiffness="500"/>'), ""),
+        (RAIL.replace("/>", ' range="0 0.01"/>'), ""),
+        (RAIL.replace("/>", ' frictionloss="90"/>'), ""),
+        (RAIL, '<motor name="hoist" joint="rise"/>'),
+    ],
+)
+def test_a_slide_that_something_holds_may_be_unmeasured(tmp_path, log, joint, more):
+    file = read(tmp_path, leg(), log).file
+    xml = leg(joint).replace("<actuator>", f"<actuator>{more}")
+    refuse_unmeasured(file, mujoco.MjModel.from_xml_string(xml), log)
+    with pytest.raises(InputError, match="has a slide joint 'rise'"):
+        refuse_unmeasured(file, mujoco.MjModel.from_xml_string(leg(RAIL)), log)
 
 
 def test_what_lies_beside_the_robot_may_be_free(tmp_path, log):
