@@ -23,7 +23,9 @@ from identification.robot.file import RobotFile
 _SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 _WORDS = {int(mujoco.mjtJoint.mjJNT_FREE): "free", int(mujoco.mjtJoint.mjJNT_BALL): "ball",
           _SLIDE: "slide"}  # fmt: skip
-FALLS = 0.1  # of gravity: a slide that a brake or a balance holds accelerates by less
+# A slide falls if it goes this share of what a free body falls in so many seconds. A wheel comes to
+# rest on the ground, a gripper at its fingers, and a brake or a balance holds a slide.
+FALLS, SECONDS = 0.5, 0.5
 _WELD = int(mujoco.mjtEq.mjEQ_WELD)
 _TIED = (_WELD, int(mujoco.mjtEq.mjEQ_CONNECT))  # equalities between bodies or sites
 _SITE = int(mujoco.mjtObj.mjOBJ_SITE)
@@ -59,18 +61,22 @@ def _falling_slides(model: mujoco.MjModel, log: Log) -> set[int]:
     """Returns the slides that fall as the model begins: nothing measures or holds them."""
     measured = {int(i if field == "qvel" else model.jnt_dofadr[model.jnt_qposadr == i][0])
                 for field, i in output_columns(model, log.output_names)}  # fmt: skip
+    free = ~model.jnt_limited.astype(bool) & (np.ravel(model.jnt_stiffness) == 0)
+    slides = [int(j) for j in np.flatnonzero((model.jnt_type == _SLIDE) & free)
+              if int(model.jnt_dofadr[j]) not in measured]  # fmt: skip
+    if not slides or not model.opt.gravity.any():
+        return set()
     data = mujoco.MjData(model)
     with quiet():
         mujoco.mj_forward(model, data)
-    driven = {int(i) for i in data.moment_colind[: int(data.moment_rownnz.sum())]}
-    fast = FALLS * float(np.linalg.norm(model.opt.gravity))
-    out = set()
-    free = ~model.jnt_limited.astype(bool) & (np.ravel(model.jnt_stiffness) == 0)
-    for j in np.flatnonzero((model.jnt_type == _SLIDE) & free):
-        dof = int(model.jnt_dofadr[j])
-        if dof not in measured | driven and fast > 0 and abs(data.qacc[dof]) > fast:
-            out.add(int(j))
-    return out
+        driven = {int(i) for i in data.moment_colind[: int(data.moment_rownnz.sum())]}
+        begin = data.qpos.copy()
+        for _ in range(int(np.ceil(SECONDS / model.opt.timestep))):
+            mujoco.mj_step(model, data)
+    far = FALLS * float(np.linalg.norm(model.opt.gravity)) * SECONDS**2 / 2
+    gone = np.abs(data.qpos - begin)
+    falling = {j for j in slides if gone[model.jnt_qposadr[j]] > far}
+    return {j for j in falling if int(model.jnt_dofadr[j]) not in driven}
 
 
 def _refusal(file: RobotFile, model: mujoco.MjModel, log: Log, j: int) -> InputError:

@@ -93,6 +93,7 @@ def test_what_comes_into_the_folder_meanwhile_is_kept_and_so_are_the_results(tmp
     def run():
         with whole_folder(out) as draft:
             (draft / "a").write_text("found")
+            out.mkdir()  # by another program
             (out / "a").write_text("of the user")
 
     with pytest.raises(InputError, match=rf"nothing of it was replaced.*{after}"):
