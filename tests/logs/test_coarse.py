@@ -8,7 +8,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from identification import InputError, read_log
-from identification.logs.coarse import EXACT, evened_stamps, fits, judged
+from identification.logs.coarse import evened_stamps
+from identification.logs.fitting_steps import EXACT, fits, judged
 from identification.logs.sampling import sampling_time
 from identification.logs.shared_stamps import moves_on
 from identification.logs.sidecar import Sidecar
