@@ -12,7 +12,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.files import read_bytes, readable
-from identification.logs.coarse import evened_stamps
+from identification.logs.coarse import evened_stamps, refuse_contradicted
 from identification.logs.conversion import conversions, converted
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
@@ -123,6 +123,7 @@ def read_log(
             table, remark = evened_stamps(table, outputs, sidecar, trust_rows)
             remarks = (*remarks, remark) if remark else remarks
     if lenient and not _is_even(table, sidecar):
+        refuse_contradicted(table, outputs, sidecar, trust_rows)
         refuse_two_inputs(table, inputs, cure, trust_rows)
         table, even = _evened(table, inputs, sidecar)
         remarks, gaps = (*remarks, even.sentence), even.gaps

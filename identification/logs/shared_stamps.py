@@ -75,17 +75,20 @@ def moves_on(time: FloatArray, x: FloatArray) -> bool | None:
     x = x / largest  # the products of products of large numbers exceed all floats
     product = np.diff(x)[1:-1] * (x[3:] - x[:-3])
     inside = shared(t)[1:-1]
-    (within, sure), (between, clear) = (_mean(product[rows]) for rows in (inside, ~inside))
+    (within, sure, error), (between, clear, _) = (_mean(product[r]) for r in (inside, ~inside))
     if not clear or between <= 0:
         return None
     if sure and ALIKE[0] * between <= within <= ALIKE[1] * between:
         return True
-    return False if abs(within) < STILL * between else None
+    # Of a few rows that moved on, the mean may be small by chance.
+    is_still = abs(within) < STILL * between and abs(within) + error < ALIKE[0] * between
+    return False if is_still else None
 
 
-def _mean(products: FloatArray) -> tuple[float, bool]:
-    """Returns the mean of products, and whether it is beyond chance."""
+def _mean(products: FloatArray) -> tuple[float, bool, float]:
+    """Returns the mean of products, whether it is beyond chance, and its std."""
     if not products.size:
-        return 0.0, False
+        return 0.0, False, 0.0
     size = float(np.sqrt(np.sum(products**2)))
-    return float(products.mean()), bool(abs(float(products.sum())) > SURE * size)
+    is_beyond = abs(float(products.sum())) > SURE * size
+    return float(products.mean()), bool(is_beyond), size / products.size

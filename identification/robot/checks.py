@@ -12,7 +12,8 @@ from identification.errors import InputError
 from identification.logs.frozen import still_sentence
 from identification.logs.log import Log
 from identification.logs.sampling import MIN_ROWS, rows_between
-from identification.logs.units import units_that_fit
+from identification.logs.sidecar import read_sidecar
+from identification.logs.units import to_si, units_that_fit
 from identification.model.predictor import sensor_word
 from identification.robot.file import RobotFile
 
@@ -112,14 +113,26 @@ def refuse_milliseconds(model: mujoco.MjModel, file: RobotFile, log: Log, path: 
         InputError: a sample lasts more than `MOST_STEPS` steps.
     """
     h, step = log.sampling_time, float(model.opt.timestep)
-    if h > MOST_STEPS * step and "time" not in file.trust:
-        unit = next(iter(units_that_fit("s", h, MOST_STEPS * step)), "ms")
-        raise InputError(
-            f"{path} is sampled every {h:g} s, {h / step:.0f} steps of {file.model}; is its time in"
-            f' {unit}? then write time = "{unit}" under [units] in {path.with_suffix(".toml")},'
-            f" else give the model a timestep of {h / MOST_STEPS:g} s or more, or write trust = ["
-            f'"time"] into {file.path}'
+    if h <= MOST_STEPS * step or "time" in file.trust:
+        return
+    sidecar = read_sidecar(path.with_suffix(".toml"), file.log, file.path)
+    given = sidecar.units.get("time", "s")
+    unit = next(iter(units_that_fit("s", h / to_si(given)[1], MOST_STEPS * step)), None)
+    where, but_not = path.with_suffix(".toml"), ""
+    if "time" in sidecar.units:
+        where = sidecar.file_of("units")
+        but_not = f", and not in {given} as {where} says"
+    asked = "see whether its stamps are right, else"
+    if unit:
+        asked = (
+            f"is its time in {unit}{but_not}? then write time = "
+            f'"{unit}" under [units] in {where}, else'
         )
+    raise InputError(
+        f"{path} is sampled every {h:g} s, {h / step:.0f} steps of {file.model}; {asked} give the"
+        f" model a timestep of {h / MOST_STEPS:g} s or more, or write trust = ["
+        f'"time"] into {file.path}'
+    )
 
 
 def with_judged_gaps(file: RobotFile, log: Log) -> Log:

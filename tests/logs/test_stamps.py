@@ -148,6 +148,37 @@ def test_the_unit_of_time_that_is_told_is_the_one_that_repairs_it(tmp_path, unit
     assert read_robot(robot, path).log.sampling_time == pytest.approx(0.01, rel=1e-4)
 
 
+@pytest.mark.parametrize(("right", "wrong"), [
+    ("us", "ms"), ("ns", "us"), ("ns", "ms"), ("ms", "s"),
+])  # fmt: skip
+@pytest.mark.parametrize("in_robot", [False, True])
+def test_a_wrong_unit_of_time_is_told_the_one_that_repairs_it(tmp_path, right, wrong, in_robot):
+    (tmp_path / "slider.xml").write_text(SLIDER)
+    robot, path = tmp_path / "robot.toml", tmp_path / "slow.csv"
+    log = simulated({}, 200)
+    per_second = {"ms": 1e3, "us": 1e6, "ns": 1e9}[right]
+    cells = np.column_stack([np.rint(log.time * per_second), log.inputs, log.outputs])
+    rows = [f"{t:.0f},{u!r},{y!r}" for t, u, y in cells.tolist()]
+    path.write_text("\n".join([f"time,{log.input_names[0]},x", *rows]))
+    place = robot if in_robot else path.with_suffix(".toml")
+
+    def say(unit):
+        robot.write_text(TOML)
+        if in_robot:
+            robot.write_text(TOML + f'\n[log.units]\ntime = "{unit}"\n')
+        else:
+            place.write_text(f'units.time = "{unit}"')
+
+    say(wrong)
+    with pytest.raises(InputError, match="is sampled every") as refused:
+        read_robot(robot, path)
+    said = str(refused.value)
+    assert f"is its time in {right}, and not in {wrong} as {place} says?" in said
+    assert f'write time = "{right}" under [units] in {place}' in said
+    say(right)
+    assert read_robot(robot, path).log.sampling_time == pytest.approx(log.sampling_time)
+
+
 def test_a_column_of_time_in_the_robot_s_file_is_told_its_place(tmp_path, refusal):
     (tmp_path / "slider.xml").write_text(SLIDER)
     robot, path = tmp_path / "robot.toml", tmp_path / "log.csv"
