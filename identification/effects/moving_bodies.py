@@ -57,6 +57,7 @@ def movable(spec: mujoco.MjSpec) -> mujoco.MjModel:
     return model
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a geom of 1e308 m, which a damaged file may have
 def moving_bodies(model: mujoco.MjModel) -> tuple[MovingBody, ...]:
     """The bodies that move and have mass, in the model's order, but for those without a name."""
     moving = [b for b in range(model.nbody) if model.body_weldid[b] and model.body_mass[b] > 0]

@@ -92,6 +92,13 @@ def test_a_body_with_a_site_beyond_all_squares_has_its_reach():
     assert max(b.reach for b in moving_bodies(model)) == pytest.approx(1e200)
 
 
+def test_a_body_whose_geom_is_beyond_all_numbers_is_listed():
+    body = LOWER + '<geom type="capsule" size="0.03 0.2" mass="0" quat="1 1 0 0"/>'
+    model = mujoco.MjModel.from_xml_string(ARM.replace(LOWER, body))
+    model.geom_size[:] = np.inf
+    assert [b.label for b in moving_bodies(model)] == ["upper", "lower"]
+
+
 def test_an_inertia_in_axes_of_its_own_is_kept():
     tilted = LOWER.replace("/>", ' quat="0.9 0.1 0.3 -0.2"/>')
     heavy = tilted.replace('mass="0.5" diaginertia="0.01 0.01 0.005"',
