@@ -9,8 +9,13 @@ from identification.windows.held import held_windows
 from identification.windows.held_records import hold
 from identification.windows.settling import settle
 from identification.windows.shooting import tangent
-from identification.windows.window_error import _fixed as fixed
-from identification.windows.window_error import window_error
+from identification.windows.window_error import _fixed, window_error
+from identification.windows.windows import windows
+
+
+def fixed(plant, log, length, values):
+    return _fixed(plant, log, windows(log, length), values)
+
 
 NOISE = 1e-4
 
