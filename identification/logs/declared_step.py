@@ -19,6 +19,7 @@ from identification.logs.sampling import (
     FloatArray,
     check_time,
     float_resolution,
+    off_grid,
     sampling_time,
 )
 from identification.logs.sidecar import Sidecar
@@ -52,8 +53,7 @@ def missing_rows(time: FloatArray, width: FloatArray, step: float) -> list[Missi
     Returns:
         The places in their order; none where missing rows do not explain it.
     """
-    with np.errstate(over="ignore"):  # a step of 1e308 s fits no stamps
-        off = time - time[0] - step * np.arange(len(time))
+    off = off_grid(time, step)
     low, high, least = off - width, off + width, float_resolution(time)
     begins, middles = [0], []
     while True:

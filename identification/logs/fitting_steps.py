@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.logs.quanta import quanta_of
-from identification.logs.sampling import JITTER, FloatArray, float_resolution
+from identification.logs.sampling import JITTER, FloatArray, float_resolution, off_grid
 
 COARSE = 0.5  # of a step: from there the rounding of stamps merges rows and makes gaps
 EXACT = 1e-3  # relative, to which the step must be known: values follow its square
@@ -70,8 +70,7 @@ def fits(time: FloatArray, width: FloatArray, step: float) -> bool:
         width: how far each may be off the grid, shape (n,) [s].
         step: of the grid [s].
     """
-    with np.errstate(over="ignore"):  # a step of 1e308 s fits no stamps
-        off = time - time[0] - step * np.arange(len(time))
+    off = off_grid(time, step)
     return bool(np.max(off - width) <= np.min(off + width) + float_resolution(time))
 
 

@@ -32,7 +32,7 @@ def check_possible(table: Table) -> None:
         InputError: there is one.
     """
     for name in (n for n in table.names if n != "time"):
-        row = int(np.argmax(np.nan_to_num(np.abs(table[name]), nan=0.0, posinf=0.0)))
+        row = int(np.argmax(np.nan_to_num(np.abs(table[name]))))
         if abs(table[name][row]) > HUGE:
             raise InputError(
                 f"{table.place(row)}: {name} is {table[name][row]:.4g}, beyond {HUGE:g}, which no"

@@ -28,9 +28,8 @@ USUAL = 1.5  # of the usual interval: rows so near each other have none missing 
 SINGLE = 2.5  # of the usual interval, that two rows with one between them are apart
 VARIED = 4.0  # times the farthest motion, that the places vary by from which it goes to zero
 CHANCE = 0.05  # of the rows, that may give an input two values at one time by chance
-MOST = (
-    0.5  # of the stamps: if more have rows that contradict each other, no trust tells which counts
-)
+# Of the stamps: if more have rows that contradict each other, no trust tells which counts.
+MOST = 0.5
 UNTOLD = ", for no trust in rows tells which of them count"
 RATES = ("rad/s", "m/s")
 

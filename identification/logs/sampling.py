@@ -41,6 +41,12 @@ def grid(start: float, step: float, n: int) -> FloatArray:
         return start + step * np.arange(n, dtype=np.float64)
 
 
+def off_grid(time: FloatArray, step: float) -> FloatArray:
+    """Returns t_k - t_0 - k T of stamps [s], shape (n,); infinite where they exceed all floats."""
+    with np.errstate(over="ignore"):
+        return np.asarray(time - time[0] - step * np.arange(len(time)))
+
+
 def rows_between(time: FloatArray, start: float, end: float) -> tuple[int, int]:
     """First row of [start, end) [s] and the row after its last.
 

@@ -8,6 +8,7 @@ may stay unmeasured; sensors of a pose are no outputs today.
 
 from __future__ import annotations
 
+import copy
 import re
 
 import mujoco
@@ -26,6 +27,7 @@ _WORDS = {int(mujoco.mjtJoint.mjJNT_FREE): "free", int(mujoco.mjtJoint.mjJNT_BAL
 # A slide falls if it goes this share of what a free body falls in so many seconds. A wheel comes to
 # rest on the ground, a gripper at its fingers, and a brake or a balance holds a slide.
 FALLS, SECONDS = 0.5, 0.5
+STEPS = 20_000  # of this simulation at most; a model with finer steps takes longer ones
 _WELD = int(mujoco.mjtEq.mjEQ_WELD)
 _TIED = (_WELD, int(mujoco.mjtEq.mjEQ_CONNECT))  # equalities between bodies or sites
 _SITE = int(mujoco.mjtObj.mjOBJ_SITE)
@@ -58,7 +60,12 @@ def refuse_unmeasured(file: RobotFile, model: mujoco.MjModel, log: Log) -> None:
 
 
 def _falling_slides(model: mujoco.MjModel, log: Log) -> set[int]:
-    """Returns the slides that fall as the model begins: nothing measures or holds them."""
+    """Returns the numbers of the slides that fall as the model begins.
+
+    Args:
+        model: with the log's sensors.
+        log: what was measured; a slide that it measures is none of them.
+    """
     measured = {int(i if field == "qvel" else model.jnt_dofadr[model.jnt_qposadr == i][0])
                 for field, i in output_columns(model, log.output_names)}  # fmt: skip
     free = ~model.jnt_limited.astype(bool) & (np.ravel(model.jnt_stiffness) == 0)
@@ -66,13 +73,13 @@ def _falling_slides(model: mujoco.MjModel, log: Log) -> set[int]:
               if int(model.jnt_dofadr[j]) not in measured]  # fmt: skip
     if not slides or not model.opt.gravity.any():
         return set()
-    data = mujoco.MjData(model)
+    model, data = copy.copy(model), mujoco.MjData(model)
+    model.opt.timestep = max(model.opt.timestep, SECONDS / STEPS)
     with quiet():
         mujoco.mj_forward(model, data)
         driven = {int(i) for i in data.moment_colind[: int(data.moment_rownnz.sum())]}
         begin = data.qpos.copy()
-        for _ in range(int(np.ceil(SECONDS / model.opt.timestep))):
-            mujoco.mj_step(model, data)
+        mujoco.mj_step(model, data, nstep=int(np.ceil(SECONDS / model.opt.timestep)))
     far = FALLS * float(np.linalg.norm(model.opt.gravity)) * SECONDS**2 / 2
     gone = np.abs(data.qpos - begin)
     falling = {j for j in slides if gone[model.jnt_qposadr[j]] > far}

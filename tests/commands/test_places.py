@@ -4,6 +4,7 @@ import os
 
 import numpy as np
 import pytest
+from folder_cases import content, made
 
 from identification.__main__ import main as identification
 from identification.commands.common import keep_if_possible
@@ -15,16 +16,6 @@ from identification.report.vector import svg
 from inca_mj.cli import main as inca
 
 LOG = "time,i1\n0,1\n"
-
-
-def made(out, **texts):
-    with whole_folder(out) as draft:
-        for name, text in texts.items():
-            (draft / name).write_text(text)
-
-
-def content(folder):
-    return {p.name: p.read_text() for p in folder.iterdir() if not p.name.startswith(".")}
 
 
 @pytest.fixture
@@ -77,13 +68,9 @@ def test_what_was_made_is_made_again_and_what_the_user_changed_is_kept(tmp_path)
     (out / "b").unlink()
     (out / "notes").mkdir()  # no file, and never replaced
     made(out, a="third")
-    assert content_of_files(out) == {"a": "third"}
+    assert content(out) == {"a": "third"}
     (out / MADE).write_text("{")  # then nothing is known to be made by the program
     assert list_foreign(out) == ["a"]
-
-
-def content_of_files(folder):
-    return {p.name: p.read_text() for p in folder.iterdir() if p.is_file() and p.name != MADE}
 
 
 def test_what_comes_into_the_folder_meanwhile_is_kept_and_so_are_the_results(tmp_path):

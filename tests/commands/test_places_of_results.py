@@ -5,20 +5,10 @@ import os
 from pathlib import Path
 
 import pytest
+from folder_cases import content, made
 
 from identification.errors import InputError
-from identification.folders import draft_of, refuse_foreign, try_folder, whole_folder
-
-
-def content(folder):
-    files = [p for p in folder.iterdir() if p.is_file() and p.name[0] != "."]
-    return {p.name: p.read_text(errors="replace") for p in files}
-
-
-def made(out, **texts):
-    with whole_folder(out) as draft:
-        for name, text in texts.items():
-            (draft / name).write_text(text)
+from identification.folders import draft_of, refuse_foreign, try_folder
 
 
 def test_a_file_that_comes_at_the_last_moment_stays(tmp_path, monkeypatch):

@@ -10,10 +10,11 @@ from pathlib import Path
 
 import fake_discovery
 import pytest
+from folder_cases import content, made
 
 from identification.commands.common import Output, conclude
 from identification.errors import InputError
-from identification.folders import list_foreign, refuse_foreign, try_folder, whole_folder
+from identification.folders import list_foreign, refuse_foreign, try_folder
 from inca_mj.commands import filmed
 from inca_mj.commands.discover import Discover
 
@@ -33,17 +34,6 @@ def driven(*arguments, before=()):
     done = subprocess.run(line, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
-
-
-def content(folder):
-    files = [p for p in folder.iterdir() if p.is_file() and p.name[0] != "."]
-    return {p.name: p.read_text(errors="replace") for p in files}
-
-
-def made(out, **texts):
-    with whole_folder(out) as draft:
-        for name, text in texts.items():
-            (draft / name).write_text(text)
 
 
 @POSIX

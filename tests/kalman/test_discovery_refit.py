@@ -1,5 +1,6 @@
 """The fit by innovations finds a slider's parameters, from afar, under noise of the input."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from discovery_cases import EFFECTS, FREE, OPTIONS, nominal_model, record, slider, wander
 
 from identification import Parameter
+from identification.discovery import nominal_model as nominal_model_file
 from identification.discovery.nominal_model import _inside, fit_with_effects
 from identification.effects.effect import Candidate
 from identification.kalman.noise_fit import NoiseLevel
@@ -50,6 +52,28 @@ def test_it_finds_the_truth_from_far_starts_under_coloured_input_noise(factors):
     # A search ends where the criterion would fall by less than the noise lets it.
     assert np.abs((far.point.q - end.point.q) / end.std).max() < 1
     assert far.point.values["mass"] == pytest.approx(2.4, rel=0.15)
+
+
+def test_a_fit_under_other_priors_begins_at_the_point_that_is_known(monkeypatch):
+    """It ends where one ends that evaluates the point anew, and evaluates none at its start."""
+    log, model = record(slider(**TRUE), 200, seed=3), nominal_model()
+    first = fit_with_effects(model, log, (), {}, OPTIONS)
+    held = replace(model, std=model.std / 3)
+    evaluate, begun = nominal_model_file.evaluate_point, []
+
+    def counted(*arguments):
+        begun.append(arguments)
+        return evaluate(*arguments)
+
+    monkeypatch.setattr(nominal_model_file, "evaluate_point", counted)
+    found = fit_with_effects(held, log, (), first.point.values, OPTIONS, near=first)
+    assert not begun
+    other_log = replace(log, outputs=log.outputs + 1e-9)
+    expected = fit_with_effects(held, other_log, (), first.point.values, OPTIONS, near=first)
+    assert len(begun) == 1
+    assert np.abs((found.point.q - expected.point.q) / expected.std).max() < 0.1
+    assert found.log_posterior == pytest.approx(expected.log_posterior, abs=0.1)
+    np.testing.assert_allclose(found.prior, 3 * first.prior)
 
 
 def test_without_noise_it_finds_the_truth_as_it_is():
