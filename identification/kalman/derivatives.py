@@ -2,10 +2,10 @@
 
     ẋ = f(x, u, θ),    x = (position in tangent space, velocity, activation)
 
-    F = ∂f/∂x,  G = ∂f/∂u        forward differences of accelerations, means over intervals
+    F = ∂f/∂x,  G = ∂f/∂u        differences of accelerations, means over intervals
 
-The points of a trajectory are many and its means are coarse, so forward differences are enough
-here; `identification.linear.derivatives` takes them.
+The points of a trajectory are many and its means are coarse, so forward differences are enough for
+all but velocities, which take secants (`identification.linear.derivatives`).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def state_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
         DivergenceError: the accelerations are not finite.
     """
     nv = along.model.nv
-    of_state, of_inputs = differences(along, Points(along), FORWARD, along.weighted)
+    of_state, of_inputs = differences(along, Points(along), FORWARD, along.weighted, along.moved)
     rows = along.average(position_rows(along.model, along.qvel))
     return (
         np.concatenate([rows, of_state], axis=1),

@@ -23,6 +23,7 @@ from identification.native.forward import Intervals
 # 100 1/s that is sampled at 100 Hz changes by half over one of them.
 INTERVALS = 2
 COARSE, FINE = INTERVALS, 3 * INTERVALS  # P, likewise
+POINTS = ("qpos", "qvel", "moved", "act", "inputs", "time")  # fields with a row for each point
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +34,7 @@ class Trajectory:
         model: with the numbers of the value set, without its sensors.
         qpos: positions, shape (M, nq).
         qvel: velocities, shape (M, nv).
+        moved: how far the velocities move in the time that a point stands for, shape (M, nv).
         act: activations, shape (M, na).
         inputs: that reach the model, shape (M, nu).
         time: of the points in the record [s], shape (M,).
@@ -45,6 +47,7 @@ class Trajectory:
     model: mujoco.MjModel
     qpos: np.ndarray
     qvel: np.ndarray
+    moved: np.ndarray
     act: np.ndarray
     inputs: np.ndarray
     time: np.ndarray
@@ -81,16 +84,14 @@ class Trajectory:
         """The same from one of its samples on."""
         begins = self.begins[self.intervals * sample :]
         first = int(begins[0]) if len(begins) else len(self.time)
-        points = {
-            f: getattr(self, f)[first:] for f in ("qpos", "qvel", "act", "inputs", "time", "steps")
-        }
+        points = {f: getattr(self, f)[first:] for f in (*POINTS, "steps")}
         states = {field: x[sample:] for field, x in self.states.items()}
         return replace(self, begins=begins - first, states=states, **points)
 
     def some(self, most: int) -> Trajectory:
         """The same at no more than `most` of its points, which stand for no intervals."""
         every = slice(None, None, -(-len(self.time) // most))
-        few = {f: getattr(self, f)[every] for f in ("qpos", "qvel", "act", "inputs", "time")}
+        few = {f: getattr(self, f)[every] for f in POINTS}
         return replace(self, begins=self.begins[:0], **few)
 
 
@@ -144,6 +145,7 @@ def divided(
         model=model,
         qpos=at["qpos"],
         qvel=at["qvel"],
+        moved=np.diff(states["qvel"][steps], axis=0),
         act=at.get("act", np.empty((len(middle), 0))),
         inputs=average_inputs(held, steps, model.nu)[0],
         time=begun + middle * step,

@@ -4,6 +4,11 @@
 
     ∂f/∂x_i ≈ (f(x + h e_i) - f(x))/h                   forward
     ∂f/∂x_i ≈ (f(x + h e_i) - f(x - h e_i))/2h          central, exact to second order
+    ∂f/∂v_i ≈ (f(v + Δ_i e_i/2) - f(v - Δ_i e_i/2))/Δ_i   secant, over how far v_i moves
+
+A friction turns over within a fraction of an interval where its joint turns back. Its slope at one
+point says little of the interval; a secant is the exact mean of the slope where the velocity moves
+evenly.
 
 The rates of positions need no differences:
 
@@ -48,6 +53,7 @@ def differences(
     points: Points,
     scheme: Scheme,
     intervals: Intervals | None = None,
+    moved: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Derivatives of the results of `points` with respect to the state and the inputs.
 
@@ -56,6 +62,8 @@ def differences(
         points: evaluates the model there.
         scheme: how differences are taken.
         intervals: over which forward differences are averaged; each point for itself when None.
+        moved: how far each velocity moves in the time that a point stands for, shape (M, nv), where
+            secants are taken in place of forward differences [the velocities' units].
 
     Returns:
         With respect to the state, shape (L, results, nx), nx = 2 nv + na, and to the inputs, shape
@@ -69,21 +77,44 @@ def differences(
         pairs = zip(points.each(_shifted(at, h)), points.each(_shifted(at, -h)), strict=True)
         each = [(there - back) / (2 * h) for there, back in pairs]
     else:
-        alone = Intervals(np.arange(len(at.time)), np.ones(len(at.time)))
-        each = [moved / h for moved in points.each(_shifted(at, h), intervals or alone)]
+        over = intervals or Intervals(np.arange(len(at.time)), np.ones(len(at.time)))
+        each = [change / h for change in points.each(_shifted(at, h, moved), over)]
+        if moved is not None:
+            nv = at.model.nv
+            sides = each[nv : 3 * nv]
+            each[nv : 3 * nv] = [a + b for a, b in zip(sides[::2], sides[1::2], strict=True)]
     of_state, of_inputs = np.stack(each[:nx], axis=-1), each[nx:]
     if not of_inputs:
         return of_state, np.zeros((*of_state.shape[:-1], 0))
     return of_state, np.stack(of_inputs, axis=-1)
 
 
-def _shifted(at: AtPoints, by: float) -> Iterator[Change]:
+def _shifted(at: AtPoints, by: float, moved: np.ndarray | None = None) -> Iterator[Change]:
     """The states and the inputs, with one after the other of them shifted."""
     for i in range(at.model.nv):
         yield Change({"qpos": shift_position(at.model, at.qpos, i, by)})
-    for field, value in (("qvel", at.qvel), ("act", at.act), ("ctrl", at.inputs)):
-        for unit in np.eye(value.shape[1]):
-            yield Change({field: value + by * unit})
+    if moved is None:
+        yield from _each_shifted("qvel", at.qvel, by)
+    else:
+        yield from _secants(at, by, moved)
+    yield from _each_shifted("act", at.act, by)
+    yield from _each_shifted("ctrl", at.inputs, by)
+
+
+def _each_shifted(field: str, value: np.ndarray, by: float) -> Iterator[Change]:
+    """The columns of a field, with one after the other of them shifted."""
+    for unit in np.eye(value.shape[1]):
+        yield Change({field: value + by * unit})
+
+
+def _secants(at: AtPoints, by: float, moved: np.ndarray) -> Iterator[Change]:
+    """Both ends of each velocity's way, whose results add up to `by` times the secant."""
+    for i, way in enumerate(moved.T):
+        way = np.where(np.abs(way) > by, way, by)
+        for end in (0.5, -0.5):
+            qvel = at.qvel.copy()
+            qvel[:, i] += end * way
+            yield Change({"qvel": qvel}, courses=(by / (2 * end) / way)[None])
 
 
 def position_rows(model: mujoco.MjModel, qvel: np.ndarray) -> np.ndarray:
