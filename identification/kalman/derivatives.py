@@ -16,7 +16,8 @@ import numpy as np
 from identification.engine import quiet
 from identification.kalman.trajectory import Trajectory
 from identification.linear.derivatives import FORWARD, differences, position_rows
-from identification.linear.points import Points
+from identification.linear.points import Change, Points
+from identification.native.forward import Intervals
 
 
 def state_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
@@ -38,6 +39,30 @@ def state_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
         np.concatenate([rows, of_state], axis=1),
         np.concatenate([np.zeros((len(rows), nv, of_inputs.shape[2])), of_inputs], axis=1),
     )
+
+
+def input_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
+    """The change of all rates per unit of each input, upwards and downwards, at the points.
+
+    The two differ where an input is at its limit.
+
+    Args:
+        along: the trajectory.
+
+    Returns:
+        Each of shape (M, nf, nu), nf = nv + na.
+
+    Raises:
+        DivergenceError: the accelerations are not finite.
+    """
+    h, alone = FORWARD.step, Intervals(np.arange(len(along.time)), np.ones(len(along.time)))
+    nu = along.inputs.shape[1]
+    shifted = (Change({"ctrl": along.inputs + by}) for by in (*h * np.eye(nu), *-h * np.eye(nu)))
+    each = [change / h for change in Points(along).each(shifted, alone)]
+    if not each:
+        nothing = np.zeros((len(along.time), along.model.nv + along.model.na, 0))
+        return nothing, nothing
+    return np.stack(each[:nu], axis=-1), -np.stack(each[nu:], axis=-1)
 
 
 @quiet()

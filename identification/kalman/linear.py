@@ -13,12 +13,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import mujoco
 import numpy as np
 
 from identification.blas import one_blas_thread
-from identification.kalman.derivatives import force_derivatives, state_derivatives
+from identification.kalman.derivatives import (
+    force_derivatives,
+    input_derivatives,
+    state_derivatives,
+)
 from identification.kalman.exponential import transitions
 from identification.kalman.trajectory import COARSE, Trajectory, follow
 from identification.model.predictor import Predictor, output_columns
@@ -61,6 +66,16 @@ class Linearisation:
     B: np.ndarray
     C: np.ndarray
     felt: np.ndarray
+
+    @cached_property
+    def of_inputs(self) -> tuple[np.ndarray, np.ndarray]:
+        """The change of the rates per unit of each input, upwards and downwards.
+
+        Each of shape (M, nf, nu), at the points of the trajectory.
+        """
+        upwards, downwards = input_derivatives(self.along)
+        felt = self.felt[self.along.model.nv :]
+        return upwards[:, felt], downwards[:, felt]
 
     def at_samples(self) -> LinearPlant:
         """The transitions from sample to sample."""

@@ -4,7 +4,7 @@
 
 F is the linearisation along the nominal trajectory, which all columns share. A column costs one
 evaluation of the accelerations at each point of the trajectory, where a simulation costs four
-in each of its steps.
+in each of its steps. One that changes inputs alone costs none: its ∂f/∂θ_j is ∂f/∂u ∂u/∂θ_j.
 
 The equations know a state only where the outputs feel it along the nominal trajectory. A candidate
 effect that reads another one takes its nominal course, such as that of a motor's heat. One that
@@ -13,8 +13,8 @@ also changes that course, such as a creep with another time constant, is simulat
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from itertools import islice
 
 import mujoco
 import numpy as np
@@ -23,7 +23,7 @@ from identification.kalman.linear import Linearisation, tangent_index
 from identification.kalman.response import respond
 from identification.kalman.trajectory import average_inputs
 from identification.linear.points import Change, Points
-from identification.model.numbers import list_differences
+from identification.model.numbers import Entries, list_differences
 from identification.model.predictor import Predictor, output_columns
 from identification.model.protocol import Numbers, with_states
 from identification.model.rollout import State, hold, substeps
@@ -117,46 +117,79 @@ def _forcing(
         that each change does, shape (m,).
     """
     along, log, model = linear.along, predictor.log, predictor.plant.model
-    felt = linear.felt[model.nv :]
     every = substeps(log.sampling_time, model.opt.timestep)
     sent = predictor.inputs(rows)(hold(log.inputs, every, log.hold))
     inputs = average_inputs(sent, along.steps, model.nu)
-    differences = [*list_differences(numbers, 0, range(1, len(rows)))]
+    if len(inputs) == 1:  # they are the same in all rows
+        inputs = np.broadcast_to(inputs, (len(rows), *inputs.shape[1:]))
+    entries = [*list_differences(numbers, 0, range(1, len(rows)))]
+    always = np.ones((1, len(along.time)))
+    factors = [
+        always if of is ALWAYS else np.array([course(along.time) for course in of])
+        for of in courses
+    ]
+    moving = [k for k, own in enumerate(entries) if own]
+    changes = (_change(entries[k], inputs[1 + k], inputs[0], factors[k]) for k in moving)
+    found = Points(along).each(changes, along.weighted)
+    g = []
+    for k, of in enumerate(factors):
+        if entries[k]:
+            g += [increment[:, linear.felt[model.nv :]] for increment in islice(found, len(of))]
+        else:  # what moves no number of the model acts through its inputs, or on readings alone
+            g += [*_by_inputs(linear, inputs[1 + k] - inputs[0], of)]
+    known = np.ones(len(courses), bool)
+    known[moving] = ~_reads_what_it_changes(linear, [entries[k] for k in moving])
+    return np.array(g), known
 
-    def changes(**fields: np.ndarray) -> Iterator[Change]:
-        return (Change(fields, entries) for entries in differences)
 
-    def on_course() -> Iterator[Change]:
-        for row, (own, of) in enumerate(zip(changes(), courses, strict=True), 1):
-            if len(inputs) > 1 and not np.array_equal(inputs[row], inputs[0]):
-                own = replace(own, fields={"ctrl": inputs[row]})
-            times = None if of is ALWAYS else np.array([course(along.time) for course in of])
-            yield replace(own, courses=times)
-
-    g = np.array([*Points(along).each(on_course(), along.weighted)])[..., felt]
-    if felt.all():
-        return g, np.ones(len(courses), bool)
-    some = along.some(FEW)
-    away = changes(act=some.act + SHIFT * ~felt[model.nv :])
-    return g, ~_read_what_they_change(Points(some), changes(), away, felt)
+def _change(entries: Entries, inputs: np.ndarray, nominal: np.ndarray, of: np.ndarray) -> Change:
+    """Numbers of a model that differ, and inputs if they do."""
+    fields = {} if np.array_equal(inputs, nominal) else {"ctrl": inputs}
+    return Change(fields, entries, of)
 
 
-def _read_what_they_change(
-    points: Points, changes: Iterable[Change], away: Iterable[Change], felt: np.ndarray
-) -> np.ndarray:
-    """Which models read activations that no output felt, and make them run otherwise.
+def _by_inputs(linear: Linearisation, δu: np.ndarray, courses: np.ndarray) -> np.ndarray:
+    """How other inputs alone move the rates, which are linear in them: means over the intervals.
 
     Args:
-        points: some of the trajectory.
-        changes: the models.
-        away: the same with those activations shifted.
-        felt: which rates the outputs feel.
+        linear: the linearisation.
+        δu: change of the inputs at the points, shape (M, nu).
+        courses: factors at the points, shape (k, M).
+
+    Returns:
+        Shape (k, L, nf).
     """
+    along = linear.along
+    if not δu.any():
+        return np.zeros((len(courses), len(along.begins), linear.Γ.shape[2]))
+    upwards, downwards = linear.of_inputs
+    moved = np.einsum("pfu,pu->pf", upwards, np.maximum(δu, 0))
+    moved += np.einsum("pfu,pu->pf", downwards, np.minimum(δu, 0))
+    return np.array([along.average(moved * course[:, None]) for course in courses])
+
+
+def _reads_what_it_changes(linear: Linearisation, changes: Sequence[Entries]) -> np.ndarray:
+    """Which changes make activations that no output felt run otherwise, and read them.
+
+    Args:
+        linear: the linearisation.
+        changes: entries of the model that differ.
+    """
+    felt = linear.felt[linear.along.model.nv :]
+    if felt.all() or not changes:
+        return np.zeros(len(changes), bool)
+    some = linear.along.some(FEW)
+    points, away = Points(some), {"act": some.act + SHIFT * ~felt[some.model.nv :]}
     nominally = points.rates()[:, ~felt]
+    pairs = zip(
+        points.each(Change({}, own) for own in changes),
+        points.each(Change(away, own) for own in changes),
+        strict=True,
+    )
     return np.array([
         not np.array_equal(runs[:, ~felt], nominally)
         and not np.array_equal(runs[:, felt], moved[:, felt])
-        for runs, moved in zip(points.each(changes), points.each(away), strict=True)
+        for runs, moved in pairs
     ])  # fmt: skip
 
 

@@ -1,0 +1,123 @@
+"""Slopes of the rates over intervals: secants in the velocities, both sides of the inputs."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+from effect_cases import bare, full
+from estimation_plants import SLIDER
+
+from identification import Log, ParameterSet, Predictor
+from identification.kalman import linear, sensitivity_equations
+from identification.kalman.derivatives import input_derivatives, state_derivatives
+from identification.kalman.sensitivity_equations import solve_sensitivities
+from identification.kalman.trajectory import COARSE, follow
+from identification.linear.points import Change, Points
+from identification.model.plant import ModelPlant
+from inca_mj.robot.inputs import make_input
+from inca_mj.twin.logs import ANGLES, CURRENTS
+
+STEEP = {"b_c": 0.01, "beta": 3.0}
+
+
+def log_of(u):
+    return Log(time=0.01 * np.arange(len(u)), inputs=u, outputs=np.zeros_like(u),
+               input_names=CURRENTS, output_names=ANGLES)  # fmt: skip
+
+
+def value(plant, name):
+    return next(p.value for p in plant.parameters if p.name == name)
+
+
+@pytest.fixture(scope="module")
+def steep():
+    """The cable robot with a friction that turns over within a fraction of an interval."""
+    return Predictor(bare(), log_of(make_input("prbs", 4.0)), tuple(STEEP))
+
+
+def test_a_friction_counts_with_the_mean_of_its_slope(steep):
+    """Of b_c tanh(β ω) that is b_c (tanh(β ω_1) - tanh(β ω_0))/(ω_1 - ω_0)."""
+    along = follow(steep, np.array([*STEEP.values()]), COARSE)
+    smooth = follow(steep, np.array([1e-9, STEEP["beta"]]), COARSE)
+    found = state_derivatives(along)[0] - state_derivatives(replace(along, model=smooth.model))[0]
+    nv, motors, beta = along.model.nv, np.arange(6, 14), STEEP["beta"]
+    found = found[:, nv + motors, nv + motors]
+    first, last = ((along.qvel + s * along.moved / 2)[:, motors] for s in (-1, 1))
+    J, far = along.model.dof_armature[motors], np.abs(last - first) > 1e-3
+    slope = (np.tanh(beta * last) - np.tanh(beta * first)) / np.where(far, last - first, 1.0)
+    assert far.mean() > 0.5
+    np.testing.assert_allclose(found[far], (-STEEP["b_c"] / J * slope)[far], rtol=1e-3, atol=0.05)
+    at_points = beta / np.cosh(beta * along.qvel[:, motors]) ** 2
+    assert np.abs(at_points - slope)[far].max() > 0.3 * beta
+
+
+def test_beside_it_columns_stay_right(steep, monkeypatch):
+    """With the slopes at the points alone they miss the simulation by twice as much."""
+    names = ("lambda", "b", "b_c", "beta", "K_t", "J", "R", "m")
+    predictor = replace(steep, names=names)
+    values = np.array([STEEP.get(name, value(steep.plant, name)) for name in names])
+    moves = 1e-6 * values
+    runs = predictor.predict(np.vstack([values, values + np.diag(100 * moves)]))
+    expected = np.moveaxis((runs[1:] - runs[0]) / (100 * moves)[:, None, None], 0, -1)
+
+    def miss():
+        records = linear.linearise_records(predictor, values)
+        S = solve_sensitivities(predictor, records, values, values + np.diag(moves), moves)
+        size = np.linalg.norm(expected, axis=(0, 1))
+        return float(np.median(np.linalg.norm(S - expected, axis=(0, 1)) / size))
+
+    with_secants = miss()
+    monkeypatch.setattr(
+        linear, "state_derivatives",
+        lambda along: state_derivatives(replace(along, moved=np.zeros_like(along.moved))),
+    )  # fmt: skip
+    assert with_secants < 0.5 * miss()
+
+
+def test_an_input_at_its_limit_has_two_slopes():
+    model = mujoco.MjModel.from_xml_string(SLIDER.replace('gear="5"', 'gear="5" ctrlrange="-1 1"'))
+    assert model.actuator_ctrllimited[0]
+    plant = ModelPlant(model, ParameterSet("limited", ()))
+    u = np.array([1.0, 1.0, 0.3, 0.3, -1.0, -1.0, -1.0])[:, None]
+    log = Log(time=0.02 * np.arange(7), inputs=u, outputs=np.zeros((7, 1)),
+              input_names=("force",), output_names=("position",))  # fmt: skip
+    along = follow(Predictor(plant, log, ()), np.empty(0), COARSE)
+    up, down = (each[:, 0, 0] for each in input_derivatives(along))
+    sent = along.inputs[:, 0]
+    np.testing.assert_allclose(up, np.where(sent < 1, 2.5, 0), atol=1e-6)  # gear over mass
+    np.testing.assert_allclose(down, np.where(sent > -1, 2.5, 0), atol=1e-6)
+
+
+def test_what_moves_no_number_of_the_model_is_not_evaluated(monkeypatch):
+    """Inputs enter by their slopes, the same for all; what acts on readings forces nothing."""
+    plant = full()
+    names = ("current_lag.tau", "current_lag.tau@3", "delay.tau@5", "current_crosstalk.a@2",
+             "encoder_scale.s@2", "encoder_lag.tau")  # fmt: skip
+    predictor = Predictor(plant, log_of(make_input("prbs", 1.0)), names)
+    values = np.array([value(plant, name) for name in names])
+    sizes = np.array([1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3])
+    records = linear.linearise_records(predictor, values)
+    evaluated, each = [], Points.each
+
+    def counted(self, changes, *of):
+        changes = [*changes]
+        evaluated.extend(changes)
+        return each(self, changes, *of)
+
+    monkeypatch.setattr(Points, "each", counted)
+    S = solve_sensitivities(predictor, records, values, values + np.diag(sizes), sizes)
+    assert len([c for c in evaluated if "ctrl" in c.fields]) == 2 * len(CURRENTS)
+    # The crosstalk, and whether it reads a state that no output felt.
+    assert len([c for c in evaluated if c.numbers]) == 3
+
+    def evaluate(linear, δu, courses):
+        along = linear.along
+        moved = Change({"ctrl": along.inputs + δu}, courses=courses)
+        return [one[:, linear.felt[along.model.nv :]]
+                for one in Points(along).each([moved], along.weighted)]  # fmt: skip
+
+    monkeypatch.setattr(sensitivity_equations, "_by_inputs", evaluate)
+    expected = solve_sensitivities(predictor, records, values, values + np.diag(sizes), sizes)
+    assert np.abs(expected).max(axis=(0, 1)).min() > 0
+    np.testing.assert_allclose(S, expected, rtol=0, atol=1e-5 * np.abs(expected).max())
