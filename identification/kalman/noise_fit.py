@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import isclose
 from threading import Lock
 
 import numpy as np
@@ -155,7 +156,12 @@ def fit_noise(
         if len(found) < 2:  # no noise is known nearby, or only that of ρ = 0 is believed
             unit = Noise(compute_unit_ratio(plant, sampling_time, time), time)
             silent = near is not None and not near.noise.ratio
-            found = believed(unit, ROUGH if silent and not fine else levels)
+            grid = ROUGH if silent and not fine else levels
+            found = believed(unit, grid[::2])  # every second, then those beside the best
+            at_best = [unit.scaled(f) for f in grid].index(_best(found).noise)
+            found += believed(
+                unit, [*grid[max(at_best - 1, 0) : at_best], *grid[at_best + 1 :][:1]]
+            )
         best = _best(found)
         times = sampling_time / 3, options.max_correlation_time  # below the first it is white
         best = refine_noise(best, at, times) if fine and best.noise.ratio else best
@@ -196,15 +202,22 @@ def refine_noise(
         times: shortest and longest correlation time [s].
     """
     step, alone = FIRST, True  # first ρ alone, because at a wrong ρ a wrong τ is likely
+    known = [best]
     while step > LAST:
         near = [(step, 1.0), (1 / step, 1.0)]
         near += [] if alone else [(1.0, step**2), (1.0, step**-2)]
         moved = [_moved(best.noise, r, τ, times) for r, τ in near]
-        new = _best([best, *run_parts(at, moved)])
+        known += run_parts(at, [m for m in moved if not any(_is_same(m, k.noise) for k in known)])
+        new = _best(known)
         if new is best:
             step, alone = (step, False) if alone else (step**0.5, False)
         best = new
     return best
+
+
+def _is_same(one: Noise, other: Noise) -> bool:
+    """Whether two noises differ by rounding only."""
+    return isclose(one.ratio, other.ratio) and isclose(one.time, other.time)
 
 
 def _moved(noise: Noise, felt: float, time: float, times: tuple[float, float]) -> Noise:
