@@ -156,12 +156,7 @@ def fit_noise(
         if len(found) < 2:  # no noise is known nearby, or only that of ρ = 0 is believed
             unit = Noise(compute_unit_ratio(plant, sampling_time, time), time)
             silent = near is not None and not near.noise.ratio
-            grid = ROUGH if silent and not fine else levels
-            found = believed(unit, grid[::2])  # every second, then those beside the best
-            at_best = [unit.scaled(f) for f in grid].index(_best(found).noise)
-            found += believed(
-                unit, [*grid[max(at_best - 1, 0) : at_best], *grid[at_best + 1 :][:1]]
-            )
+            found = believed(unit, ROUGH if silent and not fine else levels)
         best = _best(found)
         times = sampling_time / 3, options.max_correlation_time  # below the first it is white
         best = refine_noise(best, at, times) if fine and best.noise.ratio else best
