@@ -28,9 +28,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.stats import chi2
 
 from identification.blas import one_blas_thread
+from identification.chances import chi2_above
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.blocks import (
     compute_block_p_values,
@@ -211,7 +211,7 @@ class _Scorer:
         """p-values, and which share of the sensitivities re-tuning cannot imitate."""
         level, m = self.levels[self.null], signs.shape[1]
         statistic = (level.rest - null.squares) / (level.rest / level.samples)
-        p = chi2.sf(statistic, m) * np.where(is_one_sided(signs), 0.5, 1.0)
+        p = chi2_above(statistic, m) * np.where(is_one_sided(signs), 0.5, 1.0)
         own = np.trace(null.products.H, axis1=1, axis2=2)
         return p, own / np.maximum(null.products.raw, 1e-300)
 
