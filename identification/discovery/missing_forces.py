@@ -62,7 +62,9 @@ def estimate_missing_forces(fit: Refit, options: KalmanOptions) -> tuple[Missing
     dofs = [d for _, of, _, _ in groups for d in of]
     plant = linearise(point.predictor, point.space.decode(point.q), forces=dofs)
     Ts, time, out, done = point.log.sampling_time, options.start_correlation_time, [], 0
+    known = point.e, point.J, fit.prior, Ts, options
     with one_blas_thread():
+        none = fit_noise(plant, *known, levels=(0.0,), fine=False)
         for where, of, names, units in groups:
             B = plant.B[:, :, done : done + len(of)]
             done += len(of)
@@ -71,9 +73,7 @@ def estimate_missing_forces(fit: Refit, options: KalmanOptions) -> tuple[Missing
             each = [compute_unit_ratio(LinearPlant(plant.A, b[:, :, None], plant.C), Ts, time)
                     for b in np.moveaxis(B, 2, 0)]  # fmt: skip
             mine = LinearPlant(plant.A, B * each, plant.C)
-            known = mine, point.e, point.J, fit.prior, Ts, options
-            level = fit_noise(*known, fine=False)
-            none = fit_noise(*known, levels=(0.0,), fine=False)
+            level = fit_noise(mine, *known, fine=False)
             force, part = smooth(mine, level.noise, point.e, Ts)
             out.append(
                 MissingForce(

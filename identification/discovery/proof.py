@@ -19,9 +19,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.stats import t as student
 
 from identification.blas import one_blas_thread
+from identification.chances import student_above
 from identification.discovery.effect_results import Proof
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.validation import Validation
@@ -83,7 +83,7 @@ def is_beyond(blocks: np.ndarray, options: DiscoveryOptions) -> bool:
 
 def allowed_chance(count: int, options: DiscoveryOptions) -> float:
     """The chance of a t above `min_proof_t`, one-sided, for so many blocks."""
-    return float(student.sf(options.min_proof_t, count - 1))
+    return student_above(options.min_proof_t, count - 1)
 
 
 def flip_chance(blocks: np.ndarray) -> float:

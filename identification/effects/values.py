@@ -44,7 +44,14 @@ def table_at(effects: Sequence[Effect], thing: str, values: Values, n: int) -> n
 def is_present(effect: Effect, things: Sequence[str], values: Values) -> bool:
     """Whether any size of an effect is not zero at any of some things."""
     sizes = len(effect.sizes)
-    return any(_is_some(x) for thing in things for x in numbers_at(effect, thing, values)[:sizes])
+    return any(
+        _is_some(sum(parts))
+        for thing in things
+        for names in effect.parameters_at(thing)[:sizes]
+        if any(
+            map(_is_some, parts := [values[name] for name in names])
+        )  # seldom, and adding is slow
+    )
 
 
 def _is_some(x: float | np.ndarray) -> bool:

@@ -17,15 +17,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2
 
+from identification.chances import chi2_level
 from identification.errors import DivergenceError, InputError
 from identification.estimation.estimation import Estimate
 from identification.estimation.estimation import estimate as search
 from identification.estimation.fit import Fit
 from identification.progress import stage
 
-LEVEL = float(chi2.ppf(0.95, 1))  # 3.84
+LEVEL = chi2_level(0.05, 1)  # 3.84
 REACH = 3.0  # std to each side, unless points are given
 WIDEST = 0.5  # of q to each side where the std is larger or infinite
 

@@ -12,8 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import norm
 
+from identification.chances import normal_above
 from identification.estimation.whiteness import LAGS, autocorrelation, whiteness
 
 
@@ -58,4 +58,4 @@ def _independence(residual: np.ndarray, inputs: np.ndarray, lags: int) -> np.nda
     cross = np.stack([e[k:].T @ u[: n - k] / n for k in range(lags + 1)])  # (lags, ny, nu)
     z = np.abs(cross) * np.sqrt(n) / np.sqrt(np.maximum(P, 1e-3))
     tests = cross.shape[0] * cross.shape[2]
-    return np.minimum(1.0, tests * 2 * norm.sf(z.max(axis=(0, 2))))
+    return np.minimum(1.0, tests * 2 * normal_above(z.max(axis=(0, 2))))

@@ -11,7 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2, norm
+
+from identification.chances import chi2_above, normal_level
 
 LAGS = 25  # as MATLAB's resid
 
@@ -37,12 +38,12 @@ class Whiteness:
     @property
     def p_values(self) -> np.ndarray:
         """Chance that each channel, if it is white, looks less white still, shape (ny,)."""
-        return chi2.sf(self.Q, len(self.r))
+        return chi2_above(self.Q, len(self.r))
 
     @property
     def p_value(self) -> float:
         """The same of all channels together."""
-        return float(chi2.sf(self.Q.sum(), self.r.size))
+        return float(chi2_above(self.Q.sum(), self.r.size))
 
     @property
     def predictable(self) -> float:
@@ -74,5 +75,5 @@ def correlation_time(residual: np.ndarray, lags: int = LAGS) -> float:
     Summed up to the first lag that is not significantly positive (Geyer's initial sequence).
     """
     r = autocorrelation(residual, min(lags, len(residual) - 1))[1:]
-    significant = np.cumprod(r > norm.ppf(0.99) / np.sqrt(len(residual)), axis=0)
+    significant = np.cumprod(r > normal_level(0.01) / np.sqrt(len(residual)), axis=0)
     return float(1 + 2 * (r * significant).sum(axis=0).max())

@@ -14,8 +14,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
 
+from identification.chances import chi2_above
 from identification.estimation.whiteness import whiteness
 from identification.kalman.options import KalmanOptions
 
@@ -76,6 +76,6 @@ def innovation_tests(E: np.ndarray, sampling_time: float) -> InnovationTests:
         p_line=float(min(1.0, line)),
         channel=channel,
         frequency=float((at + 1) / (n * sampling_time)),
-        p_louder=float(chi2.sf(louder, ny - 1)) if ny > 1 else 1.0,
+        p_louder=float(chi2_above(louder, ny - 1)) if ny > 1 else 1.0,
         loudest=int(ratio.argmax()),
     )

@@ -168,7 +168,7 @@ def extend(known: LinearPlant, predictor: Predictor, along: Trajectory) -> Linea
     if not len(rest.begins):
         return known
     F, G = state_derivatives(rest)
-    if (np.abs(F).max(axis=0) > 0)[known.felt][:, ~known.felt].any():  # it feels more states
+    if F[:, known.felt][:, :, ~known.felt].any():  # it feels more states
         return linearise_along(predictor, along).at_samples()
     new = _linearisation(rest, F, G, _outputs(predictor, along), known.felt).at_samples()
     A, B = np.concatenate([known.A, new.A]), np.concatenate([known.B, new.B])
@@ -188,17 +188,17 @@ def _linearisation(
     along: Trajectory, F: np.ndarray, G: np.ndarray, C: np.ndarray, felt: np.ndarray
 ) -> Linearisation:
     """The linearisation by the derivatives of the whole state, for the states that are felt."""
-    F, G, C = F[:, felt][:, :, felt], G[:, felt], C[:, felt]
+    if not felt.all():
+        F, G, C = F[:, felt][:, :, felt], G[:, felt], C[:, felt]
     positions = int(felt[: along.model.nv].sum())
     with one_blas_thread():
-        A, Γ = transitions(F, along.duration)
-    Γ = Γ[:, :, positions:]
+        A, Γ = transitions(F, along.duration, positions)
     return Linearisation(along, A, Γ, Γ @ G[:, positions:], C, felt)
 
 
 def _felt(F: np.ndarray, C: np.ndarray) -> np.ndarray:
     """Which states have an effect on an output, directly or through others, shape (nx,)."""
-    links = np.abs(F).max(axis=0) > 0
+    links = (F != 0).any(axis=0)
     felt = np.any(C != 0, axis=0)
     while (more := felt | links[felt].any(axis=0)).sum() > felt.sum():
         felt = more

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import isclose
 from threading import Lock
 
 import numpy as np
@@ -196,15 +197,22 @@ def refine_noise(
         times: shortest and longest correlation time [s].
     """
     step, alone = FIRST, True  # first ρ alone, because at a wrong ρ a wrong τ is likely
+    known = [best]
     while step > LAST:
         near = [(step, 1.0), (1 / step, 1.0)]
         near += [] if alone else [(1.0, step**2), (1.0, step**-2)]
         moved = [_moved(best.noise, r, τ, times) for r, τ in near]
-        new = _best([best, *run_parts(at, moved)])
+        known += run_parts(at, [m for m in moved if not any(_is_same(m, k.noise) for k in known)])
+        new = _best(known)
         if new is best:
             step, alone = (step, False) if alone else (step**0.5, False)
         best = new
     return best
+
+
+def _is_same(one: Noise, other: Noise) -> bool:
+    """Whether two noises differ by rounding only."""
+    return isclose(one.ratio, other.ratio) and isclose(one.time, other.time)
 
 
 def _moved(noise: Noise, felt: float, time: float, times: tuple[float, float]) -> Noise:

@@ -87,23 +87,27 @@ def augment(
     """
     nx, nu = plant.B.shape[1:]
     a = float(np.exp(-sampling_time / noise.time))
-    A = _transitions(plant, a)
+    A, begins = _transitions(plant, a)
     C = np.hstack([plant.C, np.zeros((len(plant.C), nu))])
     P = np.zeros((nx + nu, nx + nu))
     P[nx:, nx:] = noise.ratio**2 * np.eye(nu)
-    return A, C, P, np.where(A.any(axis=(1, 2)), 1 - a**2, 1.0)
+    return A, C, P, np.where(begins, 1.0, 1 - a**2)
 
 
-@lru_cache(maxsize=1)
-def _transitions(plant: LinearPlant, a: float) -> np.ndarray:
-    """The transitions of the state (x, w); noises of one correlation time share them."""
+@lru_cache(maxsize=3)  # a search of the correlation time tries a longer and a shorter one
+def _transitions(plant: LinearPlant, a: float) -> tuple[np.ndarray, np.ndarray]:
+    """The transitions of the state (x, w), and which are to another record.
+
+    Noises of one correlation time share them.
+    """
     n, nx, nu = plant.B.shape
     A = np.zeros((n, nx + nu, nx + nu))
     A[:, :nx, :nx], A[:, :nx, nx:] = plant.A, plant.B
     A[:, nx:, nx:] = a * np.eye(nu)
-    A[~plant.A.any(axis=(1, 2))] = 0
+    begins = ~plant.A.any(axis=(1, 2))
+    A[begins] = 0
     A.flags.writeable = False
-    return A
+    return A, begins
 
 
 def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:

@@ -5,7 +5,6 @@ e = y - ŷ(q),   Φ = ∂ŷ/∂q,   δx_{k+1} = A_k δx_k + B_k δu_k
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,14 +17,12 @@ from identification.kalman.linear import (
     join,
     join_plants,
     linearise_along,
-    linearise_records,
 )
-from identification.kalman.trajectory import COARSE, Trajectory, follow
+from identification.kalman.run import Run
 from identification.logs.joined import records_of
 from identification.logs.log import Log
 from identification.model.coordinates import Coordinates
 from identification.model.predictor import Predictor
-from identification.model.protocol import with_states
 
 HOLDS = 0.1  # share by which outputs may miss what the columns of a point say of a short step
 
@@ -75,7 +72,7 @@ class Point:
 
 def evaluate_point(
     predictor: Predictor, space: Coordinates, q: np.ndarray, near: Point | None = None,
-    small: frozenset[str] = frozenset(),
+    small: frozenset[str] = frozenset(), run: Run | None = None,
 ) -> Point:  # fmt: skip
     """Simulate a plant at q, with its sensitivities and its linearisation.
 
@@ -85,21 +82,21 @@ def evaluate_point(
         q: shape (p,).
         near: a point nearby on the same log, from which columns of small parameters are taken.
         small: see `Point`.
+        run: the simulation at q, where there is one already.
 
     Raises:
         DivergenceError: a simulation left the finite numbers.
     """
     inside = space.inside(q)
-    values = space.decode(inside)
-    records = linearise_records(predictor, values)
+    run = run or Run(predictor, space.decode(inside))
+    records = _linearise(run)
     known = _known(near, small)
-    predicted = _predict_along(predictor, values, records)
-    J = compute_columns(predictor, space, inside, records, known, predicted)
+    J = compute_columns(predictor, space, inside, records, known, run.outputs)
     return Point(
         predictor=predictor,
         space=space,
         q=inside,
-        e=predictor.log.outputs - predicted,
+        e=predictor.log.outputs - run.outputs,
         J=J,
         linear=join(records),
         small=small,
@@ -107,17 +104,24 @@ def evaluate_point(
     )
 
 
+def _linearise(run: Run) -> tuple[Linearisation, ...]:
+    """Returns the linearisation of each record along a simulation."""
+    each = zip(run.predictor.records(), run.along, strict=True)
+    return tuple(linearise_along(record, along) for (record, _), along in each)
+
+
 def is_costly(point: Point) -> bool:
     """Whether a point has so many columns that they are kept after a short step."""
     return len(point.q) > MANY
 
 
-def shift_point(point: Point, q: np.ndarray) -> Point | None:
+def shift_point(point: Point, q: np.ndarray, run: Run | None = None) -> Point | None:
     """The point after a short step, with the columns and the linearisation from before it.
 
     Args:
         point: the point before the step.
         q: shape (p,).
+        run: the simulation at q, where there is one already.
 
     Returns:
         None where the outputs do not go where the columns say: they no longer hold.
@@ -126,7 +130,8 @@ def shift_point(point: Point, q: np.ndarray) -> Point | None:
         DivergenceError: the simulation left the finite numbers.
     """
     inside = point.space.inside(q)
-    e = point.log.outputs - point.predictor.predict(point.space.decode(inside))[0]
+    run = run or Run(point.predictor, point.space.decode(inside))
+    e = point.log.outputs - run.outputs
     expected, found = point.J @ (inside - point.q), point.e - e
     if np.linalg.norm(found - expected) > HOLDS * np.linalg.norm(found):
         return None
@@ -143,11 +148,8 @@ def _known(near: Point | None, small: frozenset[str]) -> dict[str, np.ndarray]:
 
 def evaluate_sensitivities(point: Point, whole: Log) -> np.ndarray:
     """J of the same point on a longer log, shape (N, ny, p)."""
-    predictor = replace(point.predictor, log=whole)
-    values = point.space.decode(point.q)
-    records = linearise_records(predictor, values)
-    predicted = _predict_along(predictor, values, records)
-    return compute_columns(predictor, point.space, point.q, records, {}, predicted)
+    run = Run(replace(point.predictor, log=whole), point.space.decode(point.q))
+    return compute_columns(run.predictor, point.space, point.q, _linearise(run), {}, run.outputs)
 
 
 def extend_point(point: Point, whole: Log) -> Point:
@@ -162,51 +164,25 @@ def extend_point(point: Point, whole: Log) -> Point:
     Raises:
         DivergenceError: the simulation of the longer log left the finite numbers.
     """
-    predictor = replace(point.predictor, log=whole)
-    values, known = point.space.decode(point.q), _known_plants(point)
-    each, predicted = [], []
-    for (number, log), (record, columns) in zip(
-        records_of(whole), predictor.records(), strict=True
+    run = Run(replace(point.predictor, log=whole), point.space.decode(point.q))
+    known, each = _known_plants(point), []
+    for (number, log), (record, _), along in zip(
+        records_of(whole), run.predictor.records(), run.along, strict=True
     ):
-        own = values[..., columns]
-        along = follow(record, own, COARSE)
         begun, plant = known.get(number, (None, None))
         if plant is None or begun != log.begun:
             plant = linearise_along(record, along).at_samples()
         else:
             plant = extend(plant, record, along)
         each.append(plant)
-        predicted.append(_outputs_along(record, own, along))
-    e = whole.outputs - np.concatenate(predicted)
     return Point(
-        predictor=predictor,
+        predictor=run.predictor,
         space=point.space,
         q=point.q,
-        e=e,
+        e=whole.outputs - run.outputs,
         J=point.J[:0],
         linear=join_plants(each),
     )
-
-
-def _predict_along(
-    predictor: Predictor, values: np.ndarray, records: Sequence[Linearisation]
-) -> np.ndarray:
-    """Returns the outputs of all records, shape (N, ny), along which they were linearised."""
-    each = zip(predictor.records(), records, strict=True)
-    return np.concatenate([
-        _outputs_along(record, values[columns], linear.along) for (record, columns), linear in each
-    ])  # fmt: skip
-
-
-def _outputs_along(record: Predictor, values: np.ndarray, along: Trajectory) -> np.ndarray:
-    """Returns the outputs along a trajectory, shape (N, ny), without another simulation.
-
-    A plant whose sensors see states that no model file has is simulated: a trajectory lacks these.
-    """
-    if with_states(record.plant) is not None:
-        return record.predict(values)[0]
-    states = {field: x[None] for field, x in along.states.items()}
-    return record.outputs(np.atleast_2d(values), states)[0]
 
 
 def _known_plants(point: Point) -> dict[int, tuple[float, LinearPlant]]:

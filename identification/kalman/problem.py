@@ -11,7 +11,7 @@ second derivative of the residual ("geodesic acceleration", Transtrum and Sethna
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -23,6 +23,7 @@ from identification.estimation.levenberg_marquardt import Cost
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.noise_model import Whitener
 from identification.kalman.point import Point
+from identification.kalman.run import Run
 from identification.kalman.whitened import keep, whiten
 
 LARGEST = 0.5  # largest step of a logarithm: a parameter changes by at most 65 % at a time
@@ -46,6 +47,7 @@ class Problem:
         rows: F, shape (N ny + p, p).
         target: -r, shape (N ny + p,).
         curvature: FᵀF, shape (p, p).
+        runs: simulations after steps that were tried, by the bytes of their q.
     """
 
     point: Point
@@ -56,6 +58,7 @@ class Problem:
     rows: np.ndarray
     target: np.ndarray
     curvature: np.ndarray
+    runs: dict[bytes, Run] = field(default_factory=dict, repr=False)
 
     @property
     def cost(self) -> float:
@@ -129,14 +132,19 @@ class Problem:
         Q, R = np.linalg.qr(self.rows / scale)
         return scale, R, Q
 
+    def run_at(self, q: np.ndarray) -> Run:
+        """Returns the simulation at another q, one for all who ask for it."""
+        point = self.point
+        new = Run(point.predictor, point.space.decode(point.space.inside(q)))
+        return self.runs.setdefault(q.tobytes(), new)
+
     def residual(self, q: np.ndarray) -> np.ndarray | None:
         """-r at another q with the same filter, shape (N ny + p,); None where it diverges."""
-        point = self.point
         try:
-            predicted = point.predictor.predict(point.space.decode(point.space.inside(q)))[0]
+            predicted = self.run_at(q).outputs
         except (DivergenceError, InputError):  # InputError: the robot cannot rest at its start
             return None
-        E = self.filter(point.log.outputs - predicted) / self.level.sigma
+        E = self.filter(self.point.log.outputs - predicted) / self.level.sigma
         return np.concatenate([E.ravel(), self.prior * (self.mean - q)])
 
     def cost_after(self, move: np.ndarray) -> float:

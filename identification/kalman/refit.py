@@ -188,10 +188,12 @@ def _move(
     point = problem.point
     change = np.abs(step[point.space.logarithmic]).max(initial=0.0)
     is_short = change < NEAR and is_costly(point)
-    there = shift_point(point, point.q + step) if is_short else None
+    q = point.q + step
+    run = problem.run_at(q)
+    there = shift_point(point, q, run) if is_short else None
     if there is None:
         near = point if change < SIMILAR else None
-        there = evaluate_point(point.predictor, point.space, point.q + step, near, point.small)
+        there = evaluate_point(point.predictor, point.space, q, near, point.small, run)
     point = there
     level = estimate_noise(point, problem.prior, options, problem.level, largest=largest)
     return linearise_criterion(point, level, problem.mean, problem.prior)

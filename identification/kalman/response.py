@@ -18,7 +18,7 @@ from numba import carray, types
 from identification.native.cache import compile_once
 from identification.pool import run_parts, threads
 
-TOGETHER = 48  # columns of one recursion
+TOGETHER = 64  # columns of one recursion
 _DOUBLES: Any = types.CPointer(types.float64)
 _INTS: Any = types.CPointer(types.int64)
 _SIGNATURE = types.void(*[types.int64] * 6, *[_DOUBLES] * 4, _INTS, _DOUBLES)

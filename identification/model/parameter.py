@@ -115,6 +115,10 @@ class ParameterSet:
         # A robot with 50 joints has thousands of parameters, each of which is asked for by name.
         return {p.name: p for p in self.records}
 
+    @cached_property
+    def _values(self) -> dict[str, float]:
+        return {p.name: p.value for p in self.records}
+
     def __getitem__(self, name: str) -> Parameter:
         if name not in self._by_name:
             raise unknown_name("parameter", name, self._by_name)
@@ -125,7 +129,7 @@ class ParameterSet:
 
     def values(self) -> dict[str, float]:
         """The values by name, each in its parameter's unit."""
-        return {p.name: p.value for p in self.records}
+        return self._values.copy()
 
     def with_values(self, values: Mapping[str, float], source: str = "") -> ParameterSet:
         """The same set with some values replaced.

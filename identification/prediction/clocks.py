@@ -17,8 +17,8 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from scipy.stats import t as student
 
+from identification.chances import student_above
 from identification.discovery.attempts import attempt
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.options import DiscoveryOptions
@@ -134,7 +134,7 @@ def _told(
     return ShiftedRecord(
         record=_called(record),
         shift=_shift(whole), std=std, fall=float(1 - whole.cost / at.cost),
-        chance=float(2 * student.sf(t, freedom)),
+        chance=2 * student_above(t, freedom),
     )  # fmt: skip
 
 

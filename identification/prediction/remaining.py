@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import ttest_ind
 
+from identification.chances import mean_above_other
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.findings.records_evidence import (
     DifferentRecord,
@@ -110,7 +110,7 @@ def different_records(state: RecordsState) -> list[DifferentRecord]:
     for name, mine in errors.items():
         rest = np.concatenate([e for n, e in errors.items() if n != name])
         ratio = float(np.exp((mine.mean() - rest.mean()) / 2))
-        chance = float(ttest_ind(mine, rest, equal_var=False, alternative="greater").pvalue)
+        chance = mean_above_other(mine, rest)
         if ratio > options.different_ratio and chance * len(errors) < options.significance:
             out.append(DifferentRecord(name, ratio, chance))
     return out

@@ -17,8 +17,8 @@ from functools import partial
 
 import numpy as np
 from scipy.linalg import block_diag
-from scipy.stats import f as f_distribution
 
+from identification.chances import f_above
 from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
@@ -212,7 +212,7 @@ class _Base:
         B, m = len(g), len(size)
         moved = H @ size
         wald = float(moved @ np.linalg.pinv(spread, rcond=1e-12, hermitian=True) @ moved)
-        p = float(f_distribution.sf(wald * (B - m) / (B * m), m, B - m)) if m < B else 1.0
+        p = float(f_above(wald * (B - m) / (B * m), m, B - m)) if m < B else 1.0
         inverse = np.linalg.pinv(H, rcond=1e-12, hermitian=True)
         std = np.sqrt(np.maximum(np.diag(inverse @ spread @ inverse), 0.0))
         back = np.where(norm > 0, 1 / np.where(norm > 0, norm, 1.0), 0.0)

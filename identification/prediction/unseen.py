@@ -11,8 +11,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.stats import ttest_1samp
 
+from identification.chances import mean_above_zero
 from identification.errors import InputError
 from identification.estimation.metrics import fit_percent
 from identification.logs.noise import noise_floor
@@ -220,8 +220,7 @@ def compare(without: Unseen, with_it: Unseen) -> Prediction:
     every = np.concatenate(blocks)
     t, chance = 0.0, 1.0
     if len(every) > 2 and every.std() > 0:
-        test = ttest_1samp(every, 0.0, alternative="greater")
-        t, chance = float(test.statistic), float(test.pvalue)
+        t, chance = mean_above_zero(every)
     each = zip(without.at_horizon, with_it.at_horizon, strict=True)
     return Prediction(
         t=t, chance=chance, gain=means[at], gains=means, fall=falls[at], falls=tuple(falls),

@@ -12,8 +12,8 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from scipy.stats import ttest_1samp
 
+from identification.chances import mean_above_zero
 from identification.discovery.attempts import attempt
 from identification.discovery.effect_results import Gap
 from identification.discovery.findings.finding import FindingKind
@@ -146,8 +146,7 @@ def _named(
     worse = [
         r.log.name
         for r, blocks in zip(confirm, seen.blocks, strict=True)
-        if len(blocks) > 2
-        and ttest_1samp(blocks, 0.0, alternative="less").pvalue < options.significance
+        if len(blocks) > 2 and mean_above_zero(-blocks)[1] < options.significance
     ]
     return NamedByPrediction(
         effect=effect, rivals=tuple(rivals),

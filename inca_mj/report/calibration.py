@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from scipy.stats import norm
 
+from identification.chances import normal_level
 from identification.quantities import alike, matched, quantity
 from identification.report.parameter_words import describe_parameter
 from inca_mj.robot.geometry import DRIVES
@@ -89,7 +89,7 @@ def unusual(found: Calibration) -> tuple[tuple[str, str, float], ...]:
     """
     usual = {**found.spread.drives, **found.spread.points}
     every = [(g, name) for g, names in found.spread.groups.items() for name in names]
-    most = norm.isf(RARE / 2 / max(1, len(every)))
+    most = normal_level(RARE / 2 / max(1, len(every)))
     times = [(g, name, abs(found.values[name]) / usual[g]) for g, name in every]
     return tuple(sorted((t for t in times if t[2] > most), key=lambda t: -t[2]))
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.stats import norm
 
+from identification.chances import normal_level
 from identification.errors import refuse_negative, unknown_name
 from identification.estimation.estimation import Options, estimate
 from identification.estimation.fit import Fit, assess
@@ -157,7 +157,7 @@ def monte_carlo(seeds: int, progress: Callable[[str], None] | None = None) -> di
             progress(f"seed {seed + 1} of {seeds}")
     truth = np.array([true[name] for name in names])
     error = found - truth
-    covered = np.abs(error) <= norm.ppf(0.975) * claimed
+    covered = np.abs(error) <= normal_level(0.025) * claimed
     return {
         "seeds": seeds,
         "parameters": {

@@ -136,17 +136,23 @@ def test_on_the_same_fit_only_new_candidates_are_scored(monkeypatch):
     plant, J, columns = linear_plant(rng, N), rng.standard_normal((N, NY, P)), []
     level = NoiseLevel(Noise(0.0, 0.1), SIGMA, 0.0)
     fit = refit_at(point_of(plant, rng.standard_normal((N, NY)), J), level, PRIOR, MEAN)
-    every, products = candidates(rng, J), Projection.products
+    every, products, projected = candidates(rng, J), Projection.products, []
 
     def counted(self, S, starts):
         columns.append(S.shape[2])
         return products(self, S, starts)
 
+    def built(fit, noise):
+        projected.append(noise)
+        return Projection(fit, noise)
+
     monkeypatch.setattr(Projection, "products", counted)
+    monkeypatch.setattr(module, "Projection", built)
     first = module.score(fit, every[:9], OPTIONS)
     assert sum(columns) == 9
     both = module.score(fit, every[4:], OPTIONS)
     assert sum(columns) == len(every)
+    assert len(projected) == 1
     assert {id(s) for s in first} & {id(s) for s in both}
     assert [s.gain for s in both] == sorted((s.gain for s in both), reverse=True)
     again = module.score(replace(fit), every[4:], OPTIONS)

@@ -30,6 +30,26 @@ def test_they_are_the_blocks_of_van_loan(seed, size, scale):
 
 
 @given(st.integers(0, 2**32 - 1), SIZES, SCALES)
+def test_the_forced_states_are_the_last_columns(seed, size, scale):
+    F, duration = drawn(seed, size, scale)
+    (A, Γ), (same, last) = transitions(F, duration), transitions(F, duration, size // 2)
+    np.testing.assert_allclose(same, A, rtol=1e-14)
+    np.testing.assert_allclose(last, Γ[:, :, size // 2 :], rtol=1e-12, atol=1e-15 * duration.max())
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 3), st.floats(0.1, 30.0))
+def test_oscillations_whose_norm_is_far_above_their_powers(seed, pairs, turns):
+    rng = np.random.default_rng(seed)
+    rate = turns * rng.uniform(0.1, 1, pairs)
+    F = np.zeros((1, 2 * pairs, 2 * pairs))
+    F[0, :pairs, pairs:], F[0, pairs:, :pairs] = np.diag(rate), -np.diag(rate)
+    F[0, :pairs, 1:pairs] += rng.normal(size=(pairs, pairs - 1)) * turns
+    A, _ = transitions(F, np.ones(1))
+    exact = expm(F[0])
+    np.testing.assert_allclose(A[0], exact, atol=1e-13 * np.abs(exact).max() * (1 + turns))
+
+
+@given(st.integers(0, 2**32 - 1), SIZES, SCALES)
 def test_two_halves_are_the_whole(seed, size, scale):
     F, duration = drawn(seed, size, scale)
     (A, Γ), (half, forced) = transitions(F, duration), transitions(F, duration / 2)

@@ -12,9 +12,9 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
-from scipy.stats import ttest_ind
 
 from identification.blas import one_blas_thread
+from identification.chances import mean_above_other
 from identification.discovery.attempts import attempt
 from identification.discovery.findings.evidence import RobotChange
 from identification.discovery.findings.finding import Finding, FindingKind
@@ -78,7 +78,7 @@ def _is_larger(fitted: np.ndarray, unseen: np.ndarray, options: DiscoveryOptions
     """Whether unseen innovations are larger, beyond chance and by enough to matter."""
     a, b = (_means(_power(E), options.proof_blocks) for E in (fitted, unseen))
     # The logarithm keeps a few blocks with large errors from looking like scatter only.
-    p = ttest_ind(np.log(b), np.log(a), equal_var=False, alternative="greater").pvalue
+    p = mean_above_other(np.log(b), np.log(a))
     matters = b.mean() > (1 + options.min_structure_share) * a.mean()
     return bool(p < options.structure_level and matters)
 

@@ -9,8 +9,8 @@ It is a Wald test with the candidate in the model (White 1980):
 from __future__ import annotations
 
 import numpy as np
-from scipy.stats import f as f_distribution
 
+from identification.chances import f_above
 from identification.discovery.scoring.projection import Products
 
 
@@ -28,7 +28,7 @@ def compute_block_p_values(products: Products, size: np.ndarray, signs: np.ndarr
     spread = np.einsum("bjp,bjq->jpq", g, g)
     inverse = np.linalg.pinv(spread, rcond=1e-12, hermitian=True)
     W = np.einsum("jp,jpq,jq->j", moved, inverse, moved)
-    p = f_distribution.sf(W * (blocks - m) / (blocks * m), m, blocks - m)
+    p = f_above(W * (blocks - m) / (blocks * m), m, blocks - m)
     p = np.where(is_one_sided(signs), p / 2, p)
     return np.where(is_refused(size, signs), 1.0, p)
 

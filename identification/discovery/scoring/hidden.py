@@ -13,15 +13,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import norm
 
+from identification.chances import normal_level
 from identification.discovery.effect_results import Hidden
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.scores import Score
 from identification.discovery.scoring.significance import is_plausible
 from identification.kalman.noise_fit import NoiseLevel
 
-QUANTILE = float(norm.isf(0.025))  # of a two-sided interval of 95 %
+QUANTILE = normal_level(0.025)  # of a two-sided interval of 95 %
 
 
 def list_hidden(

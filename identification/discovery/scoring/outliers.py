@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import norm
 
+from identification.chances import normal_level
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.logs.joined import records_of
@@ -32,7 +32,7 @@ def find_outlier_times(
     """
     size = np.abs(innovations).max(axis=1)
     time = np.concatenate([record.time - record.time[0] for _, record in records_of(log)])
-    least = float(norm.isf(options.significance / (2 * innovations.size)))
+    least = normal_level(options.significance / (2 * innovations.size))
     out: list[float] = []
     for k in np.argsort(-size):
         if size[k] < least or len(out) == options.max_jumps:

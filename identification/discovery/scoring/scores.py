@@ -28,9 +28,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.stats import chi2
 
 from identification.blas import one_blas_thread
+from identification.chances import chi2_above
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.scoring.blocks import (
     compute_block_p_values,
@@ -86,34 +86,19 @@ def score(
         options: the number of blocks.
     """
     blocks = max(1, min(options.score_blocks, len(fit.point.e) // SHORTEST))
-    known = _known(fit, blocks)
-    new = [s for s in sensitivities if id(s) not in known]
-    if new:
-        with one_blas_thread():
-            found = _scores(fit, new, blocks)
-        known |= {id(s): (s, one) for s, one in zip(new, found, strict=True)}
-    return tuple(sorted((known[id(s)][1] for s in sensitivities), key=lambda s: -s.gain))
+    with one_blas_thread():
+        scorer = _scorer(fit, blocks)
+        scorer.add([s for s in sensitivities if id(s) not in scorer.known])
+    return tuple(sorted((scorer.known[id(s)][1] for s in sensitivities), key=lambda s: -s.gain))
 
 
 @lru_cache(maxsize=1)
-def _known(fit: Refit, blocks: int) -> dict[int, tuple[Sensitivity, Score]]:
-    """Scores on the last fit, with what they are of: a score does not depend on the others."""
-    del fit, blocks
-    return {}
-
-
-def _scores(fit: Refit, sensitivities: Sequence[Sensitivity], blocks: int) -> list[Score]:
-    """Scores of candidates, in their order."""
+def _scorer(fit: Refit, blocks: int) -> _Scorer:
+    """Returns what scores candidates on the last fit: a score does not depend on the others."""
     noise, samples = fit.level.noise, len(fit.point.e)
-    starts = np.linspace(0, samples, blocks, endpoint=False).astype(int)
     shares = SMALLER if noise.ratio else (1.0,)
-    each = run_parts(lambda share: Projection(fit, noise.scaled(share)), shares)
-    scorer = _Scorer(each, starts)
-    places = [some for m in _numbers(sensitivities) for some in _groups(sensitivities, m)]
-    found = run_parts(lambda some: scorer.scores([sensitivities[j] for j in some]), places)
-    order = [j for some in places for j in some]
-    out = dict(zip(order, (s for scores in found for s in scores), strict=True))
-    return [out[j] for j in sorted(out)]
+    levels = run_parts(lambda share: Projection(fit, noise.scaled(share)), shares)
+    return _Scorer(levels, np.linspace(0, samples, blocks, endpoint=False).astype(int))
 
 
 def _numbers(sensitivities: Sequence[Sensitivity]) -> list[int]:
@@ -159,16 +144,25 @@ class _Best:
 
 
 class _Scorer:
-    """Scores of candidates that have the same number of sizes."""
+    """Scores of candidates on a fit, by the identity of their sensitivities, which are kept."""
 
     def __init__(self, levels: Sequence[Projection], starts: np.ndarray) -> None:
         self.levels, self.starts = levels, starts
+        self.known: dict[int, tuple[Sensitivity, Score]] = {}
         self.without = np.array([float(p.log_likelihood(np.array(p.rest))) for p in levels])
         self.null = int(self.without.argmax())
         self.largest = int(np.argmax([p.noise.ratio for p in levels]))
 
-    def scores(self, some: Sequence[Sensitivity]) -> list[Score]:
-        """Scores of candidates, in their order."""
+    def add(self, new: Sequence[Sensitivity]) -> None:
+        """Score candidates that are not known yet."""
+        places = [some for m in _numbers(new) for some in _groups(new, m)]
+        groups = [[new[j] for j in some] for some in places]
+        found = run_parts(self._scores, groups)
+        for some, scores in zip(groups, found, strict=True):
+            self.known |= {id(s): (s, one) for s, one in zip(some, scores, strict=True)}
+
+    def _scores(self, some: Sequence[Sensitivity]) -> list[Score]:
+        """Scores of candidates that have the same number of sizes, in their order."""
         S = np.stack([s.S for s in some], axis=2)
         signs = np.array([[size.sign for size in s.candidate.effect.sizes] for s in some])
         null = self._try(self.null, S, signs)
@@ -217,7 +211,7 @@ class _Scorer:
         """p-values, and which share of the sensitivities re-tuning cannot imitate."""
         level, m = self.levels[self.null], signs.shape[1]
         statistic = (level.rest - null.squares) / (level.rest / level.samples)
-        p = chi2.sf(statistic, m) * np.where(is_one_sided(signs), 0.5, 1.0)
+        p = chi2_above(statistic, m) * np.where(is_one_sided(signs), 0.5, 1.0)
         own = np.trace(null.products.H, axis1=1, axis2=2)
         return p, own / np.maximum(null.products.raw, 1e-300)
 

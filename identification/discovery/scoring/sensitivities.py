@@ -175,10 +175,12 @@ def _alone(
 
 def _groups(candidates: Sequence[tuple[int, Candidate]]) -> Iterator[list[tuple[int, Candidate]]]:
     group: list[tuple[int, Candidate]] = []
+    columns = 0
     for i, candidate in candidates:
-        if sum(len(c.sizes) for _, c in (*group, (i, candidate))) > BATCH and group:
+        columns += len(candidate.effect.sizes)
+        if columns > BATCH and group:
             yield group
-            group = []
+            group, columns = [], len(candidate.effect.sizes)
         group.append((i, candidate))
     if group:
         yield group

@@ -15,8 +15,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
 
+from identification.chances import chi2_level
 from identification.discovery.effect_results import RejectedEffect
 from identification.discovery.findings.input_error import find_input_error
 from identification.discovery.findings.structure import find_structure
@@ -176,7 +176,7 @@ def _ask(candidate: Candidate, model: FittedModel, count: int, options: Discover
     known = {*model.refit.point.space.names}
     more = sum(name not in known for name in candidate.estimated)
     if count:
-        return float(chi2.isf(options.significance / count, more)) if more else np.inf
+        return chi2_level(options.significance / count, more) if more else np.inf
     return more * float(np.log(len(model.refit.point.log)))
 
 

@@ -1,0 +1,72 @@
+"""Chances under the usual distributions, and tests of means.
+
+`scipy.stats` has them too; it takes most of a second to import.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy import special
+
+
+def chi2_above(x: Any, freedom: float) -> Any:
+    """Returns the chance that χ² of some degrees of freedom exceeds x; elementwise."""
+    return special.chdtrc(freedom, x)
+
+
+def chi2_level(chance: float, freedom: float) -> float:
+    """Returns the x that χ² of some degrees of freedom exceeds with a chance."""
+    return float(special.chdtri(freedom, chance))
+
+
+def f_above(x: Any, numerator: float, denominator: float) -> Any:
+    """Returns the chance that F of two degrees of freedom exceeds x; elementwise."""
+    return special.fdtrc(numerator, denominator, np.maximum(x, 0.0))
+
+
+def student_above(t: float, freedom: float) -> float:
+    """Returns the chance that Student's t of some degrees of freedom exceeds t."""
+    return float(special.stdtr(freedom, -t))
+
+
+def normal_above(z: Any) -> Any:
+    """Returns the chance that a standard normal number exceeds z; elementwise."""
+    return special.ndtr(-np.asarray(z))
+
+
+def normal_level(chance: float) -> float:
+    """Returns the z that a standard normal number exceeds with a chance."""
+    return -float(special.ndtri(chance))
+
+
+def mean_above_zero(x: np.ndarray) -> tuple[float, float]:
+    """Tests whether the mean of normal numbers is above zero (Student 1908).
+
+    Args:
+        x: shape (n,).
+
+    Returns:
+        t, and the chance of as large a one where the mean is zero; NaN where all are zero.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = float(x.mean() / np.sqrt(x.var(ddof=1) / len(x)))
+    return t, student_above(t, len(x) - 1)
+
+
+def mean_above_other(x: np.ndarray, other: np.ndarray) -> float:
+    """Tests whether the mean of normal numbers is above that of others (Welch 1947).
+
+    Args:
+        x: shape (n,).
+        other: shape (m,), of another variance.
+
+    Returns:
+        The chance of as large a difference where the means are equal; NaN where nothing scatters.
+    """
+    a, b = (v.var(ddof=1) / len(v) for v in (x, other))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = (x.mean() - other.mean()) / np.sqrt(a + b)
+        freedom = (a + b) ** 2 / (a**2 / (len(x) - 1) + b**2 / (len(other) - 1))
+    return student_above(t, freedom)
