@@ -24,6 +24,7 @@ from identification.effects.effect import CURVE, Candidate, Effect, Size
 from identification.kalman.linear import Linearisation, linearise_records
 from identification.kalman.noise_fit import NoiseLevel
 from identification.kalman.refit import Refit
+from identification.kalman.response import respond
 from identification.logs.log import Log
 
 NODES = 8  # as many as curves over a horizon have
@@ -125,9 +126,9 @@ def _hats(s: np.ndarray, nodes: np.ndarray) -> np.ndarray:
 def _respond(linear: Linearisation, hats: np.ndarray) -> np.ndarray:
     """Outputs of unit forces that follow hats (N-1, n, m), shape (N, ny, n, m)."""
     plant = linear.at_samples()
-    x = np.zeros((plant.A.shape[1], *hats.shape[1:]))
-    out = np.zeros((len(hats) + 1, len(plant.C), *hats.shape[1:]))
-    for k, (A, B, h) in enumerate(zip(plant.A, plant.B, hats, strict=True)):
-        x = np.tensordot(A, x, 1) + B[..., None] * h
-        out[k + 1] = np.tensordot(plant.C, x, 1)
-    return out
+    read, none = np.flatnonzero(plant.C.any(axis=0)), np.zeros((hats.shape[2], plant.A.shape[1]))
+    each = [
+        respond(plant.A, plant.B[:, :, [i]], none, own.T[..., None], 1, read)
+        for i, own in enumerate(np.moveaxis(hats, 1, 0))
+    ]
+    return np.einsum("imkr,yr->kyim", np.array(each), plant.C[:, read])

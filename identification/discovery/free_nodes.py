@@ -14,6 +14,7 @@ import numpy as np
 
 from identification.discovery.force_along import ForceAlong
 from identification.discovery.law_regressors import Regressor
+from identification.kalman import response
 
 NODES = 20
 APART = 2e-3  # of the range of x: nodes nearer than this are one
@@ -88,11 +89,9 @@ def respond(along: ForceAlong, regressor: Regressor, nodes: Nodes) -> np.ndarray
         trajectory = linear.along
         mine = trajectory.average(hats[done : done + len(trajectory.time)])
         done += len(trajectory.time)
-        x, every = np.zeros((linear.A.shape[1], hats.shape[-1])), trajectory.intervals
-        y = np.zeros((len(mine) // every + 1, len(linear.C), hats.shape[-1]))
-        for k, (A, B, h) in enumerate(zip(linear.A, linear.B, mine, strict=True)):
-            x = A @ x + B @ h
-            if (k + 1) % every == 0:
-                y[(k + 1) // every] = linear.C @ x
-        out.append(y)
+        read = np.flatnonzero(linear.C.any(axis=0))
+        none = np.zeros((hats.shape[-1], linear.A.shape[1]))
+        forces = np.moveaxis(mine, -1, 0)
+        x = response.respond(linear.A, linear.B, none, forces, trajectory.intervals, read)
+        out.append(np.moveaxis(x @ linear.C[:, read].T, 0, -1))
     return np.concatenate(out)

@@ -44,14 +44,13 @@ def table_at(effects: Sequence[Effect], thing: str, values: Values, n: int) -> n
 def is_present(effect: Effect, things: Sequence[str], values: Values) -> bool:
     """Whether any size of an effect is not zero at any of some things."""
     sizes = len(effect.sizes)
-    return any(
-        _is_some(sum(parts))
+    each = [
+        [values[name] for name in names]
         for thing in things
         for names in effect.parameters_at(thing)[:sizes]
-        if any(
-            map(_is_some, parts := [values[name] for name in names])
-        )  # seldom, and adding is slow
-    )
+    ]
+    # Most effects are absent: numbers that are all zero are told from others before they are added.
+    return any(_is_some(sum(x)) for x in each if any(v.__class__ is not float or v for v in x))
 
 
 def _is_some(x: float | np.ndarray) -> bool:

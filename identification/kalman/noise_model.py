@@ -104,7 +104,7 @@ def _transitions(plant: LinearPlant, a: float) -> tuple[np.ndarray, np.ndarray]:
     A = np.zeros((n, nx + nu, nx + nu))
     A[:, :nx, :nx], A[:, :nx, nx:] = plant.A, plant.B
     A[:, nx:, nx:] = a * np.eye(nu)
-    begins = ~plant.A.any(axis=(1, 2))
+    begins = np.asarray(~plant.A.any(axis=(1, 2)))
     A[begins] = 0
     A.flags.writeable = False
     return A, begins

@@ -1,5 +1,7 @@
 """What is in no catalogue is not named with certainty after its nearest neighbour."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from discovery_cases import (
@@ -20,12 +22,14 @@ from identification import Log
 from identification.discovery.fitted_model import fit_model
 from identification.discovery.free_curves import (
     NODES,
+    _respond,
     find_curves,
     list_curves,
 )
 from identification.discovery.replacement import replace_effect
 from identification.discovery.search import discover
 from identification.effects.effect import Candidate
+from identification.kalman.linear import LinearPlant
 from identification.kalman.problem import linearise_criterion
 from identification.model.predictor import Predictor
 from identification.report.discovery_json import discovery_to_json
@@ -158,3 +162,16 @@ def test_the_nearest_neighbour_of_an_unlisted_law_is_not_named_with_certainty(
     (said,) = discovery_to_json(answer)["effects"]
     assert said["outside"]["along"] == along
     assert f"follows the {along} of the actuated joints" in discovery_text(answer)
+
+
+def test_responses_are_those_of_the_equations_sample_by_sample():
+    rng = np.random.default_rng(3)
+    A, B = rng.normal(size=(50, 6, 6)) / 4, rng.normal(size=(50, 6, 3))
+    C, hats = np.eye(6)[[1, 4]] + 0.5 * np.eye(6)[[0, 1]], rng.normal(size=(50, 3, NODES))
+    linear = SimpleNamespace(at_samples=lambda: LinearPlant(A, B, C))
+    found = _respond(linear, hats)
+    x = np.zeros((6, 3, NODES))
+    for k in range(50):
+        np.testing.assert_allclose(found[k], np.tensordot(C, x, 1), atol=1e-12)
+        x = np.tensordot(A[k], x, 1) + B[k][..., None] * hats[k]
+    np.testing.assert_allclose(found[50], np.tensordot(C, x, 1), atol=1e-12)
