@@ -39,7 +39,8 @@ def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:
     known = [t.r for t in fit.tangents]
     found = sought_from_others(fit.problem.held(fit.q), fit.moves, starts, known)
     moves, r = tuple(s.d for s in found), [s.r for s in found]
-    tangents = fit.problem.tangents(fit.q, moves, r)
+    is_moved = [np.any(new != old, axis=1) for new, old in zip(moves, fit.moves, strict=True)]
+    tangents = fit.problem.tangents_after(fit.tangents, fit.q, moves, r, is_moved)
     return replace(
         fit, moves=moves, tangents=tangents, cost=fit.problem.cost_of(fit.q, r)
     )  # fmt: skip
