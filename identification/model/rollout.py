@@ -22,7 +22,7 @@ from identification.engine import quiet, untimed
 from identification.errors import DivergenceError, InputError
 from identification.model.lean import lean
 from identification.model.paths import Slot
-from identification.pool import threads
+from identification.pool import end_if_given_up, threads
 
 # MuJoCo derives no other number from these entries: after writing them, no mj_setConst is needed.
 # Nor does anything depend on them that follows from positions alone.
@@ -192,6 +192,7 @@ class Simulations:
             InputError: MuJoCo refuses the model's numbers.
             DivergenceError: a simulation left the finite numbers.
         """
+        end_if_given_up()
         batch, model = self.batch, self.model
         which = np.arange(len(self.fresh)) if at is None else at
         k, steps = len(which), controls.shape[1]
