@@ -2,14 +2,15 @@
 
 A part of some work gives the lock of the interpreter free where it runs machine code: a compiled
 recursion, a product of matrices, a simulation. Work that begins inside another part runs in its
-thread, so that a part never waits for threads that wait for it.
+thread, so that a part never waits for threads that wait for it. Where the work is given up, by
+Ctrl-C or by an error of one part, the other parts end at their next simulation.
 """
 
 from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 from itertools import pairwise
@@ -18,15 +19,34 @@ from typing import TypeVar
 Part = TypeVar("Part")
 Result = TypeVar("Result")
 
-_here = threading.local()  # is_part: whether this thread runs a part
+_here = threading.local()  # given_up: where this thread runs a part, whether nobody waits for it
+
+
+class GivenUp(BaseException):
+    """Nobody waits for what this thread computes."""
 
 
 def threads() -> int:
-    """The processors that this process may use, or fewer if `INCA_MJ_THREADS` says so."""
+    """The processors that this process may use, or fewer if `INCA_MJ_THREADS` says so.
+
+    A part of some work has one of them.
+    """
+    if hasattr(_here, "given_up"):
+        return 1
     own = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else ()
     said = os.environ.get("INCA_MJ_THREADS", "")
     most = len(own) or os.cpu_count() or 1
     return min(most, int(said)) if said.isdigit() and int(said) else most
+
+
+def end_if_given_up() -> None:
+    """Ends the part that this thread runs, where nobody waits for it any more.
+
+    Raises:
+        GivenUp: nobody does.
+    """
+    if hasattr(_here, "given_up") and _here.given_up.is_set():
+        raise GivenUp
 
 
 def run_parts(function: Callable[[Part], Result], parts: Iterable[Part]) -> list[Result]:
@@ -39,10 +59,33 @@ def run_parts(function: Callable[[Part], Result], parts: Iterable[Part]) -> list
     Returns:
         What each call returned, in the order of the parts.
     """
-    each, count = list(parts), threads()
-    if len(each) < 2 or count < 2 or getattr(_here, "is_part", False):
-        return [function(part) for part in each]
-    return list(_pool(count, os.getpid()).map(function, each))
+    return [*each_part(function, parts)]
+
+
+def each_part(function: Callable[[Part], Result], parts: Iterable[Part]) -> Iterator[Result]:
+    """Yields what `run_parts` returns, each as soon as it and those before it are done.
+
+    Args:
+        function: what is done.
+        parts: what each call gets.
+    """
+    each, count, given_up = list(parts), threads(), threading.Event()
+    if len(each) < 2 or count < 2:
+        yield from map(function, each)
+        return
+
+    def run(part: Part) -> Result:
+        _here.given_up = given_up
+        try:
+            return function(part)
+        finally:
+            del _here.given_up
+
+    try:
+        yield from _pool(count, os.getpid()).map(run, each)
+    except BaseException:
+        given_up.set()
+        raise
 
 
 def split(count: int, most: int) -> list[slice]:
@@ -62,8 +105,4 @@ def split(count: int, most: int) -> list[slice]:
 def _pool(count: int, process: int) -> ThreadPoolExecutor:
     """The pool of a process; a process that was forked off begins its own."""
     del process
-
-    def begin() -> None:
-        _here.is_part = True
-
-    return ThreadPoolExecutor(count, "inca_mj", begin)
+    return ThreadPoolExecutor(count, "inca_mj")

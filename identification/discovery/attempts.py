@@ -20,6 +20,7 @@ import numpy as np
 from identification.effects.effect import Candidate
 from identification.errors import DivergenceError, InputError
 from identification.estimation.options import Progress
+from identification.pool import each_part
 
 FAILURES = (InputError, np.linalg.LinAlgError, ArithmeticError)
 NOT_FINITE = "its simulation leaves the finite numbers"
@@ -99,6 +100,31 @@ def attempt(tried: Candidate | str | None, evaluate: Callable[[], T]) -> T | Non
         if tried is not None:
             _tell(tried, isinstance(error, DivergenceError), reason)
         return None
+
+
+def attempt_each(
+    tasks: Sequence[tuple[Candidate | str | None, Callable[[], T]]],
+) -> Iterator[T | None]:
+    """Yields what several evaluations return, as `attempt` does; they run side by side.
+
+    Args:
+        tasks: what is tried, and its evaluation, each; failures are told in this order.
+    """
+
+    def part(task: tuple[Candidate | str | None, Callable[[], T]]) -> tuple[T | None, list[Failed]]:
+        failed: list[Failed] = []
+        token = _NOTE.set(failed.append)
+        try:
+            return attempt(*task), failed
+        finally:
+            _NOTE.reset(token)
+
+    for found, failed in each_part(part, tasks):
+        note = _NOTE.get()
+        if note is not None:
+            for one in failed:
+                note(one)
+        yield found
 
 
 def tell_lost(asked: Iterable[Candidate], found: Iterable[Candidate]) -> None:

@@ -2,7 +2,9 @@
 
 MuJoCo looks for contacts, limits and dry friction in every evaluation, also where a model has none
 of them. Of a step of a slider that is a quarter, of an arm of two joints a sixth, of one of six an
-eighth. What is predicted stays the same to the bit.
+eighth. Its implicit integrator looks for everything whose force depends on rates; where the damping
+of joints alone does, Euler's integrator, which has that implicitly, takes the same step: of an arm
+of six joints in half the time. What is predicted stays the same to the bit.
 """
 
 from __future__ import annotations
@@ -21,6 +23,16 @@ CONSTRAINTS = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT) | int(mujoco.mjtDisabl
 # Entries that make a constraint where they are not zero; a value set may bring them.
 ACTIVE = ("jnt_limited", "tendon_limited", "dof_frictionloss", "tendon_frictionloss")
 COLLIDING = ("geom_contype", "geom_conaffinity")
+
+# What has forces that depend on rates, beside linear damping of joints.
+DAMPING = (
+    "dof_dampingpoly", "tendon_damping", "tendon_dampingpoly", "actuator_damping",
+    "actuator_dampingpoly", "flex_damping", "flex_edgedamping",
+)  # fmt: skip
+FIXED = int(mujoco.mjtGain.mjGAIN_FIXED)
+BIASES = [int(getattr(mujoco.mjtBias, f"mjBIAS_{kind}")) for kind in ("NONE", "AFFINE", "USER")]
+EULER = int(mujoco.mjtIntegrator.mjINT_EULER)
+IMPLICIT = int(mujoco.mjtIntegrator.mjINT_IMPLICITFAST)
 
 
 def lean(model: mujoco.MjModel, numbers: Sequence[tuple[Slot, Any]] = ()) -> mujoco.MjModel:
@@ -55,3 +67,25 @@ def is_constrained(model: mujoco.MjModel, numbers: Sequence[tuple[Slot, Any]] = 
         return True
     colliding = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
     return len(np.unique(model.geom_bodyid[colliding])) > 1
+
+
+def one_evaluation(model: mujoco.MjModel) -> int:
+    """Returns an integrator with damping implicitly, and one evaluation of the dynamics a step.
+
+    Args:
+        model: the model.
+    """
+    return EULER if is_damped_by_joints_alone(model) else IMPLICIT
+
+
+def is_damped_by_joints_alone(model: mujoco.MjModel) -> bool:
+    """Whether no force that MuJoCo derives by rates depends on them, but for joints' damping.
+
+    Args:
+        model: the model.
+    """
+    linear = (model.actuator_gaintype == FIXED) & np.isin(model.actuator_biastype, BIASES)
+    others = [getattr(model, field) for field in DAMPING if hasattr(model, field)]
+    others += [model.actuator_biasprm[:, 2], model.opt.density, model.opt.viscosity]
+    is_explicit = model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_EULERDAMP)
+    return bool(linear.all()) and not is_explicit and not any(np.any(x) for x in others)

@@ -4,7 +4,8 @@
     u(t) linear from u_k to u_{k+1}       first-order hold ("foh"), sampled at mid-step
 
 Every simulation has its own initial state and, if given, its own model numbers. All of them run in
-one `Batch.rollout`, on native threads.
+one `Batch.rollout`, on native threads. Memory, threads and numbers that MuJoCo derives cost as much
+as some hundred steps: `Simulations` are prepared once, and may be run many times.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from identification.engine import quiet, untimed
 from identification.errors import DivergenceError, InputError
 from identification.model.lean import lean
 from identification.model.paths import Slot
-from identification.pool import threads
+from identification.pool import end_if_given_up, threads
 
 # MuJoCo derives no other number from these entries: after writing them, no mj_setConst is needed.
 # Nor does anything depend on them that follows from positions alone.
@@ -149,36 +150,106 @@ def rollout(
     if len(own) not in (1, n):
         raise InputError(f"{len(own)} input sequences for {n} simulations; give one, or one each")
 
+    return simulations(model, n, numbers, nthread).run(
+        State(*rows), controls, every, record, time, keeps_diverged=keeps_diverged
+    )
+
+
+@dataclass(frozen=True)
+class Simulations:
+    """Simulations of one model, each with numbers of its own; see `simulations`.
+
+    Attributes:
+        model: the model.
+        batch: runs them; one call at a time.
+        fresh: what each simulation begins with, beside what `run` is told.
+    """
+
+    model: mujoco.MjModel
+    batch: Batch
+    fresh: np.ndarray
+
+    def run(
+        self, start: State, controls: np.ndarray, every: int, record: Sequence[str],
+        time: float | np.ndarray = 0.0, at: np.ndarray | None = None, keeps_diverged: bool = False,
+    ) -> Mapping[str, np.ndarray]:  # fmt: skip
+        """Runs k of the simulations.
+
+        Args:
+            start: initial states, one row for all or k.
+            controls: at each step, shape (1, steps, nu) for all or (k, steps, nu), without those of
+                actuators that have none.
+            every: steps of a sample.
+            record: MjData fields of the state to return (qpos, qvel, act).
+            time: at the start, one for all or one for each [s].
+            at: which simulations, shape (k,); all when None.
+            keeps_diverged: whether simulations that leave the finite numbers are NaN, and no error.
+
+        Returns:
+            For each recorded field an array (k, N, size); sample 0 is the start.
+
+        Raises:
+            InputError: MuJoCo refuses the model's numbers.
+            DivergenceError: a simulation left the finite numbers.
+        """
+        end_if_given_up()
+        batch, model = self.batch, self.model
+        which = np.arange(len(self.fresh)) if at is None else at
+        k, steps = len(which), controls.shape[1]
+        batch.state[which] = self.fresh[which]
+        batch.warning[which] = 0  # the first warning of a simulation stops it, and no later one
+        for field, row in zip(("qpos", "qvel", "act"), (start.qpos, start.qvel, start.act),
+                              strict=True):  # fmt: skip
+            if np.shape(row)[-1]:
+                batch.bind(field)[which] = row
+        begun = np.broadcast_to(np.asarray(time, float), k)
+        batch.bind("time")[which] = begun
+        first = {field: batch.bind(field)[which] for field in record}
+        held = np.broadcast_to(controls, (k, *controls.shape[1:]))
+        if held.shape[2] < model.nu:
+            rest = np.zeros((k, steps, model.nu - held.shape[2]))
+            held = np.concatenate([held, rest], axis=2)
+        with quiet(), untimed():
+            try:
+                run = batch.rollout(steps, held, record=tuple(record), ids=at)
+            except SimulationError as error:  # of the engine, which no other value may meet
+                said = " ".join(str(error).rpartition("simulation ")[2].split())
+                raise InputError(
+                    f"MuJoCo refuses to simulate the model with these values ({said}); correct the"
+                    " model or the values"
+                ) from error
+        reached = np.array(batch.bind("time")[which])
+        # a non-finite state stops a simulation and its clock
+        late = ~(reached > begun + (steps - 0.5) * model.opt.timestep)
+        if late.any() and not keeps_diverged:
+            raise _diverged(reached, late)
+        for states in run.values() if late.any() else ():
+            states[late] = np.nan
+        return {
+            f: np.concatenate([first[f][:, None], run[f][:, every - 1 :: every]], axis=1)
+            for f in record
+        }
+
+
+def simulations(
+    model: mujoco.MjModel, n: int, numbers: Sequence[tuple[Slot, np.ndarray]] = (),
+    nthread: int | None = None,
+) -> Simulations:  # fmt: skip
+    """Prepares n simulations of a model, to be run as often as one likes.
+
+    Args:
+        model: the model, which may not change.
+        n: how many.
+        numbers: model entries that differ between simulations: slot and its values, shape (n,).
+        nthread: native threads; all processors when None.
+
+    Raises:
+        InputError: MuJoCo refuses the model's numbers.
+    """
     model = lean(model, numbers)
     batch = Batch(model, n, nthread or min(threads(), n))
     _expand(batch, numbers)
-    for field, row in zip(("qpos", "qvel", "act"), rows, strict=True):
-        if row.shape[1]:
-            batch.bind(field)[:] = row
-    begun = np.broadcast_to(np.asarray(time, float), n)
-    batch.bind("time")[:] = begun.reshape(batch.bind("time").shape)
-    first = {field: np.array(batch.bind(field)) for field in record}
-    shared = np.broadcast_to(controls, (n, *controls.shape[1:]))
-    if nu < model.nu:
-        shared = np.concatenate([shared, np.zeros((*shared.shape[:2], model.nu - nu))], axis=2)
-    with quiet(), untimed():
-        try:
-            steps = batch.rollout(shared.shape[1], shared, record=tuple(record))
-        except SimulationError as error:  # of the engine, which no other value may meet
-            said = " ".join(str(error).rpartition("simulation ")[2].split())
-            raise InputError(
-                f"MuJoCo refuses to simulate the model with these values ({said}); correct the"
-                " model or the values"
-            ) from error
-    late = _unfinished(batch, begun, shared.shape[1], model.opt.timestep)
-    if late.any() and not keeps_diverged:
-        raise _diverged(batch, late)
-    for states in steps.values() if late.any() else ():
-        states[late] = np.nan
-    return {
-        field: np.concatenate([first[field][:, None], steps[field][:, every - 1 :: every]], axis=1)
-        for field in record
-    }
+    return Simulations(model, batch, np.array(batch.state))
 
 
 def _expand(batch: Batch, numbers: Sequence[tuple[Slot, np.ndarray]]) -> None:
@@ -190,14 +261,8 @@ def _expand(batch: Batch, numbers: Sequence[tuple[Slot, np.ndarray]]) -> None:
         batch.set_const()
 
 
-def _unfinished(batch: Batch, begun: np.ndarray, steps: int, timestep: float) -> np.ndarray:
-    """Which simulations stopped early: a non-finite state stops a simulation and its clock."""
-    reached = np.array(batch.bind("time")).ravel()
-    return np.asarray(~(reached > begun + (steps - 0.5) * timestep))
-
-
-def _diverged(batch: Batch, late: np.ndarray) -> DivergenceError:
-    reached, first = np.array(batch.bind("time")).ravel(), int(np.flatnonzero(late)[0])
+def _diverged(reached: np.ndarray, late: np.ndarray) -> DivergenceError:
+    first = int(np.flatnonzero(late)[0])
     return DivergenceError(
         f"the simulation diverged at t = {reached[first]:.4g} s"
         + (f" (value set {first + 1} of {len(reached)})" if len(reached) > 1 else "")

@@ -10,12 +10,15 @@ import ctypes
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
+from threading import Lock
 from typing import Any
 
 from identification.native import structs, trampolines
 from identification.native.cache import compile_once
 from identification.native.element import Function
 from identification.native.table import enter
+
+_ENTERING = Lock()  # one thread at a time enters a law
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +48,13 @@ def install(law: Law) -> None:
             effect cannot be compiled.
         RuntimeError: MuJoCo's structs are not laid out as declared.
     """
-    for kind in law.functions:
-        trampolines.refuse_foreign(kind)
-    compiled = _compiled(law)
-    for kind, address in _addresses(law).items():
-        laws = enter(kind, law.key, address)
-        trampolines.hold(kind, compiled[kind] if laws == 1 else None)
+    with _ENTERING:
+        for kind in law.functions:
+            trampolines.refuse_foreign(kind)
+        compiled = _compiled(law)
+        for kind, address in _addresses(law).items():
+            laws = enter(kind, law.key, address)
+            trampolines.hold(kind, compiled[kind] if laws == 1 else None)
 
 
 def uninstall() -> None:

@@ -24,6 +24,7 @@ from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.model.coordinates import coordinates
+from identification.pool import run_parts
 from identification.prediction.fit import WindowFit, solve
 from identification.prediction.model import WindowModel
 from identification.prediction.problem import MOST_STEPS, Problem, no_moves, problem
@@ -51,11 +52,12 @@ def record_shifts(task: RecordsTask, model: WindowModel) -> tuple[ShiftedRecord,
         return ()
     where = next(iter(shifts[0].places))  # all inputs: a record has one clock
     candidates = [Candidate(shifts[0], where, {}, probe) for probe in shifts[0].probes]
-    out = []
-    for record in task.records:
+
+    def shift(record: Record) -> ShiftedRecord | None:
         # A record that is too short, or cannot be simulated, tells nothing.
-        out.append(attempt(None, partial(_record_shift, task, model, record, candidates)))
-    return tuple(s for s in out if s is not None)
+        return attempt(None, partial(_record_shift, task, model, record, candidates))
+
+    return tuple(s for s in run_parts(shift, task.records) if s is not None)
 
 
 def _record_shift(

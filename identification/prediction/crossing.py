@@ -14,7 +14,8 @@ from functools import partial
 
 import numpy as np
 
-from identification.discovery.attempts import attempt, refuse_infinite
+from identification.discovery.attempts import attempt, attempt_each, refuse_infinite
+from identification.pool import run_parts
 from identification.prediction.fit import WindowFit
 from identification.prediction.model import WindowModel, predict_fitted
 from identification.prediction.records import Record
@@ -39,7 +40,8 @@ def crossed(fit: WindowFit, others: Sequence[WindowFit]) -> WindowFit:
     known = [t.r for t in fit.tangents]
     found = sought_from_others(fit.problem.held(fit.q), fit.moves, starts, known)
     moves, r = tuple(s.d for s in found), [s.r for s in found]
-    tangents = fit.problem.tangents(fit.q, moves, r)
+    is_moved = [np.any(new != old, axis=1) for new, old in zip(moves, fit.moves, strict=True)]
+    tangents = fit.problem.tangents_after(fit.tangents, fit.q, moves, r, is_moved)
     return replace(
         fit, moves=moves, tangents=tangents, cost=fit.problem.cost_of(fit.q, r)
     )  # fmt: skip
@@ -59,11 +61,12 @@ def at_their_best(
     if not children:
         return parent, ()
     parent = _crossed(parent, children, horizon, confirm)
-    best = []
-    for c in children:
+
+    def best(c: WindowModel) -> WindowModel:
         others = [parent, *(o for o in children if o is not c)]
-        best.append(_crossed(c, others, horizon, confirm))
-    return parent, tuple(best)
+        return _crossed(c, others, horizon, confirm)
+
+    return parent, tuple(run_parts(best, children))
 
 
 def at_all_lengths(
@@ -81,10 +84,8 @@ def at_all_lengths(
         The model, and the others in their order; None for one that cannot be simulated over the
         other lengths, which is told.
     """
-    found = [
-        attempt(c.candidates[-1], partial(_completed, c, parent, horizon, confirm))
-        for c in children
-    ]
+    tasks = [(c.candidates[-1], partial(_completed, c, parent, horizon, confirm)) for c in children]
+    found = [*attempt_each(tasks)]
     whole = [c for c in found if c is not None]
     if not whole:
         return parent, tuple(found)
@@ -95,9 +96,11 @@ def at_all_lengths(
         return attempt(None, moved) or model
 
     parent = best(parent, whole)
-    return parent, tuple(
-        None if c is None else best(c, [parent, *(o for o in whole if o is not c)]) for c in found
-    )
+
+    def child(c: WindowModel | None) -> WindowModel | None:
+        return None if c is None else best(c, [parent, *(o for o in whole if o is not c)])
+
+    return parent, tuple(run_parts(child, found))
 
 
 def _completed(

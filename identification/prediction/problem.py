@@ -101,6 +101,28 @@ class Problem:
             for k, (part, moves, r) in enumerate(zip(self.parts, d, known, strict=True))
         )
 
+    def tangents_after(
+        self, before: Sequence[Tangent], q: np.ndarray, d: Sequence[np.ndarray],
+        known: Sequence[np.ndarray], is_moved: Sequence[np.ndarray],
+    ) -> tuple[Tangent, ...]:  # fmt: skip
+        """The windows linearised at q, of which some have moved since.
+
+        Args:
+            before: their tangents at q, one a record.
+            q: shape (p,).
+            d: moves of their states, one array (W, nx) a record.
+            known: residuals there, one array (W, m) a record.
+            is_moved: which of them begin elsewhere than before, one mask (W,) a record.
+        """
+        out = []
+        each = enumerate(zip(self.parts, before, d, known, is_moved, strict=True))
+        for k, (part, t, moves, r, at) in each:
+            if at.any():
+                some = tangent(part.rows(at), q[self.unknowns.columns(k)], moves[at], known=r[at])
+                t = t.with_rows(at, self.widened(k, some))
+            out.append(t)
+        return tuple(out)
+
     def widened(self, record: int, t: Tangent) -> Tangent:
         """A tangent of the record's own columns with columns of zeros for all others."""
         if not self.unknowns.own.names:

@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from identification.discovery.attempts import attempt, refuse_infinite
+from identification.discovery.attempts import attempt_each, refuse_infinite
 from identification.discovery.options import DiscoveryOptions
 from identification.effects.effect import Candidate
 from identification.estimation.options import Progress
@@ -95,9 +95,14 @@ def refit_contenders(
     refits = len(chosen)
 
     def refit(each: Sequence[Begun]) -> list[WindowModel]:
-        begun = counted(each, "refits", len(each))
-        found = (_refit(model, b, horizon, confirm, progress) for b in begun)
-        return [c for c in found if c is not None]
+        tasks = [(b.candidate, partial(_refit, model, b, horizon, confirm)) for b in each]
+        out = []
+        for new in counted(attempt_each(tasks), "refits", len(each)):
+            if isinstance(new, Begun):
+                progress(f"{_label(new.candidate)}: explains no more than without it")
+            elif new is not None:
+                out.append(new)
+        return out
 
     def judge(
         parent: WindowModel, children: Sequence[WindowModel]
@@ -136,11 +141,10 @@ def _begun(
     options: DiscoveryOptions,
 ) -> list[Begun]:  # fmt: skip
     """Effects fitted to some of the windows; those that cannot be simulated are told."""
-    each = (
-        attempt(s.candidate, partial(begin, model, [s, *list_starts(s, scores)], options))
-        for s in chosen
-    )
-    return [begun for begun in each if begun is not None]
+    tasks = [
+        (s.candidate, partial(begin, model, [s, *list_starts(s, scores)], options)) for s in chosen
+    ]
+    return [begun for begun in attempt_each(tasks) if begun is not None]
 
 
 def _near_best(begun: Sequence[Begun], options: DiscoveryOptions) -> list[Begun]:
@@ -163,19 +167,14 @@ def _label(c: Candidate) -> str:
 
 
 def _refit(
-    model: WindowModel, begun: Begun, horizon: float, confirm: Sequence[Record], progress: Progress
-) -> WindowModel | None:
-    """The model with an effect; None where it explains nothing, or cannot be simulated."""
-
-    def evaluate() -> WindowModel | None:
-        new = with_effect(model, begun, horizon, confirm)
-        if new is None:
-            progress(f"{_label(begun.candidate)}: explains no more than without it")
-        else:
-            refuse_infinite(new.fit.cost, *new.unseen.at_horizon)
-        return new
-
-    return attempt(begun.candidate, evaluate)
+    model: WindowModel, begun: Begun, horizon: float, confirm: Sequence[Record]
+) -> WindowModel | Begun:
+    """The model with an effect; what it began with where it explains nothing."""
+    new = with_effect(model, begun, horizon, confirm)
+    if new is None:
+        return begun
+    refuse_infinite(new.fit.cost, *new.unseen.at_horizon)
+    return new
 
 
 def _judged(

@@ -2,24 +2,26 @@
 
     r_w(d_w) = [ C (y_w - ŷ_w(x̄_w ⊕ d_w)) ; -d_w/s ]        as `identification.windows.shooting`
 
-What the parameters make of the model and of the inputs is computed once, and windows of several
-records may be simulated in one batch (`identification.windows.held_records`).
+What the parameters make of the model and of the inputs is computed once, simulations are prepared
+once, and windows of several records may be simulated in one batch
+(`identification.windows.held_records`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import mujoco
 import numpy as np
 
 from identification.errors import DivergenceError
 from identification.model.coordinates import NOTHING
-from identification.model.lean import lean
+from identification.model.numbers import with_numbers
 from identification.model.paths import Slot
 from identification.model.predictor import Predictor, with_states
-from identification.model.rollout import State, rollout
+from identification.model.rollout import Simulations, State, hold, simulations, substeps
 from identification.model.sensitivity import FORWARD_STEP
 from identification.windows.shooting import Shooting, at_own_steps, rough, slower
 from identification.windows.tangents import Tangent, decomposed
@@ -28,29 +30,44 @@ from identification.windows.windows import moved
 _NONE = np.zeros((1, 0))  # values of no free parameter
 
 
+@dataclass(frozen=True)
+class Prepared:
+    """Simulations of all windows, several of each.
+
+    Attributes:
+        simulations: of the first move of all windows, then of the next move.
+        controls: of each window at each step, shape (W, steps, nu).
+        every: steps of a sample.
+    """
+
+    simulations: Simulations
+    controls: np.ndarray
+    every: int
+
+
 @dataclass(frozen=True, kw_only=True)
 class HeldWindows:
     """What does not change while the initial states of windows are sought.
 
     Attributes:
         predictors: of each record, all parameters held.
-        model: the plant's.
-        for_slopes: the model whose simulations' differences make slopes.
+        has_rough_slopes: see `Shooting`.
         every: inputs per sample.
         hold_kind: of the inputs.
         record: which record each window is of, shape (W,).
-        numbers: model entries and their values, shape (W,).
+        numbers: model entries and their values of the whole, shape (W,).
         times: when each window begins in its record, shape (W,) [s].
-        inputs: shape (W, steps, nu).
+        inputs: of the whole, shape (W, steps, nu).
         outputs: what was measured, shape (W, L, ny).
         first: the states where the windows are believed to begin, W rows.
         weight: 1/s of each tangent coordinate, shape (W, nx).
         whitener: C, shape (ny, ny).
+        whole: the windows of which these are some, which know their simulations; None for itself.
+        at: which of them, shape (W,).
     """
 
     predictors: tuple[Predictor, ...]
-    model: mujoco.MjModel
-    for_slopes: mujoco.MjModel
+    has_rough_slopes: bool
     every: int
     hold_kind: str
     record: np.ndarray
@@ -61,15 +78,28 @@ class HeldWindows:
     first: State
     weight: np.ndarray
     whitener: np.ndarray
+    whole: HeldWindows | None = None
+    at: np.ndarray | None = None
 
     def rows(self, keep: np.ndarray) -> HeldWindows:
         """Some of the windows, by mask or by index."""
-        return replace(
-            self, record=self.record[keep], times=self.times[keep], inputs=self.inputs[keep],
+        whole = self.whole or self
+        at = (np.arange(len(self.record)) if self.at is None else self.at)[keep]
+        some = replace(
+            self, whole=whole, at=at, record=self.record[keep], times=self.times[keep],
             outputs=self.outputs[keep], weight=self.weight[keep],
-            numbers=tuple((slot, column[keep]) for slot, column in self.numbers),
             first=State(*(getattr(self.first, f.name)[keep] for f in fields(State))),
         )  # fmt: skip
+        if np.all(np.diff(at) > 0):
+            return some
+        # a window that is there twice is simulated twice: nobody has prepared that
+        numbers = tuple((slot, column[at]) for slot, column in whole.numbers)
+        return replace(some, whole=None, at=None, inputs=whole.inputs[at], numbers=numbers)
+
+    @property
+    def model(self) -> mujoco.MjModel:
+        """The plant's."""
+        return self.predictors[0].plant.model
 
     @property
     def size(self) -> int:
@@ -78,7 +108,7 @@ class HeldWindows:
 
     def residual(self, d: np.ndarray) -> np.ndarray:
         """r of all windows at d (W, nx), shape (W, L ny + nx); NaN where one diverges."""
-        return self._joined(self._simulated(self.model, [d])[0], d)
+        return self._joined(self._simulated((self.whole or self).for_residuals, [d])[0], d)
 
     def slopes(self, d: np.ndarray, r: np.ndarray) -> Tangent:
         """All windows linearised at d (W, nx), where their residual is r (W, m), without S.
@@ -86,11 +116,12 @@ class HeldWindows:
         Raises:
             DivergenceError: a window beside them diverges.
         """
-        h = FORWARD_STEP
+        h, whole = FORWARD_STEP, self.whole or self
         moves = [d, *(d + h * e for e in np.eye(d.shape[1]))]
-        y = self._simulated(self.for_slopes, moves)
+        y = self._simulated(whole.for_slopes, moves)
         if not np.isfinite(y).all():  # longer steps may diverge where the model's own do not
-            y = self._simulated(at_own_steps(self.for_slopes, self.model), moves)
+            slow = at_own_steps(rough(self.predictors[0].plant), self.model)
+            y = self._simulated(whole.prepared(slow, len(moves)), moves)
         each = np.stack([self._joined(*p) for p in zip(y, moves, strict=True)], axis=-1)
         if not np.isfinite(each).all():
             raise DivergenceError(
@@ -104,31 +135,57 @@ class HeldWindows:
         left = (self.outputs - y) @ self.whitener.T
         return np.hstack([left.reshape(len(d), -1), -d * self.weight])
 
-    def _simulated(self, model: mujoco.MjModel, moves: Sequence[np.ndarray]) -> np.ndarray:
+    @cached_property
+    def for_residuals(self) -> Prepared:
+        """Simulations for residuals."""
+        return self.prepared(self.model, 1)
+
+    @cached_property
+    def for_slopes(self) -> Prepared:
+        """Simulations for slopes."""
+        model = rough(self.predictors[0].plant) if self.has_rough_slopes else self.model
+        return self.prepared(model, 1 + self.weight.shape[1])
+
+    def prepared(self, model: mujoco.MjModel, moves: int) -> Prepared:
+        """Simulations of a model, so many moves of each window."""
+        inputs, every = slower(self.inputs, self.every, self.model, model)
+        n = substeps(self.predictors[0].log.sampling_time / every, model.opt.timestep)
+        numbers = [(slot, np.tile(column, moves)) for slot, column in self.numbers]
+        if all(np.all(column == column[0]) for _, column in numbers):
+            model, numbers = with_numbers(model, numbers, 0), []
+        made = simulations(model, moves * len(self.record), numbers)
+        return Prepared(made, hold(inputs, n, self.hold_kind), n * every)
+
+    @cached_property
+    def _different(self) -> tuple[tuple[Predictor, np.ndarray], ...]:
+        """Predictors whose values differ, and the windows that each tells, a mask (W,)."""
+        fixed = [p.fixed for p in self.predictors]
+        first = [fixed.index(values) for values in fixed]
+        which = np.array(first)[self.record]
+        return tuple((self.predictors[k], which == k) for k in dict.fromkeys(first))
+
+    def _simulated(self, prepared: Prepared, moves: Sequence[np.ndarray]) -> np.ndarray:
         """Outputs of k moves of the states, shape (k, W, L, ny)."""
         W, k = len(self.record), len(moves)
         starts = [moved(self.model, self.first, d) for d in moves]
         begun = State(*(np.concatenate([getattr(s, f.name) for s in starts])
                         for f in fields(State)))  # fmt: skip
-        parts = [(p, np.tile(self.record == i, k)) for i, p in enumerate(self.predictors)]
+        parts = [(p, np.tile(own, k)) for p, own in self._different]
         for predictor, own in parts if with_states(self.predictors[0].plant) else ():
             rows = State(*(getattr(begun, f.name)[own] for f in fields(State)))
             for f in fields(State):
                 getattr(begun, f.name)[own] = getattr(predictor.begun(_NONE, rows), f.name)
-        log = self.predictors[0].log
-        inputs, every = slower(self.inputs, self.every, self.model, model)
-        run = rollout(
-            model, begun, np.tile(inputs, (k, 1, 1)), log.sampling_time / every,
-            numbers=[(slot, np.tile(column, k)) for slot, column in self.numbers],
-            record=self.predictors[0].recorded, hold_kind=self.hold_kind,
-            time=np.tile(self.times, k), keeps_diverged=True,
+        at, times = np.arange(W) if self.at is None else self.at, np.tile(self.times, k)
+        simulated = np.concatenate([at + j * len(prepared.controls) for j in range(k)])
+        run = prepared.simulations.run(
+            begun, np.tile(prepared.controls[at], (k, 1, 1)), prepared.every,
+            self.predictors[0].recorded, times, simulated, keeps_diverged=True,
         )  # fmt: skip
-        run = {field: states[:, ::every] for field, states in run.items()}
         y = np.empty((k * W, *self.outputs.shape[1:]))
         for predictor, own in parts:
             if own.any():
                 mine = {f: x[own] for f, x in run.items()}
-                y[own] = predictor.outputs(_NONE, mine, np.tile(self.times, k)[own])
+                y[own] = predictor.outputs(_NONE, mine, times[own])
         return y.reshape(k, W, *y.shape[1:])
 
 
@@ -145,10 +202,9 @@ def held_windows(part: Shooting) -> HeldWindows:
     predictor, W = part.predictor, len(part.cut.starts)
     _, numbers = predictor.settings(_NONE)
     inputs, every, hold_kind = part.held_inputs(_NONE)
-    exact = lean(predictor.plant.model, numbers)
     return HeldWindows(
-        predictors=(predictor,), model=exact, every=every, hold_kind=hold_kind,
-        for_slopes=lean(rough(predictor.plant), numbers) if part.has_rough_slopes else exact,
+        predictors=(predictor,), has_rough_slopes=part.has_rough_slopes, every=every,
+        hold_kind=hold_kind,
         record=np.zeros(W, int), times=part.times, inputs=inputs, outputs=part.cut.outputs,
         numbers=tuple((slot, np.repeat(column, W)) for slot, column in numbers),
         first=part.first.states, weight=np.tile(part.first.weight, (W, 1)), whitener=part.whitener,

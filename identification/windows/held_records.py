@@ -63,7 +63,8 @@ def _is_alike(one: HeldWindows, other: HeldWindows) -> bool:
         and [slot for slot, _ in one.numbers] == [slot for slot, _ in other.numbers]
         and one.outputs.shape[1:] == other.outputs.shape[1:]
         and one.inputs.shape[1:] == other.inputs.shape[1:]
-        and (one.every, one.hold_kind) == (other.every, other.hold_kind)
+        and (one.every, one.hold_kind, one.has_rough_slopes)
+        == (other.every, other.hold_kind, other.has_rough_slopes)
         and one.predictors[0].log.sampling_time == other.predictors[0].log.sampling_time
         and one.predictors[0].log.output_names == other.predictors[0].log.output_names
         and np.array_equal(one.whitener, other.whitener)

@@ -26,6 +26,7 @@ import numpy as np
 
 from identification.errors import DivergenceError
 from identification.model.coordinates import Coordinates
+from identification.model.lean import one_evaluation
 from identification.model.predictor import Plant, Predictor
 from identification.model.rollout import State, hold, rollout, substeps
 from identification.model.sensitivity import FORWARD_STEP
@@ -33,7 +34,6 @@ from identification.windows.tangents import Tangent, decomposed
 from identification.windows.windows import FirstStates, Windows, moved
 
 RK4 = int(mujoco.mjtIntegrator.mjINT_RK4)
-ONE = int(mujoco.mjtIntegrator.mjINT_IMPLICITFAST)  # evaluation of the dynamics a step
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ def rough(plant: Plant) -> mujoco.MjModel:
     if model.opt.integrator != RK4:
         return model
     model = copy.copy(model)
-    model.opt.integrator = ONE
+    model.opt.integrator = one_evaluation(model)
     return model
 
 

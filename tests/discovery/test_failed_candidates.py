@@ -6,6 +6,7 @@ nominal model may end a search.
 """
 
 import ast
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,13 @@ from discovery_cases import EFFECTS, disturbed, searched, stepped, task
 from failing_cases import ERRORS, HOWS, Failing
 
 from identification.discovery import attempts, confidence, fitted_model, state
-from identification.discovery.attempts import Failed, attempt, collected, tell_lost
+from identification.discovery.attempts import (
+    Failed,
+    attempt,
+    attempt_each,
+    collected,
+    tell_lost,
+)
 from identification.discovery.fitted_model import try_fit
 from identification.discovery.selection import anew, forward_selection, kinds
 from identification.discovery.state import first_state, next_state
@@ -201,3 +208,21 @@ def test_no_other_function_of_the_engines_catches_what_a_candidate_raises(path):
     }
     if path.name not in INNER:
         assert not caught & {"InputError", "DivergenceError", "FAILURES", "Exception"}
+
+
+def test_evaluations_side_by_side_return_and_tell_what_they_do_one_by_one():
+    def evaluate(k):
+        if k % 3 == 0:
+            raise DivergenceError(f"it left at {k}; take less")
+        return k
+
+    tasks = [(f"number {k}", partial(evaluate, k)) for k in range(12)]
+    told = {}
+    for name, run in (("one by one", lambda: [attempt(*t) for t in tasks]),
+                      ("side by side", lambda: [*attempt_each(tasks)])):  # fmt: skip
+        lines = []
+        with collected(lines.append) as failed:
+            told[name] = run(), list(failed), lines
+    assert told["side by side"] == told["one by one"]
+    assert len(told["side by side"][2]) == 4
+    assert [*attempt_each(tasks)] == told["one by one"][0]  # nobody listens

@@ -98,5 +98,18 @@ def test_a_window_that_diverges_does_not_hold_up_the_others():
     np.testing.assert_array_equal(r[rest], held_windows(shooting).residual(d)[rest])
 
 
+@pytest.mark.parametrize("keep", [[1, 3], [3, 1], [2, 2, 0]])
+def test_some_windows_are_simulated_as_if_they_were_all(keep):
+    """Of their residuals and slopes; also some of some, and one that is there twice."""
+    shooting, d = fixed(slider(), noisy(), 0.4, None)
+    whole = held_windows(shooting)
+    r, slopes = whole.residual(d), whole.slopes(d, whole.residual(d))
+    for some in (whole.rows(np.array(keep)), whole.rows(np.arange(len(d)) < 4).rows(keep)):
+        np.testing.assert_array_equal(some.residual(d[keep]), r[keep])
+        mine = some.slopes(d[keep], r[keep])
+        np.testing.assert_array_equal(mine.s, slopes.s[keep])
+        np.testing.assert_array_equal(some.rows(np.array([1])).residual(d[keep][1:2]), r[keep][1:2])
+
+
 def squares(settled):
     return np.sum(settled.r**2, axis=1)

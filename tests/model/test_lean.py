@@ -8,7 +8,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from identification.model.lean import CONSTRAINTS, is_constrained, lean
+from identification.model.lean import (
+    CONSTRAINTS,
+    EULER,
+    IMPLICIT,
+    is_constrained,
+    lean,
+    one_evaluation,
+)
 from identification.model.paths import resolve
 from identification.model.rollout import State, rollout
 
@@ -86,3 +93,50 @@ def test_the_model_of_the_user_stays_as_it_is_and_a_lean_one_is_not_copied():
     assert one is not model
     assert lean(one) is one
     assert int(model.opt.disableflags) == before
+
+
+DAMPED = """<mujoco><option timestep="0.004" integrator="RK4"{option}/>
+  <worldbody><body><joint name="a" axis="0 1 0" {joint}/><geom size="0.1" mass="1" pos="0.2 0 0"/>
+    <body pos="0.4 0 0"><joint name="b" axis="0 1 0" damping="0.3"/>
+      <geom size="0.1" mass="1" pos="0.2 0 0"/></body></body></worldbody>
+  <tendon><fixed name="t" {tendon}><joint joint="a" coef="1"/><joint joint="b" coef="-1"/></fixed>
+  </tendon><actuator>{actuator}</actuator></mujoco>"""
+BY_JOINTS = [
+    {}, {"joint": ""}, {"joint": 'damping="0.5" frictionloss="0.3" stiffness="4"'},
+    {"joint": 'limited="true" range="-10 10"'}, {"tendon": 'stiffness="4"'},
+    {"actuator": '<position joint="a" kp="10"/>'},
+    {"actuator": '<general joint="a" dyntype="filter" dynprm="0.05" gainprm="2"/>'},
+]  # fmt: skip
+BY_OTHERS = [
+    {"actuator": '<position joint="a" kp="10" kv="2"/>'},
+    {"actuator": '<general joint="a" gaintype="affine" gainprm="1 0 -0.5"/>'},
+    {"actuator": '<muscle joint="a" lengthrange="-1 1"/>'}, {"tendon": 'damping="0.4"'},
+    {"option": ' density="100" viscosity="0.1"'},
+]  # fmt: skip
+
+
+def damped(what):
+    plain = {"option": "", "joint": 'damping="0.5"', "tendon": "",
+             "actuator": '<motor joint="a"/>'}  # fmt: skip
+    return mujoco.MjModel.from_xml_string(DAMPED.format(**{**plain, **what}))
+
+
+def moved_with(model, integrator):
+    model.opt.integrator = integrator
+    start = State(np.zeros(2), np.array([3.0, -5.0]), np.zeros(model.na))
+    u = np.random.default_rng(0).standard_normal((STEPS + 1, 1))
+    return rollout(model, start, u, model.opt.timestep)["qpos"]
+
+
+@pytest.mark.parametrize("what", BY_JOINTS, ids=str)
+def test_where_joints_alone_are_damped_the_simpler_integrator_takes_the_same_steps(what):
+    model = damped(what)
+    assert one_evaluation(model) == EULER
+    np.testing.assert_array_equal(moved_with(model, EULER), moved_with(model, IMPLICIT))
+
+
+@pytest.mark.parametrize("what", BY_OTHERS, ids=str)
+def test_other_damping_needs_the_implicit_integrator(what):
+    model = damped(what)
+    assert one_evaluation(model) == IMPLICIT
+    assert np.any(moved_with(model, EULER) != moved_with(model, IMPLICIT))

@@ -2,10 +2,12 @@
 
 import os
 import threading
+import time
 
 import pytest
 
-from identification.pool import run_parts, split, threads
+from identification import pool
+from identification.pool import each_part, end_if_given_up, run_parts, split, threads
 
 
 @pytest.mark.parametrize("number", ["1", "2"])
@@ -38,6 +40,37 @@ def test_an_error_of_a_part_is_that_of_the_work():
 
     with pytest.raises(ValueError, match="third"):
         run_parts(fail, range(6))
+
+
+def test_a_part_has_one_thread_and_the_whole_has_all_of_them_again():
+    if threads() < 2:
+        pytest.skip("one processor has no pool")
+    assert run_parts(lambda _: threads(), range(4)) == [1] * 4
+    assert threads() > 1
+    end_if_given_up()
+
+
+def test_parts_end_where_the_work_is_given_up(monkeypatch):
+    """Also those that a generator is not asked for any more; nobody waits for them."""
+    monkeypatch.setattr(pool, "threads", lambda: 2)
+    begun, ended = threading.Event(), threading.Event()
+
+    def part(k):
+        if k == 0:
+            begun.wait(60)
+            return k
+        begun.set()
+        try:
+            while True:
+                end_if_given_up()
+                time.sleep(1e-3)
+        finally:
+            ended.set()
+
+    parts = each_part(part, range(3))
+    assert next(parts) == 0
+    parts.close()
+    assert ended.wait(60)
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 
 import numpy as np
@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from records_cases import HORIZON, nominal_model, records
 
+from identification.prediction import problem
 from identification.prediction.crossing import at_their_best, crossed
 from identification.prediction.nominal_fit import fit_nominal
 from identification.prediction.records import as_records
@@ -59,6 +60,31 @@ def test_the_cost_of_a_crossed_fit_is_that_of_its_windows():
     freed = crossed(stuck(model.fit), [model.fit])
     r = freed.problem.held(freed.q).residuals(freed.moves)
     np.testing.assert_allclose(freed.problem.cost_of(freed.q, r), freed.cost, rtol=1e-9)
+
+
+def test_a_crossed_fit_is_linearised_where_its_windows_begin():
+    _, model = fitted()
+    freed = crossed(stuck(model.fit), [model.fit])
+    r = freed.problem.held(freed.q).residuals(freed.moves)
+    anew = freed.problem.tangents(freed.q, freed.moves, r)
+    for mine, right in zip(freed.tangents, anew, strict=True):
+        for field in fields(mine):
+            got, wanted = (getattr(t, field.name) for t in (mine, right))
+            np.testing.assert_allclose(got, wanted, rtol=1e-9, atol=1e-9)
+
+
+def test_only_windows_that_begin_elsewhere_are_linearised_again(monkeypatch):
+    _, model = fitted()
+    whole, count = problem.tangent, []
+
+    def counted(part, q, d, *rest, **more):
+        count.append(len(d))
+        return whole(part, q, d, *rest, **more)
+
+    bad = stuck(model.fit)
+    monkeypatch.setattr(problem, "tangent", counted)
+    crossed(bad, [model.fit])
+    assert count == [1]
 
 
 def test_parent_and_child_that_are_one_model_are_equal_whichever_is_stuck():
