@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -145,6 +146,7 @@ def test_an_interrupt_in_the_film_costs_the_film_only(tmp_path, capsys, monkeypa
     def interrupted(found, folder, progress):
         (folder / ".half.mp4").write_text("half")
         while not any("--no-film" in line for line in told):  # the report is drawn meanwhile
+            time.sleep(0.01)
             progress(1, 91)
         raise KeyboardInterrupt
 
@@ -175,6 +177,7 @@ def test_what_cannot_be_drawn_costs_itself_only(tmp_path, capsys, monkeypatch, f
         if fails == "film":
             raise InputError("ffmpeg is missing")
         while True:  # until it is left, as there is no report that could show it
+            time.sleep(0.01)
             progress(1, 91)
 
     def no_figures(*_):
