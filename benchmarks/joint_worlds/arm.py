@@ -15,8 +15,8 @@ q = 0 the arm is bent, so that gravity acts on joints 2, 3 and 5. A payload is a
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from joint_worlds.compiled import compiled
 from joint_worlds.robot import Free, JointRobot
 
 N, LINK = 6, 11  # numbers of a link: mass, centre (3), inertia (3), armature, place of joint (3)
@@ -24,7 +24,7 @@ PAYLOAD, GRAVITY, TIP = N * LINK, N * LINK + 1, N * LINK + 2
 AXES = np.array([2, 1, 1, 2, 1, 2])  # z y y z y z
 
 
-@njit(error_model="numpy")
+@compiled
 def _into(axis, angle, x, y):  # type: ignore[no-untyped-def]
     """R x of a frame that is turned by an angle about an axis of its own, into y."""
     c, s = np.cos(angle), np.sin(angle)
@@ -35,7 +35,7 @@ def _into(axis, angle, x, y):  # type: ignore[no-untyped-def]
     y[j] = -s * a + c * b
 
 
-@njit(error_model="numpy")
+@compiled
 def _cross(a, b, out):  # type: ignore[no-untyped-def]
     x = a[1] * b[2] - a[2] * b[1]
     y = a[2] * b[0] - a[0] * b[2]
@@ -43,7 +43,7 @@ def _cross(a, b, out):  # type: ignore[no-untyped-def]
     out[0], out[1] = x, y
 
 
-@njit(error_model="numpy")
+@compiled
 def _point(m, c, w, al, a, F, N_, t, u):  # type: ignore[no-untyped-def]
     """Add what a point mass m at c asks for: F += m (a + α × c + ω × (ω × c)), N += c × that."""
     _cross(w, c, t)
@@ -57,7 +57,7 @@ def _point(m, c, w, al, a, F, N_, t, u):  # type: ignore[no-untyped-def]
         N_[k] += u[k]
 
 
-@njit(error_model="numpy")
+@compiled
 def inverse(q, v, acc, gravity, p, work, tau):  # type: ignore[no-untyped-def]
     """Torques [N m] that a motion asks for, into tau; `work` is room, shape (6, 8, 3)."""
     for i in range(N):
@@ -107,7 +107,7 @@ def inverse(q, v, acc, gravity, p, work, tau):  # type: ignore[no-untyped-def]
                 work[i - 1, 4, k] += t[k] + u[k]
 
 
-@njit(error_model="numpy")
+@compiled
 def arm(q, v, p, M, c, g):  # type: ignore[no-untyped-def]
     """Mass matrix, centrifugal and Coriolis forces, and gravity, into M, c and g."""
     work, zero, unit = np.empty((N, 8, 3)), np.zeros(N), np.zeros(N)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from joint_worlds.compiled import compiled
 from joint_worlds.robot import Free, JointRobot
 
 MASS, SPRING, PAYLOAD = range(3)
 
 
-@njit(error_model="numpy")
+@compiled
 def cart(q, v, p, M, c, g):  # type: ignore[no-untyped-def]
     """Mass, the spring's pull, and no gravity, into M, c and g."""
     M[0, 0] = p[MASS] + p[PAYLOAD]

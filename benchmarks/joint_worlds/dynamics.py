@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from joint_worlds.arm import ARM, arm
 from joint_worlds.cart import CART, cart
+from joint_worlds.compiled import compiled
 from joint_worlds.laws import GIVE, dahl, force, held, largest, stretched
 from joint_worlds.pendulum import PENDULUM, pendulum
 from joint_worlds.robot import JointRobot
@@ -16,7 +16,7 @@ from joint_worlds.unlisted import unlisted
 ROBOTS: dict[str, JointRobot] = {r.name: r for r in (PENDULUM, CART, TWO_LINK, ARM)}
 
 
-@njit(error_model="numpy")
+@compiled
 def terms(code, q, v, p, M, c, g):  # type: ignore[no-untyped-def]
     """Mass matrix, velocity forces and gravity of a robot, into M, c and g."""
     if code == 0:
@@ -29,7 +29,7 @@ def terms(code, q, v, p, M, c, g):  # type: ignore[no-untyped-def]
         arm(q, v, p, M, c, g)
 
 
-@njit(error_model="numpy")
+@compiled
 def accelerations(code, p, joints, q, v, q0, z, tau, M, c, g, a):  # type: ignore[no-untyped-def]
     """q̈ into a: of drives' forces tau, in a step that began at q0 with contacts stretched by z."""
     terms(code, q, v, p, M, c, g)
@@ -46,7 +46,7 @@ def accelerations(code, p, joints, q, v, q0, z, tau, M, c, g, a):  # type: ignor
     a[:] = np.linalg.solve(M, a)
 
 
-@njit(error_model="numpy")
+@compiled
 def slip(joints, q, v, q0, z, tau, g):  # type: ignore[no-untyped-def]
     """Move the contacts, in place, at the end of a step."""
     for i in range(q.size):

@@ -25,9 +25,9 @@ Other forces on the joint:
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from joint_worlds import slots as at
+from joint_worlds.compiled import compiled
 
 COULOMB, UNEVEN, PEAK, PEAK_SPEED = at.COULOMB, at.UNEVEN, at.PEAK, at.PEAK_SPEED
 PEAK_POWER, LOAD = at.PEAK_POWER, at.LOAD
@@ -38,7 +38,7 @@ SQUARE, ROOT, ROOT_POWER, CUBE, PUSH = at.SQUARE, at.ROOT, at.ROOT_POWER, at.CUB
 COG_COS, COG_SIN, COG_WAVES = at.COG_COS, at.COG_SIN, at.COG_WAVES
 
 
-@njit(error_model="numpy")
+@compiled
 def largest(joint, q, v, tau, g, side):  # type: ignore[no-untyped-def]
     """Friction of a joint, at most, in the direction `side` (1 forward, -1 backward)."""
     b = joint[COULOMB] + side * joint[UNEVEN]
@@ -51,13 +51,13 @@ def largest(joint, q, v, tau, g, side):  # type: ignore[no-untyped-def]
     return max(0.0, b)
 
 
-@njit(error_model="numpy")
+@compiled
 def stretched(joint, z, low, high):  # type: ignore[no-untyped-def]
     """The spring of the contact after it has slipped."""
     return min(max(z, -low / joint[STIFF]), high / joint[STIFF])
 
 
-@njit(error_model="numpy")
+@compiled
 def dahl(joint, z, x, low, high):  # type: ignore[no-untyped-def]
     """Dahl's friction after a way x from a stretch z."""
     p, end = z / joint[GIVE], high if x > 0.0 else -low
@@ -66,14 +66,14 @@ def dahl(joint, z, x, low, high):  # type: ignore[no-untyped-def]
     return end + (p - end) * np.exp(-abs(x) / (joint[GIVE] * abs(end)))
 
 
-@njit(error_model="numpy")
+@compiled
 def held(joint, z, v, low, high):  # type: ignore[no-untyped-def]
     """What friction resists with."""
     f = joint[STIFF] * stretched(joint, z, low, high) + joint[DAMP] * v
     return min(max(f, -low), high)
 
 
-@njit(error_model="numpy")
+@compiled
 def force(joint, q, v):  # type: ignore[no-untyped-def]
     """All other forces on a joint."""
     speed = abs(v)

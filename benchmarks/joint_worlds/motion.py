@@ -14,30 +14,30 @@ with a model of its own (hats), k_p = w², k_d = 2 w.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from joint_worlds import slots as at
+from joint_worlds.compiled import compiled
 from joint_worlds.dynamics import accelerations, slip, terms
 
 DELAY, LAG, LIMIT, SAG = at.DELAY, at.LAG, at.LIMIT, at.SAG
 SCALE, OFF_COS, OFF_SIN, WEAK, ZERO = at.SCALE, at.OFF_COS, at.OFF_SIN, at.WEAK, at.ZERO
 
 
-@njit(error_model="numpy")
+@compiled
 def encoder(joint, q):  # type: ignore[no-untyped-def]
     """What an encoder without noise shows."""
     turning = joint[OFF_COS] * np.cos(q) + joint[OFF_SIN] * np.sin(q)
     return (1 + joint[SCALE]) * q + turning + joint[ZERO]
 
 
-@njit(error_model="numpy")
+@compiled
 def late(joint, u, i, k, since, period):  # type: ignore[no-untyped-def]
     """Input i as it arrives `since` seconds after sample k began."""
     at_ = max(0, k + int(np.floor((since - joint[DELAY]) / period)))
     return min(max(u[at_, i], -joint[LIMIT]), joint[LIMIT])
 
 
-@njit(error_model="numpy")
+@compiled
 def advance(code, p, joints, state, u, k, push, h, m, room):  # type: ignore[no-untyped-def]
     """Go on by one sample of m steps h, in place; rows of state: q, v, z, lagging input."""
     n = u.shape[1]
@@ -71,7 +71,7 @@ def advance(code, p, joints, state, u, k, push, h, m, room):  # type: ignore[no-
         slip(joints, q, v, Q[0], z, tau[2], g)
 
 
-@njit(error_model="numpy")
+@compiled
 def closed_loop(  # type: ignore[no-untyped-def]
     code, p, joints, p_hat, computed, w, aim, errors, step, push, h, m
 ):
@@ -124,7 +124,7 @@ def closed_loop(  # type: ignore[no-untyped-def]
     return states, u, y
 
 
-@njit(error_model="numpy")
+@compiled
 def windows(code, p, joints, begins, starts, u, push, length, h, m):  # type: ignore[no-untyped-def]
     """Positions in windows that begin at given samples and states, under logged inputs.
 

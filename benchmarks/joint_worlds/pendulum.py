@@ -6,14 +6,14 @@ m, c, I: mass, centre and inertia of the arm; m_p: a payload at its end l.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from joint_worlds.compiled import compiled
 from joint_worlds.robot import Free, JointRobot
 
 MASS, CENTRE, INERTIA, LENGTH, PAYLOAD, GRAVITY = range(6)
 
 
-@njit(error_model="numpy")
+@compiled
 def pendulum(q, v, p, M, c, g):  # type: ignore[no-untyped-def]
     """Inertia, no velocity forces, and gravity, into M, c and g."""
     M[0, 0] = p[INERTIA] + p[MASS] * p[CENTRE] ** 2 + p[PAYLOAD] * p[LENGTH] ** 2

@@ -12,14 +12,14 @@ q_1 from hanging, q_2 from the first link; m_p: a payload at the end. M q̈ + c 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from joint_worlds.compiled import compiled
 from joint_worlds.robot import Free, JointRobot
 
 M1, C1, L1, I1, M2, C2, L2, I2, PAYLOAD, GRAVITY = range(10)
 
 
-@njit(error_model="numpy")
+@compiled
 def two_link(q, v, p, M, c, g):  # type: ignore[no-untyped-def]
     """Mass matrix, centrifugal and Coriolis forces, and gravity, into M, c and g."""
     l1, l2, m2, mp = p[L1], p[L2], p[M2], p[PAYLOAD]

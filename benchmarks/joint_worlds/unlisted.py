@@ -13,9 +13,9 @@ The neighbour of a joint, q_o and v_o, is the joint before it, and that of the f
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from joint_worlds import slots as at
+from joint_worlds.compiled import compiled
 
 BUMP, BUMP_PLACE, BUMP_WIDTH = at.BUMP, at.BUMP_PLACE, at.BUMP_WIDTH
 STOP, STOP_PLACE, FAST, FAST_SPEED = at.STOP, at.STOP_PLACE, at.FAST, at.FAST_SPEED
@@ -23,7 +23,7 @@ BESIDE, BESIDE_WAVES, BESIDE_PHASE = at.BESIDE, at.BESIDE_WAVES, at.BESIDE_PHASE
 DRAG, RIPPLE, RIPPLE_WAVES = at.DRAG, at.RIPPLE, at.RIPPLE_WAVES
 
 
-@njit(error_model="numpy")
+@compiled
 def unlisted(joint, q, v, q_beside, v_beside):  # type: ignore[no-untyped-def]
     """All of them on a joint."""
     f = -joint[DRAG] * v_beside

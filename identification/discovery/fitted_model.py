@@ -107,11 +107,6 @@ def fit_model(
     model, log, options = task.nominal_model, task.log, task.options
     nearby = None if near is None else near.refit
     part = log.part("estimation")
-    if nearby is None and model.groups:
-        # The values that parts have in common are found first, without the many columns of what
-        # single parts deviate by.
-        nearby = fit_with_effects(model.of_like_parts, part, candidates, start, options, steps)
-        start = {**start, **nearby.point.values}
     fit = fit_with_effects(model, part, candidates, start, options, steps, nearby, least=least)
     return FittedModel(candidates, fit, validate(fit, log))
 

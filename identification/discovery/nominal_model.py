@@ -86,13 +86,6 @@ class NominalModel:
         return np.array([self.scatter.get(group.get(name, ""), std) for name, std in pairs])
 
     @property
-    def of_like_parts(self) -> NominalModel:
-        """The model whose parts are all alike: without the deviations that share one std."""
-        alike = [i for i, name in enumerate(self.names) if name not in self.grouped]
-        names = tuple(self.names[i] for i in alike)
-        return replace(self, names=names, std=self.std[alike], groups={}, scattering=())
-
-    @property
     def linear(self) -> tuple[str, ...]:
         """Names whose prior has a mean that is not positive: it is none of a logarithm."""
         return tuple(n for n, mean in self.mean.items() if mean <= 0)

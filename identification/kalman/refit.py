@@ -193,10 +193,11 @@ def _move(
     run = problem.run_at(q)
     there = shift_point(point, q, run) if is_short else None
     if there is None:
-        # New columns of small parameters pay once steps are short: they are many, and before that
-        # the model only approaches.
-        is_outdated = change < SIMILAR <= (point.moved or 0.0)
-        near = None if is_outdated else point
+        # New columns of small parameters, where they are many, pay once steps are short: before
+        # that the model only approaches.
+        is_far = is_costly(point) and change >= SIMILAR
+        is_similar = change < SIMILAR and (point.moved or 0.0) < SIMILAR
+        near = point if is_far or is_similar else None
         there = evaluate_point(point.predictor, point.space, q, near, point.small, run)
     point = there
     level = estimate_noise(point, problem.prior, options, problem.level, largest=largest)

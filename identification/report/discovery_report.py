@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from identification.discovery.result import Discovery
 from identification.logs.joined import records_of
@@ -17,6 +18,9 @@ from identification.report.discovery_tables import (
 from identification.report.discovery_verdict import discovery_verdict
 from identification.report.law_section import LAWS, law_sections
 from identification.report.page import Section, save_figures, write_report
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def discovery_sections(found: Discovery, files: str = "") -> list[Section]:
@@ -42,37 +46,50 @@ def _final_first(section: Section) -> Section:
     return replace(section, table=section.table and section.table.last_first)
 
 
-def write_discovery_report(
-    found: Discovery,
-    folder: Path,
-    sentences: Sequence[str] = (),
-    sections: Sequence[Section] = (),
-    files: str = "",
-    pictures: bool = True,
-) -> Path:
+def write_discovery_report(found: Discovery, folder: Path, sentences: Sequence[str] = ()) -> Path:
     """Write report.html and its figures into a folder; returns the path of the page.
 
     Args:
         found: the discovery.
         folder: exists.
         sentences: that follow the verdict.
-        sections: that follow those of every report of a discovery.
-        files: a sentence that says where the model with the named effects is.
-        pictures: whether the figures are written as PNG, too.
 
     Raises:
         InputError: a file cannot be written.
     """
-    shown = [*discovery_sections(found, files), *sections]
-    if all(section.video is None for section in shown):  # the law stands where a film would
-        shown = [replace(s, first=s.first or s.title == LAWS) for s in shown]
-    if pictures:
-        save_figures(shown, folder)
+    sections = discovery_sections(found)
+    save_figures(sections, folder)
+    return write_page(found, folder, sections, sentences)
+
+
+def write_page(
+    found: Discovery,
+    folder: Path,
+    sections: Sequence[Section],
+    sentences: Sequence[str] = (),
+    drawings: dict[Figure, str] | None = None,
+) -> Path:
+    """Write report.html of some sections into a folder; returns its path.
+
+    Args:
+        found: the discovery.
+        folder: exists.
+        sections: those of every report of a discovery, and more.
+        sentences: that follow the verdict.
+        drawings: elements of the page that an earlier page drew of the same figures; the others
+            are added.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    if all(section.video is None for section in sections):  # the law stands where a film would
+        sections = [replace(s, first=s.first or s.title == LAWS) for s in sections]
     return write_report(
         folder / "report.html",
         f"{found.log.name}: what the model lacks",
         [*discovery_verdict(found), *sentences],
-        shown,
+        sections,
         good=found.is_good,
         data=[log.name for _, log in records_of(found.log)],
+        drawings=drawings,
     )

@@ -85,6 +85,7 @@ def write_report(
     good: bool | None = None,
     footer: str = "",
     data: Sequence[str] = (),
+    drawings: dict[Figure, str] | None = None,
 ) -> Path:
     """Write a report, whole or not at all.
 
@@ -96,6 +97,7 @@ def write_report(
         good: colours the verdict: True passed, False failed, None neither.
         footer: what is said at its foot, before version, command and date.
         data: names of the logs that it rests on.
+        drawings: elements that an earlier page drew of the same figures; the others are added.
 
     Raises:
         InputError: a video cannot be read or is too large, or the file cannot be written.
@@ -118,7 +120,10 @@ def write_report(
         title=title,
         file=Path(path).name,
         verdict=list(verdict),
-        sections=[_section(section, number) for number, section in enumerate(sections, 1)],
+        sections=[
+            _section(section, number, {} if drawings is None else drawings)
+            for number, section in enumerate(sections, 1)
+        ],
         mood={True: "good", False: "bad", None: "plain"}[good],
         footer="\n".join(filter(None, [footer, origin(data)])),
         dark=DARK,
@@ -156,8 +161,11 @@ def save_figures(sections: Iterable[Section], folder: Path) -> list[Path]:
     return paths
 
 
-def _section(section: Section, number: int) -> dict[str, Any]:
+def _section(section: Section, number: int, drawings: dict[Figure, str]) -> dict[str, Any]:
     table = section.table
+    for k, (caption, figure) in enumerate(section.figures, 1):
+        if figure not in drawings:
+            drawings[figure] = drawing(figure, f"f{number}_{k}_", caption)
     return {
         "title": section.title,
         "name": f"part-{number}",
@@ -166,11 +174,11 @@ def _section(section: Section, number: int) -> dict[str, Any]:
         "figures": [
             (
                 caption,
-                drawing(figure, f"f{number}_{k}_", caption),
+                drawings[figure],
                 figure.get_size_inches()[0] >= WIDE,
                 float(figure.get_size_inches()[0]),
             )
-            for k, (caption, figure) in enumerate(section.figures, 1)
+            for caption, figure in section.figures
         ],
         "columns": columns_of(table.columns, table.rows) if table else [],
         "rows": [[text_of(cell) for cell in row] for row in table.rows] if table else [],

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -25,6 +23,8 @@ from identification.commands.common import (
 from inca_mj.commands.common import Trust, Values, cannot_draw, do_not_draw, values_field
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from identification.discovery.result import Discovery
     from identification.folders import Draft
     from identification.report.page import Section
@@ -125,17 +125,30 @@ class Discover:
         from identification.progress import duration
 
         begun, tell = time.monotonic(), self.output.tell
-        tell("drawing the report")
-        if not add_drawings(draft, "figures and report", partial(draw, found, draft.folder)):
+        report = _Report(found, draft.folder)
+
+        def write() -> None:
+            tell("drawing the report")
+            if not add_drawings(draft, "figures and report", report.write):
+                return
+            files["report"] = Path("report.html")
+            drawn = duration(time.monotonic() - begun)
+            tell(f"report and figures took {drawn}, beside the search")
+
+        if blind or not self.film:
+            write()
+            if blind and files.get("report"):
+                note(f"no film: {blind}")
             return
-        files["report"] = Path("report.html")
-        drawn = duration(time.monotonic() - begun)
-        tell(f"report and figures took {drawn}, beside the search")
-        if blind:
-            note(f"no film: {blind}")
-        elif self.film and add_drawings(draft, "film", partial(film, found, draft.folder, tell)):
-            files["film"] = Path("film.mp4")
-            tell(f"the film took {duration(time.monotonic() - begun)}")
+        from inca_mj.commands.film_progress import FilmProgress
+        from inca_mj.commands.filmed import FPS, film_beside
+
+        progress = FilmProgress(tell, FPS, hint=LEAVE_OUT)
+        with film_beside(found, draft.folder, progress) as film:
+            write()
+            if "report" in files and add_drawings(draft, "film", lambda: report.write(film())):
+                files["film"] = Path("film.mp4")
+                tell(f"the film took {duration(time.monotonic() - begun)}")
 
 
 def as_json(found: Discovery, model: Path | None) -> dict[str, Any]:
@@ -155,23 +168,28 @@ def keep(found: Discovery, out: Path, command: Any) -> dict[str, Path]:
     return {"model": model, "effects": effects}
 
 
-def draw(found: Discovery, out: Path, film: Sequence[Section] = ()) -> None:
-    """Write figures and report into a folder; with the section of a film the report alone."""
-    from identification.report.discovery_report import write_discovery_report
-    from inca_mj.report.sections import model_section
-    from inca_mj.workflows.discovery_model import named_twin
+class _Report:
+    """The report of a discovery, whose figures are drawn once, also where a film follows them."""
 
-    more = [*film, model_section(_without_zeros(named_twin(found)))]
-    write_discovery_report(found, out, sections=more, files=FILES, pictures=not film)
+    def __init__(self, found: Discovery, folder: Path) -> None:
+        self._found, self._folder = found, folder
+        self._sections: list[Section] = []
+        self._drawings: dict[Figure, str] = {}
 
+    def write(self, film: Section | None = None) -> None:
+        """Write figures and report into the folder; with the section of a film the report alone."""
+        from identification.report.discovery_report import discovery_sections, write_page
+        from identification.report.page import save_figures
+        from inca_mj.report.sections import model_section
+        from inca_mj.workflows.discovery_model import named_twin
 
-def film(found: Discovery, out: Path, tell: Callable[[str], None]) -> None:
-    """Write the film into a folder, and the report anew, with the film in it."""
-    from inca_mj.commands.film_progress import FilmProgress
-    from inca_mj.commands.filmed import FPS, film_discovery
-
-    _, section = film_discovery(found, out, FilmProgress(tell, FPS, hint=LEAVE_OUT))
-    draw(found, out, [section])
+        if not self._sections:
+            model = model_section(_without_zeros(named_twin(self._found)))
+            self._sections = [*discovery_sections(self._found, FILES), model]
+            save_figures(self._sections, self._folder)
+        *shown, model = self._sections
+        sections = [*shown, *([film] if film else []), model]
+        write_page(self._found, self._folder, sections, drawings=self._drawings)
 
 
 def _without_zeros(robot: Twin) -> Twin:

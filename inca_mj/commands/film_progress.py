@@ -31,6 +31,7 @@ class FilmProgress:
     lines: bool = field(default_factory=lambda: not sys.stderr.isatty())
     clock: Callable[[], float] = time.monotonic
     hint: str = ""
+    _first: int = 0
     _begun: float = 0.0
     _said: float = 0.0
     _is_promised: bool = False
@@ -39,20 +40,20 @@ class FilmProgress:
         """One frame more.
 
         Args:
-            done: frames that are drawn.
+            done: frames that are drawn; some may have been before the first call.
             frames: of the whole film.
         """
         now = self.clock()
-        if done == 1:
-            self._begun = self._said = now
+        if not self._first:
+            self._first, self._begun, self._said = done, now, now
             more = f"; {self.hint}" if self.hint else ""
             self.tell(f"film: {frames} frames, {frames / self.fps:.3g} s of film{more}")
             return
-        left = (now - self._begun) / (done - 1) * (frames - done)
+        left = (now - self._begun) / (done - self._first) * (frames - done)
         if done == frames:
             return
         if not self._is_promised:
-            if done > FIRST or now - self._begun >= SOON:
+            if done - self._first >= FIRST or now - self._begun >= SOON:
                 self._said, self._is_promised = now, True
                 self.tell(f"film: {frames} frames, about {duration(left)} to draw")
         elif self.lines and now - self._said >= EVERY:

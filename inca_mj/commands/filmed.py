@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from contextvars import copy_context
+from dataclasses import replace
 from pathlib import Path
+from shutil import move
+from tempfile import TemporaryDirectory
+from threading import Event
 
 from identification.discovery.result import Discovery
 from identification.logs.joined import records_of, rows_of
 from identification.logs.log import Log, halves
 from identification.report.page import Section
 from inca_mj.rendering.film import Progress, film
+from inca_mj.rendering.graphics import draws_in_any_thread
 from inca_mj.rendering.scene import Scene
 from inca_mj.twin.logs import pose_of
 from inca_mj.twin.twin import Twin
@@ -23,10 +32,59 @@ LARGER = (
 TITLES = ("before: the model, fitted", "after: with what was missing")
 
 
-def film_discovery(
-    found: Discovery, folder: Path, progress: Progress | None = None
-) -> tuple[Path, Section]:
-    """Film a discovery, with the section of a report that shows the film.
+@contextmanager
+def film_beside(
+    found: Discovery, folder: Path, progress: Progress
+) -> Iterator[Callable[[], Section]]:
+    """Films a discovery while the block draws other things; yields what waits for the section.
+
+    The block begins with the first frame: what is opened before it, and figures, change settings
+    that all threads share. Where OpenGL needs a window, the film is drawn when it is waited for.
+
+    Args:
+        found: the discovery, of twins.
+        folder: where film.mp4 and its picture film.jpg are written.
+        progress: told the frames done and the frames in all, as soon as the film is waited for.
+
+    Raises:
+        InputError: the discovery is not of a twin, or the film cannot be written.
+        GraphicsError: no OpenGL context can be made here.
+        DivergenceError: a twin cannot be simulated.
+    """
+    if not draws_in_any_thread():
+        yield lambda: film_discovery(found, folder, progress)
+        return
+    begun, waited, left = Event(), Event(), Event()
+
+    def drawn(done: int, frames: int) -> None:
+        begun.set()
+        if left.is_set():
+            raise KeyboardInterrupt  # as an interrupt of the film itself: nothing is kept of it
+        if waited.is_set():
+            progress(done, frames)
+
+    with (
+        TemporaryDirectory(prefix="film", ignore_cleanup_errors=True) as half,
+        ThreadPoolExecutor(1, thread_name_prefix="film") as thread,
+    ):
+        film_of = thread.submit(copy_context().run, film_discovery, found, Path(half), drawn)
+        film_of.add_done_callback(lambda _: begun.set())
+
+        def wait() -> Section:
+            waited.set()
+            section = film_of.result()
+            moved = [Path(move(file, folder)) for file in (section.video, section.poster) if file]
+            return replace(section, video=moved[0], poster=moved[1])
+
+        try:
+            begun.wait()
+            yield wait
+        finally:
+            left.set()
+
+
+def film_discovery(found: Discovery, folder: Path, progress: Progress | None = None) -> Section:
+    """Film a discovery; returns the section of a report that shows the film.
 
     Args:
         found: the discovery, of twins.
@@ -47,7 +105,7 @@ def film_discovery(
     film(before, path, beside=after, titles=titles, fps=FPS, picture=picture, progress=progress)
     shown = (log.time >= seconds[0]) & (log.time < seconds[1])
     is_unseen = not (shown & rows_of(log, "estimation")).any()
-    return path, _section(path, picture, seconds, after is not None, is_unseen)
+    return _section(path, picture, seconds, after is not None, is_unseen)
 
 
 def filmed_seconds(log: Log) -> tuple[float, float]:

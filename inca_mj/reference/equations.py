@@ -21,9 +21,6 @@ R, R_s, k_s, λ, b, J, b_v, b_c, β and K_t are those of drive i; the thesis has
 Misprints of the thesis, each noted where it is coded: 2.3, 2.5, 2.35, 2.36, 2.40, 2.41 (and 2.16
 in `kinematics`). The cable cannot push and the drum spring cannot either, hence both max(0, ·);
 the thesis says so only in words.
-
-Everything that `derivative` calls is in this file: numba's disk cache watches the caller's file
-only, so after an edit to a helper elsewhere the old one would still run.
 """
 
 from __future__ import annotations
@@ -31,12 +28,9 @@ from __future__ import annotations
 from math import cos, sin, sqrt, tan, tanh
 
 import numpy as np
-from numba import njit
 
 from inca_mj.reference import layout as at
-
-# Division by zero gives inf (found by the integrator), not an exception from inside a step.
-compiled = njit(error_model="numpy", cache=True)
+from inca_mj.reference.compiled import compiled
 
 Vector = tuple[float, float, float]
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from inca_mj.reference.compiled import compiled
 from inca_mj.reference.equations import derivative
 
 
-# Not cached on disk: it would keep an old `derivative` inside (see `equations`).
-@njit(error_model="numpy")
+@compiled
 def rk4(x: np.ndarray, i: np.ndarray, q: np.ndarray, h: float, steps: int) -> np.ndarray:
     """The state after `steps` steps of length h under constant currents.
 

@@ -6,6 +6,7 @@ enlarges how far it is from the simulated one (`inca_mj.rendering.difference`).
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
@@ -22,6 +23,8 @@ from inca_mj.rendering.trace import MAGNIFY
 
 Progress = Callable[[int, int], None]  # frames done, frames in all
 
+# Views of a frame take unlike times: with two frames waiting, the quicker view has work as well.
+AHEAD = 2
 MOST_FRAMES = 108_000  # an hour of film at 30 frames a second
 
 
@@ -152,15 +155,14 @@ def stills(
 
 
 def _in_turn(begin: Callable[[float], Begun], times: Iterable[float]) -> Iterator[np.ndarray]:
-    """The frames of some times, each of which is drawn while the one before is written."""
-    waiting: Begun | None = None
+    """Yields the frames of some times in turn; the next ones are drawn while one is written."""
+    waiting: deque[Begun] = deque()
     for time in times:
-        begun = begin(time)
-        if waiting is not None:
-            yield waiting()
-        waiting = begun
-    if waiting is not None:
-        yield waiting()
+        waiting.append(begin(time))
+        if len(waiting) > AHEAD:
+            yield waiting.popleft()()
+    while waiting:
+        yield waiting.popleft()()
 
 
 def common_time(scenes: Sequence[Scene]) -> tuple[float, float]:

@@ -98,6 +98,15 @@ def renderer(model: mujoco.MjModel, width: int, height: int) -> Iterator[mujoco.
     made.close()
 
 
+def draws_in_any_thread() -> bool:
+    """Returns whether OpenGL draws without a window; windows belong to the main thread.
+
+    Raises:
+        GraphicsError: nothing can be drawn here.
+    """
+    return choose_backend() in _LIBRARIES
+
+
 @contextmanager
 def drawing_thread() -> Iterator[Executor]:
     """A thread in which a renderer may live: one of its own where OpenGL needs no window.
@@ -107,7 +116,7 @@ def drawing_thread() -> Iterator[Executor]:
     Raises:
         GraphicsError: nothing can be drawn here.
     """
-    if choose_backend() not in _LIBRARIES:
+    if not draws_in_any_thread():
         yield _ThisThread()
         return
     with ThreadPoolExecutor(1, thread_name_prefix="drawing") as thread:

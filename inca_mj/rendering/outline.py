@@ -76,12 +76,10 @@ def draw_outline(picture: np.ndarray, outline: Outline, colour: str, width: floa
         width: of its lines [px].
     """
     image = Image.fromarray(picture)
-    mask = Image.new("L", image.size)
-    pen, thick = ImageDraw.Draw(mask), max(1, round(width / 2))
+    pen, thick = ImageDraw.Draw(image, "RGBA"), max(1, round(width / 2))
     for corners in outline.cables:
         for dash in _dashes(corners, max(1.0, image.size[1] / 480), image.size):
-            pen.line(dash, fill=170, width=thick)
-    image.paste(colour, (0, 0), mask)
+            pen.line(dash, fill=f"{colour}aa", width=thick)
     for box, edge in _edges(outline.shapes, image.size, width):
         image.paste(colour, box, edge)
     return np.asarray(image)

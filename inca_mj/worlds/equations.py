@@ -19,9 +19,9 @@ from __future__ import annotations
 from math import cos, exp, sin, sqrt, tanh
 
 import numpy as np
-from numba import njit
 
 from inca_mj.reference import layout as base
+from inca_mj.reference.compiled import compiled
 from inca_mj.reference.equations import (
     Vector,
     cross,
@@ -34,9 +34,6 @@ from inca_mj.reference.equations import (
 )
 from inca_mj.worlds import layout as at
 from inca_mj.worlds.pulley import path
-
-# No disk cache: it watches this file only, and would keep an old `path` or `rotation` inside.
-compiled = njit(error_model="numpy")
 
 EDGE = 1e-9  # a rotor this near to an edge of its gap pushes it: rounding must not let go [rad]
 

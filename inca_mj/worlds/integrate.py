@@ -15,9 +15,9 @@ from __future__ import annotations
 from math import ceil, exp, tanh
 
 import numpy as np
-from numba import njit
 
 from inca_mj.reference import layout as base
+from inca_mj.reference.compiled import compiled
 from inca_mj.reference.equations import rotation, times, vector
 from inca_mj.worlds import layout as at
 from inca_mj.worlds.equations import radius, world_rate
@@ -37,8 +37,6 @@ A = np.array(
     ]
 )
 B = np.array([35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84])
-
-compiled = njit(error_model="numpy")
 
 
 @compiled

@@ -16,12 +16,12 @@ from __future__ import annotations
 from math import atan2, cos, pi, sin, sqrt
 
 import numpy as np
-from numba import njit
 
+from inca_mj.reference.compiled import compiled
 from inca_mj.reference.equations import Vector
 
 
-@njit(error_model="numpy")
+@compiled
 def path(ds: Vector, r: float, side: float) -> tuple[float, Vector]:
     """Length of the path [m], and its gradient by the connector, a unit vector in O.
 

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -140,11 +141,16 @@ def test_figures_that_have_no_room_cost_the_figures_only(tmp_path, capsys):
 def test_an_interrupt_in_the_film_costs_the_film_only(tmp_path, capsys, monkeypatch, command):
     out = tmp_path / "out"
 
+    told = []
+
     def interrupted(found, folder, progress):
         (folder / ".half.mp4").write_text("half")
-        progress(1, 91)
+        while not any("--no-film" in line for line in told):  # the report is drawn meanwhile
+            time.sleep(0.01)
+            progress(1, 91)
         raise KeyboardInterrupt
 
+    monkeypatch.setattr(Output, "tell", lambda _, line: told.append(line))
     monkeypatch.setattr(filmed, "film_discovery", interrupted)
     monkeypatch.setattr("inca_mj.commands.discover.cannot_draw", lambda: "")
     monkeypatch.setattr(
@@ -153,7 +159,6 @@ def test_an_interrupt_in_the_film_costs_the_film_only(tmp_path, capsys, monkeypa
     with pytest.raises(KeyboardInterrupt):
         Discover((Path("examples/log.csv"),), output=Output(out=out, json=command == "json")).run()
     said = capsys.readouterr()
-    assert "--no-film" in said.err
     assert said.err.endswith(f"left out: film; the results are kept in {out}\n")
     assert {"result.json", "model.xml", "effects.json", "report.html"} <= {*content(out)}
     assert any(name.endswith(".png") for name in content(out))
@@ -161,6 +166,38 @@ def test_an_interrupt_in_the_film_costs_the_film_only(tmp_path, capsys, monkeypa
     assert list_foreign(out) == []
     if command == "json":
         assert json.loads(said.out)["model"] == str(out / "model.xml")
+
+
+@pytest.mark.parametrize("fails", ["figures", "film"])
+def test_what_cannot_be_drawn_costs_itself_only(tmp_path, capsys, monkeypatch, fails):
+    """The film is drawn beside the figures: neither waits for the other without end."""
+    out = tmp_path / "out"
+
+    def film(found, folder, progress):
+        if fails == "film":
+            raise InputError("ffmpeg is missing")
+        while True:  # until it is left, as there is no report that could show it
+            time.sleep(0.01)
+            progress(1, 91)
+
+    def no_figures(*_):
+        raise InputError("no room for figures")
+
+    monkeypatch.setattr(filmed, "film_discovery", film)
+    monkeypatch.setattr("inca_mj.commands.discover.cannot_draw", lambda: "")
+    if fails == "figures":
+        monkeypatch.setattr("identification.report.page.save_figures", no_figures)
+    found = fake_discovery.found()
+    monkeypatch.setattr("inca_mj.workflows.discovery.discover", lambda *_, **__: found)
+    assert Discover((Path("examples/log.csv"),), output=Output(out=out)).run() == 0
+    said = capsys.readouterr().err
+    assert ("no figures and report: no room for figures" in said) == (fails == "figures")
+    assert ("no film: ffmpeg is missing" in said) == (fails == "film")
+    names = {*content(out)}
+    assert {"result.json", "model.xml", "effects.json"} <= names
+    assert ("report.html" in names) == (fails == "film")
+    assert "film.mp4" not in names
+    assert list_foreign(out) == []
 
 
 WAIT = """

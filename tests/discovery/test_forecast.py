@@ -93,13 +93,13 @@ def test_what_the_library_keeps_has_an_end(monkeypatch):
 @pytest.mark.parametrize("make", [slider_task, arm_task])
 def test_a_search_holds_the_arrays_of_its_forecast(make):
     """The most that arrays take at once, once all code is loaded."""
-    given = make(2000)
+    given = make(1000)
     needs, copies = forecast(given), float(given.nominal_model.plant.model.nbuffer)
     data = (needs.memory - module.BASE - module.MODELS * copies) / (1 + module.KEPT)
-    first_state(given, lambda line: None)
+    first_state(make(200), lambda line: None)
     tracemalloc.start()
     try:
-        first_state(make(2000), lambda line: None)
+        first_state(given, lambda line: None)
         held = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()

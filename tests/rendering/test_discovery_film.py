@@ -50,8 +50,8 @@ def test_the_nominal_twin_has_the_values_of_the_fit_without_effects():
 @pytest.mark.usefixtures("opengl")
 def test_both_models_are_filmed_and_the_section_says_when(tmp_path, monkeypatch):
     monkeypatch.setattr("inca_mj.commands.filmed.FPS", 4)
-    path, section = film_discovery(fake_discovery.found(), tmp_path)
-    assert path.exists()
+    section = film_discovery(fake_discovery.found(), tmp_path)
+    assert section.video.exists()
     assert section.first
     assert "which was fitted" in section.text  # half a second is left, too little for a film
     begin, end = filmed_seconds(fake_discovery.log())
@@ -70,7 +70,7 @@ def test_the_section_says_whether_a_fit_has_seen_what_is_filmed(
     filmed = []
     monkeypatch.setattr("inca_mj.commands.filmed.film", lambda *given, **_: filmed.append(given[0]))
     monkeypatch.setattr("inca_mj.commands.filmed.filmed_seconds", lambda log: seconds)
-    _, section = film_discovery(fake_discovery.found(), tmp_path)
+    section = film_discovery(fake_discovery.found(), tmp_path)
     (scene,) = filmed
     assert scene.run.time[0] == pytest.approx(seconds[0])
     assert scene.run.time[-1] <= seconds[1]
