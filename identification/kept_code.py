@@ -32,7 +32,10 @@ def kept_code(*folders: Path) -> Callable[[Callable[..., Any]], Any]:
     sources = digest.hexdigest()
 
     def compiled(function: Callable[..., Any]) -> Any:
-        made: Any = njit(error_model="numpy", cache=True)(function)
+        try:
+            made: Any = njit(error_model="numpy", cache=True)(function)
+        except RuntimeError:  # numba finds no folder that it may write to: nothing is kept
+            return njit(error_model="numpy")(function)
         made._cache._cache_file._source_stamp = sources
         return made
 

@@ -28,6 +28,7 @@ ALLOWED = {
     "identification/commands/streams.py: fdopen": "the file that takes everything",
     "identification/native/cache_folder.py: open": "bounded, and no links or pipes either",
     "identification/native/cache_folder.py: fdopen": "bounded, and no links or pipes either",
+    "identification/kept_code.py: read_bytes": "the program's own files",
     "identification/logs/read_csv.py: loadtxt": "lines that the reader has read",
     "identification/logs/read_mat.py: load": "the bytes that another process wrote",
     "identification/logs/mat_child.py: loadmat": "the bytes of its input",
