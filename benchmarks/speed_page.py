@@ -9,6 +9,7 @@ from typing import Any
 
 HERE = Path(__file__).parent
 ROWS = HERE / "results" / "speed.jsonl"
+SEARCHES = HERE / "results" / "searches.jsonl"
 PAGE = HERE.parent / "docs" / "speed.md"
 
 HEAD = """# How near the limit it runs
@@ -85,10 +86,64 @@ def _notes(rows: Sequence[dict[str, Any]]) -> list[str]:
     return ["", f"Of {rows[-1]['commit']}:", "", *notes] if notes else []
 
 
+def searches(rows: Sequence[dict[str, Any]]) -> str:
+    """The searches of the newest commit beside those of the one that it was compared with."""
+    old, new = rows[0]["commit"], rows[-1]["commit"]
+    by = {(row["case"], row["commit"]): row for row in rows}
+    lines = [
+        "", "## Searches by two commits in one run", "",
+        f"Both commits answered each case in one run, each search on {rows[-1]['processors']}"
+        " processors of its own beside others, with laws that were compiled already;"
+        " `benchmarks/searches.py` takes such rows. A search that did not end within the run has"
+        " the seconds at which it was ended. *Same* means the same verdict, names and places; the"
+        " last column is the largest difference of a size in its std.", "",
+        f"| case | {old} [s] | {new} [s] | processor time [s] | peak memory [MB] | same | sizes |",
+        "| --- " * 7 + "|",
+    ]  # fmt: skip
+    for case in dict.fromkeys(row["case"] for row in rows):
+        a, b = by.get((case, old), {}), by.get((case, new), {})
+        both = a.get("verdict") is not None and b.get("verdict") is not None
+        lines.append(
+            f"| {case} | {_seconds(a)} | {_seconds(b)} | {_pair(a, b, 'processor_seconds')} |"
+            f" {_pair(a, b, 'megabytes')} | {_same(a, b) if both else ''} |"
+            f" {_apart(a, b) if both and _same(a, b) == 'yes' else ''} |"
+        )
+    return "\n".join(lines) + "\n"
+
+
+def _seconds(row: dict[str, Any]) -> str:
+    if not row:
+        return ""
+    return f"> {row['limit']:g}" if row["seconds"] is None else f"{row['seconds']:g}"
+
+
+def _pair(a: dict[str, Any], b: dict[str, Any], key: str) -> str:
+    return " -> ".join(f"{row[key]:g}" for row in (a, b) if row.get(key) is not None)
+
+
+def _same(a: dict[str, Any], b: dict[str, Any]) -> str:
+    said = [[row["verdict"], *((e["name"], e["where"]) for e in row["named"])] for row in (a, b)]
+    return "yes" if said[0] == said[1] else "no"
+
+
+def _apart(a: dict[str, Any], b: dict[str, Any]) -> str:
+    """The largest difference of a size, in its std."""
+    apart = [
+        abs(value - other["values"][name][0]) / std
+        for one, other in zip(a["named"], b["named"], strict=True)
+        for name, (value, std) in one["values"].items()
+        if std
+    ]
+    return f"{max(apart):.2g}" if apart else ""
+
+
 def write_page() -> None:
     """Write the page of all rows."""
-    rows = [json.loads(line) for line in ROWS.read_text(encoding="utf-8").splitlines()]
-    PAGE.write_text(page(rows), encoding="utf-8")
+    rows, compared = (
+        [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+        for path in (ROWS, SEARCHES)
+    )
+    PAGE.write_text(page(rows) + searches(compared), encoding="utf-8")
 
 
 if __name__ == "__main__":

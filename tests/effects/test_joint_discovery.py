@@ -49,13 +49,13 @@ def test_a_hidden_effect_is_named_with_its_size_where_inca_cannot_be_imported():
 import sys
 sys.modules["inca_mj"] = None
 from test_joint_discovery import found, hidden
-answer = found(hidden(**{"asymmetric_viscous_friction.d_a@slide": 0.8}))
+answer = found(hidden(**{"asymmetric_viscous_friction.d_a@slide": 1.2}))
 (named,) = answer.named
 value, std, unit = named.parameters["d_a"]
 print(answer.verdict, named.candidate.effect.name, named.candidate.where, value, std, unit)
 wrong = (
     answer.verdict != "named" or named.candidate.effect.name != "asymmetric_viscous_friction"
-    or abs(value - 0.8) > 4 * std or std > 0.2 or unit != "N s/m" or named.proof.share < 0.8
+    or abs(value - 1.2) > 4 * std or std > 0.2 or unit != "N s/m" or named.proof.share < 0.8
 )
 sys.exit(wrong)
 """
