@@ -219,10 +219,12 @@ def _outputs(
     wanted, where = np.unique(_indices(predictor), return_inverse=True)
     δx = respond(linear.A, linear.Γ, first, g, linear.along.intervals, place[wanted])
     y, q, v = (δx[..., own] for own in where.reshape(3, -1))
+    if _are_perfect(predictor, rows, here):
+        return y
     nominal = predictor.said(rows[:1], here)
     out = np.empty_like(y)
     for k, row in enumerate(rows[1:, None]):
-        if np.shares_memory(predictor.said(row, here), here):  # its sensors are perfect
+        if _are_perfect(predictor, row, here):
             out[k] = y[k]
             continue
         there = here.copy()
@@ -230,6 +232,12 @@ def _outputs(
             reading += δ[k] * change[k]
         out[k] = (predictor.said(row, there) - nominal)[0] / change[k]
     return out
+
+
+def _are_perfect(predictor: Predictor, rows: np.ndarray, here: np.ndarray) -> bool:
+    """Whether the sensors of all value sets say what perfect ones do: plants return that itself."""
+    each = np.broadcast_to(here, (len(here), len(rows), *here.shape[2:]))
+    return np.may_share_memory(predictor.said(rows, each), here)
 
 
 def _indices(predictor: Predictor) -> list[list[int]]:
