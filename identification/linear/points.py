@@ -22,10 +22,6 @@ from identification.model.rollout import UNDERIVED, threads
 from identification.native.forward import STATE, Base, Case, Intervals, evaluate
 
 RATES = ("qacc", "act_dot")
-# Fields of which MuJoCo derives only what constraints and muscles read: weights of constraints at
-# rest, and accelerations by unit forces. A model without both is evaluated with them as they are.
-WEIGHTS = {"site_pos", "dof_armature", "actuator_gear", "body_inertia"}
-MUSCLE = (int(mujoco.mjtGain.mjGAIN_MUSCLE), int(mujoco.mjtBias.mjBIAS_MUSCLE))
 TOGETHER = 32  # changes that share the positions of a point; more would save little more
 MEMORY = 2**28  # bytes of their models at most: one with meshes has tens of millions
 
@@ -73,6 +69,11 @@ class Change:
     numbers: Sequence[tuple[Slot, float]] = ()
     courses: np.ndarray | None = None
 
+    @property
+    def is_derived(self) -> bool:
+        """Whether MuJoCo derives other numbers from those that differ (see `UNDERIVED`)."""
+        return any(slot.field not in UNDERIVED for slot, _ in self.numbers)
+
 
 class Points:
     """States at which a model, and its changes, are evaluated.
@@ -91,7 +92,6 @@ class Points:
         ends = np.cumsum([part.shape[1] for part in parts])
         self._places = {f: slice(*ends[k : k + 2]) for k, f in enumerate(STATE[1:])}
         self._results = results
-        self._in_place = UNDERIVED | (WEIGHTS if _reads_no_weights(at.model) else set())
 
     def rates(self, **changed: np.ndarray) -> np.ndarray:
         """Returns the results, by default accelerations and rates of activations.
@@ -143,28 +143,16 @@ class Points:
             states = self._base.states.copy()
             for name, value in change.fields.items():
                 states[:, self._places[name]] = value
-        named = {slot.field for slot, _ in change.numbers}
-        is_derived = not named <= self._in_place
         # Sensors of positions are read with the positions.
-        moves_bodies = not named <= UNDERIVED or "qpos" in change.fields
-        if moves_bodies or not {*self._results} <= {*RATES}:
+        if change.is_derived or "qpos" in change.fields or not {*self._results} <= {*RATES}:
             shares = "nothing"
         else:
             shares = "positions" if "qvel" in change.fields else "velocities"
-        if not is_derived:
+        if not change.is_derived:
             numbers = [_entry(*number) for number in change.numbers]
             return Case(states, numbers, None, shares, change.courses)
         other = with_entries(self._base.models[0], change.numbers)
         return Case(states, (), other, shares, change.courses)
-
-
-def _reads_no_weights(model: mujoco.MjModel) -> bool:
-    """Whether a model has no constraint that could act, and no muscle."""
-    limits = model.jnt_limited.any() or model.tendon_limited.any() or model.neq
-    friction = model.dof_frictionloss.any() or model.tendon_frictionloss.any()
-    contacts = model.npair or (model.geom_contype.any() and model.geom_conaffinity.any())
-    muscles = MUSCLE[0] in model.actuator_gaintype or MUSCLE[1] in model.actuator_biastype
-    return not (limits or friction or contacts or muscles or model.nflex)
 
 
 def _entry(slot: Slot, value: float) -> tuple[str, tuple[int, ...], float]:

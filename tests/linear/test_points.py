@@ -15,7 +15,6 @@ from identification.linear import points as of_points
 from identification.linear.operating_points import OperatingPoints
 from identification.linear.points import Change, Points
 from identification.model.numbers import list_differences, with_entries, with_numbers
-from identification.model.paths import Slot
 from identification.model.rollout import without_sensors
 from identification.native.forward import Intervals, evaluate
 
@@ -78,28 +77,13 @@ def test_the_twin_with_parameters_effects_states_and_inputs_moved(threads):
     numbers = robot.settings(names, values)[1]
     rows = range(1, 1 + len(names))
     changes = [Change({}, entries) for entries in list_differences(numbers, 0, rows)]
+    assert {change.is_derived for change in changes} == {False, True}
     changes += [Change({f: 1.001 * getattr(at, there)}) for f, there in FIELDS.items()]
     changes += [Change(), Change({"ctrl": 0.9 * at.inputs}, changes[0].numbers)]
-    with (
-        mock.patch.object(of_points, "threads", return_value=threads),
-        mock.patch.object(of_points, "with_entries", side_effect=with_entries) as copied,
-    ):
+    with mock.patch.object(of_points, "threads", return_value=threads):
         together = list(Points(at).each(changes))
-    assert copied.call_count == 1  # of a mass MuJoCo derives those of whole branches
     for change, rates in zip(changes, together, strict=True):
         np.testing.assert_array_equal(rates, one_by_one(at, change))
-
-
-@pytest.mark.parametrize(("xml", "copies"), [(PENDULUM, 0), (LIMITED, 1)])
-def test_weights_of_constraints_are_derived_where_there_are_constraints(xml, copies):
-    model = compiled(xml)
-    at = drawn(model, [0.499], [])
-    change = Change({}, [(Slot("dof_armature", (0,), None), model.dof_armature[0] + 0.1)])
-    with mock.patch.object(of_points, "with_entries", side_effect=with_entries) as copied:
-        (rates,) = Points(at).each([change])
-    assert copied.call_count == copies
-    np.testing.assert_array_equal(rates, one_by_one(at, change))
-    assert not np.array_equal(rates, one_by_one(at, Change()))
 
 
 def test_increments_are_averaged_over_intervals_with_each_course():
@@ -167,6 +151,7 @@ def test_differences_written_into_a_copy_give_the_model_of_a_value_set():
     first = with_numbers(robot.model, numbers, 0)
     for row, entries in zip((1, 2), list_differences(numbers, 0, (1, 2)), strict=True):
         copy, whole = with_entries(first, entries), with_numbers(robot.model, numbers, row)
+        assert Change({}, entries).is_derived == (row == 1)
         for field in ("body_mass", "body_inertia", "dof_invweight0", "actuator_user", "qpos0"):
             np.testing.assert_array_equal(getattr(copy, field), getattr(whole, field))
 
