@@ -14,6 +14,7 @@ from identification.errors import InputError
 from identification.files import read_bytes, readable
 from identification.logs.coarse import evened_stamps, refuse_contradicted
 from identification.logs.conversion import conversions, converted
+from identification.logs.interleaved import refuse_interleaved
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible, check_possible
@@ -115,6 +116,8 @@ def read_log(
         check_possible(table)  # a log of a robot; others may hold any number
         cure = f', or write trust = ["rows"] into {named_in}' if named_in else ""
         refuse_second_publisher(table, inputs, outputs, si, cure, trust_rows)
+        if not trust_rows:
+            refuse_interleaved(table, inputs, outputs, cure)
     if not _is_even(table, sidecar):
         if lenient:
             table, remark = without_repeated(table)

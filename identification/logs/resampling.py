@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from identification.errors import InputError
-from identification.logs.gaps import Channel, Gap, find_gaps, find_pauses
+from identification.logs.gaps import Channel, Gap, find_gaps, find_lost_rows, find_pauses
 from identification.logs.names import quoted
 from identification.logs.sampling import MIN_ROWS, FloatArray, grid
 
@@ -97,6 +97,7 @@ def even_out(
     steady = [c for c in own if c.name not in names and np.median(np.diff(c.time)) < 1.5 * h]
     gaps = [gap for c in timed for gap in find_gaps(name, c, out[c.name], h)]
     gaps += [gap for c in steady for gap in find_pauses(name, c, n, h)]
+    gaps += [gap for c in steady for gap in find_lost_rows(c, time)]
     why = _why(time, channels)
     said = _sentence(name, why, [*timed, *steady], t, h) + _shared_sentence(time, channels)
     said += _gaps_sentence(gaps)

@@ -51,6 +51,26 @@ def test_a_free_run_says_what_to_write(path, refusal):
     assert read_robot(path, path.with_name("log.csv"), trust=["gaps"]).log.gaps == ()
 
 
+def test_rows_that_are_lost_regularly_do_not_turn_the_values(tmp_path, refusal):
+    folder, log = make_folder(tmp_path), measured(2, samples=800)
+    rng = np.random.default_rng(3)
+    keep = np.arange(800) % 7 != 6
+    stamps = log.time + 1e-3 * log.sampling_time * rng.random(800)
+    columns = [stamps, *log.columns.values()]
+    rows = [",".join(map(repr, row)) for row in np.column_stack(columns)[keep].tolist()]
+    path = folder / "log.csv"
+    path.write_text("\n".join([",".join(["time", *log.columns]), *rows]))
+    robot = read_robot(folder / "robot.toml", path)
+    assert len(robot.log.gaps) > 1
+    found = fit(robot)
+    for name, value in (("J", 2e-3), ("d", 0.02)):
+        assert abs(found.values[name] - value) < 4 * found.std[name]
+        assert found.values[name] == pytest.approx(value, rel=0.03)
+    (folder / "robot.toml").write_text(TOML.replace("horizon = 0.2", ""))
+    said = refusal(read_robot, folder / "robot.toml", path)
+    assert f"{len(robot.log.gaps)} gaps that a free run cannot bridge" in said
+
+
 def test_a_dead_sensor_is_told_before_the_gaps(path, refusal):
     rows = path.with_name("log.csv").read_text().splitlines()
     xml = path.with_name("pendulum.xml")
