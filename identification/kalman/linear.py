@@ -145,11 +145,7 @@ def linearise_along(
         along: the trajectory.
         forces: degrees of freedom, as above.
     """
-    F, G = state_derivatives(along)
-    if not forces and not predictor.log.inputs.shape[1]:
-        forces = range(along.model.nv)  # what disturbs a free swing, for it has no inputs
-    if forces:
-        G = along.average(force_derivatives(along, list(forces)))
+    F, G = _derivatives(predictor, along, forces)
     C = _outputs(predictor, along)
     return _linearisation(along, F, G, C, _felt(F, C))
 
@@ -167,12 +163,24 @@ def extend(known: LinearPlant, predictor: Predictor, along: Trajectory) -> Linea
         return linearise_along(predictor, along).at_samples()
     if not len(rest.begins):
         return known
-    F, G = state_derivatives(rest)
+    F, G = _derivatives(predictor, rest)
     if F[:, known.felt][:, :, ~known.felt].any():  # it feels more states
         return linearise_along(predictor, along).at_samples()
     new = _linearisation(rest, F, G, _outputs(predictor, along), known.felt).at_samples()
     A, B = np.concatenate([known.A, new.A]), np.concatenate([known.B, new.B])
     return LinearPlant(A, B, known.C, known.felt)
+
+
+def _derivatives(
+    predictor: Predictor, along: Trajectory, forces: Sequence[int] = ()
+) -> tuple[np.ndarray, np.ndarray]:
+    """F and G of the whole state; G is that of forces where they are asked for."""
+    F, G = state_derivatives(along)
+    if not forces and not predictor.log.inputs.shape[1]:
+        forces = range(along.model.nv)  # what disturbs a free swing, for it has no inputs
+    if forces:
+        G = along.average(force_derivatives(along, list(forces)))
+    return F, G
 
 
 def _outputs(predictor: Predictor, along: Trajectory) -> np.ndarray:

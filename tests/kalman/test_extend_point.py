@@ -1,5 +1,6 @@
 """A point on a longer log is the one that is simulated and linearised there from nothing."""
 
+import re
 from dataclasses import replace
 
 import mujoco
@@ -90,6 +91,17 @@ def test_only_the_rest_is_linearised_and_nothing_is_simulated_twice(monkeypatch)
 def test_a_part_that_is_not_the_beginning_is_linearised_anew():
     whole = log(0, "zoh")
     assert_same(extend_point(at(whole.part("validation")), whole), whole)
+
+
+def test_the_rest_of_a_free_swing_is_disturbed_by_forces_as_its_beginning_is(monkeypatch):
+    free = mujoco.MjModel.from_xml_string(re.sub(r"<actuator>.*</actuator>", "", CRANE, flags=re.S))
+    start = State(np.array([0.1, 0.4, 0.0]), np.array([0.2, -0.5, 1.0]), np.empty(0))
+    swinging = ModelPlant(free, ParameterSet("crane", (DAMPING,)), start)
+    monkeypatch.setitem(globals(), "plant", lambda: swinging)
+    whole = replace(log(0, "zoh"), inputs=np.zeros((N, 0)), input_names=())
+    found = extend_point(at(whole.part("estimation")), whole)
+    assert found.linear.B.shape[2] == free.nv
+    assert_same(found, whole)
 
 
 def test_a_whole_log_stays_as_it_is():
