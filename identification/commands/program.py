@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from typing import Any
@@ -32,6 +33,8 @@ def run_program(
         examples: command lines that its help shows.
     """
     given = sys.argv[1:] if arguments is None else arguments
+    # All is drawn without a screen; matplotlib cannot be imported under a name that it does not know.
+    os.environ["MPLBACKEND"] = "agg"
     try:
         with stoppable(name):
             try:

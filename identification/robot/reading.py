@@ -12,6 +12,7 @@ from identification.logs.frozen import still_sentence
 from identification.logs.log import Log
 from identification.robot.absurd_start import refuse_absurd_start
 from identification.robot.checks import with_judged_gaps
+from identification.robot.clipped import clipped_sentence
 from identification.robot.file import RobotFile, read_robot_file
 from identification.robot.free_inertias import carried_sentence, inertias_sentence
 from identification.robot.free_swing import without_untold
@@ -100,8 +101,8 @@ def _refuse_records(records: object, of: str) -> None:
 def doubtful(robot: Robot) -> list[str]:
     """Returns sentences of the remarks on which a result depends, to stand beside it.
 
-    They say that a free run of the robot's log begins elsewhere than the log does, in short, and
-    that geoms of the model touch.
+    They say that a free run of the robot's log begins elsewhere than the log does, in short, that
+    the model clips inputs, and that its geoms touch.
 
     Args:
         robot: the result of `read_robot`.
@@ -109,7 +110,8 @@ def doubtful(robot: Robot) -> list[str]:
     said = None
     if robot.file.horizon is None:
         said = made_up_sentence(robot.file, robot.plant.model, robot.log)
-    return [*filter(None, (said, robot.touches))]
+    clipped = (clipped_sentence(robot.plant.model, log) for log in (robot.log, *robot.others))
+    return [*filter(None, (said, *clipped, robot.touches))]
 
 
 def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
@@ -122,7 +124,8 @@ def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:
     inertias = (inertias_sentence(file), carried_sentence(robot))
     still = (still_sentence(log) for log in logs)
     resampled = (remark for log in logs for remark in log.remarks)
-    of_logs = (*still, *resampled, *begun, robot.touches)
+    clipped = (clipped_sentence(own, log) for log in logs)
+    of_logs = (*still, *resampled, *clipped, *begun, robot.touches)
     return tuple(filter(None, (*robot.remarks, *inertias, *of_logs)))
 
 

@@ -10,6 +10,7 @@ from sweep_cases import METHOD
 
 from identification.commands.common import import_without_graphics
 from identification.logs.write import write_log
+from inca_mj.cli import main
 
 
 @pytest.fixture(scope="module")
@@ -48,3 +49,10 @@ def test_a_method_of_the_user_may_draw(monkeypatch, given, own_methods, left):
     monkeypatch.setenv("MUJOCO_GL", given)
     import_without_graphics(own_methods=own_methods)
     assert os.environ["MUJOCO_GL"] == left
+
+
+def test_an_unknown_backend_of_matplotlib_is_none_of_the_programs(monkeypatch):
+    """All figures are drawn without a screen; matplotlib's import fails under such a name."""
+    monkeypatch.setenv("MPLBACKEND", "nonsense")
+    assert main(["sensitivity", "--set", "nonsense"]) == 2
+    assert os.environ["MPLBACKEND"] == "agg"
