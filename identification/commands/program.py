@@ -33,7 +33,7 @@ def run_program(
         examples: command lines that its help shows.
     """
     given = sys.argv[1:] if arguments is None else arguments
-    # All is drawn without a screen; matplotlib cannot be imported under a name that it does not know.
+    # All is drawn without a screen; matplotlib fails to import under a name that it does not know.
     os.environ["MPLBACKEND"] = "agg"
     try:
         with stoppable(name):
