@@ -43,7 +43,14 @@ def main() -> int:
     for k in range(given.at_once):
         places.put({*usable[k * given.processors : (k + 1) * given.processors]})
     with tempfile.TemporaryDirectory() as folder:
-        trees = {commit: checkout(commit, Path(folder)) for commit in given.commits}
+        names = [
+            subprocess.run(
+                ["git", "rev-parse", "--short", commit],
+                cwd=ROOT, capture_output=True, check=True, text=True,
+            ).stdout.strip()
+            for commit in given.commits
+        ]  # fmt: skip
+        trees = {commit: checkout(commit, Path(folder)) for commit in names}
 
         def work(of: str, name: str, line: str, commit: str) -> dict[str, Any]:
             place = places.get()

@@ -88,7 +88,7 @@ def _notes(rows: Sequence[dict[str, Any]]) -> list[str]:
 
 def searches(rows: Sequence[dict[str, Any]]) -> str:
     """The searches of the newest commit beside those of the one that it was compared with."""
-    old, new = rows[0]["commit"], rows[-1]["commit"]
+    old, new = [*dict.fromkeys(row["commit"] for row in rows)][-2:]
     by = {(row["case"], row["commit"]): row for row in rows}
     lines = [
         "", "## Searches by two commits in one run", "",
