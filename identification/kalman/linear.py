@@ -12,7 +12,7 @@ over an interval, of which a sample has a few.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import mujoco
@@ -110,12 +110,16 @@ def linearise_records(
         predictor: plant and log.
         values: shape (p,), in the parameters' units.
         forces: degrees of freedom, as above.
-        points: of the trajectory, for each sample.
+        points: at which it is known what acts, for each sample. Slopes need few: what a change adds
+            may turn with the angle of a motor within an interval, and slopes do not.
     """
-    return tuple(
-        linearise_along(record, follow(record, values[..., columns], points), forces)
-        for record, columns in predictor.records()
-    )
+    each = []
+    for record, columns in predictor.records():
+        own = values[..., columns]
+        linear = linearise_along(record, follow(record, own, COARSE), forces)
+        is_enough = points == COARSE
+        each.append(linear if is_enough else replace(linear, along=follow(record, own, points)))
+    return tuple(each)
 
 
 def join(records: Sequence[Linearisation]) -> LinearPlant:

@@ -40,8 +40,7 @@ class Point:
         linear: the plant linearised along its trajectory.
         small: free parameters that stay small, such as deviations of single drives: the outputs
             are nearly linear in them, and their columns of J hold at points nearby as well.
-        moved: relative change of the parameters since columns of J were computed; None where all
-            columns are the point's own.
+        is_borrowed: whether columns of J are those of a point nearby.
     """
 
     predictor: Predictor
@@ -51,12 +50,7 @@ class Point:
     J: np.ndarray
     linear: LinearPlant
     small: frozenset[str] = frozenset()
-    moved: float | None = None
-
-    @property
-    def is_borrowed(self) -> bool:
-        """Whether columns of J are those of a point nearby."""
-        return self.moved is not None
+    is_borrowed: bool = False
 
     @property
     def log(self) -> Log:
@@ -106,7 +100,7 @@ def evaluate_point(
         J=J,
         linear=join(records),
         small=small,
-        moved=_moved(near, space, inside) if known and near is not None else None,
+        is_borrowed=bool(known),
     )
 
 
@@ -141,18 +135,7 @@ def shift_point(point: Point, q: np.ndarray, run: Run | None = None) -> Point | 
     expected, found = point.J @ (inside - point.q), point.e - e
     if np.linalg.norm(found - expected) > HOLDS * np.linalg.norm(found):
         return None
-    return replace(point, q=inside, e=e, moved=_moved(point, point.space, inside))
-
-
-def _moved(point: Point, space: Coordinates, q: np.ndarray) -> float:
-    """Returns `Point.moved` of a point at q that takes columns from another point."""
-    before = dict(zip(point.space.names, point.q, strict=True))
-    changes = [
-        abs(x - before[name])
-        for name, x, is_relative in zip(space.names, q, space.logarithmic, strict=True)
-        if is_relative and name in before
-    ]
-    return (point.moved or 0.0) + max(changes, default=0.0)
+    return replace(point, q=inside, e=e, is_borrowed=True)
 
 
 def _known(near: Point | None, small: frozenset[str]) -> dict[str, np.ndarray]:

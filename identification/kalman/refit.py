@@ -27,9 +27,8 @@ from identification.kalman.problem import Problem, linearise_criterion
 from identification.progress import counted
 
 NEAR = 0.02  # relative change of the parameters after which columns and linearisation may hold
-# Relative change of the parameters beyond which columns of small ones are computed anew for a step
-# that is shorter: columns that are a tenth off cost a Gauss-Newton step a hundredth of its gain,
-# which is quadratic about the optimum.
+# Relative change of the parameters after which columns of small ones still hold: columns that are a
+# tenth off cost a Gauss-Newton step a hundredth of its gain, which is quadratic about the optimum.
 SIMILAR = 0.1
 # Expected fall of the criterion for each parameter, in units of the noise, below which a search
 # ends: the parameters are then, as a root mean square, within a tenth of their std of the optimum.
@@ -193,11 +192,7 @@ def _move(
     run = problem.run_at(q)
     there = shift_point(point, q, run) if is_short else None
     if there is None:
-        # New columns of small parameters, where they are many, pay once steps are short: before
-        # that the model only approaches.
-        is_far = is_costly(point) and change >= SIMILAR
-        is_similar = change < SIMILAR and (point.moved or 0.0) < SIMILAR
-        near = point if is_far or is_similar else None
+        near = point if change < SIMILAR else None
         there = evaluate_point(point.predictor, point.space, q, near, point.small, run)
     point = there
     level = estimate_noise(point, problem.prior, options, problem.level, largest=largest)

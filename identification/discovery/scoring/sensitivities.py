@@ -19,7 +19,7 @@ from identification.kalman.columns import do_equations_hold
 from identification.kalman.linear import Linearisation, linearise_records
 from identification.kalman.point import Point
 from identification.kalman.sensitivity_equations import ALWAYS, Courses, solve_sensitivities
-from identification.kalman.trajectory import FINE, follow
+from identification.kalman.trajectory import FINE
 from identification.model.predictor import Predictor
 from identification.progress import counted
 
@@ -154,17 +154,8 @@ def compute_beside(point: Point, candidates: Sequence[Candidate]) -> tuple[Sensi
 
 @lru_cache(maxsize=1)
 def _fine_records(point: Point) -> tuple[Linearisation, ...]:
-    """The linearisation at a point, along as many points as candidates need; none where it fails.
-
-    What candidates add may turn with the angle of a motor, within an interval; slopes do not.
-    """
-    values = point.space.decode(point.q)
-    records = tuple(
-        replace(linear, along=follow(record, values[..., columns], FINE))
-        for linear, (record, columns) in zip(
-            linearise_records(point.predictor, values), point.predictor.records(), strict=True
-        )
-    )
+    """The linearisation at a point, at as many points as candidates need; none where it fails."""
+    records = linearise_records(point.predictor, point.space.decode(point.q), points=FINE)
     holds = do_equations_hold(point.predictor, point.space, point.q, records, point.J)
     return records if holds else ()
 
