@@ -88,6 +88,11 @@ class Shape:
     step: float = 0.0
     of_log: bool = False
 
+    @property
+    def at_first(self) -> float:
+        """Its value in a model that does not have the effect: the usual one, or one of the grid."""
+        return self.grid[len(self.grid) // 2] if self.usual is None else self.usual
+
 
 # Of an input that comes late: its first value times this had been there before the log. It was
 # mostly nothing or that value; whatever else it was costs one more number and no second search.

@@ -33,10 +33,9 @@ def _size(name: str, size: Size) -> Parameter:
 
 
 def _shape(name: str, shape: Shape) -> Parameter:
-    usual = shape.grid[len(shape.grid) // 2] if shape.usual is None else shape.usual
     return Parameter(
         name=name,
-        value=usual,
+        value=shape.at_first,
         unit=shape.unit,
         where="effect",
         lower=shape.lower,

@@ -35,6 +35,18 @@ def numbers_at(effect: Effect, thing: str, values: Values) -> list[float | np.nd
     return [sum(values[name] for name in some) for some in parts] or [0.0] * len(effect.names)
 
 
+def written_at(effect: Effect, thing: str, values: Values) -> list[float | np.ndarray]:
+    """Sizes and shapes of an effect as they stand in the row of a thing.
+
+    Where the effect is absent its shapes do not matter, and stay what they are at first: what is
+    put at one thing moves no number of another.
+    """
+    numbers, n = numbers_at(effect, thing, values), len(effect.sizes)
+    is_there = np.any(np.broadcast_arrays(*numbers[:n]), axis=0)
+    shapes = zip(numbers[n:], effect.shapes, strict=True)
+    return [*numbers[:n], *(np.where(is_there, x, shape.at_first) for x, shape in shapes)]
+
+
 def table_at(effects: Sequence[Effect], thing: str, values: Values, n: int) -> np.ndarray:
     """The rows of some effects at one thing for n value sets, shape (n, columns)."""
     columns = [x for e in effects for x in numbers_at(e, thing, values)]
@@ -63,6 +75,7 @@ def changed_columns(
 ) -> Iterator[tuple[int, float | np.ndarray]]:  # fmt: skip
     """The entries of a thing's row that some parameters change: column, and its values.
 
+
     Args:
         effects: the set.
         terms: the effects that have numbers in such rows.
@@ -73,7 +86,7 @@ def changed_columns(
     by_name, touched = {e.name: e for e in effects}, set(names)
     for term in terms:
         effect = by_name[term.effect]
-        numbers = numbers_at(effect, thing, values)
+        numbers = written_at(effect, thing, values)
         for k, parts in enumerate(effect.parameters_at(thing)):
             if touched & set(parts):
                 yield term.column + k, numbers[k]

@@ -1,6 +1,7 @@
 """States at which a model, and changes of it, are evaluated.
 
-A change shares with the states what it leaves as it was (`identification.native.forward`).
+A change shares with the states what it leaves as it was (`identification.native.forward`). What
+single actuators alone read changes their shares, and all else stays.
 """
 
 from __future__ import annotations
@@ -19,9 +20,9 @@ from identification.errors import DivergenceError
 from identification.model.numbers import with_entries
 from identification.model.paths import Slot
 from identification.model.rollout import UNDERIVED, threads
-from identification.native.forward import STATE, Base, Case, Intervals, evaluate
+from identification.native.forward import RATES, STATE, Base, Case, Intervals, evaluate
+from identification.native.installer import owners_of
 
-RATES = ("qacc", "act_dot")
 TOGETHER = 32  # changes that share the positions of a point; more would save little more
 MEMORY = 2**28  # bytes of their models at most: one with meshes has tens of millions
 
@@ -92,6 +93,15 @@ class Points:
         ends = np.cumsum([part.shape[1] for part in parts])
         self._places = {f: slice(*ends[k : k + 2]) for k, f in enumerate(STATE[1:])}
         self._results = results
+        self._owners = owners_of(at.model) if tuple(results) == RATES else {}
+        self._actuator_of = np.repeat(  # of each activation; none where its law gives no share
+            np.where(
+                np.isin(np.arange(at.model.nactuator), [*self._owners.values()]),
+                np.arange(at.model.nactuator),
+                -1,
+            ),
+            at.model.actuator_actnum,
+        )
 
     def rates(self, **changed: np.ndarray) -> np.ndarray:
         """Returns the results, by default accelerations and rates of activations.
@@ -139,10 +149,14 @@ class Points:
 
     def _case(self, change: Change) -> Case:
         states = None
+        actuators = self._actuators(change)
         if change.fields:
             states = self._base.states.copy()
             for name, value in change.fields.items():
                 states[:, self._places[name]] = value
+        if actuators:
+            entries = [_entry(*number) for number in change.numbers]
+            return Case(states, entries, courses=change.courses, actuators=actuators)
         # Sensors of positions are read with the positions.
         if change.is_derived or "qpos" in change.fields or not {*self._results} <= {*RATES}:
             shares = "nothing"
@@ -153,6 +167,20 @@ class Points:
             return Case(states, numbers, None, shares, change.courses)
         other = with_entries(self._base.models[0], change.numbers)
         return Case(states, (), other, shares, change.courses)
+
+    def _actuators(self, change: Change) -> tuple[int, ...]:
+        """The actuators that alone read what differs; none where others do, or nothing differs."""
+        if not self._owners or "ctrl" in change.fields:
+            return ()
+        slots = [slot for slot, _ in change.numbers]
+        some = {self._owners.get((slot.field, row), -1) for slot in slots for row in slot.rows}
+        for name, values in change.fields.items():
+            differs = (self._base.states[:, self._places[name]] != values).any(axis=0)
+            if name == "act":
+                some |= {*self._actuator_of[differs].tolist()}
+            else:
+                some |= {self._owners.get((name, int(k)), -1) for k in np.flatnonzero(differs)}
+        return () if -1 in some else tuple(sorted(some))
 
 
 def _entry(slot: Slot, value: float) -> tuple[str, tuple[int, ...], float]:

@@ -6,6 +6,9 @@ Most changes move no position and no velocity, and no number on which anything d
 from these alone. They share the kinematics of the base, its inertias and their factors, and the
 bias forces, which are most of an evaluation: what is left of it are forces and accelerations.
 
+Those that concern single actuators of a law take the shares of these alone
+(`identification.native.share`).
+
     rates       r_j(p)                                    a case at a point
     increments  Σ_p w_p c(p) (r_j(p) - r_0(p)) over an interval    how far it is from the base
 
@@ -28,25 +31,31 @@ from identification.native.access import offsets, word
 from identification.native.cache import compile_once
 from identification.native.decorators import internal
 from identification.native.library import mj_forwardSkip, mj_passive
+from identification.native.mass import solve
 from identification.native.memory import load_double, load_word, store_double
+from identification.native.share import add_share
 from identification.pool import run_parts
 
 STATE = ("time", "qpos", "qvel", "act", "ctrl")  # a row of states, in this order
 M = offsets("mjModel", "nq nv na nu")
-D = offsets("mjData", "time qpos qvel act ctrl qacc_warmstart")
+D = offsets("mjData", "time qpos qvel act ctrl qacc_warmstart qacc act_dot qfrc_passive")
 _NONE, _POSITION, _VELOCITY = (
     int(stage)
     for stage in (mujoco.mjtStage.mjSTAGE_NONE, mujoco.mjtStage.mjSTAGE_POS,
                   mujoco.mjtStage.mjSTAGE_VEL)
 )  # fmt: skip
+_SHARES = _VELOCITY + 1  # all is there but the shares of some actuators
+RATES = ("qacc", "act_dot")
 SHARED = {"nothing": _NONE, "positions": _POSITION, "velocities": _VELOCITY}
 
 # base model; states of the base; table of the cases (place in the output, model, states, stage,
-# first of its numbers, end of them, courses, their number); number of cases; addresses of the
-# numbers; their values; data; number of points; table of the results; their number; interval of
-# each point; weight of each point; output of the base; output of the cases; distance of two
-# outputs; distance of two courses, where increments are asked for, else zero
-_SIGNATURE = types.void(*[types.int64] * 16)
+# first of its numbers, end of them, courses, their number, first of its actuators, end of them);
+# number of cases; addresses of the numbers; their values; actuators of the cases; actuators of any
+# case; their number; room for the shares of the base; data; number of points; table of the
+# results; their number; interval of each point; weight of each point; output of the base; output
+# of the cases; distance of two outputs; distance of two courses, where increments are asked for,
+# else zero
+_SIGNATURE = types.void(*[types.int64] * 20)
 
 
 @dataclass(frozen=True)
@@ -62,6 +71,8 @@ class Case:
         shares: a key of `SHARED`: what it leaves as it is in the base.
         courses: factors of the increments at the points, k courses that give an output each, shape
             (k, points), contiguous; one course of ones when None.
+        actuators: those whose shares are all that differs; none where more does, or where other
+            results than `RATES` are asked for.
     """
 
     states: np.ndarray | None = None
@@ -69,6 +80,7 @@ class Case:
     model: mujoco.MjModel | None = None
     shares: str = "velocities"
     courses: np.ndarray | None = None
+    actuators: Sequence[int] = ()
 
 
 @dataclass(frozen=True)
@@ -131,7 +143,10 @@ def evaluate(
     values = np.array([value for case in cases for *_, value in case.numbers], float)
 
     # A case that moves positions leaves nothing in mjData that others could share: it comes last.
-    order = sorted(range(len(cases)), key=lambda j: -SHARED[cases[j].shares])
+    stages = [_SHARES if case.actuators else SHARED[case.shares] for case in cases]
+    order = sorted(range(len(cases)), key=lambda j: -stages[j])
+    actuators = np.array([i for case in cases for i in case.actuators], np.int64)
+    some, firsts = np.unique(actuators), np.cumsum([0, *(len(case.actuators) for case in cases)])
 
     def part(k: int) -> None:
         first, end, model = int(cuts[k]), int(cuts[k + 1]), base.models[k]
@@ -139,18 +154,19 @@ def evaluate(
             (
                 rows_of[j], (cases[j].model or model)._address,
                 (base.states if (x := cases[j].states) is None else x)[first:].ctypes.data,
-                SHARED[cases[j].shares], *ends[j : j + 2], courses[j][:, first:].ctypes.data,
-                len(courses[j]),
+                stages[j], *ends[j : j + 2], courses[j][:, first:].ctypes.data, len(courses[j]),
+                *firsts[j : j + 2],
             )
             for j in order
         ], np.int64)  # fmt: skip
         places = np.array(
             [_address(model, *entry[:2]) for case in cases for entry in case.numbers], np.int64
         )
-        own, mine = np.empty(r), values.copy()
+        own, mine, room = np.empty(r), values.copy(), np.empty((model.nactuator, model.nv))
         run(
             model._address, base.states[first:].ctypes.data, rows.ctypes.data, len(cases),
-            places.ctypes.data, mine.ctypes.data, data[k]._address, end - first,
+            places.ctypes.data, mine.ctypes.data, actuators.ctypes.data, some.ctypes.data,
+            len(some), room.ctypes.data, data[k]._address, end - first,
             wanted.ctypes.data, len(table), where[first:].ctypes.data, weight[first:].ctypes.data,
             own.ctypes.data, out.ctypes.data, out.strides[0], 8 * points * (intervals is not None),
         )  # fmt: skip
@@ -230,6 +246,46 @@ def _collect(d, results, kinds, own, to, weight, is_relative):  # type: ignore[n
             i += 1
 
 
+@internal
+def _clear(x, n):  # type: ignore[no-untyped-def]
+    """Set n doubles to zero."""
+    for i in range(n):
+        store_double(x + 8 * i, 0.0)
+
+
+@internal
+def _add(x, y, factor, n):  # type: ignore[no-untyped-def]
+    """x ← x + factor · y, n doubles each."""
+    for i in range(n):
+        store_double(x + 8 * i, load_double(x + 8 * i) + factor * load_double(y + 8 * i))
+
+
+@internal
+def _keep_shares(m, d, some, n, room):  # type: ignore[no-untyped-def]
+    """Put the forces of some actuators, as the base has them, into a row of the room each."""
+    nv, f = word(m, M.nv), word(d, D.qfrc_passive)
+    for k in range(n):
+        i = load_word(some + 8 * k)
+        _clear(f, nv)
+        add_share(m, d, i)
+        _copy(room + 8 * nv * i, f, nv)
+
+
+@internal
+def _exchange_shares(m, d, own, actuators, n, room):  # type: ignore[no-untyped-def]
+    """Put the rates of the base into mjData, with the shares of some actuators as they are now."""
+    nv, f = word(m, M.nv), word(d, D.qfrc_passive)
+    _copy(word(d, D.act_dot), own + 8 * nv, word(m, M.na))
+    _clear(f, nv)
+    for k in range(n):
+        i = load_word(actuators + 8 * k)
+        add_share(m, d, i)
+        _add(f, room + 8 * nv * i, -1.0, nv)
+    solve(m, d, f)
+    _copy(word(d, D.qacc), own, nv)
+    _add(word(d, D.qacc), f, 1.0, nv)
+
+
 def _forward(  # type: ignore[no-untyped-def]
     base,
     base_states,
@@ -237,6 +293,10 @@ def _forward(  # type: ignore[no-untyped-def]
     n,
     places,
     values,
+    actuators,
+    some,
+    count,
+    room,
     d,
     points,
     results,
@@ -256,15 +316,20 @@ def _forward(  # type: ignore[no-untyped-def]
         _load(base, d, base_states + row * p)
         mj_forwardSkip((base, d, _NONE, 0))
         _collect(d, results, kinds, own, own, 0.0, False)
+        _keep_shares(base, d, some, count, room)
         for j in range(n):
-            case = cases + 64 * j
+            case = cases + 80 * j
             m, stage = load_word(case + 8), load_word(case + 24)
             first, end = load_word(case + 32), load_word(case + 40)
             _exchange(places + 8 * first, values + 8 * first, end - first)
             _load(m, d, load_word(case + 16) + row * p)
-            if stage == _VELOCITY:
-                mj_passive((m, d))
-            mj_forwardSkip((m, d, stage, 0))
+            if stage == _SHARES:
+                alone, last = load_word(case + 64), load_word(case + 72)
+                _exchange_shares(m, d, own, actuators + 8 * alone, last - alone, room)
+            else:
+                if stage == _VELOCITY:
+                    mj_passive((m, d))
+                mj_forwardSkip((m, d, stage, 0))
             _exchange(places + 8 * first, values + 8 * first, end - first)
             to = out + apart * load_word(case) + width * load_word(where + 8 * p)
             factor = load_word(case + 48) + 8 * p

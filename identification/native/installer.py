@@ -8,17 +8,21 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from threading import Lock
 from typing import Any
 
+import mujoco
+
 from identification.native import structs, trampolines
 from identification.native.cache import compile_once
 from identification.native.element import Function
-from identification.native.table import enter
+from identification.native.share import Owners, has_shares
+from identification.native.table import KINDS, SHARE, enter
 
 _ENTERING = Lock()  # one thread at a time enters a law
+_ENTERED: dict[tuple[str, float], Law] = {}  # the laws of this process
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,9 +32,12 @@ class Law:
     Attributes:
         name: of what they act on, e.g. "joints".
         key: what its models carry; two laws with one key are one law, of which the newer counts.
-        functions: kind of callback ("passive", "act_dyn", …) -> the function to be compiled.
+        functions: kind of callback ("passive", "act_dyn", …) -> the function to be compiled; the
+            kind "share" where an actuator's share is given too (`identification.native.share`).
         fields: the fields of mjModel and mjData that they touch.
         check: raises `InputError` where a function of an effect cannot be compiled.
+        owners: which numbers of a model an actuator of this law alone reads; none of a model that
+            carries another key.
     """
 
     name: str
@@ -38,6 +45,7 @@ class Law:
     functions: Mapping[str, Function]
     fields: frozenset[str]
     check: Callable[[], None]
+    owners: Callable[[mujoco.MjModel], Owners] = field(default=lambda model: {})
 
 
 def install(law: Law) -> None:
@@ -49,12 +57,21 @@ def install(law: Law) -> None:
         RuntimeError: MuJoCo's structs are not laid out as declared.
     """
     with _ENTERING:
-        for kind in law.functions:
+        for kind in KINDS & law.functions.keys():
             trampolines.refuse_foreign(kind)
         compiled = _compiled(law)
         for kind, address in _addresses(law).items():
             laws = enter(kind, law.key, address)
-            trampolines.hold(kind, compiled[kind] if laws == 1 else None)
+            if kind != SHARE:
+                trampolines.hold(kind, compiled[kind] if laws == 1 else None)
+        _ENTERED[law.name, law.key] = law
+
+
+def owners_of(model: mujoco.MjModel) -> Owners:
+    """Returns which numbers of a model one actuator alone reads, by array and row."""
+    if not has_shares(model):
+        return {}
+    return {entry: i for law in [*_ENTERED.values()] for entry, i in law.owners(model).items()}
 
 
 def uninstall() -> None:

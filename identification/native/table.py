@@ -26,9 +26,10 @@ from identification.native.decorators import internal
 from identification.native.memory import load_double, load_word
 
 KINDS = ("passive", "act_dyn", "act_bias", "sensor")  # of MuJoCo's callbacks
+SHARE = "share"  # what one actuator alone does (`identification.native.share`)
 CAPACITY = 1024  # laws in a process
 
-_TABLES = {kind: np.zeros(1 + 2 * CAPACITY, np.int64) for kind in KINDS}
+_TABLES = {kind: np.zeros(1 + 2 * CAPACITY, np.int64) for kind in (*KINDS, SHARE)}
 for _kind, _words in _TABLES.items():
     llvm.add_symbol(f"identification_laws_{_kind}", _words.ctypes.data)
 

@@ -21,17 +21,18 @@ from identification.errors import InputError
 from identification.native.cache import compile_once
 from identification.native.element import Function
 from identification.native.memory import load_word
-from identification.native.table import KINDS, callback, table
+from identification.native.table import KINDS, SHARE, callback, table
 
 SIGNATURES: dict[str, Any] = {
     "passive": types.void(types.int64, types.int64),
     "act_dyn": types.double(types.int64, types.int64, types.intc),
     "act_bias": types.double(types.int64, types.int64, types.intc),
     "sensor": types.void(types.int64, types.int64, types.intc),
+    SHARE: types.double(types.int64, types.int64, types.intc),
 }
 
 
-def _caller(signature: Any) -> Any:
+def caller(signature: Any) -> Any:
     """The compiled function (address, arguments) -> what the C function at an address returns."""
 
     @intrinsic
@@ -52,7 +53,7 @@ def _caller(signature: Any) -> Any:
 
 def _function(kind: str) -> Function:
     """The function of a trampoline, to be compiled."""
-    laws_of, call = table(kind), _caller(SIGNATURES[kind])
+    laws_of, call = table(kind), caller(SIGNATURES[kind])
 
     def passive(m, d):  # type: ignore[no-untyped-def]
         laws = laws_of()

@@ -15,7 +15,7 @@ import numpy as np
 from identification.effects import values as effect_values
 from identification.effects.effect import Effect
 from identification.effects.effect_parameters import effect_parameters
-from identification.effects.values import Values, numbers_at, table_at
+from identification.effects.values import Values, table_at, written_at
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.paths import Slot
 from inca_mj.effects.hooks import THINGS, Platform
@@ -41,7 +41,7 @@ def with_effects(parameters: ParameterSet, effects: Sequence[Effect]) -> Paramet
 
 def drive_values(effect: Effect, values: Mapping[str, float]) -> np.ndarray:
     """Sizes and shapes of an effect at each drive, shape (k, 8)."""
-    return np.array([numbers_at(effect, thing, values) for thing in THINGS]).T
+    return np.array([written_at(effect, thing, values) for thing in THINGS]).T
 
 
 def present(effect: Effect, values: Mapping[str, float]) -> bool:

@@ -4,6 +4,7 @@
     mjcb_act_dyn    activation of a drive is d₀, its rate ḋ₀; RK4 integrates it with the rest
     mjcb_act_bias   force of a drive is its current [A]; the gear K_t makes it a torque
     mjcb_sensor     user sensors on a drive: tension [N], no-load length [m] of its cable
+    share           all of these of one drive (`identification.native.share`); MuJoCo has no such
 
 A drive is an actuator whose `actuator_user` row starts with `law.TAG`. Every other actuator, sensor
 and model is left unchanged. The row also holds the key of a set of effects, and only the law of
@@ -37,13 +38,14 @@ from identification.native.compose import rates, total
 from identification.native.decorators import inlined, internal
 from identification.native.element import Function, Term
 from identification.native.memory import load_byte, load_constant, load_double, store_double
-from identification.native.table import is_compiled
+from identification.native.share import is_balanced_rotor
+from identification.native.table import SHARE, is_compiled
 from identification.native.tuples import replacer
 from inca_mj.effects.hooks import DRIVE, PLATFORM, Drive
 from inca_mj.effects.layout import KEY
 from inca_mj.robot import law
 from inca_mj.twin.fields import D, M, cable, double, drive, integer, word
-from inca_mj.twin.platform import connector, dof, platform, push, span, velocity, wrench
+from inca_mj.twin.platform import dof, drawn_line, found_line, platform, push, velocity, wrench
 
 _USER = int(mujoco.mjtSensor.mjSENS_USER)
 _ACTUATOR = int(mujoco.mjtObj.mjOBJ_ACTUATOR)
@@ -116,16 +118,16 @@ def _begin(m, d, i):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _begun(m, d, i):  # type: ignore[no-untyped-def]
+def _begun(m, d, i, line):  # type: ignore[no-untyped-def]
     """Drive i as the hooks before the tension see it."""
-    joint, k = integer(m, M.actuator_trnid, 2 * i), np.int64(drive(m, i, law.CABLE))
-    x, y, z = span(m, d, k)
+    joint, k = integer(m, M.actuator_trnid, 2 * i), line.k
     return Drive(
         time=load_constant(d + 8 * D.time),
         phi=double(d, D.qpos, integer(m, M.jnt_qposadr, joint)),
         omega=double(d, D.qvel, integer(m, M.jnt_dofadr, joint)),
-        i=_current(m, d, i), i_before=np.nan, i_after=np.nan, x=0.0, rx=x, ry=y, rz=z,
-        d=double(d, D.ten_length, k), d_0=load_double(_act(m, d, i)),  # `_begin` may write it
+        i=_current(m, d, i), i_before=np.nan, i_after=np.nan, x=0.0,
+        rx=line.x, ry=line.y, rz=line.z, d=line.length,
+        d_0=load_double(_act(m, d, i)),  # `_begin` may write it
         strain=np.nan, strain_rate=np.nan, T=np.nan, F_s=np.nan,
         R=drive(m, i, law.R), R_s=drive(m, i, law.R_S), k_s=drive(m, i, law.K_S),
         b_v=double(m, M.dof_damping, integer(m, M.jnt_dofadr, joint)),
@@ -161,10 +163,10 @@ def callbacks(
     some = key != 0.0
 
     @inlined
-    def winding(m, d, i):  # type: ignore[no-untyped-def]
+    def winding(m, d, i, line):  # type: ignore[no-untyped-def]
         """Drive i with all that follows from its state."""
-        s, k = _begun(m, d, i), np.int64(drive(m, i, law.CABLE))
-        length, rate, R = s.d, double(d, D.ten_velocity, k), s.R
+        s, k = _begun(m, d, i, line), line.k
+        length, rate, R = s.d, line.rate, s.R
         gx, gy, gz, more = 0.0, 0.0, 0.0, 0.0
         if some:
             row, act = _row(m, i), _act(m, d, i)
@@ -172,7 +174,7 @@ def callbacks(
             longer, gx, gy, gz = added_path(s, row, act)
             length += longer
             if gx != 0.0 or gy != 0.0 or gz != 0.0:
-                v = velocity(m, d, connector(m, k))
+                v = velocity(m, d, line.body, (line.rx, line.ry, line.rz))
                 rate += gx * v[0] + gy * v[1] + gz * v[2]
             d_0_dot = law.no_load_rate(length, s.d_0, s.omega, R)
             strain, strain_rate = (length - s.d_0) / s.d_0, (rate - d_0_dot) / s.d_0
@@ -184,24 +186,27 @@ def callbacks(
         return Winding(drive=seen, d_0_dot=d_0_dot, R=R, gx=gx, gy=gy, gz=gz)
 
     @inlined
-    def pull(m, d, i):  # type: ignore[no-untyped-def]
-        """Put the forces of drive i on its motor and on the platform, and return its connector."""
-        now, k = winding(m, d, i), np.int64(drive(m, i, law.CABLE))
-        s, end = now.drive, connector(m, k)
-        qfrc = word(d, D.qfrc_passive)
-        start = integer(m, M.ten_J_rowadr, k)
-        for a in range(start, start + integer(m, M.ten_J_rownnz, k)):
-            at = qfrc + 8 * integer(m, M.ten_J_colind, a)
-            store_double(at, load_double(at) - s.T * double(d, D.ten_J, a))
+    def pull(m, d, i, line, now):  # type: ignore[no-untyped-def]
+        """Put the forces of drive i on its motor, and those of its effects on the platform."""
+        s = now.drive
         tau = -law.coulomb_friction(s.omega, s.b_c, s.beta)
         if some:
             row, act = _row(m, i), _act(m, d, i)
             tau += added_torque(s, row, act)
             f = added_force(s, row, act)
-            push(m, d, end, (f[0] - s.T * now.gx, f[1] - s.T * now.gy, f[2] - s.T * now.gz))
-        at = qfrc + 8 * _motor_dof(m, i)
+            push(m, d, line, (f[0] - s.T * now.gx, f[1] - s.T * now.gy, f[2] - s.T * now.gz))
+        at = word(d, D.qfrc_passive) + 8 * _motor_dof(m, i)
         store_double(at, load_double(at) - now.R * s.T + s.R_s * s.F_s + tau)
-        return end
+
+    @inlined
+    def pull_as_found(m, d, i, line):  # type: ignore[no-untyped-def]
+        """Put the forces of drive i on its motor and on the platform."""
+        now = winding(m, d, i, line)
+        qfrc, start = word(d, D.qfrc_passive), integer(m, M.ten_J_rowadr, line.k)
+        for a in range(start, start + integer(m, M.ten_J_rownnz, line.k)):
+            at = qfrc + 8 * integer(m, M.ten_J_colind, a)
+            store_double(at, load_double(at) - now.drive.T * double(d, D.ten_J, a))
+        pull(m, d, i, line, now)
 
     def passive(m, d):  # type: ignore[no-untyped-def]
         if not _has_drives(m):
@@ -211,32 +216,57 @@ def callbacks(
             own = _key(m, i)
             if own == key:
                 _begin(m, d, i)
-                body = integer(m, M.site_bodyid, pull(m, d, i))
+                line = found_line(m, d, np.int64(drive(m, i, law.CABLE)))
+                pull_as_found(m, d, i, line)
+                body = line.body
             elif own == own and not is_compiled(own):
                 store_double(word(d, D.qfrc_passive) + 8 * _motor_dof(m, i), np.nan)
         if some and body >= 0 and word(m, M.nuser_body) > 0:
             row = word(m, M.body_user) + 8 * word(m, M.nuser_body) * body
             wrench(m, d, body, added_wrench(platform(d, dof(m, body), body), row, 0))
 
+    @inlined
+    def wind(m, d, i, now):  # type: ignore[no-untyped-def]
+        """Put the rates of all states of drive i into `act_dot`."""
+        out = word(d, D.act_dot) + 8 * integer(m, M.actuator_actadr, i)
+        if some:
+            advance(now.drive, _row(m, i), _act(m, d, i), out)
+        store_double(out, now.d_0_dot)  # MuJoCo stores the rate of a single activation only
+
+    @inlined
+    def sent(m, d, i, line):  # type: ignore[no-untyped-def]
+        """Current of drive i with what effects add to it [A]."""
+        current = _current(m, d, i)
+        if some:
+            beside = (_current_beside(m, d, i - 1), _current_beside(m, d, i + 1))
+            s = _beside(_begun(m, d, i, line), beside)
+            current += added_current(s, _row(m, i), _act(m, d, i))
+        return current
+
     def act_dyn(m, d, i):  # type: ignore[no-untyped-def]
         if not _has_drives(m) or _key(m, i) != key:
             return 0.0
-        now = winding(m, d, i)
-        if some:
-            out = word(d, D.act_dot) + 8 * integer(m, M.actuator_actadr, i)
-            advance(now.drive, _row(m, i), _act(m, d, i), out)
-            store_double(out, now.d_0_dot)  # MuJoCo stores the rate of a single activation only
+        now = winding(m, d, i, found_line(m, d, np.int64(drive(m, i, law.CABLE))))
+        wind(m, d, i, now)
         return now.d_0_dot
 
     def act_bias(m, d, i):  # type: ignore[no-untyped-def]
         if not _has_drives(m) or _key(m, i) != key:
             return 0.0
-        current = _current(m, d, i)
-        if some:
-            beside = (_current_beside(m, d, i - 1), _current_beside(m, d, i + 1))
-            s = _beside(_begun(m, d, i), beside)
-            current += added_current(s, _row(m, i), _act(m, d, i))
-        return current
+        return sent(m, d, i, found_line(m, d, np.int64(drive(m, i, law.CABLE))))
+
+    def share(m, d, i):  # type: ignore[no-untyped-def]
+        if not _has_drives(m) or _key(m, i) != key:
+            return 0.0
+        line = drawn_line(m, d, np.int64(drive(m, i, law.CABLE)))
+        now = winding(m, d, i, line)
+        s, at = now.drive, word(d, D.qfrc_passive) + 8 * _motor_dof(m, i)
+        along = -s.T / line.length
+        push(m, d, line, (along * line.x, along * line.y, along * line.z))
+        pull(m, d, i, line, now)
+        wind(m, d, i, now)
+        store_double(at, load_double(at) + s.K_t * sent(m, d, i, line) - s.b_v * s.omega)
+        return 1.0
 
     def sensor(m, d, stage):  # type: ignore[no-untyped-def]
         if stage != _STAGE_VEL or not _has_drives(m) or word(m, M.nuser_sensor) < 1:
@@ -251,10 +281,43 @@ def callbacks(
             own, at = _key(m, i), word(d, D.sensordata) + 8 * integer(m, M.sensor_adr, s)
             shown = double(m, M.sensor_user, word(m, M.nuser_sensor) * s)
             if own == key and shown == law.TENSION:
-                store_double(at, winding(m, d, i).drive.T)
+                line = found_line(m, d, np.int64(drive(m, i, law.CABLE)))
+                store_double(at, winding(m, d, i, line).drive.T)
             elif own == key and shown == law.NO_LOAD_LENGTH:
                 store_double(at, load_constant(_act(m, d, i)))
             elif own == own and not is_compiled(own):
                 store_double(at, np.nan)
 
-    return {"passive": passive, "act_dyn": act_dyn, "act_bias": act_bias, "sensor": sensor}
+    return {
+        "passive": passive, "act_dyn": act_dyn, "act_bias": act_bias, "sensor": sensor,
+        SHARE: share,
+    }  # fmt: skip
+
+
+def owners(model: mujoco.MjModel, key: float) -> dict[tuple[str, int], int]:
+    """Returns which numbers of a model a drive of a law alone reads, by array and row.
+
+    Args:
+        model: any model; one that is no twin, or has another set of effects, has none of these.
+        key: of the set.
+    """
+    out: dict[tuple[str, int], int] = {}
+    if model.nuser_actuator < law.ACTUATOR_COLUMNS or model.nuser_tendon < law.TENDON_COLUMNS:
+        return out
+    if len({*model.wrap_objid.tolist()}) < model.nwrap:
+        return out  # two cables end at one point
+    for i, row in enumerate(model.actuator_user):
+        if row[law.ACTUATOR_TAG] == law.TAG and (row[KEY] if len(row) > KEY else 0.0) == key:
+            k, joint = int(row[law.CABLE]), model.actuator_trnid[i, 0]
+            a, b = model.wrap_objid[model.tendon_adr[k] : model.tendon_adr[k] + 2]
+            if model.body_weldid[model.site_bodyid[a]] or model.tendon_num[k] != 2:
+                continue  # a share takes the cable from one point to the other, the first at rest
+            out |= {
+                ("actuator_user", i): i, ("actuator_gear", i): i, ("tendon_user", k): i,
+                ("dof_damping", int(model.jnt_dofadr[joint])): i,
+                ("site_pos", int(a)): i, ("site_pos", int(b)): i,
+            }  # fmt: skip
+            if is_balanced_rotor(model, joint):
+                out["qpos", int(model.jnt_qposadr[joint])] = i
+                out["qvel", int(model.jnt_dofadr[joint])] = i
+    return out

@@ -17,7 +17,7 @@ M = offsets(
     " actuator_user actuator_actadr actuator_trnid actuator_ctrladr actuator_ctrllimited"
     " actuator_ctrlrange actuator_gear body_user body_jntadr tendon_user tendon_adr wrap_objid"
     " ten_J_rownnz ten_J_rowadr ten_J_colind jnt_qposadr jnt_dofadr dof_damping site_bodyid"
-    " sensor_type sensor_objtype sensor_objid sensor_adr sensor_user",
+    " site_pos sensor_type sensor_objtype sensor_objid sensor_adr sensor_user",
 )
 D = offsets(
     "mjData",

@@ -14,7 +14,7 @@ from identification.native.element import Term
 from identification.native.hook_checks import refuse_unfit_functions
 from inca_mj.effects.hooks import DRIVE, PLATFORM
 from inca_mj.effects.layout import Layout
-from inca_mj.twin.callbacks import callbacks
+from inca_mj.twin.callbacks import callbacks, owners
 from inca_mj.twin.fields import FIELDS
 
 
@@ -52,4 +52,5 @@ def _law(key: float, on_drives: tuple[Term, ...], on_platform: tuple[Term, ...])
         functions=callbacks(key, on_drives, on_platform),
         fields=FIELDS,
         check=check,
+        owners=lambda model: owners(model, key),
     )

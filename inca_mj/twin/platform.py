@@ -6,10 +6,20 @@ A free joint has its velocity in O and its rates in body axes; a force F at a po
 
 from __future__ import annotations
 
-from identification.native.decorators import internal
+from collections import namedtuple
+from typing import Any
+
+import numpy as np
+
+from identification.native.decorators import inlined, internal
 from identification.native.memory import load_constant, load_double, store_double
 from inca_mj.effects.hooks import Platform
 from inca_mj.twin.fields import D, M, double, integer, word
+
+# The cable k of a drive.
+#   body: on which its connector is; length [m] of its path, rate [m/s] of that
+#   x, y, z: connector minus exit point; rx, ry, rz: from the frame of the body to it; in O [m]
+Line: Any = namedtuple("Line", "k body length rate x y z rx ry rz")
 
 
 @internal
@@ -19,30 +29,47 @@ def connector(m, k):  # type: ignore[no-untyped-def]
 
 
 @internal
-def span(m, d, k):  # type: ignore[no-untyped-def]
-    """Connector minus exit point of cable k, in O [m]."""
-    a, b = integer(m, M.wrap_objid, integer(m, M.tendon_adr, k)), connector(m, k)
-    return (
-        double(d, D.site_xpos, 3 * b) - double(d, D.site_xpos, 3 * a),
-        double(d, D.site_xpos, 3 * b + 1) - double(d, D.site_xpos, 3 * a + 1),
-        double(d, D.site_xpos, 3 * b + 2) - double(d, D.site_xpos, 3 * a + 2),
-    )
+def exit_point(m, k):  # type: ignore[no-untyped-def]
+    """Site where cable k leaves the frame."""
+    return integer(m, M.wrap_objid, integer(m, M.tendon_adr, k))
+
+
+@inlined
+def found_line(m, d, k):  # type: ignore[no-untyped-def]
+    """Cable k as MuJoCo has it."""
+    a, b = exit_point(m, k), connector(m, k)
+    body = integer(m, M.site_bodyid, b)
+    return Line(
+        k=k, body=body, length=double(d, D.ten_length, k), rate=double(d, D.ten_velocity, k),
+        x=double(d, D.site_xpos, 3 * b) - double(d, D.site_xpos, 3 * a),
+        y=double(d, D.site_xpos, 3 * b + 1) - double(d, D.site_xpos, 3 * a + 1),
+        z=double(d, D.site_xpos, 3 * b + 2) - double(d, D.site_xpos, 3 * a + 2),
+        rx=double(d, D.site_xpos, 3 * b) - double(d, D.xpos, 3 * body),
+        ry=double(d, D.site_xpos, 3 * b + 1) - double(d, D.xpos, 3 * body + 1),
+        rz=double(d, D.site_xpos, 3 * b + 2) - double(d, D.xpos, 3 * body + 2),
+    )  # fmt: skip
+
+
+@inlined
+def drawn_line(m, d, k):  # type: ignore[no-untyped-def]
+    """Cable k from where the numbers of the model put its ends, in a frame that rests."""
+    b = connector(m, k)
+    body, a = integer(m, M.site_bodyid, b), _arm(m, d, exit_point(m, k))
+    r, on = _arm(m, d, b), 3 * integer(m, M.site_bodyid, exit_point(m, k))
+    x = double(d, D.xpos, 3 * body) + r[0] - double(d, D.xpos, on) - a[0]
+    y = double(d, D.xpos, 3 * body + 1) + r[1] - double(d, D.xpos, on + 1) - a[1]
+    z = double(d, D.xpos, 3 * body + 2) + r[2] - double(d, D.xpos, on + 2) - a[2]
+    v, length = velocity(m, d, body, r), np.sqrt(x * x + y * y + z * z)
+    return Line(
+        k=k, body=body, length=length, rate=(x * v[0] + y * v[1] + z * v[2]) / length,
+        x=x, y=y, z=z, rx=r[0], ry=r[1], rz=r[2],
+    )  # fmt: skip
 
 
 @internal
 def dof(m, body):  # type: ignore[no-untyped-def]
     """First degree of freedom of a body's free joint."""
     return integer(m, M.jnt_dofadr, integer(m, M.body_jntadr, body))
-
-
-@internal
-def arm(d, site, body):  # type: ignore[no-untyped-def]
-    """From a body's frame to a site of it, in O [m]."""
-    return (
-        double(d, D.site_xpos, 3 * site) - double(d, D.xpos, 3 * body),
-        double(d, D.site_xpos, 3 * site + 1) - double(d, D.xpos, 3 * body + 1),
-        double(d, D.site_xpos, 3 * site + 2) - double(d, D.xpos, 3 * body + 2),
-    )
 
 
 @internal
@@ -54,6 +81,14 @@ def turned(d, body, x, y, z):  # type: ignore[no-untyped-def]
         load_constant(at + 24) * x + load_constant(at + 32) * y + load_constant(at + 40) * z,
         load_constant(at + 48) * x + load_constant(at + 56) * y + load_constant(at + 64) * z,
     )
+
+
+@internal
+def _arm(m, d, site):  # type: ignore[no-untyped-def]
+    """From a body's frame to a site of it, as the model's numbers say, in O [m]."""
+    at = word(m, M.site_pos) + 24 * site  # an evaluation may exchange these numbers
+    x, y, z = load_double(at), load_double(at + 8), load_double(at + 16)
+    return turned(d, integer(m, M.site_bodyid, site), x, y, z)
 
 
 @internal
@@ -74,14 +109,13 @@ def cross(a, b):  # type: ignore[no-untyped-def]
 
 
 @internal
-def velocity(m, d, site):  # type: ignore[no-untyped-def]
-    """Velocity of a site of the platform, in O [m/s]."""
-    body = integer(m, M.site_bodyid, site)
+def velocity(m, d, body, arm):  # type: ignore[no-untyped-def]
+    """Velocity of a point of the platform, in O [m/s]; the arm is that from the body's frame."""
     at = dof(m, body)
     w = turned(
         d, body, double(d, D.qvel, at + 3), double(d, D.qvel, at + 4), double(d, D.qvel, at + 5)
     )  # fmt: skip
-    turn = cross(w, arm(d, site, body))
+    turn = cross(w, arm)
     return (
         double(d, D.qvel, at) + turn[0],
         double(d, D.qvel, at + 1) + turn[1],
@@ -100,10 +134,9 @@ def _add(m, d, body, force, torque):  # type: ignore[no-untyped-def]
 
 
 @internal
-def push(m, d, site, force):  # type: ignore[no-untyped-def]
-    """A force [N], in O, on a site of the platform."""
-    body = integer(m, M.site_bodyid, site)
-    _add(m, d, body, force, cross(arm(d, site, body), force))
+def push(m, d, line, force):  # type: ignore[no-untyped-def]
+    """A force [N], in O, on the platform where a cable pulls at it."""
+    _add(m, d, line.body, force, cross((line.rx, line.ry, line.rz), force))
 
 
 @internal

@@ -1,4 +1,4 @@
-"""Points, evaluated together, are exactly what `mj_forward` says one by one."""
+"""Points, evaluated together, are what `mj_forward` says one by one."""
 
 import ctypes
 from unittest import mock
@@ -82,8 +82,9 @@ def test_the_twin_with_parameters_effects_states_and_inputs_moved(threads):
     changes += [Change(), Change({"ctrl": 0.9 * at.inputs}, changes[0].numbers)]
     with mock.patch.object(of_points, "threads", return_value=threads):
         together = list(Points(at).each(changes))
+    scale = 1e-12 * np.abs(one_by_one(at, Change())).max(axis=0)  # shares are summed otherwise
     for change, rates in zip(changes, together, strict=True):
-        np.testing.assert_array_equal(rates, one_by_one(at, change))
+        assert (np.abs(rates - one_by_one(at, change)) <= scale).all()
 
 
 def test_increments_are_averaged_over_intervals_with_each_course():

@@ -1,0 +1,71 @@
+"""What one actuator of a law does to the rates, without the rest of the model.
+
+    M q̈ = f + Σ_i f_i(q, v, a_i, p_i),    ȧ_i = g_i(q, v, a_i, p_i)
+
+f_i are the forces of actuator i with all that its law adds, a_i its activations, p_i the numbers
+that it alone reads: its share. Another value of p_i or a_i changes nothing but f_i and g_i, so that
+the change of the rates is M⁻¹ Δf_i and Δg_i. Nor does the angle of a balanced rotor that turns in
+the frame (`is_balanced_rotor`). It costs the law of one actuator and no other law, no
+actuators and no kinematics. It holds where no constraint acts, which would answer the force.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import mujoco
+import numpy as np
+
+from identification.native.decorators import internal
+from identification.native.memory import load_word
+from identification.native.table import SHARE, callback, table
+from identification.native.trampolines import SIGNATURES, caller
+
+_BITS = mujoco.mjtDisableBit
+_ANSWERED, _LEFT_OUT = (
+    int(_BITS.mjDSBL_CONSTRAINT), int(_BITS.mjDSBL_ACTUATION | _BITS.mjDSBL_DAMPER)
+)  # fmt: skip
+
+# (array of the model, row in it) or (field of the state, index in it) -> actuator
+Owners = Mapping[tuple[str, int], int]
+
+_laws_of, _call = table(SHARE), caller(SIGNATURES[SHARE])
+
+
+def has_shares(model: mujoco.MjModel) -> bool:
+    """Whether the share of an actuator may be taken alone, where its law gives one."""
+    flags = int(model.opt.disableflags)
+    limits = (
+        model.actuator_forcelimited, model.actuator_actlimited, model.jnt_actfrclimited,
+        model.jnt_actgravcomp,
+    )  # fmt: skip
+    return bool(flags & _ANSWERED) and not flags & _LEFT_OUT and not np.concatenate(limits).any()
+
+
+def is_balanced_rotor(model: mujoco.MjModel, joint: int) -> bool:
+    """Whether a joint turns a body in the frame, and neither gravity nor a spring feels its angle.
+
+    Args:
+        model: the model.
+        joint: index of the joint.
+    """
+    body = int(model.jnt_bodyid[joint])
+    off = np.cross(model.body_ipos[body] - model.jnt_pos[joint], model.jnt_axis[joint])
+    return bool(
+        model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE
+        and model.body_dofnum[body] == 1
+        and not model.body_weldid[model.body_parentid[body]]
+        and body not in model.body_parentid[1:]
+        and not model.jnt_stiffness[joint]
+        and not off.any()
+        and not (model.site_bodyid == body).any()
+    )
+
+
+@internal
+def add_share(m, d, i):  # type: ignore[no-untyped-def]
+    """Add f_i to `qfrc_passive`, and put g_i into `act_dot`."""
+    laws = _laws_of()
+    for k in range(load_word(laws) - 1, -1, -1):
+        if _call(callback(laws, k), (m, d, i)) != 0.0:
+            return
