@@ -25,7 +25,7 @@ from identification.kalman.derivatives import (
     state_derivatives,
 )
 from identification.kalman.exponential import transitions
-from identification.kalman.trajectory import COARSE, Trajectory, follow
+from identification.kalman.trajectory import COARSE, Trajectory, follow_records
 from identification.model.predictor import Predictor, output_columns
 
 
@@ -113,13 +113,11 @@ def linearise_records(
         points: at which it is known what acts, for each sample. Slopes need few: what a change adds
             may turn with the angle of a motor within an interval, and slopes do not.
     """
-    each = []
-    for record, columns in predictor.records():
-        own = values[..., columns]
-        linear = linearise_along(record, follow(record, own, COARSE), forces)
-        is_enough = points == COARSE
-        each.append(linear if is_enough else replace(linear, along=follow(record, own, points)))
-    return tuple(each)
+    coarse, fine = follow_records(predictor, values, COARSE, points)
+    return tuple(
+        replace(linearise_along(record, each, forces), along=along)
+        for (record, _), each, along in zip(predictor.records(), coarse, fine, strict=True)
+    )
 
 
 def join(records: Sequence[Linearisation]) -> LinearPlant:

@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from identification.kalman.trajectory import COARSE, Trajectory, follow
+from identification.kalman.trajectory import COARSE, Trajectory, follow_records
 from identification.model.predictor import Predictor
 from identification.model.protocol import with_states
 
@@ -35,10 +35,8 @@ class Run:
     @cached_property
     def along(self) -> tuple[Trajectory, ...]:
         """The trajectory of each record."""
-        return tuple(
-            follow(record, self.values[columns], COARSE)
-            for record, columns in self.predictor.records()
-        )
+        (each,) = follow_records(self.predictor, self.values, COARSE)
+        return tuple(each)
 
     @cached_property
     def outputs(self) -> np.ndarray:

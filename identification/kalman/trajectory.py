@@ -9,7 +9,9 @@ motor varies faster, and takes more points.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import mujoco
 import numpy as np
@@ -18,6 +20,7 @@ from identification.model.numbers import with_numbers
 from identification.model.predictor import Predictor
 from identification.model.rollout import hold, rollout, substeps, without_sensors
 from identification.native.forward import Intervals
+from identification.pool import run_parts
 
 # Intervals of a sample, where the step of the simulation allows as many: a state of the rate
 # 100 1/s that is sampled at 100 Hz changes by half over one of them.
@@ -95,6 +98,27 @@ class Trajectory:
         return replace(self, begins=self.begins[:0], **few)
 
 
+def follow_records(
+    predictor: Predictor, values: np.ndarray, *points: int
+) -> list[list[Trajectory]]:
+    """Simulate one value set over each record of a log, side by side.
+
+    Args:
+        predictor: plant and log.
+        values: shape (p,), in the parameters' units.
+        points: each P that is wanted.
+
+    Returns:
+        For each P the trajectories of the records.
+
+    Raises:
+        DivergenceError: a simulation left the finite numbers.
+    """
+    records = [*predictor.records()]
+    runs = run_parts(lambda each: _simulated(each[0], values[..., each[1]]), records)
+    return [[run(P) for run in runs] for P in points]
+
+
 def follow(predictor: Predictor, values: np.ndarray, points: int) -> Trajectory:
     """Simulate one value set over one record.
 
@@ -106,6 +130,11 @@ def follow(predictor: Predictor, values: np.ndarray, points: int) -> Trajectory:
     Raises:
         DivergenceError: the simulation left the finite numbers.
     """
+    return _simulated(predictor, values)(points)
+
+
+def _simulated(predictor: Predictor, values: np.ndarray) -> Callable[[int], Trajectory]:
+    """Returns the trajectory of one simulation as a function of P."""
     model, log = predictor.plant.model, predictor.log
     step = model.opt.timestep
     every = substeps(log.sampling_time, step)
@@ -116,16 +145,17 @@ def follow(predictor: Predictor, values: np.ndarray, points: int) -> Trajectory:
         record=("qpos", "qvel", "act") if model.na else ("qpos", "qvel"),
         before=predictor.inputs(values), time=log.begun,
     )  # fmt: skip
-    return divided(
+    return partial(
+        divided,
         with_numbers(without_sensors(model), numbers, 0),
         {field: each[0] for field, each in run.items()},
-        predictor.inputs(values)(held), every, points, log.begun,
+        predictor.inputs(values)(held), every, log.begun,
     )  # fmt: skip
 
 
 def divided(
     model: mujoco.MjModel, states: dict[str, np.ndarray], held: np.ndarray, every: int,
-    points: int, begun: float,
+    begun: float, points: int,
 ) -> Trajectory:  # fmt: skip
     """The trajectory of what was simulated step by step.
 
@@ -134,8 +164,8 @@ def divided(
         states: fields of the state before each step and after the last, each (steps + 1, size).
         held: inputs that reach the model, shape (steps, inputs).
         every: steps of a sample.
-        points: P, if there are as many steps in a sample.
         begun: time in the record at which it begins [s].
+        points: P, if there are as many steps in a sample.
     """
     step, samples = model.opt.timestep, (len(states["qpos"]) - 1) // every + 1
     steps = _divide(every, points, samples)

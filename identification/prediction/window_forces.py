@@ -92,7 +92,7 @@ def stretches_of(base: HeldWindows, sets: Sequence[HeldWindows]) -> list[Stretch
     out = []
     for w, begun in enumerate(law.part.times.tolist()):
         states = {field: x[w] for field, x in run.items()}
-        along = divided(models[1], states, held[w], every, COARSE, begun)
+        along = divided(models[1], states, held[w], every, begun, COARSE)
         reached = [
             (model, average_inputs(inputs[w], along.steps, plant.nu)[0])
             for model, inputs in zip(models, reaching, strict=True)

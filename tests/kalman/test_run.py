@@ -25,18 +25,18 @@ def test_its_outputs_are_those_that_are_predicted(hold):
 
 
 def test_a_fit_simulates_no_value_set_twice(monkeypatch):
-    asked, predict, follow = Counter(), Predictor.predict, run_file.follow
+    asked, predict, follow = Counter(), Predictor.predict, run_file.follow_records
 
     def predicted(self, values, samples=None):
         asked.update(row.tobytes() for row in np.atleast_2d(values))
         return predict(self, values, samples)
 
-    def followed(predictor, values, points):
+    def followed(predictor, values, *points):
         asked[values.tobytes()] += 1
-        return follow(predictor, values, points)
+        return follow(predictor, values, *points)
 
     monkeypatch.setattr(Predictor, "predict", predicted)
-    monkeypatch.setattr(run_file, "follow", followed)
+    monkeypatch.setattr(run_file, "follow_records", followed)
     seen = record(slider(mass=2.4, damping=2.6), 200, 1, error=wander(200, 0.05, 0.1, seed=1))
     end = fit_with_effects(nominal_model(), seen, (), {}, OPTIONS)
     assert end.steps > 1
