@@ -82,7 +82,8 @@ def conclude(
     text: str,
     keep: Callable[[Path], object] | None = None,
     draw: Callable[[Path], object] | None = None,
-) -> None:
+    saved: str = "",
+) -> bool:
     """Save the results in the folder that was asked for, say them, then draw.
 
     They are said even where they cannot be saved: a full disk must not cost what took minutes.
@@ -94,6 +95,10 @@ def conclude(
         text: what is printed without `--json`.
         keep: writes more results into a folder: logs, a model.
         draw: writes figures and the report into a folder.
+        saved: what is printed below the text once the results are saved.
+
+    Returns:
+        Whether figures and report were written.
 
     Raises:
         InputError: the folder cannot be written.
@@ -102,7 +107,7 @@ def conclude(
 
     output: Output = command.output
     with ExitStack() as stack:
-        draft = None
+        draft, told = None, text
         try:
             if output.out is not None:
                 draft = stack.enter_context(draft_of(output.out))
@@ -110,13 +115,15 @@ def conclude(
                 if keep is not None:
                     keep_if_possible("data and model", partial(keep, draft.folder))
                 draft.save()
+                told = "\n".join(line for line in (text, saved) if line)
         finally:
             if output.json:
                 say_json(record)
             else:
-                say(text)
-        if draft is not None and draw is not None:
-            add_drawings(draft, "figures and report", partial(draw, draft.folder))
+                say(told)
+        if draft is None or draw is None:
+            return False
+        return add_drawings(draft, "figures and report", partial(draw, draft.folder))
 
 
 def keep_if_possible(what: str, write: Callable[[], object]) -> bool:

@@ -45,10 +45,10 @@ class Compare:
         result = compare_with(
             self.robot, read_inca_log(self.log, flat(self.trust)), flat(self.trust)
         )
-        conclude(
+        is_drawn = conclude(
             self, result.to_json(), summary(result), partial(keep, result), partial(draw, result)
         )
-        if self.output.out is not None:
+        if is_drawn:
             note(f"figure, report, model and result.json are in {self.output.out}")
         return 0
 

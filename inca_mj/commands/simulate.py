@@ -83,10 +83,10 @@ class Simulate:
         more = (
             "figures and report.html follow" if is_drawn else "--out DIR adds figures and a report"
         )
-        text = f"{_text(result)}\nlog.csv, run.npz and model.xml are in {now.output.out}; {more}"
+        saved = f"log.csv, run.npz and model.xml are in {now.output.out}; {more}"
         notes = now._notes()
         drawn = partial(draw, result, notes) if is_drawn else None
-        conclude(now, summary, text, partial(keep, result, notes), drawn)
+        conclude(now, summary, _text(result), partial(keep, result, notes), drawn, saved)
         return 0
 
     def _resolved(self) -> Simulate:

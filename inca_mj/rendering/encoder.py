@@ -32,7 +32,7 @@ def encoder(
     logging.getLogger("imageio_ffmpeg").setLevel(logging.CRITICAL)
     writer = imageio_ffmpeg.write_frames(
         str(path), size, fps=fps, codec="libx264", quality=None, macro_block_size=2,
-        ffmpeg_log_level="error",
+        ffmpeg_log_level="quiet",  # it would write beside what this program says
         output_params=["-crf", "26", "-preset", "veryfast", "-movflags", "+faststart"],
     )  # fmt: skip
 
@@ -40,10 +40,9 @@ def encoder(
         try:
             writer.send(frame)
         except (OSError, RuntimeError) as error:  # it died, its disk is full, or there is none
-            reason = [line for line in str(error).splitlines() if line.strip()][-1:]
             raise InputError(
-                f"ffmpeg cannot write the film ({' '.join(reason).strip()}); make room for it, or"
-                " set IMAGEIO_FFMPEG_EXE to a working ffmpeg"
+                "ffmpeg cannot write the film; make room for it, or set IMAGEIO_FFMPEG_EXE to a"
+                " working ffmpeg"
             ) from error
 
     with closing(writer):

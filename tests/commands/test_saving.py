@@ -1,5 +1,6 @@
 """Results are there whole, the old ones or the new ones, whatever ends the program."""
 
+import contextlib
 import json
 import os
 import signal
@@ -135,6 +136,28 @@ def test_figures_that_have_no_room_cost_the_figures_only(tmp_path, capsys):
     conclude(Command(Output(out=out)), {"value": 1}, "the verdict", draw=draw)
     assert "no figures and report: cannot write" in capsys.readouterr().err
     assert {*content(out)} == {"result.json"}
+
+
+@pytest.mark.parametrize("fails", ["the folder", "the figures", "nothing"])
+def test_where_results_are_is_said_once_they_are_there(tmp_path, capsys, fails):
+    out = tmp_path / "out"
+
+    def keep(folder):
+        if fails == "the folder":
+            raise InputError("no room for it")
+
+    def draw(folder):
+        if fails == "the figures":
+            raise InputError("no such colour")
+
+    command, record = Command(Output(out=out)), {"value": 1}
+    is_drawn = None
+    with contextlib.suppress(InputError):
+        is_drawn = conclude(command, record, "the verdict", keep, draw, "the results are there")
+    said = capsys.readouterr().out
+    assert said.startswith("the verdict\n")
+    assert ("the results are there" in said) == out.exists() == (fails != "the folder")
+    assert is_drawn == {"the folder": None, "the figures": False, "nothing": True}[fails]
 
 
 @pytest.mark.parametrize("command", [Discover, "json"])
