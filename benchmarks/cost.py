@@ -104,7 +104,7 @@ def with_candidates(count: int) -> Case:
     """A search of the shipped log among about so many candidates."""
     from identification.discovery.scoring.sensitivities import list_common, list_single
     from inca_mj import CATALOGUE, read_inca_log
-    from inca_mj.robot.spread import spread_of
+    from inca_mj.workflows.spread import spread_of
     from inca_mj.workflows.discovery import discover
 
     effects = [e for e in CATALOGUE if count >= 800 or e.name in FEW]
@@ -131,7 +131,7 @@ def _with_more_onsets(effect: Any, times: int) -> Any:
 def with_parameters(count: int) -> Case:
     """A search of the shipped log, with drives that are alike or have values of their own."""
     from inca_mj import read_inca_log
-    from inca_mj.robot.spread import spread_of
+    from inca_mj.workflows.spread import spread_of
     from inca_mj.workflows.discovery import discover
 
     log, spread = read_inca_log(LOG), spread_of("none" if count < 100 else "usual")
@@ -142,7 +142,7 @@ def with_records(count: int) -> Case:
     """A search of so many records of 8 s, in which drives have a Stribeck friction."""
     from inca_mj import CATALOGUE, build_twin, parameter_set
     from inca_mj.effects.values import with_effects
-    from inca_mj.robot.spread import spread_of
+    from inca_mj.workflows.spread import spread_of
     from inca_mj.workflows.discovery import discover
 
     known = with_effects(parameter_set(), CATALOGUE)
