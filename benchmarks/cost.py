@@ -104,8 +104,8 @@ def with_candidates(count: int) -> Case:
     """A search of the shipped log among about so many candidates."""
     from identification.discovery.scoring.sensitivities import list_common, list_single
     from inca_mj import CATALOGUE, read_inca_log
-    from inca_mj.workflows.spread import spread_of
     from inca_mj.workflows.discovery import discover
+    from inca_mj.workflows.spread import spread_of
 
     effects = [e for e in CATALOGUE if count >= 800 or e.name in FEW]
     if count > 800:
@@ -131,8 +131,8 @@ def _with_more_onsets(effect: Any, times: int) -> Any:
 def with_parameters(count: int) -> Case:
     """A search of the shipped log, with drives that are alike or have values of their own."""
     from inca_mj import read_inca_log
-    from inca_mj.workflows.spread import spread_of
     from inca_mj.workflows.discovery import discover
+    from inca_mj.workflows.spread import spread_of
 
     log, spread = read_inca_log(LOG), spread_of("none" if count < 100 else "usual")
     return count, lambda: discover(log, spread=spread)
@@ -142,8 +142,8 @@ def with_records(count: int) -> Case:
     """A search of so many records of 8 s, in which drives have a Stribeck friction."""
     from inca_mj import CATALOGUE, build_twin, parameter_set
     from inca_mj.effects.values import with_effects
-    from inca_mj.workflows.spread import spread_of
     from inca_mj.workflows.discovery import discover
+    from inca_mj.workflows.spread import spread_of
 
     known = with_effects(parameter_set(), CATALOGUE)
     truth = known.with_values({"stribeck_friction.f_s": 3e-3, "stribeck_friction.v_s": 2.0})
@@ -164,7 +164,7 @@ def _log_of(twin: Any, seed: int) -> Any:
     return Log(
         time=np.arange(int(rate * seconds)) / rate, inputs=steps, outputs=angles,
         input_names=tuple(f"current_{k}" for k in range(1, 9)),
-        output_names=tuple(f"angle_{k}" for k in range(1, 9)), sampling_time=1 / rate,
+        output_names=tuple(f"angle_{k}" for k in range(1, 9)),
         name=f"record {seed}",
     )  # fmt: skip
 
@@ -196,7 +196,7 @@ def chain(count: int) -> str:
     motors = "".join(f'<motor name="u{k}" joint="j{k}"/>' for k in range(1, count + 1))
     sensors = "".join(f'<jointpos name="j{k}" joint="j{k}"/>' for k in range(1, count + 1))
     return (
-        '<mujoco><option timestep="0.005" integrator="implicitfast"/><worldbody>'
+        '<mujoco><option timestep="0.0025" integrator="RK4"/><worldbody>'
         f"{links}{'</body>' * count}</worldbody><actuator>{motors}</actuator>"
         f"<sensor>{sensors}</sensor></mujoco>"
     )

@@ -1,4 +1,7 @@
-"""How near the limit the project runs, as a page, from the rows of `benchmarks/speed.py`."""
+"""How near the limit the project runs, as a page.
+
+Its rows are those of `benchmarks/speed.py`, `benchmarks/searches.py` and `benchmarks/cost.py`.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,8 @@ from typing import Any
 HERE = Path(__file__).parent
 ROWS = HERE / "results" / "speed.jsonl"
 SEARCHES = HERE / "results" / "searches.jsonl"
+COSTS = HERE / "results" / "cost.jsonl"
+FIGURE = HERE.parent / "docs" / "cost.png"
 PAGE = HERE.parent / "docs" / "speed.md"
 
 HEAD = """# How near the limit it runs
@@ -137,13 +142,67 @@ def _apart(a: dict[str, Any], b: dict[str, Any]) -> str:
     return f"{max(apart):.2g}" if apart else ""
 
 
+def costs(rows: Sequence[dict[str, Any]]) -> str:
+    """What a search costs against the number of what it has, by the rows of the newest commit."""
+    lines = [
+        "", "## Cost against candidates, parameters, records and joints", "",
+        f"![Seconds of a search against four numbers]({FIGURE.name})", "",
+        f"Searches of {rows[-1]['commit']}, one after the other, each in a process of its own on"
+        " two processors; `benchmarks/cost.py` says what each is. Seconds are those of the search"
+        " without what is loaded and compiled before. The dashed lines are proportional to the"
+        " number.", "",
+        "| against | number | seconds | processor time [s] | peak memory [MB] | verdict |",
+        "| --- " * 6 + "|",
+    ]  # fmt: skip
+    for row in rows:
+        seconds = f"> {row['limit']:g}" if row["seconds"] is None else f"{_of_search(row):.1f}"
+        lines.append(
+            f"| {row['against']} | {row.get('exact', row['of'])} | {seconds} |"
+            f" {row.get('processor_seconds', '')} | {row.get('megabytes', '')} |"
+            f" {row.get('verdict', '')} |"
+        )
+    return "\n".join(lines) + "\n"
+
+
+def _of_search(row: dict[str, Any]) -> float:
+    """Seconds of all stages of a search."""
+    return float(sum(row["stages"].values()))
+
+
+def draw_costs(rows: Sequence[dict[str, Any]]) -> None:
+    """Draw the seconds against each number, beside lines that are proportional to it."""
+    import matplotlib as mpl
+
+    mpl.use("agg")
+    from matplotlib import pyplot as plt
+
+    kinds = [*dict.fromkeys(row["against"] for row in rows)]
+    figure, axes = plt.subplots(1, len(kinds), figsize=(3 * len(kinds), 3), layout="constrained")
+    for kind, ax in zip(kinds, axes, strict=True):
+        done = [r for r in rows if r["against"] == kind and r["seconds"] is not None]
+        count, seconds = [r["exact"] for r in done], [_of_search(r) for r in done]
+        ax.loglog(count, seconds, "o-", color="#1f5fa8")
+        ax.loglog(count, [seconds[0] * n / count[0] for n in count], "--", color="#888888", lw=1)
+        ax.set_xticks(count, [str(n) for n in count])
+        ax.minorticks_off()
+        ax.set_yticks([s for s in (5, 10, 20, 50, 100, 200, 500, 1000)
+                       if min(seconds) / 2 < s < 2 * max(seconds)])  # fmt: skip
+        ax.yaxis.set_major_formatter("{x:g}")
+        ax.set_xlabel(kind)
+        ax.grid(alpha=0.3)
+    axes[0].set_ylabel("search [s]")
+    figure.savefig(FIGURE, dpi=110)
+
+
 def write_page() -> None:
-    """Write the page of all rows."""
-    rows, compared = (
+    """Write the page of all rows, with its figure."""
+    rows, compared, cost = (
         [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
-        for path in (ROWS, SEARCHES)
+        for path in (ROWS, SEARCHES, COSTS)
     )
-    PAGE.write_text(page(rows) + searches(compared), encoding="utf-8")
+    newest = [row for row in cost if row["commit"] == cost[-1]["commit"]]
+    draw_costs(newest)
+    PAGE.write_text(page(rows) + searches(compared) + costs(newest), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -14,11 +14,11 @@ from identification.logs.write import write_log
 LOG = Path(__file__).parents[2] / "examples" / "log.csv"
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "INCA_MJ_THREADS")
 LINES = (
-    "identification fit robot.toml log.csv",
+    pytest.param("identification fit robot.toml log.csv", marks=pytest.mark.long),
     "identification fit horizon.toml log.csv",
-    "identification discover robot.toml long.csv",
+    pytest.param("identification discover robot.toml long.csv", marks=pytest.mark.long),
     "identification discover few.toml long.csv",
-    "identification linearize robot.toml",
+    pytest.param("identification linearize robot.toml", marks=pytest.mark.long),
     f"inca_mj compare {LOG}",
     "inca_mj cite",
 )

@@ -90,7 +90,7 @@ def test_what_the_library_keeps_has_an_end(monkeypatch):
     assert one.memory - one.fixed == pytest.approx(600 * each)
 
 
-@pytest.mark.parametrize("make", [slider_task, arm_task])
+@pytest.mark.parametrize("make", [slider_task, pytest.param(arm_task, marks=pytest.mark.long)])
 def test_a_search_holds_the_arrays_of_its_forecast(make):
     """The most that arrays take at once, once all code is loaded."""
     given = make(1000)

@@ -19,6 +19,7 @@ def found(values, names, samples=260):
     return discover_records(nominal_model(), logs[:2], logs[2:], effects)
 
 
+@pytest.mark.long
 def test_a_law_that_is_listed_wins_over_curves():
     answer = found({"hardening.k_3@hinge": 0.06}, ("hardening", "curve_position"))
     assert answer.verdict == "named"

@@ -133,7 +133,10 @@ def test_a_driven_log_is_not_called_a_free_swing(tmp_path):
     assert "free swing" not in " ".join(fit_verdict(fit(read_robot(*paths)).found))
 
 
-@pytest.mark.parametrize(("motor", "horizon"), [("", "horizon = 0.4"), (MOTOR.format(gear=2), "")])
+@pytest.mark.parametrize(
+    ("motor", "horizon"),
+    [("", "horizon = 0.4"), pytest.param(MOTOR.format(gear=2), "", marks=pytest.mark.long)],
+)
 def test_a_search_names_the_hidden_coulomb_friction(tmp_path, motor, horizon, capsys):
     log = swing(spring(motor=motor, friction=0.15), 0.25, 500)
     paths = robot(tmp_path, spring(motor=motor), log, ["joint/x.damping"], horizon)

@@ -73,7 +73,7 @@ def test_a_short_chain_keeps_its_balance_in_any_unit():
     assert unbalanced_share(model, in_degrees).max() > NEEDED
 
 
-@pytest.mark.parametrize("joints", [5, 24])
+@pytest.mark.parametrize("joints", [5, pytest.param(24, marks=pytest.mark.long)])
 def test_a_wrong_reading_is_simulated_in_part(tmp_path, monkeypatch, joints):
     """Only the beginning of most readings, and the log as it is read from end to end."""
     text = chain_of(joints, 0.2, 3.0)

@@ -87,6 +87,7 @@ def test_a_dask_worker_that_a_task_kills_is_replaced(tmp_path):
     assert records == run(path, tmp_path / "whole")
 
 
+@pytest.mark.long
 @quiet
 def test_a_task_that_dask_gives_up_ends_the_sweep_and_costs_no_record(tmp_path, refusal):
     path = write(tmp_path, f"[study.grid]\nmarker = ['{tmp_path / 'died'}']\n", 4)
@@ -97,6 +98,7 @@ def test_a_task_that_dask_gives_up_ends_the_sweep_and_costs_no_record(tmp_path, 
     assert run(path, tmp_path / "out", resume=True) == run(path, tmp_path / "whole")
 
 
+@pytest.mark.long
 @quiet
 def test_a_dask_worker_is_killed_in_the_middle(tmp_path, serial):
     path = write(tmp_path, "[study.settings]\nseconds = 0.1\n", 24)

@@ -59,6 +59,7 @@ def test_a_sweep_prints_json_and_leaves_a_folder(tmp_path, capsys, main):
     assert (out / "report.html").exists()
 
 
+@pytest.mark.long
 def test_killed_twice_and_resumed_it_has_the_records_of_one_run(tmp_path):
     path, out = write(tmp_path, SLOW, 14), tmp_path / "out"
     line = [*LINE, str(path), "--out", str(out), "--jobs", "1", "--quiet", "--resume"]
