@@ -21,6 +21,7 @@ from identification.kalman.point import Point
 from identification.kalman.sensitivity_equations import ALWAYS, Courses, solve_sensitivities
 from identification.kalman.trajectory import FINE
 from identification.model.predictor import Predictor
+from identification.pool import each_part
 from identification.progress import counted
 
 LONG_AGO = 1e6  # before a record [s], later than any ramp lasts
@@ -106,8 +107,9 @@ def compute_sensitivities(point: Point, candidates: Sequence[Candidate]) -> tupl
     records = attempt(None, partial(_fine_records, point)) or ()
     if records:
         groups = [*_groups([*enumerate(candidates)])]
-        for group in counted(groups, "groups of candidates", len(groups)):
-            found |= _alone(partial(_solve, point, records), group)
+        each = each_part(partial(_alone, partial(_solve, point, records)), groups)
+        for solved in counted(each, "groups of candidates", len(groups)):
+            found |= solved
     predicted = point.log.outputs - point.e
     rest = [*_groups([(i, c) for i, c in enumerate(candidates) if i not in found])]
     for group in counted(rest, "groups of other candidates", len(rest)):
