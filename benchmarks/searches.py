@@ -3,10 +3,10 @@
     python benchmarks/searches.py CASES.toml COMMIT... [--processors 2] [--at-once 1] [--limit 900]
 
 A case is a line `name = "arguments of inca or identification"` of the table `[inca]` or
-`[identification]`; paths in it are relative to the TOML file. Each commit answers from an archive of
-its own, and the first case of each program once before all others, so that its laws are compiled;
-that answer does not count. The rows are added to `benchmarks/results/searches.jsonl`, from which `speed_page.py` makes a part of
-`docs/speed.md`.
+`[identification]`; paths in it are relative to the TOML file. Each commit answers from an archive
+of its own, and the first case of each program once before all others, so that its laws are
+compiled; that answer does not count. The rows are added to `benchmarks/results/searches.jsonl`,
+from which `speed_page.py` makes a part of `docs/speed.md`.
 """
 
 from __future__ import annotations

@@ -143,23 +143,23 @@ def _apart(a: dict[str, Any], b: dict[str, Any]) -> str:
 
 
 def costs(rows: Sequence[dict[str, Any]]) -> str:
-    """What a search costs against the number of what it has, by the rows of the newest commit."""
+    """What a search costs against the number of what it has."""
     lines = [
         "", "## Cost against candidates, parameters, records and joints", "",
         f"![Seconds of a search against four numbers]({FIGURE.name})", "",
-        f"Searches of {rows[-1]['commit']}, one after the other, each in a process of its own on"
-        " two processors; `benchmarks/cost.py` says what each is. Seconds are those of the search"
-        " without what is loaded and compiled before. The dashed lines are proportional to the"
-        " number.", "",
-        "| against | number | seconds | processor time [s] | peak memory [MB] | verdict |",
-        "| --- " * 6 + "|",
+        "One search after the other, each in a process of its own on two processors;"
+        " `benchmarks/cost.py` says what each is. Seconds are those of the search without what is"
+        " loaded and compiled before. Dashed lines are proportional to the number. A joint brings"
+        " candidates of its own, and more to simulate for each of them.", "",
+        "| against | number | seconds | processor time [s] | peak [MB] | verdict | commit |",
+        "| --- " * 7 + "|",
     ]  # fmt: skip
     for row in rows:
         seconds = f"> {row['limit']:g}" if row["seconds"] is None else f"{_of_search(row):.1f}"
         lines.append(
             f"| {row['against']} | {row.get('exact', row['of'])} | {seconds} |"
             f" {row.get('processor_seconds', '')} | {row.get('megabytes', '')} |"
-            f" {row.get('verdict', '')} |"
+            f" {row.get('verdict', '')} | {row['commit']} |"
         )
     return "\n".join(lines) + "\n"
 
@@ -200,7 +200,8 @@ def write_page() -> None:
         [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
         for path in (ROWS, SEARCHES, COSTS)
     )
-    newest = [row for row in cost if row["commit"] == cost[-1]["commit"]]
+    last = {row["against"]: row["commit"] for row in cost}
+    newest = [row for row in cost if row["commit"] == last[row["against"]]]
     draw_costs(newest)
     PAGE.write_text(page(rows) + searches(compared) + costs(newest), encoding="utf-8")
 

@@ -19,6 +19,7 @@ import numpy as np
 from identification.estimation.beyond import beyond
 from identification.estimation.combination import Combination
 from identification.estimation.estimation import Estimate
+from identification.estimation.finer_steps import step_shift
 from identification.estimation.identifiability import Identifiability, identifiability
 from identification.estimation.information import Information, information_of
 from identification.estimation.metrics import fit_percent, loss, rms
@@ -55,6 +56,8 @@ class Fit:
         floor: std of the noise seen in the measurement alone, shape (ny,), in the outputs' units.
         tests: tests of the residual.
         information: Fisher information of the log at the estimate, for white noise.
+        step_shift: change of each value with a quarter of the model's step, shape (p,), in their
+            units; NaN where that cannot be known.
     """
 
     estimate: Estimate
@@ -73,6 +76,15 @@ class Fit:
     floor: np.ndarray
     tests: ResidualTests
     information: Information
+    step_shift: np.ndarray
+
+    @property
+    def far(self) -> dict[str, float]:
+        """The values that a finer step would move by more than a std, the farthest first [std]."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            moved = np.abs(self.step_shift) / self.std
+        names = self.estimate.space.names
+        return {names[k]: float(moved[k]) for k in np.argsort(-moved) if moved[k] > 1}
 
     @property
     def rms(self) -> float:
@@ -154,6 +166,7 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
         floor=noise_floor(log.outputs),
         tests=residual_tests(residual, log.inputs),
         information=information_of(resolved, space),
+        step_shift=step_shift(estimate, predicted, S, prior, whiten),
     )
 
 

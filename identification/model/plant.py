@@ -16,7 +16,7 @@ from __future__ import annotations
 import copy
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import mujoco
@@ -54,6 +54,16 @@ class ModelPlant:
     model: mujoco.MjModel
     parameters: ParameterSet
     start: State | None = None
+
+    def with_step(self, factor: float) -> ModelPlant:
+        """The same plant with another step of its model.
+
+        Args:
+            factor: new step over the old one.
+        """
+        model = copy.copy(self.model)
+        model.opt.timestep *= factor
+        return replace(self, model=model)
 
     def __post_init__(self) -> None:
         model, state = copy.copy(self.model), self.start or own_start(self.model)

@@ -11,7 +11,6 @@ integrator of any order errs by about Δ, and so does the estimate. H, S_w, P_w 
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -20,13 +19,9 @@ import numpy as np
 
 from identification.discovery.attempts import attempt
 from identification.discovery.prediction_options import PredictionOptions
-from identification.effects.jointed import JointPlant
-from identification.model.plant import ModelPlant
-from identification.model.predictor import Plant
+from identification.model.finer import finer
 from identification.prediction.fit import WindowFit
 from identification.prediction.point import projected
-
-FINER = 4  # an error that is proportional to the step falls by three quarters
 
 
 @dataclass(frozen=True)
@@ -77,7 +72,7 @@ def step_shift(found: WindowFit) -> StepShift:
         found: a fit.
     """
     problem, q = found.problem, found.q
-    plant, unknown = _finer(problem.plant), StepShift(np.full(len(q), np.nan), np.nan)
+    plant, unknown = finer(problem.plant), StepShift(np.full(len(q), np.nan), np.nan)
     if plant is None:
         return unknown
     parts = (replace(p, predictor=replace(p.predictor, plant=plant)) for p in problem.parts)
@@ -88,21 +83,10 @@ def step_shift(found: WindowFit) -> StepShift:
     g, before, after = np.zeros(len(q)), 0.0, 0.0
     for t, r in zip(found.tangents, errors, strict=True):
         S, own = projected(t)
-        finer = projected(replace(t, r=r))[1]
-        g = g + np.einsum("wmp,wm->p", S, finer - own)
-        before, after = before + float(np.sum(own**2)), after + float(np.sum(finer**2))
+        finely = projected(replace(t, r=r))[1]
+        g = g + np.einsum("wmp,wm->p", S, finely - own)
+        before, after = before + float(np.sum(own**2)), after + float(np.sum(finely**2))
     move = np.linalg.pinv(found.curvature, rcond=1e-14, hermitian=True) @ g
     after -= float(g @ move)
     error = float(np.sqrt(max(after, 0.0) / before)) if before > 0 else np.nan
     return StepShift(move * problem.prior.space.slope(q), error)
-
-
-def _finer(plant: Plant) -> JointPlant | ModelPlant | None:
-    """The same plant with a quarter of its model's own step; None for a plant of another kind."""
-    if isinstance(plant, JointPlant):
-        return plant.with_step(1 / FINER)
-    if not isinstance(plant, ModelPlant):
-        return None
-    model = copy.copy(plant.model)
-    model.opt.timestep /= FINER
-    return replace(plant, model=model)

@@ -24,9 +24,10 @@ def fit_to_json(fit: Fit) -> dict[str, Any]:
                 "unit": parameters[name].unit,
                 "initial": float(first),
                 "at_bound": bool(bound),
+                "step_shift": finite_or_none(shift),
             }
-            for name, std, first, bound in zip(
-                e.space.names, fit.std, e.start, fit.at_bound, strict=True
+            for name, std, first, bound, shift in zip(
+                e.space.names, fit.std, e.start, fit.at_bound, fit.step_shift, strict=True
             )
         },
         "combinations": [

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from identification.logs.by_unit import relative
-from identification.quantities import error, held
+from identification.model.finer import FINER
+from identification.quantities import error, held, quantity
 from identification.report.bound_words import bound_sentences
 from identification.report.error_words import error_words, times_words
 from identification.report.untold_words import identifiable_sentences, weak_sentences
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 ABOVE = 1.2
 HOLDS = 1.2  # a fit holds on unseen data up to this multiple of the residual that is expected there
 GROWN = 10.0  # a free run that errs by more than this multiple of the fitted residual has diverged
+SHOWN = 3  # values that finer steps would move, those that move most first
 LEVEL = 0.01  # significance of the tests of the residual: one false alarm in a hundred
 
 
@@ -26,7 +28,25 @@ def fit_verdict(fit: Fit) -> list[str]:
     """Sentences: did it converge, what can be known, is the model enough, does it hold unseen."""
     if fit.estimate.status == "stopped":  # a search that was stopped says nothing of the model
         return search_sentences(fit)
-    return [*search_sentences(fit), *identifiable_sentences(fit), *_enough(fit), *_unseen(fit)]
+    return [
+        *search_sentences(fit), *identifiable_sentences(fit), *_enough(fit), *_steps(fit),
+        *_unseen(fit),
+    ]  # fmt: skip
+
+
+def _steps(fit: Fit) -> list[str]:
+    """What a finer step of the simulation would change beyond what the std tell."""
+    far = fit.far
+    if not far:
+        return []
+    step = float(fit.estimate.predictor.plant.model.opt.timestep)
+    told = [f"{name} by {held(far[name])} std" for name in [*far][:SHOWN]]
+    more = f" and {len(far) - SHOWN} more" if len(far) > SHOWN else ""
+    return [
+        f"A quarter of the model's step, {quantity(step / FINER, unit='s')}, would move"
+        f" {', '.join(told)}{more}, of which the std tell nothing. Where this matters, write"
+        f' timestep="{step / FINER:.6g}" into the <option> of the model, and do this once more.'
+    ]
 
 
 def search_sentences(fit: Fit) -> list[str]:

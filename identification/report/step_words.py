@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from identification.discovery.options import DiscoveryOptions
+from identification.model.finer import FINER
 from identification.prediction.model import WindowModel
-from identification.prediction.step_shift import FINER
 from identification.quantities import held, quantity
 from identification.windows.coarse import OUTPUT_ERROR
 

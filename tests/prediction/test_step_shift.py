@@ -9,7 +9,8 @@ import pytest
 
 from identification import Log, fit
 from identification.discovery.options import DiscoveryOptions
-from identification.prediction.step_shift import FINER, StepShift, step_shift
+from identification.model.finer import FINER
+from identification.prediction.step_shift import StepShift, step_shift
 from identification.report.records_fit_verdict import records_fit_verdict
 from identification.report.step_words import std_sentence, step_sentences
 from identification.robot.file import read_robot_file

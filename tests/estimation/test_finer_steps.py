@@ -1,0 +1,80 @@
+"""What the model's step does to an estimate of a free run is what a fit with a finer step finds."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import mujoco
+import numpy as np
+import pytest
+
+from identification import fit, read_robot
+from identification.estimation.finer_steps import step_shift
+from identification.model.finer import FINER, finer
+from identification.report.fit_verdict import fit_verdict
+
+PENDULUM = """<mujoco><option timestep="{step}" integrator="RK4"/><worldbody><body>
+  <joint name="hinge" axis="0 1 0" damping="0.04" armature="0.005"/>
+  <geom type="capsule" size="0.02" fromto="0 0 0 0 0 -0.4" mass="0.5" contype="0" conaffinity="0"/>
+  </body></worldbody><actuator><motor name="torque" joint="hinge"/></actuator>
+  <sensor><jointpos name="hinge" joint="hinge"/></sensor></mujoco>"""
+TOML = """model = "robot.xml"
+free = ["joint/hinge.damping", "coulomb_friction.f_c@hinge"]
+[parameters."coulomb_friction.f_c@hinge"]
+value = 0.08
+"""
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    """Ten seconds of a pendulum with dry friction that turns back often, by much finer steps."""
+    model = mujoco.MjModel.from_xml_string(PENDULUM.format(step=2e-4))
+    model.dof_damping[0] = 0.05
+    data, rng, rows = mujoco.MjData(model), np.random.default_rng(1), []
+    for k, u in enumerate(0.9 * rng.uniform(-1, 1, 34).repeat(30)[:1000]):
+        rows.append([k / 100, u, data.qpos[0] + rng.normal(0, 5e-4)])
+        data.ctrl[:] = u
+        for _ in range(50):
+            data.qfrc_applied[:] = -0.1 * np.tanh(2000 * data.qvel)
+            mujoco.mj_step(model, data)
+    path = tmp_path_factory.mktemp("log") / "log.csv"
+    np.savetxt(path, rows, delimiter=",", header="time,torque,hinge", comments="")
+    return path
+
+
+def fitted(log, folder, step):
+    (folder / "robot.xml").write_text(PENDULUM.format(step=step))
+    (folder / "robot.toml").write_text(TOML)
+    return fit(read_robot(folder / "robot.toml", log)).found
+
+
+@pytest.fixture(scope="module")
+def both(log, tmp_path_factory):
+    return [fitted(log, tmp_path_factory.mktemp("robot"), step) for step in (2e-3, 2e-3 / FINER)]
+
+
+def test_it_is_the_change_of_a_fit_with_a_finer_step(both):
+    coarse, fine = both
+    names = coarse.estimate.space.names
+    change = [fine.estimate.values[n] - coarse.estimate.values[n] for n in names]
+    assert (np.abs(change) > 2 * coarse.std).all()  # else there is nothing to be seen
+    np.testing.assert_allclose(coarse.step_shift, change, rtol=0.25)
+    assert (np.abs(fine.step_shift) < 0.5 * np.abs(coarse.step_shift)).all()
+
+
+def test_what_moves_by_more_than_a_std_is_told_with_the_step_that_mends_it(both):
+    coarse, _ = both
+    (said,) = [line for line in fit_verdict(coarse) if "A quarter of the model's step" in line]
+    assert 'write timestep="0.0005"' in said
+    assert all(name in said for name in coarse.estimate.space.names)
+    still = replace(coarse, step_shift=0.9 * coarse.std)
+    unknown = replace(coarse, step_shift=np.full(2, np.nan))
+    for each in (still, unknown):
+        assert not [line for line in fit_verdict(each) if "quarter" in line]
+
+
+def test_a_plant_without_another_step_and_a_search_that_was_stopped_tell_nothing(both):
+    estimate, nothing = both[0].estimate, np.zeros((0, 2))
+    other = replace(estimate.predictor, plant=SimpleNamespace())
+    assert finer(other.plant) is None
+    for e in (replace(estimate, predictor=other), replace(estimate, status="stopped")):
+        assert np.isnan(step_shift(e, nothing, nothing, nothing, lambda J: J)).all()
