@@ -1,4 +1,4 @@
-"""python -m identification: fit any robot, and find what its model lacks."""
+"""The program `identification`, also as `python -m identification`, for any robot."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The commands of `python -m identification`, one a file."""
+"""The commands of `identification`, one a file."""

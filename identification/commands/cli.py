@@ -1,4 +1,4 @@
-"""python -m identification: fit any robot, find what its model lacks, and linearise it."""
+"""identification: fit any robot, find what its model lacks, and linearise it."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ Command = (
     | Annotated[SweepCommand, tyro.conf.subcommand("sweep")]
 )
 EXAMPLES = (
-    "python -m identification fit robot.toml log.csv",
-    "python -m identification discover models/emps.toml log.csv --out out/emps",
+    "identification fit robot.toml log.csv",
+    "identification discover models/emps.toml log.csv --out out/emps",
 )
 
 

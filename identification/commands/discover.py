@@ -1,4 +1,4 @@
-"""python -m identification discover ROBOT LOG: what the model of any robot lacks."""
+"""identification discover ROBOT LOG: what the model of any robot lacks."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class Discover(OnRobot):
     """Find what the model lacks and prove it on unseen data, or say that it is unknown.
 
     Examples:
-        python -m identification discover models/emps.toml log.csv --out out/emps
-        python -m identification discover robot.toml a.csv b.csv --confirm c.csv --out out/mine
+        identification discover models/emps.toml log.csv --out out/emps
+        identification discover robot.toml a.csv b.csv --confirm c.csv --out out/mine
     """
 
     options: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None

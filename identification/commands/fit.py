@@ -1,4 +1,4 @@
-"""python -m identification fit ROBOT LOG: estimate the parameters of any robot."""
+"""identification fit ROBOT LOG: estimate the parameters of any robot."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Fit(OnRobot):
     """Estimate free parameters from one log or several, confirm them on what was not fitted.
 
     Examples:
-        python -m identification fit models/emps.toml log.csv --out out/fit
-        python -m identification fit robot.toml a.csv b.csv --confirm c.csv --trust units
+        identification fit models/emps.toml log.csv --out out/fit
+        identification fit robot.toml a.csv b.csv --confirm c.csv --trust units
     """
 
     def run(self) -> int:

@@ -1,4 +1,4 @@
-"""python -m identification linearize ROBOT [LOG]: the linear model of any robot."""
+"""identification linearize ROBOT [LOG]: the linear model of any robot."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class Linearize:
     """A, B, C, D of any MJCF at rest or along a log, its minimal states and its modes.
 
     Examples:
-        python -m identification linearize models/emps.toml log.csv --out out/linear
-        python -m identification linearize robot.toml log.csv --time 1.5 3 --json
+        identification linearize models/emps.toml log.csv --out out/linear
+        identification linearize robot.toml log.csv --time 1.5 3 --json
     """
 
     robot: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]

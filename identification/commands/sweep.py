@@ -1,4 +1,4 @@
-"""python -m identification sweep CONFIG: many tasks of one kind, here or on other machines."""
+"""identification sweep CONFIG: many tasks of one kind, here or on other machines."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class SweepCommand:
     """Run the tasks of a sweep, keep a record of each, and say what they come to.
 
     Examples:
-        python -m identification sweep logs.toml --jobs 4 --out out/logs
-        python -m identification sweep logs.toml --out out/logs --resume
+        identification sweep logs.toml --jobs 4 --out out/logs
+        identification sweep logs.toml --out out/logs --resume
     """
 
     config: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="CONFIG")]

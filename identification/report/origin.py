@@ -33,7 +33,7 @@ def _command(argv: Sequence[str]) -> str:
     name = path.parent.name if path.name == "__main__.py" else path.name
     if name not in PROGRAMS:
         return ""
-    begin = "inca" if name == "inca" else f"python -m {name}"
+    begin = "python -m inca_mj" if name == "inca_mj" else name
     return shlex.join([*begin.split(), *argv[1:]])
 
 

@@ -25,7 +25,7 @@ NOTEBOOKS = sorted(DOCS.rglob("*.ipynb"))
 TUTORIALS = [page for page in NAV["Start"] + NAV["Tutorials"] if page in PAGES]
 PROGRAMS = {
     "inca": (inca_mj.cli.Command, "inca"),
-    "python -m identification": (identification.commands.cli.Command, "identification"),
+    "identification": (identification.commands.cli.Command, "identification"),
 }
 HERE = {"LOG": "examples/log.csv", "DIR": "out", "NAME=SIZE": "cogging.a=1e-3"}
 

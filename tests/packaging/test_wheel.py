@@ -71,7 +71,11 @@ def test_the_wheel_says_what_it_is(wheel):
     with ZipFile(wheel) as archive:
         text = {n.split("dist-info/")[1]: archive.read(n).decode() for n in archive.namelist()
                 if ".dist-info/" in n}  # fmt: skip
-    assert "inca = inca_mj.__main__:program" in text["entry_points.txt"]
+    for line in (
+        "inca = inca_mj.__main__:program",
+        "identification = identification.__main__:program",
+    ):
+        assert line in text["entry_points.txt"]
     assert "Apache License" in text["licenses/LICENSE"]
     metadata = text["METADATA"]
     assert "License-Expression: Apache-2.0" in metadata

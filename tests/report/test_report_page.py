@@ -83,7 +83,8 @@ def test_the_foot_says_what_made_it(root):
     assert "Data: second" in said
     assert re.search(r"Date: \d{4}-\d\d-\d\d", said)
     assert _command(["/usr/bin/inca", "discover", "my log.csv"]) == "inca discover 'my log.csv'"
-    assert _command(["x/identification/__main__.py", "fit"]) == "python -m identification fit"
+    assert _command(["x/identification/__main__.py", "fit"]) == "identification fit"
+    assert _command(["x/inca_mj/__main__.py", "fit"]) == "python -m inca_mj fit"
     assert _command(["/usr/bin/pytest", "tests"]) == ""
     assert "Data" not in origin()
 
