@@ -1,4 +1,4 @@
-"""What commands share: where results go, and how they are said."""
+"""Shared parts of the commands: where results go, and how they are printed."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ class Output:
     """Say nothing of the progress."""
 
     def tell(self, text: str) -> None:
-        """One line about progress on stderr, unless it shall be quiet."""
+        """Writes one line about progress to stderr, unless it shall be quiet."""
         if not self.quiet:
             note(text)
 
 
 def say(text: str) -> None:
-    """One line of result on stdout."""
+    """Writes one line of a result to stdout."""
     sys.stdout.write(text + "\n")
     sys.stdout.flush()
 
@@ -46,12 +46,12 @@ _BACKENDS = ("egl", "osmesa", "glfw")  # of MuJoCo, by the words of MUJOCO_GL
 
 
 def flat(groups: Iterable[Iterable[T]]) -> list[T]:
-    """All that was given to an option, however often it was written."""
+    """Returns all values that were given to an option, however often it was written."""
     return [each for group in groups for each in group]
 
 
 def note(text: str) -> None:
-    """One line on stderr, above the bars of progress if there are some."""
+    """Writes one line to stderr, above the bars of progress if there are some."""
     if "tqdm" in sys.modules:
         sys.modules["tqdm"].tqdm.write(text, file=sys.stderr)
     else:
@@ -59,7 +59,7 @@ def note(text: str) -> None:
 
 
 def say_json(result: Mapping[str, Any]) -> None:
-    """The result as one JSON object on stdout; what is not finite is null."""
+    """Writes the result as one JSON object to stdout; what is not finite is null."""
     say(json.dumps(_plain(result), allow_nan=False))
 
 
@@ -212,7 +212,7 @@ def _plain(value: Any) -> Any:
 
 
 def table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
-    """A plain text table, numbers to the right."""
+    """Returns a plain text table whose cells are aligned to the right."""
     lines = [head, *rows]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     return "\n".join(

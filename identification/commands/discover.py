@@ -111,7 +111,7 @@ class Discover(OnRobot):
 
 
 def _with_repetitions(record: dict[str, Any], repeated: Sequence[Repetition]) -> dict[str, Any]:
-    """A record of a discovery that also says what only repeats the fitted data."""
+    """Returns the record of a discovery with the findings about repetitions of the fitted data."""
     return {
         **record,
         "located": [*record.get("located", []), *map(str, repeated)],

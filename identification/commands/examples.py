@@ -6,7 +6,7 @@ import inspect
 
 
 def examples_of(command: type) -> tuple[str, ...]:
-    """The command lines that a docstring shows.
+    """Returns the command lines that a docstring shows as examples.
 
     Args:
         command: a command's class.
@@ -17,5 +17,5 @@ def examples_of(command: type) -> tuple[str, ...]:
 
 
 def examples_text(examples: tuple[str, ...]) -> str:
-    """Examples as they stand below a help."""
+    """Returns examples as they are printed below a help."""
     return "\n".join(["examples:", *(f"  {line}" for line in examples)]) + "\n"

@@ -73,7 +73,7 @@ class Linearize:
 
 
 def said(system: LinearSystem, label: str) -> str:
-    """The modes of one system as a text table, and its minimal realisation in a sentence."""
+    """Returns the modes of a system as a text table, and a sentence on its minimal realisation."""
     from identification.linear.minimal import minimal
     from identification.report.linear_sections import HEAD, minimal_sentence, mode_rows
 

@@ -68,7 +68,7 @@ def refuse_place(command: Any) -> None:
 
 
 def _inputs(value: Any) -> Iterator[Path]:
-    """The files and folders that a command's fields name."""
+    """Yields the files and folders that a command's fields name."""
     from identification.files import is_file
 
     if isinstance(value, Output):

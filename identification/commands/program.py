@@ -75,7 +75,7 @@ def _run(
 
 
 def versions() -> str:
-    """The versions of the package, of MuJoCo and of Python."""
+    """Returns the versions of the package, of MuJoCo and of Python."""
     from importlib.metadata import version
 
     python = sys.version.split()[0]

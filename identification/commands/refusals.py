@@ -1,4 +1,4 @@
-"""What is wrong with a command line, in one sentence instead of the parser's page."""
+"""Errors of a command line in one sentence, instead of the parser's page."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def parsed(
     arguments: Sequence[str],
     examples: tuple[str, ...] = (),
 ) -> Any:
-    """The command that some arguments name.
+    """Returns the command that some arguments name.
 
     Args:
         commands: a union of dataclasses, as tyro takes it.
@@ -74,7 +74,7 @@ def parsed(
 
 
 def _sentence(text: str, name: str, arguments: Sequence[str], commands: dict[str, type]) -> str:
-    """One sentence on what the parser said."""
+    """Returns one sentence on what the parser said."""
     from identification.errors import unknown_name
 
     command = arguments[0] if arguments else ""
@@ -108,7 +108,7 @@ def _sentence(text: str, name: str, arguments: Sequence[str], commands: dict[str
 
 
 def _wanted(text: str) -> str:
-    """What an option takes: in words where it is one thing, else the words of its help."""
+    """Returns in words what an option takes: one kind of value, or else the words of its help."""
     taken = re.search(r"Argument helptext: --\S+ ((?:[A-Z]+ )+)", text)
     words = taken[1].split() if taken else []
     if len(words) > 1 and len(words[-1]) > 1:
@@ -118,13 +118,13 @@ def _wanted(text: str) -> str:
 
 
 def _unboxed(text: str) -> str:
-    """The words of a box, without its frame."""
+    """Returns the text in a box of the parser, without the frame."""
     lines = (line.strip(_FRAME) for line in text.splitlines())
     return " ".join(line for line in lines if line)
 
 
 def _given(option: str, arguments: Sequence[str]) -> str:
-    """What stands behind an option."""
+    """Returns the argument that stands behind an option."""
     for k, argument in enumerate(arguments):
         one, equals, value = argument.partition("=")
         if one == option:
@@ -133,7 +133,7 @@ def _given(option: str, arguments: Sequence[str]) -> str:
 
 
 def _commands(kind: Any) -> Iterator[tuple[str, type]]:
-    """The commands of a program by name."""
+    """Yields the commands of a program with their names."""
     for each in get_args(kind):
         if get_origin(each) is Annotated:
             one, *marks = get_args(each)
@@ -141,7 +141,7 @@ def _commands(kind: Any) -> Iterator[tuple[str, type]]:
 
 
 def _positional(command: type) -> dict[str, str]:
-    """What a command takes without an option: the words of its help by the names of the fields."""
+    """Returns the words in the help for a command's positional arguments, by field name."""
     hints = get_type_hints(command, include_extras=True)
     marks = {field: hint.__metadata__ for field, hint in hints.items() if _is_annotated(hint)}
     return {
@@ -156,7 +156,7 @@ def _is_annotated(hint: Any) -> bool:
 
 
 def _options(command: type) -> Iterator[str]:
-    """The names of a command's options, those of its parts among them."""
+    """Yields the names of a command's options, those of its parts among them."""
     positional = _positional(command)
     for field, hint in get_type_hints(command).items():
         if dataclasses.is_dataclass(hint):

@@ -13,7 +13,7 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 
 def gathered(commands: Any, arguments: Sequence[str]) -> list[str]:
-    """Arguments in which each option of several values stands once, with all its values.
+    """Returns arguments in which each option of several values stands once, with all its values.
 
     Args:
         commands: dataclasses, or unions of them, as a parser takes them.
@@ -43,7 +43,7 @@ def gathered(commands: Any, arguments: Sequence[str]) -> list[str]:
 
 
 def _several(kind: Any) -> Iterator[str]:
-    """Names of the options of several values, as they are written on the command line."""
+    """Yields names of the options of several values, as written on the command line."""
     if get_origin(kind) is Annotated:
         yield from _several(get_args(kind)[0])
     elif isinstance(kind, type) and dataclasses.is_dataclass(kind):

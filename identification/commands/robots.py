@@ -1,4 +1,4 @@
-"""What the commands on any robot share: its file, its log, and records that confirm."""
+"""Shared fields of the commands on any robot: its file, its log, and records that confirm."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class OnRobot:
     output: Annotated[Output, tyro.conf.OmitArgPrefixes] = output_field
 
     def read(self) -> Robot:
-        """The robot, compiled for its log, with the records that confirm.
+        """Returns the robot, compiled for its log, with the records that confirm.
 
         Raises:
             InputError: as `identification.read_robot`.

@@ -71,7 +71,7 @@ class SweepCommand:
             return self._conclude(sweep, store, kept)
 
     def methods(self) -> Mapping[str, str]:
-        """The methods that a sweep may name."""
+        """Returns the methods that a sweep may name."""
         from identification.sweep.methods import METHODS
 
         return METHODS
@@ -104,7 +104,7 @@ class SweepCommand:
 
 
 def _options(words: Sequence[str]) -> dict[str, str]:
-    """The options of jobs.
+    """Returns the options of jobs.
 
     Raises:
         InputError: a word is not NAME=VALUE.

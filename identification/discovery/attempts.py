@@ -51,7 +51,7 @@ class Failed:
 
     @property
     def outcome(self) -> str:
-        """What happened, in words."""
+        """The outcome, in words."""
         what = "its simulation diverged" if self.diverged else "it could not be evaluated"
         return f"tried, and {what}" + (f": {self.reason}" if self.reason else "")
 

@@ -1,4 +1,4 @@
-"""How sure a name is, against its rivals and against what it leaves unexplained.
+"""The confidence in a name, against its rivals and against what it leaves unexplained.
 
     P_j ∝ exp(-ΔBIC_j/(2 T))        over the models that were refitted in its place, and over the
                                     nominal model with other parameters (`retuning`), and over
@@ -41,7 +41,7 @@ def name_effects(
     explained: float,
     limit: float,
 ) -> tuple[NamedEffect, ...]:
-    """The accepted effects with their final values, their rivals and their confidence.
+    """Returns the accepted effects with their final values, their rivals and their confidence.
 
     Args:
         task: the nominal model and the options.
@@ -103,7 +103,7 @@ def _name(
 def _worth_of_curve(
     final: FittedModel, mine: Candidate, curve: Curve, options: DiscoveryOptions
 ) -> float:
-    """How much larger the negative BIC is with a curve instead of an effect.
+    """Returns how much larger the negative BIC is with a curve instead of an effect.
 
     A law that takes nearly all of what the curve takes may have something small beside it: the
     curve is then at most half as likely.
@@ -116,7 +116,7 @@ def _worth_of_curve(
 
 
 def _outside(curve: Curve, probability: float) -> Outside:
-    """A curve that may explain the same."""
+    """Returns the record of a curve that may explain the same data."""
     drawn = curve.sensitivity.candidate
     along = drawn.effect.name.removeprefix(f"{CURVE}_")
     return Outside(along, drawn.where, float(probability))
@@ -133,7 +133,7 @@ def _compare(
     rivals: Sequence[Candidate],
     sensitivities: Sequence[Sensitivity],
 ) -> list[float]:
-    """Cosines between the whitened sensitivity of an effect and those of its rivals."""
+    """Returns cosines of the whitened sensitivity of an effect with those of its rivals."""
     known: dict[tuple[str, str], list[Sensitivity]] = {}
     for s in sensitivities:
         known.setdefault(_key(s.candidate), []).append(s)
@@ -153,7 +153,7 @@ def _compare(
 
 
 def _find_nearest(candidate: Candidate, known: Sequence[Sensitivity]) -> np.ndarray:
-    """The sensitivity whose shapes are the nearest to a candidate's, shape (N, ny, m)."""
+    """Returns the sensitivity whose shapes are the nearest to a candidate's, shape (N, ny, m)."""
 
     def distance(s: Sensitivity) -> float:
         return sum(abs(s.candidate.shape[n] - v) for n, v in candidate.shape.items())

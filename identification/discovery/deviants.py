@@ -39,7 +39,7 @@ from identification.estimation.options import Progress
 
 
 def find_deviants(task: DiscoveryTask, model: FittedModel) -> tuple[Candidate, ...]:
-    """Effects of the parts that deviate by more than parts do and must do so, the farthest first.
+    """Returns the effects of parts that have to deviate by more than parts do, the farthest first.
 
     Args:
         task: with the nominal model, which knows the effect of each deviation.
@@ -66,7 +66,7 @@ def find_deviants(task: DiscoveryTask, model: FittedModel) -> tuple[Candidate, .
 
 
 def _distance(value: float, others: Sequence[float]) -> float:
-    """How far a part is from n others: |N(0, s²)| of parts that scatter alike with an std s.
+    """Returns how far a part is from n others: |N(0, s²)| where all scatter alike with an std s.
 
     A part without a common value, such as a point that is not where the drawing has it, is so far
     from zero.
@@ -79,7 +79,7 @@ def _distance(value: float, others: Sequence[float]) -> float:
 def accept_deviants(
     task: DiscoveryTask, model: FittedModel, most: int, progress: Progress
 ) -> tuple[FittedModel, tuple[AcceptedEffect, ...]]:
-    """The model with all parts within bounds, and the effects of those that deviate farther.
+    """Returns the model with all parts within bounds, and effects of those that deviate farther.
 
     All of them become effects at once, where the fit with free parts has ended; then one after the
     other is taken out again, the nearest first, and stays out where it is not needed. The common
@@ -139,7 +139,7 @@ def accept_deviants(
 def _without(
     task: DiscoveryTask, candidates: Sequence[Candidate], model: FittedModel
 ) -> tuple[DiscoveryTask, dict[str, float]]:
-    """The task whose common values stay, and values where parts deviate as far as parts do."""
+    """Returns the task with its common values held, and values where parts are within bounds."""
     nominal, values = task.nominal_model, dict(model.refit.point.values)
     std = dict(zip(nominal.names, nominal.std, strict=True))
     for candidate in candidates:
@@ -154,7 +154,7 @@ def _fit_without(
     task: DiscoveryTask, candidates: Sequence[Candidate], values: Mapping[str, float],
     model: FittedModel,
 ) -> FittedModel | None:  # fmt: skip
-    """The model without some effects.
+    """Returns a fit of the model without some effects.
 
     A robot without a part that is off cannot be, and its fit wanders: where few steps leave it far
     behind, it has no more. None where it cannot be simulated.
@@ -172,7 +172,7 @@ def _fit_without(
 def _with_common_held(
     task: DiscoveryTask, candidates: Sequence[Candidate], values: Mapping[str, float]
 ) -> DiscoveryTask:
-    """The task in which the common values of some parts stay where all other parts have them."""
+    """Returns the task with common values of some parts held where all other parts have them."""
     nominal, options = task.nominal_model, task.options
     std = dict(zip(nominal.names, nominal.std, strict=True))
     out = {candidate.key for candidate in candidates}
@@ -189,7 +189,7 @@ def _with_common_held(
 def _as_effects(
     model: NominalModel, candidates: tuple[Candidate, ...], values: Mapping[str, float]
 ) -> dict[str, float]:
-    """The values with the deviations of some parts as sizes of their effects."""
+    """Returns the values with the deviations of some parts as sizes of their effects."""
     out = dict(values)
     for candidate in candidates:
         own = [n for n, at in model.deviants.items() if at == candidate.key]
@@ -199,5 +199,5 @@ def _as_effects(
 
 
 def within_bounds(task: DiscoveryTask) -> DiscoveryTask:
-    """The task in which no part deviates by more than parts do."""
+    """Returns the task in which no part deviates by more than parts do."""
     return replace(task, nominal_model=replace(task.nominal_model, is_bounded=True))

@@ -1,4 +1,4 @@
-"""How far unlogged errors of the inputs move a prediction: a free run, or windows of it.
+"""The effect of unlogged errors of the inputs on a prediction: a free run, or windows of it.
 
 cov(r) = G K Gᵀ            free run from a known start; K: covariance of the errors, G: response
 r = (I - X X⁺) G w         a window from its own best start; X: response to that start
@@ -12,7 +12,7 @@ from identification.kalman.recursion import propagate
 
 
 def propagate_input_error(A: np.ndarray, C: np.ndarray, ratio: float, nu: int) -> np.ndarray:
-    """Variance over σ² that input errors cause in a free run, of each output, shape (N, ny).
+    """Returns the variance over σ² that input errors cause in a free run, shape (N, ny).
 
     Args:
         A: transitions of the state of plant and input error, shape (N-1, nz, nz).

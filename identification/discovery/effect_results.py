@@ -1,4 +1,4 @@
-"""What a discovery says of one effect: named, rejected, a rival, or the smallest that shows."""
+"""Results of a discovery on one effect: named, rejected, a rival, or the smallest that shows."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from identification.effects.effect import Candidate
 
 @dataclass(frozen=True, kw_only=True)
 class Proof:
-    """What an effect does for samples that no fit has seen.
+    """The gain of an effect on samples that no fit has seen.
 
     Attributes:
         gain: log likelihood of the unseen samples with it minus without, under one noise.
@@ -70,7 +70,7 @@ class OfCandidate:
 
     @property
     def where(self: _HasCandidate) -> str:
-        """Where it acts, in words."""
+        """The place where it acts, in words."""
         return self.candidate.where
 
 
@@ -95,7 +95,7 @@ class Rival(OfCandidate):
 
 @dataclass(frozen=True)
 class Retuned:
-    """What the nominal model's parameters would have to be to explain the same without an effect.
+    """The move of the nominal model's parameters that would explain the same without an effect.
 
     Attributes:
         parameter: name of the one that would move the farthest from what was known of it.
@@ -110,7 +110,7 @@ class Retuned:
 
 @dataclass(frozen=True)
 class Outside:
-    """What no catalogue lists: a curve, drawn from the data, that may explain the same.
+    """A curve outside the catalogue, drawn from the data, that may explain the same.
 
     Attributes:
         along: what it follows: "rate", "position", "input" or "time".

@@ -15,7 +15,7 @@ AT_BOUND = 1e-6  # relative distance from a bound that is on it
 
 
 def collect_final_values(found: Discovery) -> dict[str, float]:
-    """Values of all parameters of the final fit by name, those of the named effects included."""
+    """Returns the values of all parameters of the final fit by name, named effects included."""
     point = found.final.point
     out = {**point.predictor.plant.parameters.values(), **point.values}
     for named in found.named:
@@ -29,7 +29,7 @@ def collect_final_values(found: Discovery) -> dict[str, float]:
 
 
 def keep_of_robot(values: Mapping[str, float], effects: Sequence[Effect]) -> dict[str, float]:
-    """The values of a robot that hold in every log.
+    """Returns the values of a robot that hold in every log.
 
     Args:
         values: values by name.
@@ -41,7 +41,7 @@ def keep_of_robot(values: Mapping[str, float], effects: Sequence[Effect]) -> dic
 
 
 def collect_std(fit: Refit) -> dict[str, float]:
-    """Std of the free parameters of a fit by name, in their units; NaN where a bound holds one."""
+    """Returns the std of a fit's free parameters by name, in their units; NaN at a bound."""
     space, q = fit.point.space, fit.point.q
     std = np.where(space.on_bound(q), np.nan, fit.std * space.slope(q))
     return dict(zip(space.names, std.tolist(), strict=True))

@@ -44,11 +44,11 @@ class FittedModel:
         return 2 * self.refit.log_posterior - free * float(np.log(len(self.refit.point.log)))
 
     def log_posterior_of_equal(self, free: int) -> float:
-        """The log posterior with which a model of so many free parameters has the same BIC."""
+        """Returns the log posterior at which a model with so many free parameters has this BIC."""
         return (self.negative_bic + free * float(np.log(len(self.refit.point.log)))) / 2
 
     def with_fitted_shape(self, candidate: Candidate) -> Candidate:
-        """One of its effects, with the shape that was fitted."""
+        """Returns one of its effects with the shape that was fitted."""
         values, effect = self.refit.point.values, candidate.effect
         names = [s.name for s in effect.shapes]
         shape = {name: values[effect.parameter(name, candidate.where)] for name in names}
@@ -143,13 +143,13 @@ def try_fit(
 
 def score_candidates(model: FittedModel, sensitivities: Sequence[Sensitivity],
                      options: DiscoveryOptions) -> tuple[Score, ...]:  # fmt: skip
-    """Scores of all candidates that a model does not have yet, the best first."""
+    """Returns the scores of all candidates that a model does not have yet, the best first."""
     others = [s for s in sensitivities if not has_candidate(model, s.candidate)]
     return score(model.refit, others, options)
 
 
 def has_candidate(model: FittedModel, candidate: Candidate) -> bool:
-    """Whether a model has an effect at the place of a candidate, or at all places."""
+    """Returns whether a model has an effect at the place of a candidate, or at all places."""
     return any(
         c.effect.name == candidate.effect.name
         and (c.where == candidate.where or not c.effect.places[c.where])
@@ -160,7 +160,7 @@ def has_candidate(model: FittedModel, candidate: Candidate) -> bool:
 def collect_parameters(
     task: DiscoveryTask, model: FittedModel, candidate: Candidate
 ) -> dict[str, tuple[float, float, str]]:
-    """Sizes and shapes of an effect in a fitted model, by symbol: value, std, unit.
+    """Returns the sizes and shapes of an effect in a fitted model, by symbol: value, std, unit.
 
     The std is zero of what is not estimated, and of what a bound holds.
     """
@@ -179,7 +179,7 @@ def collect_parameters(
 
 
 def list_parameters_at_limit(model: FittedModel, options: DiscoveryOptions) -> tuple[str, ...]:
-    """Positive parameters of the nominal model that end at a limit of what is plausible."""
+    """Returns positive parameters of the nominal model that end at a limit of plausible values."""
     point = model.refit.point
     room = np.minimum(point.q - point.space.lower, point.space.upper - point.q)
     of_effects = {n for c in model.candidates for n in c.sizes}
@@ -195,17 +195,17 @@ def list_parameters_at_limit(model: FittedModel, options: DiscoveryOptions) -> t
 
 
 def is_proven(proof: Proof, options: DiscoveryOptions, tried: int = 1) -> bool:
-    """Whether unseen samples confirm an effect beyond chance; it is one of so many tried."""
+    """Returns whether unseen samples confirm an effect beyond chance, as one of so many tried."""
     return tried * proof.chance < allowed_chance(proof.blocks, options)
 
 
 def is_relevant(proof: Proof, options: DiscoveryOptions) -> bool:
-    """Whether an effect explains enough of the unseen samples to matter."""
+    """Returns whether an effect explains enough of the unseen samples to matter."""
     return proof.fall > options.min_fall and proof.above > options.min_gap_share
 
 
 def is_far_likelier(candidate: Candidate, gain: float, samples: int) -> bool:
-    """Whether the fitted samples want an effect far more than BIC asks.
+    """Returns whether the fitted samples want an effect far more than BIC asks.
 
     Args:
         candidate: the effect.
@@ -216,5 +216,5 @@ def is_far_likelier(candidate: Candidate, gain: float, samples: int) -> bool:
 
 
 def is_confirmed(proof: Proof, options: DiscoveryOptions, tried: int = 1) -> bool:
-    """Whether unseen samples confirm an effect: beyond chance, and by enough to matter."""
+    """Returns whether unseen samples confirm an effect, beyond chance and by enough to matter."""
     return is_proven(proof, options, tried) and is_relevant(proof, options)

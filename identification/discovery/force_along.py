@@ -69,7 +69,7 @@ class ForceAlong:
 
 @dataclass(frozen=True)
 class Stretch:
-    """What was simulated from one state: a record, or a window of one.
+    """A simulation from one state: of a record, or of a window of one.
 
     Attributes:
         predictor: of its outputs.
@@ -83,7 +83,7 @@ class Stretch:
 
 
 def forces_along(stretches: Sequence[Stretch], predicted: np.ndarray) -> ForceAlong | None:
-    """The forces of some sets of values beyond those of a base, along stretches.
+    """Returns the forces of some sets of values beyond those of a base, along stretches.
 
     Args:
         stretches: with the models of base and sets.
@@ -127,7 +127,7 @@ def forces_along(stretches: Sequence[Stretch], predicted: np.ndarray) -> ForceAl
 
 
 def _dofs(model: mujoco.MjModel, force: np.ndarray) -> tuple[list[int], int]:
-    """Degrees of freedom on which a force (M, nv) acts, and the kind of their joints."""
+    """Returns degrees of freedom on which a force (M, nv) acts, and the kind of their joints."""
     rms = np.sqrt(np.mean(force**2, axis=0))
     if rms.max(initial=0.0) < LEAST:
         return [], 0
@@ -138,7 +138,7 @@ def _dofs(model: mujoco.MjModel, force: np.ndarray) -> tuple[list[int], int]:
 
 
 def _turning(rate: np.ndarray) -> np.ndarray:
-    """Where rates change by more than themselves to a neighbour, along one trajectory (M, n).
+    """Returns a mask where rates change by more than themselves to a neighbour, shape (M, n).
 
     The neighbours are told too: in the step that ends with a joint at rest, what holds it is any
     force below its friction.
@@ -157,7 +157,7 @@ def _turning(rate: np.ndarray) -> np.ndarray:
 def _rates(
     model: mujoco.MjModel, inputs: np.ndarray, along: Trajectory
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Accelerations and forces of the actuators along a trajectory, shape (M, nv) each."""
+    """Returns accelerations and actuator forces along a trajectory, shape (M, nv) each."""
     data = mujoco.MjData(model)
     rates, drives = np.empty_like(along.qvel), np.empty_like(along.qvel)
     for k in range(len(along.time)):
@@ -171,7 +171,7 @@ def _rates(
 def _times_mass(
     model: mujoco.MjModel, along: Trajectory, rates: Sequence[np.ndarray]
 ) -> list[np.ndarray]:
-    """M times accelerations along a trajectory, shape (M, nv) each."""
+    """Returns the inertia matrix times accelerations along a trajectory, shape (M, nv) each."""
     data, out = mujoco.MjData(model), [np.empty_like(a) for a in rates]
     for k in range(len(along.time)):
         _place(data, along, k)

@@ -1,4 +1,4 @@
-"""How much memory and time a search will take, told before it takes them.
+"""A forecast of the memory and time of a search, told before it takes them.
 
     bytes   = BASE + MODELS b + (1 + KEPT) D
     D       = 8 max(N LINEAR n_x²,  n (n_y (p + m) + LINEAR n_x² + c F + c_u n_u (s + P)))
@@ -57,7 +57,7 @@ _TOLD = 60.0, 2.0**30  # [s] and [bytes] from which a forecast is worth a line
 
 @dataclass(frozen=True)
 class Forecast:
-    """What a search will take.
+    """The memory and time that a search will take.
 
     Attributes:
         samples: of the log.
@@ -155,7 +155,7 @@ def refuse_large(found: Forecast, share: float, least: int) -> None:
 
 
 def free_memory() -> float:
-    """Memory that programs may still take [bytes]; infinite where the system does not say."""
+    """Returns the memory that programs may still take [bytes]; infinite where it is not known."""
     try:
         lines = read_text(Path("/proc/meminfo")).splitlines()
         table = dict(line.split(":", 1) for line in lines)
@@ -168,7 +168,7 @@ def free_memory() -> float:
 
 
 def _simulated(task: DiscoveryTask) -> float:
-    """Processor time of one simulation of the log [s], from that of its first samples."""
+    """Returns the processor time to simulate the log once [s], from that of its first samples."""
     names = task.nominal_model.names
     own = task.nominal_model.plant.parameters
     values = np.array([[own[name].value for name in names]])

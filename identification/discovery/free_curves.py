@@ -45,7 +45,7 @@ class Curve:
 
 
 def find_curves(fit: Refit, options: DiscoveryOptions) -> tuple[Curve, ...]:
-    """Curves that explain more than chance of what a fit leaves, the best first.
+    """Returns the curves that explain more than chance of what a fit leaves, the best first.
 
     The noise is that of the fit, which takes for an error of the inputs a part of what a law
     leaves: a curve takes errors of the inputs as well, so that no smaller noise is believed.
@@ -68,7 +68,7 @@ def find_curves(fit: Refit, options: DiscoveryOptions) -> tuple[Curve, ...]:
 
 
 def list_curves(fit: Refit) -> tuple[Sensitivity, ...]:
-    """Sensitivities to the nodes of every curve: one of all actuated joints, and one of each."""
+    """Returns sensitivities to the nodes of each curve: of all actuated joints, and of each one."""
     predictor, space, q = fit.point.predictor, fit.point.space, fit.point.q
     model = predictor.plant.model
     joints = list_actuated_joints(model)
@@ -98,7 +98,7 @@ def _curve(along: str, where: str) -> Candidate:
 def _regressors(
     linear: Linearisation, log: Log, joints: Mapping[int, int]
 ) -> dict[str, np.ndarray]:
-    """What a force may follow, at the samples of one record but the last, shape (N-1, n) each."""
+    """Returns regressors of a force at all samples but a record's last, shape (N-1, n) each."""
     along, of = linear.along, list(joints)
     out = {
         "rate": along.states["qvel"][:-1, along.model.jnt_dofadr[of]],
@@ -111,12 +111,12 @@ def _regressors(
 
 
 def _place_nodes(s: np.ndarray) -> np.ndarray:
-    """Nodes between which there are equally many samples, shape (m,); fewer where values repeat."""
+    """Returns nodes with equally many samples in between, shape (m,); fewer if values repeat."""
     return np.unique(np.quantile(s, np.linspace(0, 1, NODES)))
 
 
 def _hats(s: np.ndarray, nodes: np.ndarray) -> np.ndarray:
-    """Hats about the nodes, which add up to one, shape (*s.shape, NODES); zero where missing."""
+    """Returns hat functions that add up to one, shape (*s.shape, NODES); zero for missing nodes."""
     out = np.zeros((*s.shape, NODES))
     for j in range(len(nodes)):
         out[..., j] = np.interp(s, nodes, np.eye(len(nodes))[j])
@@ -124,7 +124,7 @@ def _hats(s: np.ndarray, nodes: np.ndarray) -> np.ndarray:
 
 
 def _respond(linear: Linearisation, hats: np.ndarray) -> np.ndarray:
-    """Outputs of unit forces that follow hats (N-1, n, m), shape (N, ny, n, m)."""
+    """Returns the outputs for unit forces that follow hats (N-1, n, m), shape (N, ny, n, m)."""
     plant = linear.at_samples()
     read, none = np.flatnonzero(plant.C.any(axis=0)), np.zeros((hats.shape[2], plant.A.shape[1]))
     each = [

@@ -35,7 +35,7 @@ class Nodes:
     side: np.ndarray
 
     def hats(self, x: np.ndarray) -> np.ndarray:
-        """Hats about the nodes at some places, shape (*x.shape, m)."""
+        """Returns the hat functions of the nodes at some places, shape (*x.shape, m)."""
         out = np.zeros((*x.shape, len(self.x)))
         for side in np.unique(self.side):
             mine = np.flatnonzero(self.side == side)
@@ -46,7 +46,7 @@ class Nodes:
 
 
 def place_nodes(regressor: Regressor, force: np.ndarray) -> Nodes:
-    """Nodes where the samples are, and as many where a law bends, so that they show it.
+    """Returns nodes where the samples are, and as many where a law bends, so that they show it.
 
     Args:
         regressor: what the force follows.
@@ -67,7 +67,7 @@ def place_nodes(regressor: Regressor, force: np.ndarray) -> Nodes:
 
 
 def _between(x: np.ndarray, force: np.ndarray, count: int) -> np.ndarray:
-    """Some nodes over the range of ascending x: half by the samples, half by the law's changes."""
+    """Returns nodes over ascending x: half of them by the samples, half by the law's changes."""
     share = np.linspace(0, 1, count // 2 + 1)
     few = x[:: max(1, len(x) // MOST)]
     law = np.interp(few, x, force)
@@ -82,7 +82,7 @@ def _between(x: np.ndarray, force: np.ndarray, count: int) -> np.ndarray:
 
 
 def respond(along: ForceAlong, regressor: Regressor, nodes: Nodes) -> np.ndarray:
-    """Outputs for a unit force at each node, shape (N, ny, m)."""
+    """Returns the outputs for a unit force at each node, shape (N, ny, m)."""
     hats = nodes.hats(regressor.values) * regressor.turn[..., None]
     out, done = [], 0
     for linear in along.stretches:

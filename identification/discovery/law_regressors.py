@@ -1,4 +1,4 @@
-"""What a force follows: the quantity of which it is a function along a trajectory.
+"""The quantity that a force follows: the force is a function of it along a trajectory.
 
     u(x) = Σ_i (f_(i+1) - f_(i))² / 2 Σ f²        f_(i): the forces in the order of x
 
@@ -56,14 +56,14 @@ class Regressor:
         return bool((self.turn < 0).any())
 
     def samples(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What is followed, and a force (M, n) as it is shown, where the joints move."""
+        """Returns the followed values, and a force (M, n) as it is shown, where the joints move."""
         return self.values[self.moving], (self.turn * force)[self.moving]
 
 
 def find_regressor(
     candidate: Candidate, values: Mapping[str, float], along: ForceAlong
 ) -> Regressor:
-    """What the force of an effect follows.
+    """Returns the quantity that the force of an effect follows.
 
     Args:
         candidate: the effect.
@@ -103,7 +103,7 @@ def find_regressor(
 def find_reading(
     own: np.ndarray, rate: np.ndarray, time: np.ndarray, error: np.ndarray, unit: str
 ) -> Regressor:
-    """What the error of a sensor follows: its reading, the time or, else, the reading's rate.
+    """Returns what a sensor's error follows: its reading, the time or, else, the reading's rate.
 
     Args:
         own: readings of n outputs without the error, shape (N, n) [unit].
@@ -126,14 +126,14 @@ def find_reading(
 
 
 def unexplained(regressor: Regressor, force: np.ndarray) -> float:
-    """u of a force, shape (M, n), and what it may follow."""
+    """Returns u, the share of a force (M, n) that is no smooth function of what it may follow."""
     x, f = regressor.samples(force)
     jumps = np.diff(f[np.argsort(x, kind="stable")])
     return float(np.sum(jumps**2) / (2 * max(np.sum(f**2), 1e-300)))
 
 
 def _is_of_time(along: ForceAlong, turn: np.ndarray) -> bool:
-    """Whether a force, turned, is the same at all states that a joint has at one time."""
+    """Returns whether a force, turned, is the same at all states that a joint has at one time."""
     time, f = along.time.ravel(), (turn * along.forces[0]).ravel()
     order = np.argsort(time, kind="stable")
     expected = np.interp(along.late_time.ravel(), time[order], f[order])
@@ -142,7 +142,7 @@ def _is_of_time(along: ForceAlong, turn: np.ndarray) -> bool:
 
 
 def _waves(candidate: Candidate, values: Mapping[str, float]) -> float | None:
-    """Periods per radian or metre, times 2π, of a law a cos nq + b sin nq; None of another."""
+    """Returns 2π times the periods per radian or metre of a cos nq + b sin nq; None otherwise."""
     effect = candidate.effect
     if [s.name for s in effect.sizes] != ["a", "b"] or [s.name for s in effect.shapes] != ["n"]:
         return None
@@ -150,5 +150,5 @@ def _waves(candidate: Candidate, values: Mapping[str, float]) -> float | None:
 
 
 def _single(candidate: Candidate, values: Mapping[str, float]) -> float:
-    """The size of an effect that has but one; 0 of another."""
+    """Returns the size of an effect that has only one; 0 for any other effect."""
     return values[candidate.sizes[0]] if len(candidate.sizes) == 1 else 0.0

@@ -48,7 +48,7 @@ class MissingForce:
 
 
 def estimate_missing_forces(fit: Refit, options: KalmanOptions) -> tuple[MissingForce, ...]:
-    """The missing forces of every group of degrees of freedom.
+    """Returns the missing forces of every group of degrees of freedom.
 
     Args:
         fit: the nominal model, fitted.
@@ -89,7 +89,7 @@ def estimate_missing_forces(fit: Refit, options: KalmanOptions) -> tuple[Missing
 
 
 def list_actuated_joints(model: mujoco.MjModel) -> dict[int, int]:
-    """Joints that actuators act on directly, but for free bodies: each with its first actuator."""
+    """Returns joints (not free) on which actuators act directly, and the first actuator of each."""
     transmission = int(mujoco.mjtTrn.mjTRN_JOINT)
     out: dict[int, int] = {}
     for i in range(model.nu):
@@ -102,7 +102,7 @@ def list_actuated_joints(model: mujoco.MjModel) -> dict[int, int]:
 def _groups(
     model: mujoco.MjModel,
 ) -> list[tuple[str, list[int], tuple[str, ...], tuple[str, ...]]]:
-    """Name, degrees of freedom, their names and units: actuated joints first, then free bodies."""
+    """Returns name, degrees of freedom, their names and units: joints first, then free bodies."""
     joints = [*list_actuated_joints(model)]
     out = []
     if joints:

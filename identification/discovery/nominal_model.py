@@ -185,7 +185,7 @@ def _same_point(
 
 
 def _is_less_likely(found: Refit, near: Refit) -> bool:
-    """Whether a fit is less likely than one with fewer parameters and the same priors."""
+    """Returns whether a fit is less likely than one with fewer parameters and the same priors."""
     prior = dict(zip(found.point.space.names, found.prior, strict=True))
     fewer = dict(zip(near.point.space.names, near.prior, strict=True))
     contained = len(fewer) < len(prior) and all(prior.get(n) == s for n, s in fewer.items())
@@ -195,7 +195,7 @@ def _is_less_likely(found: Refit, near: Refit) -> bool:
 def _within_factor(
     space: Coordinates, parameters: ParameterSet, names: Sequence[str], factor: float
 ) -> Coordinates:
-    """Coordinates in which the positive parameters among `names` stay within a factor."""
+    """Returns coordinates in which the positive parameters among `names` stay within a factor."""
     nominal = np.array([parameters[n].value if n in names else 1.0 for n in space.names])
     bounded = space.logarithmic & np.isin(space.names, names)
     middle = np.log(np.where(bounded, nominal, 1.0))
@@ -207,7 +207,7 @@ def _within_factor(
 
 
 def _within_scatter(space: Coordinates, nominal: NominalModel, most: float) -> Coordinates:
-    """Coordinates in which no member of a group leaves its mean, zero, by more than `most` std."""
+    """Returns coordinates in which members of groups stay within `most` std of their mean, zero."""
     std = dict(zip(nominal.names, nominal.std, strict=True))
     grouped = nominal.grouped
     far = np.array([most * std[n] if n in grouped else np.inf for n in space.names])
@@ -217,7 +217,7 @@ def _within_scatter(space: Coordinates, nominal: NominalModel, most: float) -> C
 
 
 def _within_held(space: Coordinates, held: Mapping[str, tuple[float, float]]) -> Coordinates:
-    """Coordinates in which some parameters stay within ranges of their own."""
+    """Returns coordinates in which some parameters stay within ranges of their own."""
     everywhere = -np.inf, np.inf
     low, high = np.array([held.get(name, everywhere) for name in space.names]).T
     mine = np.isin(space.names, [*held])
@@ -226,12 +226,12 @@ def _within_held(space: Coordinates, held: Mapping[str, tuple[float, float]]) ->
 
 
 def _nonzero(record: Parameter, value: float) -> float:
-    """The value of a size, moved away from zero where it is too near to it."""
+    """Returns the value of a size, moved away from zero where it is too near to it."""
     least = SMALL * record.scale
     return value if abs(value) > least else least * (1 if record.upper > 0 else -1)
 
 
 def _inside(record: Parameter, value: float) -> float:
-    """The value moved a little inside its bounds."""
+    """Returns the value moved a little inside its bounds."""
     margin = 1e-9 * max(abs(value), record.scale)
     return float(np.clip(value, record.lower + margin, record.upper - margin))

@@ -18,7 +18,7 @@ DIGITS = 1e-3  # relative, of values whose std is not known
 
 
 class Refitted(Protocol):
-    """What is asked of an effect that was refitted."""
+    """An effect that was refitted, as `listed_once` takes it."""
 
     @property
     def candidate(self) -> Candidate:
@@ -33,7 +33,7 @@ R = TypeVar("R", bound=Refitted)
 
 
 def listed_once(refitted: Sequence[R]) -> tuple[R, ...]:
-    """The refits, without those that end where one before them does.
+    """Returns the refits without those that end at the values of one before them.
 
     Args:
         refitted: effects, the best first.
@@ -46,7 +46,7 @@ def listed_once(refitted: Sequence[R]) -> tuple[R, ...]:
 
 
 def _is_same(a: Refitted, b: Refitted) -> bool:
-    """Whether two refits are of one effect at one place, with the same values."""
+    """Returns whether two refits are of one effect at one place, with the same values."""
     if a.candidate.key != b.candidate.key or a.parameters.keys() != b.parameters.keys():
         return False
     pairs = ((a.parameters[name], b.parameters[name]) for name in a.parameters)

@@ -18,7 +18,7 @@ from identification.kalman.options import option
 
 @dataclass(frozen=True, kw_only=True)
 class DiscoveryOptions(PredictionOptions):
-    """What a discovery believes; the options of the noise model, and of a horizon, are among them.
+    """Options of what a discovery believes, those of the noise model and of a horizon among them.
 
     Every field has its unit, reason and source in its metadata (`dataclasses.fields`).
 
@@ -227,7 +227,7 @@ class DiscoveryOptions(PredictionOptions):
 
 
 def read_options(path: str | Path) -> DiscoveryOptions:
-    """The options of a TOML file of lines `name = value`; defaults where it says nothing.
+    """Returns the options of a TOML file of lines `name = value`; defaults where none is given.
 
     Args:
         path: of the file.

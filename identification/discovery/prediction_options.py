@@ -9,7 +9,7 @@ from identification.kalman.options import KalmanOptions, option
 
 @dataclass(frozen=True, kw_only=True)
 class PredictionOptions(KalmanOptions):
-    """What is tried and told where predictions of unseen records decide.
+    """Options of what is tried and told where predictions of unseen records decide.
 
     Every field has its unit, reason and source in its metadata (`dataclasses.fields`).
 

@@ -33,7 +33,7 @@ ROUNDING = 1e-12  # of the blocks' sizes: sums that differ by less are one
 
 
 def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -> Proof:
-    """What the second of two fits does for the unseen samples.
+    """Returns how much better the second of two fits predicts the unseen samples.
 
     Args:
         without: the model without an effect.
@@ -64,7 +64,7 @@ def prove(without: Validation, with_it: Validation, options: DiscoveryOptions) -
 
 
 def _by_record(validation: Validation, gain: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
-    """The gains of the unseen samples of each record."""
+    """Yields the name of each record and the gains of its unseen samples."""
     begun = 0
     for _, record in records_of(validation.log):
         rows = slice(begun, begun := begun + len(record))
@@ -72,7 +72,7 @@ def _by_record(validation: Validation, gain: np.ndarray) -> Iterator[tuple[str, 
 
 
 def is_beyond(blocks: np.ndarray, options: DiscoveryOptions) -> bool:
-    """Whether blocks gain beyond chance: beyond what Student's t allows at `min_proof_t`.
+    """Returns whether blocks gain beyond chance: beyond what Student's t allows at `min_proof_t`.
 
     Args:
         blocks: gain of each block, shape (B,).
@@ -82,12 +82,12 @@ def is_beyond(blocks: np.ndarray, options: DiscoveryOptions) -> bool:
 
 
 def allowed_chance(count: int, options: DiscoveryOptions) -> float:
-    """The chance of a t above `min_proof_t`, one-sided, for so many blocks."""
+    """Returns the chance of a t above `min_proof_t`, one-sided, for so many blocks."""
     return student_above(options.min_proof_t, count - 1)
 
 
 def flip_chance(blocks: np.ndarray) -> float:
-    """Share of all flips of the blocks' signs whose sum is at least the sum itself.
+    """Returns the share of all flips of the blocks' signs whose sum is at least the sum itself.
 
     All 2^B sums are counted: those of one half of the blocks against those of the other half.
     (`scipy.stats.permutation_test` draws flips by chance beyond a dozen blocks.)
@@ -106,7 +106,7 @@ def flip_chance(blocks: np.ndarray) -> float:
 
 
 def _signed_sums(blocks: np.ndarray) -> np.ndarray:
-    """Sums of the blocks with every choice of their signs, shape (2^B,)."""
+    """Returns the sums of the blocks with every choice of their signs, shape (2^B,)."""
     sums = np.zeros(1)
     for gain in blocks:
         sums = np.concatenate([sums + gain, sums - gain])
@@ -114,13 +114,13 @@ def _signed_sums(blocks: np.ndarray) -> np.ndarray:
 
 
 def _blocks(gain: np.ndarray, options: DiscoveryOptions) -> np.ndarray:
-    """Gains of blocks of neighbouring samples, shape (B,)."""
+    """Returns the gains of blocks of neighbouring samples, shape (B,)."""
     count = min(options.proof_blocks, len(gain) // SHORTEST)
     starts = np.linspace(0, len(gain), count, endpoint=False).astype(int)
     return np.add.reduceat(gain, starts)
 
 
 def _t(blocks: np.ndarray) -> float:
-    """Student's t of the gain by blocks."""
+    """Returns Student's t of the gain by blocks."""
     scatter = blocks.std(ddof=1) / np.sqrt(len(blocks))
     return float(blocks.mean() / scatter) if scatter > 0 else 0.0

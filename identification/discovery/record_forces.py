@@ -19,7 +19,7 @@ def force_of_records(
     predictor: Predictor, values: Mapping[str, float], base: Mapping[str, float],
     sets: Sequence[Mapping[str, float]],
 ) -> ForceAlong | None:  # fmt: skip
-    """The forces of some sets of values beyond those of a base, along a predicted trajectory.
+    """Returns the forces of sets of values beyond those of a base, along a predicted trajectory.
 
     Args:
         predictor: plant and log.
@@ -59,7 +59,7 @@ def _row(values: Mapping[str, float]) -> np.ndarray:
 def _reached(
     predictor: Predictor, row: np.ndarray, along: Trajectory
 ) -> tuple[mujoco.MjModel, np.ndarray]:
-    """The model of a value set (1, p), and the inputs that reach it along a record's trajectory."""
+    """Returns the model of a value set (1, p), and the inputs that reach it along a trajectory."""
     log, plant = predictor.log, predictor.plant.model
     model = with_numbers(without_sensors(plant), predictor.settings(row)[1], 0)
     held = hold(log.inputs, substeps(log.sampling_time, along.timestep), log.hold)

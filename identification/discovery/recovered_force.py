@@ -106,7 +106,7 @@ class Shown:
 
 
 def show_forces(candidate: Candidate, values: Mapping[str, float], along: ForceAlong) -> Shown:
-    """Forces on joints, over what the first of them follows.
+    """Returns forces on joints over the quantity that the first of them follows.
 
     Args:
         candidate: the effect.
@@ -121,7 +121,7 @@ def show_forces(candidate: Candidate, values: Mapping[str, float], along: ForceA
 def show_readings(
     log: Log, own: np.ndarray, rate: np.ndarray, time: np.ndarray, readings: Sequence[np.ndarray]
 ) -> Shown | None:
-    """Errors of sensors: what they say beyond what perfect ones would.
+    """Returns errors of sensors: their readings minus those of perfect sensors.
 
     Args:
         log: that has the outputs.
@@ -148,7 +148,7 @@ def show_readings(
 
 @dataclass(frozen=True)
 class Moved:
-    """By how much the parameters of a law were moved, to see what is not known of it.
+    """Steps by which the parameters of a law were moved, to see what is not known of it.
 
     Attributes:
         steps: in their units, shape (k,).
@@ -160,7 +160,7 @@ class Moved:
 
 
 def law_steps(candidate: Candidate, std: Mapping[str, float]) -> dict[str, float]:
-    """Steps for derivatives of a law by its free parameters, by name, in their units.
+    """Returns steps for derivatives of a law by its free parameters, by name, in their units.
 
     Args:
         candidate: the effect.
@@ -173,7 +173,7 @@ def law_steps(candidate: Candidate, std: Mapping[str, float]) -> dict[str, float
 def moved_by(
     steps: Mapping[str, float], names: Sequence[str], covariance: np.ndarray, slope: np.ndarray
 ) -> Moved:
-    """Steps of a law's parameters, with what a fit knows of these.
+    """Returns steps of a law's parameters, with the covariance that a fit gives these.
 
     Args:
         steps: by name, in the parameters' units.
@@ -192,7 +192,7 @@ def compare_force(
     candidate: Candidate, shown: Shown, c: np.ndarray, std: np.ndarray, moved: Moved,
     rivals: Sequence[Candidate],
 ) -> RecoveredForce:  # fmt: skip
-    """The points of the free curve beside the law with its band and the laws of rivals.
+    """Returns the points of the free curve beside the law with its band and the laws of rivals.
 
     Args:
         candidate: the named effect.
@@ -218,7 +218,7 @@ def compare_force(
 
 
 def _with_band(law: LawLine, moved: Sequence[LawLine], by: Moved) -> LawLine:
-    """A law with the std that the covariance of its parameters gives it."""
+    """Returns a law with the std that the covariance of its parameters gives it."""
     if not len(by.steps):
         return law
     slopes = [(m.force - law.force) / h for m, h in zip(moved, by.steps, strict=True)]
@@ -227,7 +227,7 @@ def _with_band(law: LawLine, moved: Sequence[LawLine], by: Moved) -> LawLine:
 
 
 def _edges(x: Regressor, law: np.ndarray) -> np.ndarray:
-    """Bins of what is followed: even ones, ones of equally many samples, ones where a law bends."""
+    """Returns bin edges: evenly spaced, at equally many samples, and where a law bends."""
     at, f = x.samples(law)
     order = np.argsort(at, kind="stable")
     few = at[order][:: max(1, len(at) // MOST)]
@@ -241,7 +241,7 @@ def _edges(x: Regressor, law: np.ndarray) -> np.ndarray:
 
 
 def _line(x: Regressor, force: np.ndarray, edges: np.ndarray) -> LawLine:
-    """A force (M, n) along what it follows: means over bins."""
+    """Returns a force (M, n) along what it follows, as means over bins."""
     at, f = x.samples(force)
     which = np.clip(np.searchsorted(edges, at, side="right") - 1, 0, len(edges) - 2)
     count = np.bincount(which, minlength=len(edges) - 1)
@@ -253,14 +253,14 @@ def _line(x: Regressor, force: np.ndarray, edges: np.ndarray) -> LawLine:
 def _points(
     nodes: Nodes, law: tuple[np.ndarray, np.ndarray], c: np.ndarray, std: np.ndarray
 ) -> LawLine:
-    """The points of the free curve, but for those of which the samples tell nothing."""
+    """Returns the points of the free curve, without those that the samples hardly determine."""
     at = np.array([_at(*law, x, side) for x, side in zip(nodes.x, nodes.side, strict=True)])
     told = std < WEAK * np.abs(law[1]).max()
     return LawLine(nodes.x[told], (at + c)[told], std[told])
 
 
 def _at(x: np.ndarray, force: np.ndarray, node: float, side: int) -> float:
-    """A law at a node: a straight line through the samples about it, on its side of zero."""
+    """Returns a law at a node, by a straight line through samples near it, on its side of zero."""
     mine = x * side >= 0 if side else np.ones(len(x), bool)
     x, force = x[mine] - node, force[mine]
     near = np.argsort(np.abs(x))[: max(3, len(x) // NEAR)]

@@ -30,7 +30,7 @@ def recover_force(
     candidate: Candidate,
     rivals: Sequence[Rival] = (),
 ) -> RecoveredForce | None:
-    """The force of an effect, recovered from the fitted samples.
+    """Returns the force of an effect, recovered from the fitted samples.
 
     Args:
         fit: with the effect.
@@ -67,7 +67,7 @@ def _of_forces(
     fit: Refit, candidate: Candidate, values: Mapping[str, float], base: Mapping[str, float],
     sets: Sequence[Mapping[str, float]],
 ) -> Shown | None:  # fmt: skip
-    """Forces on joints; None where the law has none, or not on joints of one kind alone."""
+    """Returns forces on joints; None where the law has none, or not on joints of one kind."""
     along = force_of_records(fit.point.predictor, values, base, sets)
     if along is None:
         return None
@@ -78,7 +78,7 @@ def _of_readings(
     fit: Refit, candidate: Candidate, values: Mapping[str, float], base: Mapping[str, float],
     sets: Sequence[Mapping[str, float]],
 ) -> Shown | None:  # fmt: skip
-    """Errors of sensors: what they say beyond what a perfect one would."""
+    """Returns errors of sensors: their readings minus those of perfect sensors."""
     predictor = fit.point.predictor
     own, *others = (
         replace(predictor, names=tuple(v), fixed={}).predict(np.array([[*v.values()]]))[0]
@@ -90,12 +90,12 @@ def _of_readings(
 
 
 def _absent(values: Mapping[str, float], others: Mapping[str, float]) -> dict[str, float]:
-    """Parameters that other values do not name, as a base has them."""
+    """Returns the parameters of a base that other values do not name, with their values."""
     return {name: value for name, value in values.items() if name not in others}
 
 
 def _solve(fit: Refit, e: np.ndarray, S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The forces at the nodes that are likeliest, and their std, each of shape (m,)."""
+    """Returns the likeliest forces at the nodes, and their std, shape (m,) each."""
     point, level = fit.point, fit.level
     filter_ = build_whitener(point.linear, level.noise, point.log.sampling_time)
     E, F = filter_(e).ravel(), filter_(S).reshape(e.size, -1)

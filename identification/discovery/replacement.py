@@ -1,4 +1,4 @@
-"""What a fit loses where something else stands in an effect's place, to first order.
+"""The loss of a fit where something else stands in an effect's place, to first order.
 
     loss = min_δ,c C(q̂ + δ, c | η = 0) - min_δ C(q̂ + δ)
 
@@ -66,7 +66,7 @@ def replace_effect(
 
 
 def _least(rows: np.ndarray, target: np.ndarray) -> tuple[float, np.ndarray]:
-    """The minimum of ‖target - rows move‖², and the move."""
+    """Returns the minimum of ‖target - rows move‖², and the move."""
     scale = np.linalg.norm(rows, axis=0) + 1e-300
     move = np.linalg.lstsq(rows / scale, target, rcond=1e-12)[0] / scale
     return float(np.sum((target - rows @ move) ** 2)), move

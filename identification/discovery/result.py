@@ -95,7 +95,7 @@ class Discovery(Shown):
 
     @cached_property
     def located(self) -> tuple[Finding, ...]:
-        """Where the nominal model fails; empty when nothing is missing; computed when asked for."""
+        """Places where the nominal model fails; empty if nothing is missing; computed on demand."""
         if self.verdict == "nothing missing":
             return ()
         return locate_error(self.nominal, self.missing_forces, self.options)

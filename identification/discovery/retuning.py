@@ -25,7 +25,7 @@ from identification.kalman.refit import Refit
 def retune(
     fit: Refit, nominal: NominalModel, candidate: Candidate, options: DiscoveryOptions
 ) -> tuple[float, Retuned]:
-    """What a fit loses without an effect when the nominal model's parameters may replace it.
+    """Returns the loss of a fit without an effect when the nominal parameters may replace it.
 
     Args:
         fit: the fit with the effect.
@@ -60,7 +60,7 @@ def retune(
 def _minimise(
     rows: np.ndarray, target: np.ndarray, lower: np.ndarray, upper: np.ndarray
 ) -> tuple[np.ndarray, float]:
-    """The move within bounds that makes ‖target - rows move‖² least, and that minimum."""
+    """Returns the move within bounds that minimises ‖target - rows move‖², and that minimum."""
     scale = np.linalg.norm(rows, axis=0) + 1e-300
     Q, R = np.linalg.qr(rows / scale)
     bounds = (lower * scale - 1e-12, upper * scale + 1e-12)

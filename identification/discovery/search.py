@@ -86,4 +86,4 @@ def refuse_unfit(log: Log, options: DiscoveryOptions) -> None:
 
 
 def _say_nothing(line: str) -> None:
-    """The progress that nobody listens to."""
+    """Ignores a line of progress."""

@@ -80,7 +80,7 @@ class SearchState:
 
 
 def first_state(task: DiscoveryTask, progress: Progress) -> SearchState:
-    """The state after the nominal fit: nothing is accepted, and all candidates are scored.
+    """Returns the state after the nominal fit: nothing is accepted, and all candidates are scored.
 
     Args:
         task: what is asked.
@@ -133,7 +133,7 @@ def next_state(state: SearchState, progress: Progress) -> SearchState:
 
 
 def _with_scatter(task: DiscoveryTask, nominal: FittedModel) -> tuple[DiscoveryTask, FittedModel]:
-    """The task with the scatter that the nominal fit shows, and the nominal fit under it."""
+    """Returns the task with the scatter that the nominal fit shows, and a nominal fit under it."""
     model = task.nominal_model
     groups = {group: model.groups[group] for group in model.scattering}
     scatter = estimate_scatter(nominal.refit, groups)
@@ -142,7 +142,7 @@ def _with_scatter(task: DiscoveryTask, nominal: FittedModel) -> tuple[DiscoveryT
 
 
 def _select(state: SearchState, progress: Progress) -> SearchState:
-    """One round of forward selection: an effect is added, or a pair, or there is none to add."""
+    """Returns the state after a round of selection: an effect or a pair is added, or none."""
     task, watch = state.task, _Watch(state.seconds)
     most = task.options.max_effects - len(state.accepted)
     selection = select_effect(task, state.model, state.scores, progress)
@@ -164,7 +164,7 @@ def _select(state: SearchState, progress: Progress) -> SearchState:
 
 
 def _deviate(state: SearchState, progress: Progress) -> SearchState:
-    """Parts that deviate by more than parts do become effects, once no candidate is left to add.
+    """Makes effects of parts that deviate by more than parts do, once no candidate is left.
 
     Before, a part may deviate only because the model lacks something else.
     """
@@ -182,7 +182,7 @@ def _deviate(state: SearchState, progress: Progress) -> SearchState:
 
 
 def _scored(state: SearchState, model: FittedModel, stage: Stage, watch: _Watch) -> SearchState:
-    """The state with a model that has more effects, and the scores of all others on it.
+    """Returns the state with a model that has more effects, and the scores of all others on it.
 
     What was missing has moved the trajectory: a friction's sensitivity along the wrong one, where
     the rollers turn back at other times, says little of the right one.
@@ -214,9 +214,9 @@ def _prune(state: SearchState) -> SearchState:
 def _compute_all_sensitivities(
     task: DiscoveryTask, model: FittedModel, before: tuple[Sensitivity, ...]
 ) -> tuple[Sensitivity, ...]:
-    """Of every effect on all its places, then of its best shape at each single place.
+    """Computes sensitivities of effects on all places, and of the best shape at each single one.
 
-    Of the effects that the model has they stay what they were before.
+    Those of effects that the model has stay what they were before.
     """
     point = model.refit.point
     kept = tuple(s for s in before if has_candidate(model, s.candidate))

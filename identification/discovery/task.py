@@ -1,4 +1,4 @@
-"""What a discovery is asked; it stays the same during a search."""
+"""The question that a discovery answers; it stays the same during a search."""
 
 from __future__ import annotations
 

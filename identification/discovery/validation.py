@@ -1,4 +1,4 @@
-"""What a fitted model predicts of a whole log, of which it has seen a part."""
+"""The prediction of a whole log by a fitted model, which has seen a part of it."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ DISBELIEVED = (FindingKind.PARAMETERS_AT_LIMIT, FindingKind.OVERSIZED_EFFECT)
 
 
 def find_remaining(state: SearchState) -> tuple[Finding, ...]:
-    """What the model of a finished search leaves unexplained; empty when it explains all."""
+    """Returns what the model of a finished search leaves unexplained; empty if it explains all."""
     options, model = state.task.options, state.model
     named = [a.candidate.effect.name for a in state.accepted]
     samples = len(model.refit.point.log)
@@ -48,7 +48,7 @@ def find_remaining(state: SearchState) -> tuple[Finding, ...]:
 
 
 def _find_oversized(state: SearchState, named: Sequence[str]) -> tuple[Finding, ...]:
-    """A candidate beyond belief that explains more than the named effects, as they were found.
+    """Finds a candidate beyond belief that explains more than named effects with fitted shapes.
 
     What jumps is scored at a few times only, so that its first score may be a small one.
     """
@@ -65,7 +65,7 @@ def _find_oversized(state: SearchState, named: Sequence[str]) -> tuple[Finding, 
 def compute_explained_share(
     nominal: FittedModel, model: FittedModel, findings: Sequence[Finding], options: DiscoveryOptions
 ) -> float:
-    """Share of the gap on unseen samples that the effects of a model close.
+    """Returns the share of the gap on unseen samples that the effects of a model close.
 
     The gap ends at what sensors and input errors make of a free run, where the input errors can be
     believed to be noise: where they are random, and no larger than noise is. Else it ends at what
@@ -90,7 +90,7 @@ def decide(
     model: FittedModel,
     options: DiscoveryOptions,
 ) -> Verdict:
-    """The verdict.
+    """Returns the verdict.
 
     Args:
         named: the accepted effects.
@@ -109,7 +109,7 @@ def decide(
 
 
 def conclude(state: SearchState) -> Discovery:
-    """The outcome of a finished search.
+    """Returns the outcome of a finished search.
 
     Args:
         state: the finished state.

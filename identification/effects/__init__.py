@@ -1,1 +1,1 @@
-"""What a model may lack: effects of joints and inputs, and a plant that has them."""
+"""Effects that a model may lack, of joints and inputs, and a plant that has them."""

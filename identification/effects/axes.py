@@ -1,4 +1,4 @@
-"""What is known of the joints whose effects are sought: magnitudes that make a size plausible.
+"""Magnitudes of the joints whose effects are sought, which make a size plausible.
 
     F = max |force of its drives|       V = max |q̇|       L = max q - min q      over a log
 
@@ -83,7 +83,7 @@ class Axis:
 
 
 def axes(model: mujoco.MjModel, log: Log, trust: Sequence[str] = ()) -> tuple[Axis, ...]:
-    """The joints whose motion a log shows, in the model's order.
+    """Returns the joints whose motion a log shows, in the model's order.
 
     Args:
         model: with the log's sensors.
@@ -112,7 +112,7 @@ def axes(model: mujoco.MjModel, log: Log, trust: Sequence[str] = ()) -> tuple[Ax
 
 
 def reach(each: Sequence[Sequence[Axis]]) -> tuple[Axis, ...]:
-    """The joints of several logs, each with the largest force and speed and all the way of all.
+    """Returns the joints of several logs, each with the largest force, speed and way of all.
 
     Args:
         each: the joints that each log shows.
@@ -169,7 +169,7 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
 
 @quiet()
 def _heavy(model: mujoco.MjModel, j: int) -> bool:
-    """Whether gravity acts on joint j in one of several poses."""
+    """Returns whether gravity acts on joint j in one of several poses."""
     data, rng = mujoco.MjData(model), np.random.default_rng(0)
     dof, largest = int(model.jnt_dofadr[j]), 0.0
     for _ in range(POSES):
@@ -181,7 +181,7 @@ def _heavy(model: mujoco.MjModel, j: int) -> bool:
 
 
 def _rate(way: np.ndarray, h: float) -> np.ndarray:
-    """Difference quotients over the shortest lag at which noise does not make their largest."""
+    """Returns the rates over the shortest lag at which noise does not determine the largest."""
     noise, lag = float(noise_floor(way[:, None])[0]), 1
     while True:
         rate = (way[lag:] - way[:-lag]) / (lag * h)
@@ -191,7 +191,7 @@ def _rate(way: np.ndarray, h: float) -> np.ndarray:
 
 
 def drives_of(model: mujoco.MjModel, j: int) -> list[int]:
-    """Actuators that act on joint j."""
+    """Returns the actuators that act on joint j."""
     at = int(mujoco.mjtTrn.mjTRN_JOINT)
     return [i for i in range(len(model.actuator_trntype))
             if model.actuator_trntype[i] == at and model.actuator_trnid[i, 0] == j
@@ -203,12 +203,12 @@ def _control(model: mujoco.MjModel, i: int) -> int:
 
 
 def _at_full(model: mujoco.MjModel, i: int) -> float:
-    """Force of actuator i for a control of one."""
+    """Returns the force of actuator i for a control of one."""
     return float(model.actuator_gear[i, 0] * model.actuator_gainprm[i, 0])
 
 
 def _plain(model: mujoco.MjModel, i: int) -> bool:
-    """Whether the force of actuator i is gain·u + bias."""
+    """Returns whether the force of actuator i is gain·u + bias."""
     biases = (mujoco.mjtBias.mjBIAS_NONE, mujoco.mjtBias.mjBIAS_AFFINE)
     return (
         int(model.actuator_dyntype[i]) == int(mujoco.mjtDyn.mjDYN_NONE)

@@ -1,4 +1,4 @@
-"""What effects may change of a body: the ten numbers of its inertia, and back to MuJoCo's.
+"""The ten numbers of a body's inertia, which effects may change, and back to MuJoCo's.
 
     (m, h, I_O):    h = m c,    I_O = I_c + m (|c|² 1 - c cᵀ)
 
@@ -42,7 +42,7 @@ ROUNDING = 1e-9  # of the trace of an inertia
 
 
 def frame_inertia(inertia: np.ndarray, quat: np.ndarray) -> np.ndarray:
-    """I_c in the body's axes, shape (3, 3), of principal moments (3,) and their axes (4,)."""
+    """Returns I_c in the body's axes, shape (3, 3), from principal moments (3,) and axes (4,)."""
     flat = np.empty(9)
     mujoco.mju_quat2Mat(flat, quat)
     R = flat.reshape(3, 3)
@@ -50,7 +50,7 @@ def frame_inertia(inertia: np.ndarray, quat: np.ndarray) -> np.ndarray:
 
 
 def principal(I_c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Principal moments (3,) and the quaternion of their axes (4,) of an inertia (3, 3)."""
+    """Returns principal moments (3,) and the quaternion of their axes (4,) of an inertia (3, 3)."""
     moments, R = np.linalg.eigh(I_c)
     if np.linalg.det(R) < 0:
         R[:, 0] *= -1
@@ -60,12 +60,12 @@ def principal(I_c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def about(m: float, c: np.ndarray) -> np.ndarray:
-    """m (|c|² 1 - c cᵀ): inertia of a point mass about the origin, shape (3, 3)."""
+    """Returns m (|c|² 1 - c cᵀ): the inertia of a point mass about the origin, shape (3, 3)."""
     return np.asarray(m * (c @ c * np.eye(3) - np.outer(c, c)))
 
 
 def seen(m: float, c: np.ndarray, I_c: np.ndarray, point: Sequence[float]) -> Any:
-    """The body as an effect sees it."""
+    """Returns the body as an effect sees it."""
     upper = I_c[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
     return Body(*map(float, (m, *c, *upper, *point)))
 
@@ -73,7 +73,7 @@ def seen(m: float, c: np.ndarray, I_c: np.ndarray, point: Sequence[float]) -> An
 def changed(
     label: str, m: float, c: np.ndarray, I_c: np.ndarray, added: np.ndarray
 ) -> tuple[float, np.ndarray, np.ndarray]:
-    """Mass, centre of mass (3,) and I_c (3, 3) after effects have added their ten numbers.
+    """Returns mass, centre of mass (3,) and I_c (3, 3) after effects have added their ten numbers.
 
     Args:
         label: of the body, for an error.
@@ -99,6 +99,6 @@ def changed(
 
 
 def _excess(I_c: np.ndarray) -> float:
-    """By how much the largest moment exceeds the sum of the others; more than 0 if impossible."""
+    """Returns the excess of the largest moment over the sum of the others; impossible above 0."""
     low, middle, high = np.linalg.eigvalsh(I_c)
     return float(max(high - middle - low, -low))

@@ -16,7 +16,7 @@ WENSING = "Wensing, Kim, Slotine 2018"
 
 
 def body_effects(spec: mujoco.MjSpec) -> tuple[Effect, ...]:
-    """All candidates of the bodies of a robot: each acts on one body.
+    """Returns all candidates of the bodies of a robot: each acts on one body.
 
     A size of which no body's motion says anything is left out: a displacement of the centre of mass
     along the axis about which the robot turns, an inertia of what only slides.

@@ -19,7 +19,7 @@ from numba import njit
 
 @njit
 def point_inertia(m, x, y, z):  # type: ignore[no-untyped-def]
-    """m (|c|² 1 - c cᵀ) as (xx, yy, zz, xy, xz, yz)."""
+    """Returns m (|c|² 1 - c cᵀ) as (xx, yy, zz, xy, xz, yz)."""
     return (
         m * (y * y + z * z), m * (x * x + z * z), m * (x * x + y * y),
         -m * x * y, -m * x * z, -m * y * z,
@@ -40,7 +40,7 @@ def mass_mismatch(s, p):  # type: ignore[no-untyped-def]
 
 @cache
 def displaced(axes: str) -> Any:
-    """The law of a centre of mass that is displaced along some axes of the body's frame.
+    """Returns the law of a centre of mass that is displaced along some axes of the body's frame.
 
     Args:
         axes: of "xyz", one for each size.

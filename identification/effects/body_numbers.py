@@ -27,7 +27,7 @@ def body_numbers(
     model: mujoco.MjModel, effects: Sequence[Effect], bodies: Sequence[MovingBody],
     names: Sequence[str], values: Values, own: Numbers, n: int,
 ) -> Numbers:  # fmt: skip
-    """Entries of mjModel that effects of bodies change.
+    """Returns the entries of mjModel that effects of bodies change.
 
     Args:
         model: without these effects.
@@ -61,7 +61,7 @@ def _is_present(effects: Sequence[Effect], body: MovingBody, values: Values) -> 
 
 
 def _rows(model: mujoco.MjModel, b: int, field: str, own: Numbers, n: int) -> np.ndarray:
-    """A number of a body in n value sets, shape (n, width)."""
+    """Returns a number of a body in n value sets, shape (n, width)."""
     rows = np.tile(np.atleast_1d(getattr(model, field)[b]), (n, 1))
     for slot, column in own:
         if slot.field == field and b in slot.rows:

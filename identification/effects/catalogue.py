@@ -18,7 +18,7 @@ from identification.logs.log import Log
 def all_effects(
     spec: mujoco.MjSpec, axes: Sequence[Axis], log: Log, turns: Sequence[float] = TURNS
 ) -> tuple[Effect, ...]:
-    """Every candidate of a robot.
+    """Returns every candidate of a robot.
 
     Args:
         spec: of the robot, which is not changed.

@@ -18,7 +18,7 @@ from identification.native.element import Function
 
 
 def curve_effects(g: Group) -> list[Effect]:
-    """Curves of some joints; those without a place are left out by the caller."""
+    """Returns curves of some joints; those without a place are left out by the caller."""
     single = {where: suffix for where, suffix in g.plain.items() if suffix}
     out = [
         _curve(g, laws.curve_speed, "f(v), none at rest", "force: some curve of speed"),

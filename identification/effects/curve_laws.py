@@ -30,7 +30,7 @@ NODES = 8
 
 
 def _bending() -> tuple[tuple[float, ...], ...]:
-    """G: of values at the nodes, s h²/6 of the natural cubic spline, which does not bend at ends.
+    """Returns G, which turns node values into s h²/6 of the natural cubic spline.
 
     s_{k-1} + 4 s_k + s_{k+1} = (6/h²) (c_{k-1} - 2 c_k + c_{k+1})
     """
@@ -47,7 +47,7 @@ BENDING = _bending()
 
 @njit
 def through_zero(x, c):  # type: ignore[no-untyped-def]
-    """The curve with nodes at -¼, -½, -¾, -1, ¼, ½, ¾, 1, which is zero at zero."""
+    """Returns the curve with nodes at -¼, -½, -¾, -1, ¼, ½, ¾, 1, which is zero at zero."""
     z, side = 4.0 * abs(x), 4 if x > 0.0 else 0
     if z >= 4.0:
         return c[side + 3]
@@ -58,7 +58,7 @@ def through_zero(x, c):  # type: ignore[no-untyped-def]
 
 @njit
 def smooth(x, c):  # type: ignore[no-untyped-def]
-    """The natural cubic spline with eight nodes evenly from -1 to 1."""
+    """Returns the natural cubic spline with eight nodes evenly from -1 to 1."""
     z = min(7.0, max(0.0, 3.5 * (x + 1.0)))
     k = min(6, int(z))
     u, first, second = z - k, 0.0, 0.0
@@ -71,7 +71,7 @@ def smooth(x, c):  # type: ignore[no-untyped-def]
 
 @njit
 def _of_speed(v, c):  # type: ignore[no-untyped-def]
-    """The curve at a speed in units of the top speed."""
+    """Returns the curve at a speed in units of the top speed."""
     x = sqrt(abs(v))
     return through_zero(x if v > 0.0 else -x, c)
 

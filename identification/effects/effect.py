@@ -29,7 +29,7 @@ CURVE = "curve"  # names of effects that begin so are curves drawn from the data
 
 @dataclass(frozen=True)
 class Size:
-    """How large an effect is; zero is none of it.
+    """The size of an effect; zero means that it is absent.
 
     Attributes:
         name: as in the law and in JSON.
@@ -60,7 +60,7 @@ class Size:
 
 @dataclass(frozen=True)
 class Shape:
-    """How an effect looks; without meaning while its sizes are zero.
+    """A shape parameter of an effect; without meaning while its sizes are zero.
 
     Attributes:
         name: as in the law and in JSON.
@@ -102,7 +102,7 @@ BEFORE = Shape("before", "", (0.0, 1.0), -2.0, 2.0, usual=0.0, of_log=True,
 
 @dataclass(frozen=True)
 class Onset:
-    """When an effect begins: a factor of all that it adds, from 0 to 1 about a time.
+    """The beginning of an effect: a factor of all that it adds, from 0 to 1 about a time.
 
         c(t) = clip(½ + (t - t_s)/w, 0, 1)
 
@@ -124,7 +124,7 @@ class Onset:
 
 @dataclass(frozen=True)
 class Effect:
-    """What may be missing from a model.
+    """An effect that may be missing from a model.
 
     Attributes:
         name: canonical name.
@@ -177,7 +177,7 @@ class Effect:
 
     @property
     def state(self) -> str:
-        """Which state of a joint it needs: "motor", "grip" or, most often, none of them, ""."""
+        """The kind of joint state that it needs: "motor", "grip" or, most often, none, ""."""
         return next((kind for hook, kind in STATES.items() if hook in self.hooks), "")
 
     @property
@@ -186,7 +186,7 @@ class Effect:
         return (*(size.name for size in self.sizes), *(shape.name for shape in self.shapes))
 
     def parameter(self, name: str, where: str) -> str:
-        """Name of the plant's parameter for a size at a place, or for a shape, one for all."""
+        """Returns the plant's parameter name of a size at a place, or of a shape (one for all)."""
         if any(shape.name == name for shape in self.shapes):
             return f"{self.name}.{name}"
         return f"{self.name}.{name}{self.places[where]}"
@@ -197,7 +197,7 @@ class Effect:
         return tuple(self.parameter(size.name, at) for at in self.places for size in self.sizes)
 
     def parameters_at(self, thing: str) -> tuple[tuple[str, ...], ...]:
-        """Names of the plant's parameters that add up to each of its numbers at one thing.
+        """Returns names of the plant's parameters that add up to each of its numbers at one thing.
 
         Args:
             thing: name of a joint, drive or input, as it stands behind the @ of a place.
@@ -263,7 +263,7 @@ class Candidate:
 
     @property
     def free(self) -> tuple[str, ...]:
-        """Those of its sizes that are estimated."""
+        """The sizes that are estimated, by the names of the plant's parameters."""
         own = zip(self.sizes, self.effect.sizes, strict=True)
         return tuple(name for name, size in own if size.present is None)
 
@@ -275,7 +275,7 @@ class Candidate:
 
     @property
     def whole(self) -> dict[str, float]:
-        """Values of those that can have but one."""
+        """Values of the sizes that can have only one value."""
         own = zip(self.sizes, self.effect.sizes, strict=True)
         return {name: size.present for name, size in own if size.present is not None}
 

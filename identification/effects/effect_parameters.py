@@ -7,7 +7,7 @@ from identification.model.parameter import Parameter
 
 
 def effect_parameters(effect: Effect) -> tuple[Parameter, ...]:
-    """Records of `effect.size` + suffix at all places of an effect, and of `effect.shape`."""
+    """Returns records of `effect.size` + suffix at all places of an effect, and `effect.shape`."""
     sizes = [
         _size(effect.parameter(size.name, where), size)
         for size in effect.sizes

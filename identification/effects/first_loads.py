@@ -1,4 +1,4 @@
-"""What gears and friction carry where windows begin, as a plant without their states says.
+"""Loads of gears and friction where windows begin, as a plant without their states says.
 
     s̄ = f_u - J dv/dt          p̄ = the force of friction          w̄ = 0
 
@@ -29,7 +29,7 @@ LEAST = 1e-3  # of the largest force of the drives: the smallest std of a force
 def first_loads(
     model: mujoco.MjModel, layout: JointLayout, numbers: Numbers, begun: State, inputs: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Forces of drives and of friction, and accelerations, of each degree of freedom.
+    """Returns forces of drives and of friction, and accelerations, of each degree of freedom.
 
     Args:
         model: of the plant without states.
@@ -69,7 +69,7 @@ def first_states_of(
     forces: dict[str, float], loads: tuple[np.ndarray, np.ndarray, np.ndarray],
     sampling_time: float,
 ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """The states where windows begin, shape (W, na), and how far they may be from it, (na,).
+    """Returns the states where windows begin, shape (W, na), and how far off they may be, (na,).
 
     Args:
         states: in the order of their activations.

@@ -10,7 +10,7 @@ from identification.quantities import per
 
 
 def force_effects(g: Group) -> list[Effect]:
-    """Forces on some joints; those without a place are left out by the caller."""
+    """Returns forces on some joints; those without a place are left out by the caller."""
     F, A = g.F, g.A
     out = [
         *_drags(g),
@@ -35,7 +35,7 @@ def force_effects(g: Group) -> list[Effect]:
 
 
 def _drags(g: Group) -> list[Effect]:
-    """Forces that grow with speed."""
+    """Returns forces that grow with speed."""
     F, V, A = g.F, g.V, g.A
     less = Shape("n", "", (0.33, 0.67), 0.1, 0.95, about="the power")
     return [

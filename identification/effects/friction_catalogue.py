@@ -19,7 +19,7 @@ LEVEL = "coulomb_friction"  # what laws change that say how much more friction t
 
 
 def friction_effects(g: Group) -> list[Effect]:
-    """Frictions of some joints; those without a place are left out by the caller."""
+    """Returns frictions of some joints; those without a place are left out by the caller."""
     F, A = g.F, g.A
     v_s = _peak(g, SPEEDS)
     power = Shape("n", "", (1.0, 2.0), 0.5, 4.0, about="the power", usual=2.0)
@@ -48,7 +48,7 @@ def friction_effects(g: Group) -> list[Effect]:
 
 
 def _under_load(g: Group, v_s: Shape) -> list[Effect]:
-    """Frictions that grow with the load of drives and gravity."""
+    """Returns frictions that grow with the load of drives and gravity."""
     return [
         g.friction(laws.load_dependent_friction, "at most μ |f_u| more, f_u the drive's force",
                    (g.size("mu", 0.2, "", "share of the drive's force", 1),),

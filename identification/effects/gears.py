@@ -85,7 +85,7 @@ class Gears:
         return tuple(dict.fromkeys(every))
 
     def of(self, joint: str, values: Values, n: int) -> GearNumbers:
-        """What effects make of a joint's gear in n value sets."""
+        """Returns the numbers of a joint's gear under all effects, in n value sets."""
         mine = tuple(x for name in self.numbers if isinstance(x := values[name], float))
         if n == 1 and len(mine) == len(self.numbers):
             return self._of_one(joint, mine)  # a search simulates windows of it again and again
@@ -93,7 +93,7 @@ class Gears:
 
     @cached_property
     def _of_one(self) -> Callable[[str, tuple[float, ...]], GearNumbers]:
-        """The same of one value set, by the joint and the values of `numbers`."""
+        """The numbers of a gear in one value set, by the joint and the values of `numbers`."""
 
         @lru_cache(maxsize=64)
         def of_one(joint: str, mine: tuple[float, ...]) -> GearNumbers:
@@ -104,7 +104,7 @@ class Gears:
         return of_one
 
     def rows(self, names: Sequence[str], values: Values, n: int) -> Numbers:
-        """Entries of the joints' rows that some parameters change."""
+        """Returns the entries of the joints' rows that some parameters change."""
         if not {*self.numbers} & {*names}:
             return []
         last = int(self.model.nuser_jnt) - LAST - GEARS
@@ -121,7 +121,7 @@ class Gears:
         return out
 
     def armatures(self, values: Values, n: int, own: Numbers) -> Numbers:
-        """Armatures without the motors that move by themselves.
+        """Returns armatures without the motors that move by themselves.
 
         Args:
             values: of all parameters, one or n of each.
@@ -166,7 +166,7 @@ class Gears:
             )
 
     def begun(self, values: Values, n: int, known: State) -> State:
-        """States as MuJoCo integrates them; see `identification.effects.joint_states`."""
+        """Returns states as MuJoCo integrates them; see `identification.effects.joint_states`."""
         if not self.states:
             return known
         return begun(self.model, self.states, self._repeated(values, n, len(known.qpos)),
@@ -175,7 +175,7 @@ class Gears:
     def shown(
         self, values: Values, n: int, run: Mapping[str, np.ndarray]
     ) -> Mapping[str, np.ndarray]:
-        """Positions and rates as encoders see them."""
+        """Returns positions and rates as encoders see them."""
         if not self.states:
             return run
         each = self._repeated(values, n, len(run["qpos"]))
@@ -184,13 +184,13 @@ class Gears:
     def first_states(
         self, values: Values, loads: tuple[np.ndarray, np.ndarray, np.ndarray], sampling_time: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """The states where windows begin, and how far they may be from it."""
+        """Returns the states where windows begin, and how far off they may be."""
         gears = {joint: self.of(joint, values, 1) for joint in self.joints}
         forces = {joint: axis.force for joint, axis in self.joints.items()}
         return first_states_of(self.states, self.model, gears, forces, loads, sampling_time)
 
     def _repeated(self, values: Values, n: int, m: int) -> dict[str, GearNumbers]:
-        """Of each joint, with a number for each of m simulations, m/n of each value set."""
+        """Returns each joint's gear numbers for m simulations, m/n of each value set."""
         out = {}
         for joint in self.joints:
             g = self.of(joint, values, n)
@@ -200,7 +200,7 @@ class Gears:
 
 
 def needed_states(effects: Sequence[Effect]) -> dict[str, tuple[JointState, ...]]:
-    """The states that each size of an effect needs, by its name."""
+    """Returns the states that each size of an effect needs, by its name."""
     out: dict[str, tuple[JointState, ...]] = {}
     for effect in effects:
         kind = effect.state

@@ -41,7 +41,7 @@ class Drive:
 
 
 def drives(log: Log) -> tuple[Drive, ...]:
-    """The inputs of a log that are not zero throughout."""
+    """Returns the inputs of a log that are not zero throughout."""
     largest = np.abs(log.inputs).max(axis=0)
     return tuple(
         Drive(name, float(u), log.units.get(name, ""))

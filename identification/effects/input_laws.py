@@ -1,4 +1,4 @@
-"""What may happen to an input on its way to the model, step by step; u is held over a step h.
+"""Changes of an input on its way to the model, step by step; u is held over a step h.
 
     delay        u(t - τ)                     τ = (n + f) h
                    m_k = (1 - f) u_(k-n) + f u_(k-n-1),  D_k = ½ f (1 - f) (u_(k-n) - u_(k-n-1))

@@ -17,7 +17,7 @@ TURNS = (*map(float, range(1, 13)), 14.0, 16.0, 18.0, 20.0, 24.0, 28.0)  # harmo
 
 
 def joint_effects(axes: Sequence[Axis], turns: Sequence[float] = TURNS) -> tuple[Effect, ...]:
-    """All candidates of some joints.
+    """Returns all candidates of some joints.
 
     Hinges and slides have units of their own; where a robot has both, the names of the slides'
     effects begin with `slide_` (see `kinds`). Friction under load needs drives whose force is

@@ -39,11 +39,11 @@ class Group:
 
     @property
     def prefix(self) -> str:
-        """Of the effects' names."""
+        """The prefix of the effects' names."""
         return prefix_of(self.kind, self.both)
 
     def told(self, phrase: str) -> str:
-        """Words of an effect of these joints."""
+        """Returns an effect of these joints in words."""
         return with_kind(phrase, self.kind, self.both)
 
     @property
@@ -107,7 +107,7 @@ class Group:
         return {where: suffix for where, suffix in self.at.items() if suffix}
 
     def size(self, name: str, largest: float, unit: str, about: str, sign: Sign = 0) -> Size:
-        """A size that is probed at a share of its largest plausible value."""
+        """Returns a size that is probed at a share of its largest plausible value."""
         return Size(name, unit, largest, PROBE * largest, sign, about)
 
     def friction(
@@ -115,7 +115,7 @@ class Group:
         shapes: tuple[Shape, ...] = (), where: Mapping[str, str] | None = None,
         needs: str = "",
     ) -> Effect:  # fmt: skip
-        """An effect on the largest friction, named like its law."""
+        """Returns an effect on the largest friction, named like its law."""
         found = self._effect("friction", law, said, sizes, phrase, reference, shapes, where)
         return replace(found, needs=self.prefix + needs) if needs else found
 
@@ -123,7 +123,7 @@ class Group:
         self, law: Function, said: str, sizes: tuple[Size, ...], phrase: str, reference: str = "",
         shapes: tuple[Shape, ...] = (), where: Mapping[str, str] | None = None,
     ) -> Effect:  # fmt: skip
-        """A force, named like its law."""
+        """Returns a force, named like its law."""
         return self._effect("force", law, said, sizes, phrase, reference, shapes, where)
 
     def _effect(

@@ -1,4 +1,4 @@
-"""Where the parameters of a set of effects live in the model of a robot with joints.
+"""The places of the parameters of a set of effects in the model of a robot with joints.
 
 Those of joints in the joints' user data, a row each (see `identification.native.joint_callback`);
 those of inputs and sensors nowhere: they act before the model and behind it. Those of bodies change

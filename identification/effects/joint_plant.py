@@ -73,7 +73,7 @@ def joint_plant(
 
 
 def candidates(plant: JointPlant, names: Iterable[str]) -> tuple[Effect, ...]:
-    """The effects of a plant that may be missing: those of which no parameter is free already.
+    """Returns the effects of a plant that may be missing: those without a free parameter.
 
     Args:
         plant: of `joint_plant`.

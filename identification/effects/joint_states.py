@@ -44,7 +44,7 @@ class JointState:
 
 @dataclass(frozen=True, kw_only=True)
 class GearNumbers:
-    """What effects make of a joint's gear, in n value sets, shape (n,) each; see `state_laws`."""
+    """The numbers of a joint's gear in n value sets, shape (n,) each; see `state_laws`."""
 
     c: np.ndarray
     gap: np.ndarray
@@ -55,7 +55,7 @@ class GearNumbers:
 
     @property
     def columns(self) -> tuple[np.ndarray, ...]:
-        """In the order of a joint's row, from `SIDE` on."""
+        """The columns in the order of a joint's row, from `SIDE` on."""
         return self.side, self.c, self.gap, self.J, self.zeta, self.slip
 
     @property
@@ -65,7 +65,7 @@ class GearNumbers:
 
 
 def with_actuators(spec: mujoco.MjSpec, states: Sequence[JointState]) -> mujoco.MjSpec:
-    """The model with an actuator for each state; it has no gain, and its control stays zero.
+    """Returns the model with an actuator for each state, of no gain and a control of zero.
 
     Args:
         spec: the model, which is not changed.
@@ -84,14 +84,14 @@ def with_actuators(spec: mujoco.MjSpec, states: Sequence[JointState]) -> mujoco.
 
 
 def places_of(model: mujoco.MjModel, states: Sequence[JointState]) -> list[int]:
-    """Where each state's first activation stands."""
+    """Returns the index of each state's first activation."""
     return [int(model.actuator(f"{UNLOGGED}{s.kind} {s.joint}").actadr[0]) for s in states]
 
 
 def gear_numbers(
     effects: Sequence[Effect], joint: str, inertia: float, values: Values, n: int
 ) -> GearNumbers:
-    """What effects make of a joint's gear; of two effects that tell J, ζ and side the larger ones.
+    """Returns the numbers of a joint's gear; of two effects that tell J, ζ and side, the larger.
 
     Args:
         effects: a set; those without states are passed over.
@@ -117,13 +117,13 @@ def gear_numbers(
 
 
 def _each(x: float | np.ndarray, n: int) -> np.ndarray:
-    """One number or n of them as n, shape (n,)."""
+    """Returns one number or n of them as n numbers, shape (n,)."""
     x = np.asarray(x)
     return x if x.shape == (n,) else np.full(n, x)  # numpy's broadcast_to takes ten times as long
 
 
 def deflected(g: GearNumbers, s: np.ndarray, axis: Axis) -> np.ndarray:
-    """δ of a gear that passes on s."""
+    """Returns the deflection δ of a gear that passes on s."""
     return g.c * s + g.gap * s / (abs(s) + CERTAIN * axis.force)
 
 
@@ -131,7 +131,7 @@ def begun(
     model: mujoco.MjModel, states: Sequence[JointState], gears: Mapping[str, GearNumbers],
     axes: Mapping[str, Axis], known: State,
 ) -> State:  # fmt: skip
-    """States as MuJoCo integrates them, from states as windows know them.
+    """Returns states as MuJoCo integrates them, from states as windows know them.
 
     Args:
         model: with the states.
@@ -157,7 +157,7 @@ def shown(
     model: mujoco.MjModel, states: Sequence[JointState], gears: Mapping[str, GearNumbers],
     run: Mapping[str, np.ndarray],
 ) -> Mapping[str, np.ndarray]:  # fmt: skip
-    """Positions and rates as encoders see them: those of the motor where they sit there.
+    """Returns positions and rates as encoders see them: those of the motor where they sit there.
 
     Args:
         model: with the states.
@@ -176,7 +176,7 @@ def shown(
 
 
 def fitting(start: State | None, model: mujoco.MjModel) -> State | None:
-    """A start with as many activations as a model has: the last ones are left out, or zero."""
+    """Returns a start with a model's number of activations: the last are left out, or zero."""
     if start is None:
         return None
     act = np.zeros(model.na)

@@ -84,7 +84,7 @@ class JointPlant:
 
     @cached_property
     def layout(self) -> JointLayout:
-        """Where the parameters of its effects are in the model."""
+        """The places of its effects' parameters in the model."""
         return JointLayout(self.effects, bool(self.states))
 
     @cached_property
@@ -115,7 +115,7 @@ class JointPlant:
         return self._stopping(model, max(GENTLE, steps))
 
     def with_step(self, factor: float) -> JointPlant:
-        """The same plant with another step of the user's model; joints stop in as many steps.
+        """Returns the same plant with another step of the model; joints stop in as many steps.
 
         Args:
             factor: new step over the old one.
@@ -126,14 +126,14 @@ class JointPlant:
         return replace(self, bare=bare, steps=1, slope_steps=1)
 
     def _stopping(self, model: mujoco.MjModel, factor: float) -> mujoco.MjModel:
-        """The model itself, changed: its joints take so many times as long to stop."""
+        """Returns the model itself, changed: its joints take so many times as long to stop."""
         column = int(model.nuser_jnt) - self.layout.entries + STOP
         for joint in self.joints:
             model.jnt_user[int(model.joint(joint).id), column] *= factor
         return model
 
     def with_values(self, values: Mapping[str, float]) -> JointPlant:
-        """The same plant with other nominal values.
+        """Returns the same plant with other nominal values.
 
         Raises:
             InputError: a name is unknown, or a value is outside its parameter's bounds.
@@ -142,18 +142,18 @@ class JointPlant:
         return replace(with_them, parameters=self.parameters.with_values(values))
 
     def with_states_of(self, names: Iterable[str]) -> JointPlant:
-        """The same plant with the states that some sizes of effects need."""
+        """Returns the same plant with the states that some sizes of effects need."""
         return self.with_states([state for n in names for state in self.needed_states.get(n, ())])
 
     def with_states(self, states: Sequence[JointState]) -> JointPlant:
-        """The same plant with further states of joints, behind those that it has."""
+        """Returns the same plant with further states of joints, behind those that it has."""
         states = tuple(dict.fromkeys((*self.states, *states)))
         if states not in self._others:
             self._others[states] = replace(self, bare=self._bare(states), states=states)
         return self._others[states]
 
     def without_states(self) -> JointPlant:
-        """The same plant without states of joints, and without the effects that need them."""
+        """Returns the same plant without states of joints, and without effects that need them."""
         return self if not self.states else self._plain
 
     @cached_property
@@ -182,7 +182,7 @@ class JointPlant:
         return Gears(self.effects, self.axes, self.states, self.bare.model, self.spec)
 
     def settings(self, names: Sequence[str], values: np.ndarray) -> tuple[State, Numbers]:
-        """Initial states (n rows) and model numbers of n value sets; see `Plant`.
+        """Returns initial states (n rows) and model numbers of n value sets; see `Plant`.
 
         Args:
             names: parameters that differ from the plant's own, p of them.
@@ -210,7 +210,7 @@ class JointPlant:
         return effect_values.merged(self.parameters.values(), names, values)
 
     def _bodies(self, names: Sequence[str], values: np.ndarray, own: Numbers) -> Numbers:
-        """Entries of the bodies that effects change."""
+        """Returns the entries of the bodies that effects change."""
         if not self.layout.has_bodies:
             return []
         every = self._every(names, values)
@@ -219,7 +219,7 @@ class JointPlant:
         )
 
     def _rows(self, names: Sequence[str], values: np.ndarray) -> Numbers:
-        """Entries of the joints' rows that some parameters of effects change."""
+        """Returns the entries of the joints' rows that some parameters of effects change."""
         every, model = self._every(names, values), self.bare.model
         changed = changed_rows(model, self.layout, self.joints, names, every, len(values))
         return [*changed, *self.gears.rows(names, every, len(values))]
@@ -228,7 +228,7 @@ class JointPlant:
         self, names: Sequence[str], values: np.ndarray, held: np.ndarray, timestep: float,
         begun: float = 0.0,
     ) -> np.ndarray:  # fmt: skip
-        """The inputs after the effects that act on them; see `Plant`."""
+        """Returns the inputs after the effects that act on them; see `Plant`."""
         every = self._every(names, values)
         model = self.bare.model
         actuators = [model.actuator(i).name for i in range(model.nu)]
@@ -239,25 +239,25 @@ class JointPlant:
     def outputs(
         self, names: Sequence[str], values: np.ndarray, sensors: Sequence[str], readings: np.ndarray
     ) -> np.ndarray:
-        """What the sensors say after the effects that act on them; see `Plant`."""
+        """Returns the readings of the sensors after the effects on them; see `Plant`."""
         every = self._every(names, values)
         return effect_values.changed_outputs(self.effects, sensors, every, readings, len(values))
 
     def begun(self, names: Sequence[str], values: np.ndarray, known: State) -> State:
-        """States as MuJoCo integrates them, from states as windows know them; see `WithStates`."""
+        """Returns states as MuJoCo integrates them, from those of windows; see `WithStates`."""
         return self.gears.begun(self._every(names, values), len(values), known)
 
     def shown(
         self, names: Sequence[str], values: np.ndarray, run: Mapping[str, np.ndarray]
     ) -> Mapping[str, np.ndarray]:
-        """Positions and rates as encoders see them; see `WithStates`."""
+        """Returns positions and rates as encoders see them; see `WithStates`."""
         return self.gears.shown(self._every(names, values), len(values), run)
 
     def first_loads(
         self, names: Sequence[str], values: np.ndarray, known: State, inputs: np.ndarray,
         sampling_time: float,
     ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-        """The joints' states where windows begin, and how far they may be; see `WithStates`."""
+        """Returns states where windows begin, and how far off they may be; see `WithStates`."""
         plain = self.without_states()
         loads = first_loads(plain.bare.model, plain.layout, plain.settings(names, values)[1],
                             known, inputs)  # fmt: skip

@@ -1,4 +1,4 @@
-"""How effects of slides are told from those of hinges, on a robot that has both.
+"""Names that tell effects of slides from those of hinges, on a robot that has both.
 
 One law has other units on a slide than on a hinge. A robot with both therefore has two effects of
 it: `coulomb_friction` of its hinges, and `slide_coulomb_friction` of its slides. A robot with
@@ -16,7 +16,7 @@ WORDS: dict[Kind, str] = {"hinge": "(hinges)", "slide": "(slides)"}
 
 
 def prefix_of(kind: Kind, both: bool) -> str:
-    """What stands before the names of effects of joints of a kind.
+    """Returns the prefix of the names of effects of joints of a kind.
 
     Args:
         kind: of the joints.
@@ -26,12 +26,12 @@ def prefix_of(kind: Kind, both: bool) -> str:
 
 
 def with_kind(phrase: str, kind: Kind, both: bool) -> str:
-    """An effect in words, with the kind of its joints where there are both."""
+    """Returns an effect in words, with the kind of its joints where there are both."""
     return f"{phrase} {WORDS[kind]}" if both else phrase
 
 
 def about_names(asked: str, known: Iterable[str]) -> str:
-    """A sentence on the names of slides' effects, behind a list of good names; "" for none.
+    """Returns a sentence on the names of slides' effects, behind a list of good names; "" for none.
 
     Args:
         asked: the name that is not among them.

@@ -1,4 +1,4 @@
-"""Where the parameters of a set of effects stand in the rows of what they act on.
+"""The places of the parameters of a set of effects in the rows of what they act on.
 
     row of a thing = (…, parameters of effect 1, parameters of effect 2, …)
 
@@ -18,7 +18,7 @@ from identification.native.element import Element, Term
 def terms_of(
     effects: Sequence[Effect], element: Element, *, first: int = 0, own: str = ""
 ) -> tuple[Term, ...]:
-    """The effects of one element, and where in its row their parameters stand.
+    """Returns the effects of one element, and where in its row their parameters stand.
 
     Args:
         effects: a set; those that act on other elements are passed over.
@@ -46,7 +46,7 @@ def terms_of(
 
 
 def _states(effects: Sequence[Effect], own: str) -> dict[str, int]:
-    """Which state is whose, counted from 1, by the name of each effect that has one."""
+    """Returns the number of each effect's state, counted from 1, by the effect's name."""
     numbers: dict[object, int] = {}
     having = [e for e in effects if own in e.hooks]
     keys = {e.name: e.hooks[own] if e.shares else e.name for e in having}
@@ -54,7 +54,7 @@ def _states(effects: Sequence[Effect], own: str) -> dict[str, int]:
 
 
 def key_of(effects: Sequence[Effect], of: str = "") -> float:
-    """The number that tells a set of effects from others.
+    """Returns the number that tells a set of effects from others.
 
     Args:
         effects: the set.

@@ -23,7 +23,7 @@ POSES = 8  # random ones, behind the model's own
 
 @quiet()
 def mobilities(model: mujoco.MjModel, joints: Sequence[str]) -> np.ndarray:
-    """A among some joints in several poses, shape (`POSES`, g, g) [1/kg or 1/(kg m²)]."""
+    """Returns A among some joints in several poses, shape (`POSES`, g, g) [1/kg or 1/(kg m²)]."""
     data, rng = mujoco.MjData(model), np.random.default_rng(0)
     dofs = [int(model.joint(joint).dofadr[0]) for joint in joints]
     units, columns = np.zeros((len(dofs), model.nv)), np.zeros((len(dofs), model.nv))
@@ -39,7 +39,7 @@ def mobilities(model: mujoco.MjModel, joints: Sequence[str]) -> np.ndarray:
 
 
 def felt_inertias(A: np.ndarray) -> np.ndarray:
-    """I of each joint, shape (g,) [kg m² or kg]; A: of `mobilities`."""
+    """Returns I of each joint, shape (g,) [kg m² or kg], from A of `mobilities`."""
     return np.asarray(1 / np.max(np.diagonal(A, axis1=1, axis2=2), axis=0))
 
 

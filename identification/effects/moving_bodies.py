@@ -40,7 +40,7 @@ class MovingBody:
 
 
 def movable(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    """The compiled model whose bodies may be given another centre of mass and other axes.
+    """Returns the compiled model whose bodies may be given another centre of mass and other axes.
 
     MuJoCo simplifies a body whose inertial frame is its own frame; here it may not, and computes
     the same numbers the longer way.
@@ -59,7 +59,7 @@ def movable(spec: mujoco.MjSpec) -> mujoco.MjModel:
 
 @np.errstate(over="ignore", invalid="ignore")  # a geom of 1e308 m, which a damaged file may have
 def moving_bodies(model: mujoco.MjModel) -> tuple[MovingBody, ...]:
-    """The bodies that move and have mass, in the model's order, but for those without a name."""
+    """Returns the bodies with a name that move and have mass, in the model's order."""
     moving = [b for b in range(model.nbody) if model.body_weldid[b] and model.body_mass[b] > 0]
     carrying = {int(model.body_weldid[model.body_parentid[int(model.body_weldid[b])]])
                 for b in moving}  # fmt: skip
@@ -82,7 +82,7 @@ def moving_bodies(model: mujoco.MjModel) -> tuple[MovingBody, ...]:
 
 
 class Felt:
-    """What of the bodies' inertia the forces of inverse dynamics feel, in random states.
+    """The inertia of bodies that the forces of inverse dynamics feel, in random states.
 
     Args:
         model: of `movable`.
@@ -93,12 +93,12 @@ class Felt:
         self.nominal = _forces(model, self.states)
 
     def axes(self, body: MovingBody) -> str:
-        """The axes of its frame along which a displaced centre of mass is felt, of "xyz"."""
+        """Returns the axes of its frame, of "xyz", on which a displaced centre of mass is felt."""
         far = STEP * (body.reach or 1.0)
         return "".join(a for k, a in enumerate("xyz") if self._is("body_ipos", body.index, k, far))
 
     def is_turning(self, body: MovingBody) -> bool:
-        """Whether its inertia is felt."""
+        """Returns whether its inertia is felt."""
         return bool(self.inertias(body.index).any())
 
     def inertias(self, body: int) -> np.ndarray:
@@ -115,13 +115,13 @@ class Felt:
 
 
 def _label(model: mujoco.MjModel, b: int) -> str:
-    """Name of a body, or that of its first joint."""
+    """Returns the name of a body, or that of its first joint."""
     own = model.body(b).name
     return own or (model.joint(model.body_jntadr[b]).name if model.body_jntnum[b] else "")
 
 
 def _points(model: mujoco.MjModel, b: int) -> list[np.ndarray]:
-    """Sites of a body, or else the centres of its geoms."""
+    """Returns the sites of a body, or else the centres of its geoms."""
     for n, of, pos in (
         (model.nsite, model.site_bodyid, model.site_pos),
         (model.ngeom, model.geom_bodyid, model.geom_pos),
@@ -133,7 +133,7 @@ def _points(model: mujoco.MjModel, b: int) -> list[np.ndarray]:
 
 
 def _ends(model: mujoco.MjModel, b: int) -> list[np.ndarray]:
-    """Ends of the geoms of a body that has no site away from its frame."""
+    """Returns the ends of the geoms of a body that has no site away from its frame."""
     sites = [model.site_pos[i] for i in range(model.nsite) if model.site_bodyid[i] == b]
     if any(p.any() for p in sites):
         return []
@@ -145,7 +145,7 @@ def _ends(model: mujoco.MjModel, b: int) -> list[np.ndarray]:
 
 
 def _half_axes(model: mujoco.MjModel, i: int) -> list[np.ndarray]:
-    """From the centre of a geom to the middle of its ends, in its body's frame [m]."""
+    """Returns vectors from a geom's centre to the middle of its ends, in the body's frame [m]."""
     R = np.zeros(9)
     mujoco.mju_quat2Mat(R, model.geom_quat[i])
     kind, size, axes = mujoco.mjtGeom(model.geom_type[i]), model.geom_size[i], R.reshape(3, 3).T
@@ -157,7 +157,7 @@ def _half_axes(model: mujoco.MjModel, i: int) -> list[np.ndarray]:
 
 
 def _states(model: mujoco.MjModel) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Random positions, velocities and accelerations."""
+    """Returns random positions, velocities and accelerations."""
     rng, out = np.random.default_rng(0), []
     for _ in range(POSES):
         qpos = np.array(model.qpos0)
@@ -170,7 +170,7 @@ def _states(model: mujoco.MjModel) -> list[tuple[np.ndarray, np.ndarray, np.ndar
 def _forces(
     model: mujoco.MjModel, states: list[tuple[np.ndarray, np.ndarray, np.ndarray]]
 ) -> np.ndarray:
-    """Forces M v̇ + c of inverse dynamics, shape (states, nv)."""
+    """Returns the forces M v̇ + c of inverse dynamics, shape (states, nv)."""
     data, out = mujoco.MjData(model), []
     for qpos, qvel, qacc in states:
         data.qpos, data.qvel = qpos, qvel

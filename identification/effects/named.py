@@ -1,4 +1,4 @@
-"""What a name such as `coulomb_friction.f_c@slide` means, or which part of it is unknown."""
+"""The meaning of a name such as `coulomb_friction.f_c@slide`, or which part of it is unknown."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ NEAR = 0.5  # share of letters: the number and the kind of joint may be missing 
 
 
 def means_effect(name: str, effects: Sequence[Effect]) -> bool:
-    """Whether a name is meant to be a number of an effect, and not a path into the model."""
+    """Returns whether a name is meant as a number of an effect, and not as a path in the model."""
     near = nearest(effect_of(name), (e.name for e in effects))
     return "/" not in name and ("@" in name or near is not None)
 
 
 def effect_of(name: str) -> str:
-    """The part of a name such as `coulomb_friction.f_c@slide` that is the effect's."""
+    """Returns the part of a name such as `coulomb_friction.f_c@slide` that is the effect's."""
     return name.partition("@")[0].partition(".")[0]
 
 
 def unknown_effect(
     what: str, name: str, effects: Sequence[Effect], likely: str | None = None
 ) -> InputError:
-    """An unknown name of an effect, the good ones, and when they begin with `slide_`.
+    """Returns the error of an unknown effect; it lists the good names and explains `slide_`.
 
     Args:
         what: the name is of.
@@ -50,7 +50,7 @@ def unknown_effect(
 
 
 def unknown_number(name: str, effects: Sequence[Effect], is_free: bool = True) -> InputError:
-    """What is wrong with a name that is no number of an effect.
+    """Returns the error of a name that is no number of an effect; it says what is wrong.
 
     Args:
         name: the unknown one.
@@ -96,7 +96,7 @@ def unknown_number(name: str, effects: Sequence[Effect], is_free: bool = True) -
 
 
 def damping_of(name: str, effects: Sequence[Effect]) -> str | None:
-    """The path of a joint's damping in the model, where a name means that; else None.
+    """Returns the path of a joint's damping in the model, where a name means that; else None.
 
     Args:
         name: such as `viscous_friction.d@slide`, which is the name of no effect.
@@ -111,13 +111,13 @@ def damping_of(name: str, effects: Sequence[Effect]) -> str | None:
 
 
 def _numbers(effect: Effect, is_free: bool) -> list[str]:
-    """Names of the numbers of an effect, or only of those that can be fitted: its sizes."""
+    """Returns the names of an effect's numbers, or only of those that can be fitted: its sizes."""
     sizes = {s.name for s in effect.sizes}
     return [p.name for p in effect_parameters(effect) if p.symbol in sizes or not is_free]
 
 
 def _meant(name: str, numbers: Sequence[str]) -> str | None:
-    """The number that is meant, where the name of the effect is wrong or the number is left out.
+    """Returns the number that is meant if the name of the effect is wrong or no number is given.
 
     Its effect is the nearest of those that have such a number there, else of those that act there.
     """

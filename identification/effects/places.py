@@ -1,10 +1,10 @@
-"""Where an effect may act among several joints, drives or inputs."""
+"""The places of an effect among several joints, drives or inputs."""
 
 from __future__ import annotations
 
 
 def places(kind: str, names: tuple[str, ...]) -> dict[str, str]:
-    """The places of an effect, in words, with the suffix of their parameters' names.
+    """Returns the places of an effect, in words, with the suffix of their parameters' names.
 
     Args:
         kind: of the things, e.g. "joint".

@@ -32,7 +32,7 @@ _HELD = {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}
 
 
 def read_model(source: str | Path | mujoco.MjSpec) -> mujoco.MjSpec:
-    """An MJCF as MuJoCo edits it.
+    """Returns an MJCF as a specification that MuJoCo can edit.
 
     Args:
         source: path of the file, or its text, which begins with "<"; or a model that is read
@@ -65,7 +65,7 @@ def read_model(source: str | Path | mujoco.MjSpec) -> mujoco.MjSpec:
 
 
 def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis], layout: JointLayout) -> mujoco.MjModel:
-    """The compiled model with a row of effects on some joints, all their numbers zero.
+    """Returns the compiled model with a row of effects on some joints, all their numbers zero.
 
     Args:
         spec: the model, which is not changed.
@@ -93,7 +93,7 @@ def changed_rows(
     model: mujoco.MjModel, layout: JointLayout, joints: Sequence[str], names: Sequence[str],
     values: Values, n: int,
 ) -> list[tuple[Slot, np.ndarray]]:  # fmt: skip
-    """Entries of some joints' rows that some parameters of effects change, in n value sets.
+    """Returns entries of joints' rows that some parameters of effects change, in n value sets.
 
     Args:
         model: of `with_rows`.
@@ -115,5 +115,5 @@ def changed_rows(
 
 
 def reached(axis: Axis) -> tuple[float, float, float, float, float]:
-    """What the records of a joint reach, as the fields of `Joint` behind its state."""
+    """Returns what the records of a joint reach, as the fields of `Joint` behind its state."""
     return axis.middle, axis.travel / 2, axis.speed, axis.force, axis.duration or 1.0

@@ -30,7 +30,7 @@ KIND = Shape("kind", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0, about="0 a
 def sensor_effects(
     model: mujoco.MjModel, outputs: Sequence[str], axes: Sequence[Axis]
 ) -> tuple[Effect, ...]:
-    """All candidates of some sensors.
+    """Returns all candidates of some sensors.
 
     Lag, offset and eccentricity are those of positions. Where a robot has hinges and slides, the
     names of the effects of slides' sensors begin with `slide_`, but for what has no unit.
@@ -60,7 +60,7 @@ def sensor_effects(
 
 
 def measured_joint(model: mujoco.MjModel, output: str) -> str:
-    """Name of the joint that a jointpos or jointvel sensor measures."""
+    """Returns the name of the joint that a jointpos or jointvel sensor measures."""
     return str(model.joint(int(model.sensor(output).objid[0])).name)
 
 

@@ -1,4 +1,4 @@
-"""What an encoder may add to its reading y of a joint at position q with rate v.
+"""Errors that an encoder may add to its reading y of a joint at position q with rate v.
 
     scale           s y                     its counts are not what they are taken for
     offset          c                       its zero is not the joint's

@@ -28,7 +28,7 @@ LINK = Shape("link", "", (0.0, 1.0), 0.0, 1.0, free=False, usual=0.0,
 
 
 def state_effects(g: Group) -> list[Effect]:
-    """Effects with states on some joints; those without a place are left out by the caller."""
+    """Returns effects with states on some joints; the caller leaves out those without a place."""
     zeta = Shape("zeta", "", (0.05,), 1e-3, 1.0, about="damping ratio of motor and spring")
     give = per(g.x, g.f)
     return [
@@ -47,7 +47,7 @@ def state_effects(g: Group) -> list[Effect]:
 
 
 def _share(g: Group) -> Shape:
-    """The motor's share of the inertia: what the armatures say, else some to try."""
+    """Returns the motor's share of the inertia: from the armatures, or else some values to try."""
     known = [a.share for a in g.axes if a.share > 0]
     grid = (float(np.clip(np.median(known), 2 * LEAST, 0.9 * MOST)),) if known else SHARES
     return Shape("rho", "", grid, LEAST, MOST, about="share of the inertia that the motor has")

@@ -14,7 +14,7 @@ EDGE = 0.02  # of the record: how long a jump takes, so that its time can be sea
 
 
 def time_effects(g: Group) -> list[Effect]:
-    """Effects of time on some joints; none where the records' duration is not known."""
+    """Returns effects of time on some joints; none where the records' duration is not known."""
     F, V, T = g.F, g.V, g.T
     if T <= 0:
         return []

@@ -19,7 +19,7 @@ from numba import njit
 
 @njit
 def risen(x, w):  # type: ignore[no-untyped-def]
-    """How much of a change that takes w about x = 0 has happened at x, 0 to 1."""
+    """Returns how much of a change that takes w about x = 0 has happened at x, 0 to 1."""
     return min(1.0, max(0.0, 0.5 + x / w))
 
 

@@ -19,7 +19,7 @@ Values = Mapping[str, float | np.ndarray]  # by name of the parameter, one or n 
 
 
 def merged(own: Mapping[str, float], names: Sequence[str], values: np.ndarray) -> Values:
-    """The values of all parameters where some differ.
+    """Returns the values of all parameters, of which some differ from the plant's own.
 
     Args:
         own: values of all parameters.
@@ -30,13 +30,13 @@ def merged(own: Mapping[str, float], names: Sequence[str], values: np.ndarray) -
 
 
 def numbers_at(effect: Effect, thing: str, values: Values) -> list[float | np.ndarray]:
-    """Sizes and shapes of an effect at one thing; zeros where it cannot act on it."""
+    """Returns sizes and shapes of an effect at one thing; zeros where it cannot act on it."""
     parts = effect.parameters_at(thing)
     return [sum(values[name] for name in some) for some in parts] or [0.0] * len(effect.names)
 
 
 def written_at(effect: Effect, thing: str, values: Values) -> list[float | np.ndarray]:
-    """Sizes and shapes of an effect as they stand in the row of a thing.
+    """Returns sizes and shapes of an effect as they stand in the row of a thing.
 
     Where the effect is absent its shapes do not matter, and stay what they are at first: what is
     put at one thing moves no number of another.
@@ -48,13 +48,13 @@ def written_at(effect: Effect, thing: str, values: Values) -> list[float | np.nd
 
 
 def table_at(effects: Sequence[Effect], thing: str, values: Values, n: int) -> np.ndarray:
-    """The rows of some effects at one thing for n value sets, shape (n, columns)."""
+    """Returns the rows of some effects at one thing for n value sets, shape (n, columns)."""
     columns = [x for e in effects for x in numbers_at(e, thing, values)]
     return np.array([np.broadcast_to(x, n) for x in columns]).reshape(len(columns), n).T.copy()
 
 
 def is_present(effect: Effect, things: Sequence[str], values: Values) -> bool:
-    """Whether any size of an effect is not zero at any of some things."""
+    """Returns whether any size of an effect is not zero at any of some things."""
     sizes = len(effect.sizes)
     each = [
         [values[name] for name in names]
@@ -73,7 +73,7 @@ def changed_columns(
     effects: Sequence[Effect], terms: Sequence[Term], thing: str, names: Sequence[str],
     values: Values,
 ) -> Iterator[tuple[int, float | np.ndarray]]:  # fmt: skip
-    """The entries of a thing's row that some parameters change: column, and its values.
+    """Yields the entries of a thing's row that some parameters change: column, and its values.
 
 
     Args:
@@ -96,7 +96,7 @@ def changed_inputs(
     effects: Sequence[Effect], things: Sequence[str], values: Values, held: np.ndarray,
     timestep: float, n: int, begun: float = 0.0,
 ) -> np.ndarray:  # fmt: skip
-    """What the effects of inputs make of them, for n value sets.
+    """Returns the inputs after the effects that act on them, for n value sets.
 
     Args:
         effects: a set; those that act on other things are passed over.
@@ -133,7 +133,7 @@ def changed_inputs(
 def changed_outputs(
     effects: Sequence[Effect], things: Sequence[str], values: Values, readings: np.ndarray, n: int
 ) -> np.ndarray:
-    """What the effects of sensors make of their readings, for n value sets.
+    """Returns the readings of sensors after the effects that act on them, for n value sets.
 
     Args:
         effects: a set; those that act on other things are passed over.

@@ -1,4 +1,4 @@
-"""How often a periodic force of a joint repeats, and how large it may be."""
+"""The period of a periodic force of a joint, and how large the force may be."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SEEN = 2.0  # periods within the travel, below which a curve is not seen to repe
 
 
 def wave_sizes(g: Group) -> tuple[Size, ...]:
-    """Amplitudes of cosine and sine."""
+    """Returns the amplitudes of cosine and sine."""
     return (
         g.size("a", 0.2 * g.F, g.f, "amplitude of the cosine"),
         g.size("b", 0.2 * g.F, g.f, "amplitude of the sine"),
@@ -22,7 +22,7 @@ def wave_sizes(g: Group) -> tuple[Size, ...]:
 
 
 def waves(g: Group) -> Shape | None:
-    """How often a periodic force repeats: in a turn, or in 2π m of a slide.
+    """Returns how often a periodic force repeats: in a turn, or in 2π m of a slide.
 
     A wave of which the log shows fewer than `SEEN` periods is not seen to repeat: any curve would
     do as well. None where there is no wave to try.

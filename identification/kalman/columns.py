@@ -72,13 +72,13 @@ def _solve(
     predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
     moves: np.ndarray, size: np.ndarray,
 ) -> np.ndarray:  # fmt: skip
-    """Columns of the sensitivity equations for m moves of q (m, p) of some sizes, (N, ny, m)."""
+    """Solves the sensitivity equations for m moves (m, p) of q, of some sizes, (N, ny, m)."""
     there = space.decode(q + moves)
     return solve_sensitivities(predictor, records, space.decode(q), there, size)
 
 
 def _along(columns: np.ndarray, asked: np.ndarray) -> np.ndarray:
-    """A direction of q of length 1 at most in each, to which all columns add alike, shape (p,)."""
+    """Returns a direction of q with entries up to 1, to which all columns add alike, shape (p,)."""
     size = np.sqrt(np.mean(columns**2, axis=(0, 1)))
     signs = np.random.default_rng(0).choice([-1.0, 1.0], len(size))
     weight = np.where(size > 0, signs / np.where(size > 0, size, 1.0), 0.0)
@@ -88,7 +88,7 @@ def _along(columns: np.ndarray, asked: np.ndarray) -> np.ndarray:
 
 
 def _agree(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two changes of the outputs are the same to `WRONG`."""
+    """Returns whether two changes of the outputs agree to a relative error of `WRONG`."""
     return bool(np.linalg.norm(one - other) <= WRONG * np.linalg.norm(other))
 
 
@@ -96,7 +96,7 @@ def do_equations_hold(
     predictor: Predictor, space: Coordinates, q: np.ndarray, records: Sequence[Linearisation],
     J: np.ndarray,
 ) -> bool:  # fmt: skip
-    """Whether the sensitivity equations say what the columns J say, along all of them at once.
+    """Returns whether the sensitivity equations agree with the columns J, with all of them at once.
 
     They do not where a joint hits its limit.
 

@@ -21,7 +21,7 @@ from identification.native.forward import Intervals
 
 
 def state_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
-    """F and G along a trajectory, means over its intervals.
+    """Returns F and G along a trajectory, as means over its intervals.
 
     Args:
         along: the trajectory.
@@ -42,7 +42,7 @@ def state_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
 
 
 def input_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
-    """The change of all rates per unit of each input, upwards and downwards, at the points.
+    """Returns the change of all rates per unit of each input, upwards and downwards, at the points.
 
     The two differ where an input is at its limit.
 
@@ -67,7 +67,7 @@ def input_derivatives(along: Trajectory) -> tuple[np.ndarray, np.ndarray]:
 
 @quiet()
 def force_derivatives(along: Trajectory, dofs: list[int]) -> np.ndarray:
-    """The effect of generalised forces on the rate of change of the state, shape (M, nx, n)."""
+    """Returns the effect of generalised forces on the rate of the state, shape (M, nx, n)."""
     model = along.model
     nv = model.nv
     data, unit = mujoco.MjData(model), np.eye(nv)[dofs]

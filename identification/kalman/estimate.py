@@ -161,7 +161,7 @@ def _search(
 
 
 def compute_innovations(end: Refit, whole: Log) -> np.ndarray:
-    """Innovations over a log whose beginning was fitted, shape (N, ny)."""
+    """Returns the innovations over a log whose beginning was fitted, shape (N, ny)."""
     there = extend_point(end.point, whole)
     with one_blas_thread():
         filter_ = build_whitener(there.linear, end.level.noise, whole.sampling_time)
@@ -169,7 +169,7 @@ def compute_innovations(end: Refit, whole: Log) -> np.ndarray:
 
 
 def _fitted_innovations(end: Refit) -> np.ndarray:
-    """Innovations of the fitted samples, shape (n, ny), by the linearisation that is at hand."""
+    """Returns innovations of the fitted samples by the known linearisation, shape (n, ny)."""
     point = end.point
     with one_blas_thread():
         filter_ = build_whitener(point.linear, end.level.noise, point.log.sampling_time)
@@ -177,7 +177,7 @@ def _fitted_innovations(end: Refit) -> np.ndarray:
 
 
 def _of_innovations(end: Refit, fit: Fit) -> Fit:
-    """The fit with the uncertainty and the tests of the innovations."""
+    """Returns the fit with the uncertainty and the tests of the innovations."""
     point, σ = end.point, end.level.sigma
     with one_blas_thread():
         filter_ = build_whitener(point.linear, end.level.noise, point.log.sampling_time)

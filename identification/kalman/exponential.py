@@ -41,7 +41,7 @@ _SIGNATURE = types.void(*[types.int64] * 3, *[_DOUBLES] * 6)
 def transitions(
     F: np.ndarray, duration: np.ndarray, forced: int = 0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The transition of a linear system, and the effect of a constant rate of change.
+    """Returns the transition of a linear system, and the effect of a constant rate of change.
 
     Args:
         F: shape (n, nx, nx) [1/s].
@@ -66,7 +66,7 @@ def transitions(
 
 
 def _balance(largest: np.ndarray) -> np.ndarray:
-    """D of matrices whose entries have these largest sizes, shape (nx,)."""
+    """Returns the scaling D of matrices whose entries have these largest sizes, shape (nx,)."""
     if not np.isfinite(largest).all() or not largest.size:  # what is not finite stays so
         return np.ones(len(largest))
     _, (D, _) = matrix_balance(largest, permute=False, separate=True)
@@ -125,7 +125,7 @@ def _add_group(to, c, X):  # type: ignore[no-untyped-def]
 
 @internal
 def _norm(X):  # type: ignore[no-untyped-def]
-    """The largest sum of the sizes in a column."""
+    """Returns the largest sum of the absolute values in a column."""
     sums = np.zeros(len(X))
     for i in range(len(X)):
         for j in range(len(X)):

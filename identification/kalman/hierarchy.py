@@ -1,4 +1,4 @@
-"""How much the parts of a robot scatter: the std of a group's prior, from the data.
+"""The scatter of the parts of a robot: the std of a group's prior, from the data.
 
     x = q - q̄,   x_j ~ N(0, s_g²) for the n values j of a group g,   p(s_g) ∝ s_g
     V = (FᵀF + S⁻²)⁻¹,   x̂ = V Fᵀ y,   s_g² ← sum over j of (x̂_j² + V_jj) / (n - 1)     (EM)
@@ -30,7 +30,7 @@ LEAST = 1e-2  # of the table's s: below it a deviation moves nothing that a log 
 
 
 def estimate_scatter(fit: Refit, groups: Mapping[str, Sequence[str]]) -> dict[str, float]:
-    """The most probable std of each group's prior, given the fitted data, by group.
+    """Returns the most probable std of each group's prior, given the fitted data, by group.
 
     Args:
         fit: a fit under the table's std.
@@ -61,6 +61,6 @@ def estimate_scatter(fit: Refit, groups: Mapping[str, Sequence[str]]) -> dict[st
 
 
 def _most_probable(power: np.ndarray) -> float:
-    """The s of a group, from x̂² + V of its n values; one value alone tells no scatter."""
+    """Returns the s of a group from x̂² + V of its n values; infinite where it has only one."""
     n = len(power)
     return float(np.sqrt(power.sum() / (n - 1))) if n > 1 else np.inf

@@ -44,7 +44,7 @@ class InnovationTests:
     loudest: int
 
     def is_correlated(self, options: KalmanOptions) -> bool:
-        """Whether samples are correlated beyond chance, and by enough to matter."""
+        """Returns whether samples are correlated beyond chance, and by enough to matter."""
         return (
             self.p_correlation < options.structure_level
             and self.predictable > options.min_structure_share

@@ -78,7 +78,7 @@ class Linearisation:
         return upwards[:, felt], downwards[:, felt]
 
     def at_samples(self) -> LinearPlant:
-        """The transitions from sample to sample."""
+        """Returns the transitions from sample to sample."""
         parts = self.along.intervals
         A, B = self.A[::parts], self.B[::parts]
         for i in range(1, parts):
@@ -104,7 +104,7 @@ def linearise(predictor: Predictor, values: np.ndarray, forces: Sequence[int] = 
 def linearise_records(
     predictor: Predictor, values: np.ndarray, forces: Sequence[int] = (), points: int = COARSE
 ) -> tuple[Linearisation, ...]:
-    """The linearisation of each record of a log; see `linearise`.
+    """Returns the linearisation of each record of a log; see `linearise`.
 
     Args:
         predictor: plant and log.
@@ -121,12 +121,12 @@ def linearise_records(
 
 
 def join(records: Sequence[Linearisation]) -> LinearPlant:
-    """The plants of several records, one after the other; nothing passes from one to the next."""
+    """Returns one plant for several records, one after the other; nothing passes between them."""
     return join_plants([record.at_samples() for record in records])
 
 
 def join_plants(each: Sequence[LinearPlant]) -> LinearPlant:
-    """The same of plants at samples."""
+    """Returns one plant for several plants at samples, one after the other."""
     if len(each) == 1:
         return each[0]
     gap = LinearPlant(np.zeros_like(each[0].A[:1]), np.zeros_like(each[0].B[:1]), each[0].C)
@@ -140,7 +140,7 @@ def join_plants(each: Sequence[LinearPlant]) -> LinearPlant:
 def linearise_along(
     predictor: Predictor, along: Trajectory, forces: Sequence[int] = ()
 ) -> Linearisation:
-    """The linearisation along one trajectory.
+    """Returns the linearisation along one trajectory.
 
     Args:
         predictor: whose outputs are asked for.
@@ -153,7 +153,7 @@ def linearise_along(
 
 
 def extend(known: LinearPlant, predictor: Predictor, along: Trajectory) -> LinearPlant:
-    """The plant along one record, of whose beginning it is known: only the rest is linearised.
+    """Returns the plant along a record whose beginning is known: only the rest is linearised.
 
     Args:
         known: the plant at the first samples of the record.
@@ -176,7 +176,7 @@ def extend(known: LinearPlant, predictor: Predictor, along: Trajectory) -> Linea
 def _derivatives(
     predictor: Predictor, along: Trajectory, forces: Sequence[int] = ()
 ) -> tuple[np.ndarray, np.ndarray]:
-    """F and G of the whole state; G is that of forces where they are asked for."""
+    """Returns F and G of the whole state; G is that of forces where they are asked for."""
     F, G = state_derivatives(along)
     if not forces and not predictor.log.inputs.shape[1]:
         forces = range(along.model.nv)  # what disturbs a free swing, for it has no inputs
@@ -186,7 +186,7 @@ def _derivatives(
 
 
 def _outputs(predictor: Predictor, along: Trajectory) -> np.ndarray:
-    """C of the whole state, shape (ny, 2 nv + na)."""
+    """Returns C of the whole state, shape (ny, 2 nv + na)."""
     model, names = along.model, predictor.log.output_names
     C = np.zeros((len(names), 2 * model.nv + model.na))
     for row, (field, i) in enumerate(output_columns(predictor.plant.model, names)):
@@ -197,7 +197,7 @@ def _outputs(predictor: Predictor, along: Trajectory) -> np.ndarray:
 def _linearisation(
     along: Trajectory, F: np.ndarray, G: np.ndarray, C: np.ndarray, felt: np.ndarray
 ) -> Linearisation:
-    """The linearisation by the derivatives of the whole state, for the states that are felt."""
+    """Returns the linearisation by derivatives of the whole state, for the states that are felt."""
     if not felt.all():
         entries, nx = np.flatnonzero(np.outer(felt, felt)), int(felt.sum())
         F = F.reshape(len(F), -1).take(entries, axis=1).reshape(-1, nx, nx)  # faster than by masks
@@ -209,7 +209,7 @@ def _linearisation(
 
 
 def _felt(F: np.ndarray, C: np.ndarray) -> np.ndarray:
-    """Which states have an effect on an output, directly or through others, shape (nx,)."""
+    """Returns which states affect an output, directly or through others, shape (nx,)."""
     links = (F != 0).any(axis=0)
     felt = np.any(C != 0, axis=0)
     while (more := felt | links[felt].any(axis=0)).sum() > felt.sum():
@@ -218,7 +218,7 @@ def _felt(F: np.ndarray, C: np.ndarray) -> np.ndarray:
 
 
 def tangent_index(model: mujoco.MjModel, field: str, i: int) -> int:
-    """Index in the tangent state of an entry of qpos (of a hinge or slide) or qvel."""
+    """Returns the index in the tangent state of an entry of qpos (of a hinge or slide) or qvel."""
     if field == "qvel":
         return int(model.nv) + i
     joint = int(np.flatnonzero(model.jnt_qposadr == i)[0])

@@ -53,7 +53,7 @@ class NoiseLevel:
 
 
 def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) -> float:
-    """ρ₀ at a correlation time: there input errors move the outputs by σ (rms over the log).
+    """Returns ρ₀ at a correlation time: then input errors move the outputs by σ (rms over the log).
 
     Args:
         plant: the linearised plant.
@@ -67,7 +67,7 @@ def compute_unit_ratio(plant: LinearPlant, sampling_time: float, time: float) ->
 def evaluate_noise(
     filter_: Whitener, noise: Noise, e: np.ndarray, J: np.ndarray, prior: np.ndarray
 ) -> NoiseLevel:
-    """The likelihood of a residual under a noise, with the parameters adjusted to it.
+    """Returns the likelihood of a residual under a noise, with the parameters adjusted to it.
 
     Args:
         filter_: the whitening filter of the noise.
@@ -84,7 +84,7 @@ def _level(
     E: np.ndarray, F: np.ndarray, H: np.ndarray, noise: Noise, prior: np.ndarray,
     log_determinant: float,
 ) -> NoiseLevel:  # fmt: skip
-    """The likelihood of whitened residuals E and sensitivities F, H = FᵀF."""
+    """Returns the likelihood of whitened residuals E and sensitivities F, H = FᵀF."""
     sigma, b = np.sqrt(E @ E / E.size), F.T @ E
     for _ in range(2):  # the weight of the prior depends on σ
         c = _solve(H + np.diag((prior * sigma) ** 2), b)
@@ -95,7 +95,7 @@ def _level(
 
 
 def _solve(H: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """The solution of H c = b; the shortest one where outputs do not feel every direction of c.
+    """Solves H c = b; returns the shortest c where outputs do not feel every direction of it.
 
     Such is an effect without a prior that would begin after the log has ended.
     """
@@ -117,7 +117,7 @@ def fit_noise(
     levels: Sequence[float] = LEVELS,
     largest: float = np.inf,
 ) -> NoiseLevel:
-    """The most likely noise of a residual; what it whitens of J is kept (see `whiten`).
+    """Returns the most likely noise of a residual; what it whitens of J is kept (see `whiten`).
 
     Args:
         plant: the linearised plant.
@@ -187,7 +187,7 @@ class _Likeliest:
 def refine_noise(
     best: NoiseLevel, at: Callable[[Noise], NoiseLevel], times: tuple[float, float]
 ) -> NoiseLevel:
-    """The most likely noise near a level: a pattern search over ln ρ√τ and ln τ.
+    """Returns the most likely noise near a level, by a pattern search over ln ρ√τ and ln τ.
 
     A slow plant responds to ρ²τ, so that the two directions are nearly independent.
 
@@ -211,12 +211,12 @@ def refine_noise(
 
 
 def _is_same(one: Noise, other: Noise) -> bool:
-    """Whether two noises differ by rounding only."""
+    """Returns whether two noises differ by rounding only."""
     return isclose(one.ratio, other.ratio) and isclose(one.time, other.time)
 
 
 def _moved(noise: Noise, felt: float, time: float, times: tuple[float, float]) -> Noise:
-    """A noise whose ρ√τ is multiplied by `felt` and whose τ is multiplied by `time`."""
+    """Returns a noise whose ρ√τ is multiplied by `felt` and whose τ is multiplied by `time`."""
     other = float(np.clip(noise.time * time, *times))
     return noise.lasting(other).scaled(felt)
 

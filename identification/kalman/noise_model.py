@@ -34,11 +34,11 @@ class Noise:
     time: float
 
     def scaled(self, factor: float) -> Noise:
-        """The same noise with ρ multiplied by a factor."""
+        """Returns the same noise with ρ multiplied by a factor."""
         return Noise(self.ratio * factor, self.time)
 
     def lasting(self, time: float) -> Noise:
-        """A noise of another τ [s] and of the same ρ²τ, to which a slow plant responds."""
+        """Returns a noise of another τ [s] and the same ρ²τ, to which a slow plant responds."""
         return Noise(self.ratio * (self.time / time) ** 0.5, time)
 
 
@@ -61,14 +61,14 @@ class Whitener:
     log_determinant: float
 
     def __call__(self, e: np.ndarray) -> np.ndarray:
-        """Innovations of e, shape (n, ny) or (n, ny, p) for n <= N samples, of std σ each."""
+        """Returns innovations of e, shape (n, ny) or (n, ny, p), n <= N samples, of std σ each."""
         if not self.A.size:
             return np.array(e)
         columns = e.reshape(*e.shape[:2], -1)
         return filter_innovations(self.A, self.C, self.K, self.L, columns).reshape(e.shape)
 
     def transposed(self, E: np.ndarray) -> np.ndarray:
-        """The x with x · e = E · (innovations of e) for any residual e; both of shape (n, ny)."""
+        """Returns x with x · e = E · (innovations of e) for any residual e; shape (n, ny) both."""
         if not self.A.size:
             return np.array(E)
         return transpose_filter(self.A, self.C, self.K, self.L, E)[0]
@@ -77,7 +77,7 @@ class Whitener:
 def augment(
     plant: LinearPlant, noise: Noise, sampling_time: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """The linear system of the state z = (x, w) of plant and input error.
+    """Returns the linear system of the state z = (x, w) of plant and input error.
 
     Returns:
         A, shape (N-1, nz, nz), C, shape (ny, nz), the covariance over σ² of the first state, P,
@@ -96,7 +96,7 @@ def augment(
 
 @lru_cache(maxsize=3)  # a search of the correlation time tries a longer and a shorter one
 def _transitions(plant: LinearPlant, a: float) -> tuple[np.ndarray, np.ndarray]:
-    """The transitions of the state (x, w), and which are to another record.
+    """Returns the transitions of the state (x, w), and which of them are to another record.
 
     Noises of one correlation time share them.
     """
@@ -111,7 +111,7 @@ def _transitions(plant: LinearPlant, a: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def build_whitener(plant: LinearPlant, noise: Noise, sampling_time: float) -> Whitener:
-    """The whitening filter of a noise.
+    """Returns the whitening filter of a noise.
 
     The state of the plant at the first sample is taken as known, because its errors are parameters.
     """

@@ -18,7 +18,7 @@ from identification.errors import InputError
 def option(
     default: float, unit: str, reason: str, source: str, least: float = 0.0, most: float = inf
 ) -> Any:
-    """A field of a record of options.
+    """Returns a field of a record of options.
 
     Args:
         default: its value; an option whose default is an int takes whole numbers only.
@@ -34,7 +34,7 @@ def option(
 
 @dataclass(frozen=True, kw_only=True)
 class KalmanOptions:
-    """Which errors of the inputs and which structure of the innovations are believed.
+    """Options of which errors of the inputs and which structure of the innovations are believed.
 
     Every field has its unit, reason and source in its metadata (`dataclasses.fields`).
 

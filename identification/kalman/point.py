@@ -111,12 +111,12 @@ def _linearise(run: Run) -> tuple[Linearisation, ...]:
 
 
 def is_costly(point: Point) -> bool:
-    """Whether a point has so many columns that they are kept after a short step."""
+    """Returns whether a point has so many columns that they are kept after a short step."""
     return len(point.q) > MANY
 
 
 def shift_point(point: Point, q: np.ndarray, run: Run | None = None) -> Point | None:
-    """The point after a short step, with the columns and the linearisation from before it.
+    """Returns the point after a short step, with the columns and the linearisation from before it.
 
     Args:
         point: the point before the step.
@@ -139,7 +139,7 @@ def shift_point(point: Point, q: np.ndarray, run: Run | None = None) -> Point | 
 
 
 def _known(near: Point | None, small: frozenset[str]) -> dict[str, np.ndarray]:
-    """Columns of J that hold at a point nearby, by name, each (N, ny)."""
+    """Returns the columns of J that hold at a point nearby, by name, each (N, ny)."""
     if near is None:
         return {}
     columns = zip(near.space.names, np.moveaxis(near.J, 2, 0), strict=True)
@@ -147,13 +147,13 @@ def _known(near: Point | None, small: frozenset[str]) -> dict[str, np.ndarray]:
 
 
 def evaluate_sensitivities(point: Point, whole: Log) -> np.ndarray:
-    """J of the same point on a longer log, shape (N, ny, p)."""
+    """Returns J of the same point on a longer log, shape (N, ny, p)."""
     run = Run(replace(point.predictor, log=whole), point.space.decode(point.q))
     return compute_columns(run.predictor, point.space, point.q, _linearise(run), {}, run.outputs)
 
 
 def extend_point(point: Point, whole: Log) -> Point:
-    """The same point on a longer log, of which its own log is a part; without J.
+    """Returns the same point on a longer log, of which its own log is a part; without J.
 
     The linearisation of its own log is kept where that is the beginning of a record.
 
@@ -186,7 +186,7 @@ def extend_point(point: Point, whole: Log) -> Point:
 
 
 def _known_plants(point: Point) -> dict[int, tuple[float, LinearPlant]]:
-    """Where each record of a point's log begins [s], and its linearisation, by its number."""
+    """Returns the start [s] and linearisation of each record of a point's log, by its number."""
     out, done, linear = {}, 0, point.linear
     for number, log in records_of(point.log):
         own = slice(done, done + len(log) - 1)

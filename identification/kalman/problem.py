@@ -80,15 +80,15 @@ class Problem:
         return remaining[: self.point.e.size].reshape(self.point.e.shape)
 
     def step(self, μ: Cost) -> np.ndarray:
-        """The Levenberg-Marquardt step within the bounds, shape (p,)."""
+        """Returns the Levenberg-Marquardt step within the bounds, shape (p,)."""
         return self._least(self.target, μ, np.zeros_like(self.point.q))
 
     def expected_fall(self, move: np.ndarray) -> float:
-        """How far a step would lower the criterion if the residual were linear."""
+        """Returns how far a step would lower the criterion if the residual were linear."""
         return self.cost - float(np.sum((self.target - self.rows @ move) ** 2))
 
     def bend(self, move: np.ndarray, after: Cost, μ: Cost) -> np.ndarray | None:
-        """The step with its second-order correction, shape (p,).
+        """Returns the step with its second-order correction, shape (p,).
 
         None where the step itself falls far enough, to the cost `after`, and where the plant
         cannot be simulated along it.
@@ -102,7 +102,7 @@ class Problem:
         return move + self._least(curve / 2, μ, move)
 
     def _least(self, target: np.ndarray, μ: Cost, begun: np.ndarray) -> np.ndarray:
-        """The damped move that makes ‖target - F δ‖ least, within the bounds left after `begun`."""
+        """Returns the damped δ that minimises ‖target - F δ‖ within bounds left after `begun`."""
         point, size = self.point, np.where(self.point.space.logarithmic, LARGEST, np.inf)
         lower = np.minimum(np.maximum(point.space.lower - point.q, -size) - begun, 0.0)
         upper = np.maximum(np.minimum(point.space.upper - point.q, size) - begun, 0.0)
@@ -139,7 +139,7 @@ class Problem:
         return self.runs.setdefault(q.tobytes(), new)
 
     def residual(self, q: np.ndarray) -> np.ndarray | None:
-        """-r at another q with the same filter, shape (N ny + p,); None where it diverges."""
+        """Returns -r at another q and the same filter, shape (N ny + p,); None if it diverges."""
         try:
             predicted = self.run_at(q).outputs
         except (DivergenceError, InputError):  # InputError: the robot cannot rest at its start
@@ -148,24 +148,24 @@ class Problem:
         return np.concatenate([E.ravel(), self.prior * (self.mean - q)])
 
     def cost_after(self, move: np.ndarray) -> float:
-        """The criterion after a step; infinite where the plant cannot be simulated."""
+        """Returns the criterion after a step; infinite where the plant cannot be simulated."""
         there = self.residual(self.point.q + move)
         return np.inf if there is None else float(there @ there)
 
     @property
     def covariance(self) -> np.ndarray:
-        """Of q by the curvature of the criterion, shape (p, p)."""
+        """The covariance of q by the curvature of the criterion, shape (p, p)."""
         return np.linalg.pinv(self.curvature, rcond=1e-14, hermitian=True)
 
     def std(self) -> np.ndarray:
-        """Std of q by the curvature of the criterion, shape (p,)."""
+        """Returns the std of q by the curvature of the criterion, shape (p,)."""
         return np.sqrt(np.diag(self.covariance))
 
 
 def linearise_criterion(
     point: Point, level: NoiseLevel, mean: np.ndarray, prior: np.ndarray
 ) -> Problem:
-    """The criterion about a point.
+    """Returns the criterion, linearised about a point.
 
     Args:
         point: the plant at the point.

@@ -37,7 +37,7 @@ _SIZE: Any = types.int64
 def filter_gains(
     A: np.ndarray, C: np.ndarray, P: np.ndarray, share: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Gains of the Kalman filter at each sample.
+    """Returns the gains of the Kalman filter at each sample.
 
     Args:
         A: transitions of the state, shape (N-1, nz, nz).
@@ -58,7 +58,7 @@ def filter_gains(
 def filter_innovations(
     A: np.ndarray, C: np.ndarray, K: np.ndarray, L: np.ndarray, e: np.ndarray
 ) -> np.ndarray:
-    """Innovations of residuals, of std σ each.
+    """Returns the innovations of residuals, of std σ each.
 
     Args:
         A: transitions of the state, shape (N-1, nz, nz).
@@ -85,7 +85,7 @@ def filter_innovations(
 def transpose_filter(
     A: np.ndarray, C: np.ndarray, K: np.ndarray, L: np.ndarray, E: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The transposed filter, backwards in time: x with x · e = E · (innovations of e) for any e.
+    """Applies the transposed filter, backwards in time: x · e = E · (innovations of e) for any e.
 
         r_k = A_kᵀ r_{k+1} + Cᵀ x_k,    x_k = L_kᵀ E_k - K_kᵀ A_kᵀ r_{k+1}
 
@@ -107,7 +107,7 @@ def transpose_filter(
 
 
 def propagate(A: np.ndarray, C: np.ndarray, P: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Variances over σ² of the outputs that the process noise causes where nothing is measured.
+    """Returns output variances over σ² that the process noise causes if nothing is measured.
 
     Args:
         A: as of `filter_gains`.
@@ -162,7 +162,7 @@ def _propagate(n, nz, ny, A_, C_, P_, share_, out_):  # type: ignore[no-untyped-
 
 @internal
 def _step(A, P, first, share, M, AM):  # type: ignore[no-untyped-def]
-    """P of the next sample, in its place; M and AM are scratch."""
+    """Replaces P by that of the next sample; M and AM are scratch."""
     np.dot(A, P, AM)
     np.dot(AM, A.T, M)
     for i in range(len(P)):
@@ -172,7 +172,7 @@ def _step(A, P, first, share, M, AM):  # type: ignore[no-untyped-def]
 
 @internal
 def _inverted_factor(S, F, L):  # type: ignore[no-untyped-def]
-    """The Cholesky factor F of S, and its inverse L; both lower triangles."""
+    """Writes the Cholesky factor of S into F, and its inverse into L; both are lower triangles."""
     for j in range(len(S)):
         for i in range(j, len(S)):
             s = S[i, j]
@@ -239,7 +239,7 @@ def _transposed(n, nz, ny, A_, C_, K_, L_, E_, out_, r_):  # type: ignore[no-unt
 
 @cache
 def _compiled(function: Callable[..., Any], arrays: int) -> Any:
-    """A recursion as a ctypes function of sizes and of the addresses of arrays."""
+    """Returns a recursion as a ctypes function of sizes and of the addresses of arrays."""
     sizes = function.__code__.co_argcount - arrays
     return compile_once(function, types.void(*[_SIZE] * sizes, *[_DOUBLES] * arrays))
 

@@ -116,7 +116,7 @@ def descend(
     is_near: bool = False,
     least: float = -np.inf,
 ) -> Generator[tuple[Point, NoiseLevel], None, bool]:
-    """The points of a search, each with its noise, from the first to the likeliest.
+    """Yields the points of a search, each with its noise, from the first to the likeliest.
 
     First the model approaches the data: a step counts as progress when likelihood or free run
     improve, under a noise that is chosen from a grid and bounded by `options.allowed_input_error`.
@@ -184,7 +184,7 @@ def descend(
 def _move(
     problem: Problem, step: np.ndarray, taken: np.ndarray, options: KalmanOptions, largest: float
 ) -> Problem:
-    """The criterion about the point after a step, with the noise of that point."""
+    """Returns the criterion about the point after a step, with the noise of that point."""
     point = problem.point
     change = np.abs(step[point.space.logarithmic]).max(initial=0.0)
     is_short = change < NEAR and is_costly(point)
@@ -200,12 +200,12 @@ def _move(
 
 
 def _posterior(point: Point, level: NoiseLevel, mean: np.ndarray, prior: np.ndarray) -> float:
-    """Log likelihood plus log density of the priors, up to a constant."""
+    """Returns the log likelihood plus the log density of the priors, up to a constant."""
     return level.log_likelihood - float(np.sum(((point.q - mean) * prior) ** 2)) / 2
 
 
 def _is_refuted(problem: Problem, options: KalmanOptions) -> bool:
-    """Whether the noise model is wrong here: its input error is too large and is not random.
+    """Returns whether the noise model is wrong here: its input error is too large and not random.
 
     Its likelihood is then no guide.
     """
@@ -225,14 +225,14 @@ def largest_input_error(point: Point, options: KalmanOptions) -> float:
 
 
 def _rms(point: Point) -> float:
-    """Rms of the residual of the free run."""
+    """Returns the rms of the residual of the free run."""
     return float(np.sqrt(np.mean(point.e**2)))
 
 
 def conclude(
     point: Point, level: NoiseLevel, mean: np.ndarray, prior: np.ndarray, taken: int
 ) -> Refit:
-    """The estimate at the point where a search ended after `taken` steps."""
+    """Returns the estimate at the point where a search ended after `taken` steps."""
     std = linearise_criterion(point, level, mean, prior).std()
     return Refit(point=point, level=level, std=std, mean=mean, prior=prior, steps=taken)
 
@@ -245,7 +245,7 @@ def estimate_noise(
     fine: bool = False,
     largest: float = np.inf,
 ) -> NoiseLevel:
-    """The most likely noise of a point's residual.
+    """Returns the most likely noise of a point's residual.
 
     Args:
         point: the plant with its residual.

@@ -36,7 +36,7 @@ LAST_DIGITS = 1e-12  # of the largest rate
 
 
 def can_solve(predictor: Predictor, records: Sequence[Linearisation]) -> bool:
-    """Whether the equations hold for a plant: all its states, and those of its sensors, are in x.
+    """Returns whether the equations hold for a plant: all states, also of its sensors, are in x.
 
     Args:
         predictor: plant and log.
@@ -84,7 +84,7 @@ def _of_record(
     predictor: Predictor, linear: Linearisation, rows: np.ndarray, change: np.ndarray,
     courses: Sequence[Courses],
 ) -> np.ndarray:  # fmt: skip
-    """The sensitivities of one record; of columns that are zero in it nothing is computed."""
+    """Returns the sensitivities of one record; columns that are zero in it are not computed."""
     is_moved = (rows[1:] != rows[0]).any(axis=1)
     moved = np.flatnonzero(is_moved)
     counts = np.array([len(of) for of in courses])
@@ -111,7 +111,7 @@ def _forcing(
     predictor: Predictor, linear: Linearisation, rows: np.ndarray, numbers: Numbers,
     courses: Sequence[Courses],
 ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """How each change moves the rates.
+    """Returns how each change moves the rates.
 
     Returns:
         Means over the intervals, shape (c, L, nf), a row for each course, and whether that is all
@@ -144,13 +144,13 @@ def _forcing(
 
 
 def _change(entries: Entries, inputs: np.ndarray, nominal: np.ndarray, of: np.ndarray) -> Change:
-    """Numbers of a model that differ, and inputs if they do."""
+    """Returns a change: the numbers of a model that differ, and the inputs if they do."""
     fields = {} if np.array_equal(inputs, nominal) else {"ctrl": inputs}
     return Change(fields, entries, of)
 
 
 def _by_inputs(linear: Linearisation, δu: np.ndarray, courses: np.ndarray) -> np.ndarray:
-    """How other inputs alone move the rates, which are linear in them: means over the intervals.
+    """Returns how other inputs alone move the rates (linear in them), as means over the intervals.
 
     Args:
         linear: the linearisation.
@@ -170,7 +170,7 @@ def _by_inputs(linear: Linearisation, δu: np.ndarray, courses: np.ndarray) -> n
 
 
 def _reads_what_it_changes(linear: Linearisation, changes: Sequence[Entries]) -> np.ndarray:
-    """Which changes make activations that no output felt run otherwise, and read them.
+    """Returns which changes move activations that no output felt, and read them.
 
     Args:
         linear: the linearisation.
@@ -196,12 +196,12 @@ def _reads_what_it_changes(linear: Linearisation, changes: Sequence[Entries]) ->
 
 
 def _differ(some: np.ndarray, others: np.ndarray) -> bool:
-    """Whether rates differ by more than the last digits, which depend on the order of sums."""
+    """Returns whether rates differ by more than rounding, which depends on the order of sums."""
     return bool((np.abs(some - others) > LAST_DIGITS * np.abs(others).max(axis=0)).any())
 
 
 def _first(linear: Linearisation, start: State, n: int) -> np.ndarray:
-    """How n changes move the first state, shape (n, nx)."""
+    """Returns how n changes move the first state, shape (n, nx)."""
     model = linear.along.model
     first = [np.broadcast_to(x, (n + 1, np.shape(x)[-1])) for x in
              (start.qpos, start.qvel, start.act)]  # fmt: skip
@@ -220,7 +220,7 @@ def _outputs(
     first: np.ndarray,
     g: np.ndarray,
 ) -> np.ndarray:
-    """The change of what the sensors say, shape (m, N, ny)."""
+    """Returns the change of the sensors' readings, shape (m, N, ny)."""
     here = predictor.readings({field: each[None] for field, each in linear.along.states.items()})
     place = np.cumsum(linear.felt) - 1  # of an entry of the state among those that are felt
     wanted, where = np.unique(_indices(predictor), return_inverse=True)
@@ -242,13 +242,13 @@ def _outputs(
 
 
 def _are_perfect(predictor: Predictor, rows: np.ndarray, here: np.ndarray) -> bool:
-    """Whether the sensors of all value sets say what perfect ones do: plants return that itself."""
+    """Returns whether the sensors of all value sets are perfect: plants then return `here`."""
     each = np.broadcast_to(here, (len(here), len(rows), *here.shape[2:]))
     return np.may_share_memory(predictor.said(rows, each), here)
 
 
 def _indices(predictor: Predictor) -> list[list[int]]:
-    """Indices in the tangent state: of each sensor's reading, its joint's position and its rate."""
+    """Returns tangent-state indices of each sensor's reading, and its joint's position and rate."""
     model, sensors = predictor.plant.model, predictor.log.output_names
     own = [tangent_index(model, *at) for at in output_columns(model, sensors)]
     dofs = [int(model.jnt_dofadr[model.sensor(name).objid[0]]) for name in sensors]

@@ -21,7 +21,7 @@ from identification.kalman.recursion import filter_gains, filter_innovations, tr
 def smooth(
     plant: LinearPlant, noise: Noise, e: np.ndarray, sampling_time: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The most likely errors of the inputs, and their part of the residual.
+    """Returns the most likely errors of the inputs, and their part of the residual.
 
     Args:
         plant: the linearised plant.

@@ -66,11 +66,11 @@ class Trajectory:
 
     @property
     def duration(self) -> np.ndarray:
-        """Of each interval [s], shape (L,)."""
+        """The duration of each interval [s], shape (L,)."""
         return self.timestep * np.add.reduceat(np.diff(self.steps), self.begins)
 
     def average(self, values: np.ndarray) -> np.ndarray:
-        """Means over the intervals of values at the points, shape (M, …)."""
+        """Returns means over the intervals of values at the points, shape (M, …)."""
         each = (-1, *[1] * (values.ndim - 1))
         length = self.timestep * np.diff(self.steps)
         total = np.add.reduceat(values * length.reshape(each), self.begins)
@@ -84,7 +84,7 @@ class Trajectory:
         return Intervals(self.begins, length / self.duration[places])
 
     def after(self, sample: int) -> Trajectory:
-        """The same from one of its samples on."""
+        """Returns the trajectory from one of its samples on."""
         begins = self.begins[self.intervals * sample :]
         first = int(begins[0]) if len(begins) else len(self.time)
         points = {f: getattr(self, f)[first:] for f in (*POINTS, "steps")}
@@ -92,7 +92,7 @@ class Trajectory:
         return replace(self, begins=begins - first, states=states, **points)
 
     def some(self, most: int) -> Trajectory:
-        """The same at no more than `most` of its points, which stand for no intervals."""
+        """Returns the trajectory at up to `most` of its points, which stand for no intervals."""
         every = slice(None, None, -(-len(self.time) // most))
         few = {f: getattr(self, f)[every] for f in POINTS}
         return replace(self, begins=self.begins[:0], **few)
@@ -157,7 +157,7 @@ def divided(
     model: mujoco.MjModel, states: dict[str, np.ndarray], held: np.ndarray, every: int,
     begun: float, points: int,
 ) -> Trajectory:  # fmt: skip
-    """The trajectory of what was simulated step by step.
+    """Returns the trajectory of what was simulated step by step.
 
     Args:
         model: with the numbers of the value set, without its sensors.
@@ -187,21 +187,21 @@ def divided(
 
 
 def _divide(every: int, parts: int, samples: int) -> np.ndarray:
-    """The steps at which the parts of all samples begin, and that at which the last one ends."""
+    """Returns the steps at which the parts of all samples begin, and at which the last one ends."""
     own = np.round(np.linspace(0, every, min(every, parts) + 1)).astype(int)
     begins = every * np.arange(samples - 1)[:, None] + own[:-1]
     return np.append(begins.ravel(), every * (samples - 1))
 
 
 def _between(x: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Rows of x (n, size) at places between them, shape (M, size)."""
+    """Returns rows of x (n, size) at places between them, shape (M, size)."""
     below = np.floor(at).astype(int)
     share = (at - below)[:, None]
     return x[below] * (1 - share) + x[np.ceil(at).astype(int)] * share
 
 
 def average_inputs(held: np.ndarray, steps: np.ndarray, nu: int) -> np.ndarray:
-    """Means of the inputs about points.
+    """Returns means of the inputs about points.
 
     Args:
         held: at the steps of the simulation, shape (steps, inputs) or (n, steps, inputs).

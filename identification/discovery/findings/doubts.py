@@ -16,7 +16,7 @@ from identification.discovery.scoring.significance import find_oversized
 def find_doubtful_effect(
     rejected: Sequence[RejectedEffect], samples: int, options: DiscoveryOptions
 ) -> tuple[Finding, ...]:
-    """The best effect that fitted samples want and that would matter, but is not proven.
+    """Returns the best effect that fitted samples want and that would matter, but is not proven.
 
     Of an effect that makes the unseen samples less likely there is no doubt: it is not there. Only
     where the fitted samples want it far more than BIC asks does a doubt remain.
@@ -37,7 +37,7 @@ def find_doubtful_effect(
 def find_oversized_effect(
     scores: Sequence[Score], named: Sequence[str], options: DiscoveryOptions
 ) -> tuple[Finding, ...]:
-    """The candidate that explains more than all named effects, but at a size beyond belief.
+    """Returns the candidate that explains more than all named effects, at a size beyond belief.
 
     Args:
         scores: of all candidates on the nominal fit.

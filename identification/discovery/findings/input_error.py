@@ -47,7 +47,7 @@ class ErrorFamily:
 
 @dataclass(frozen=True)
 class FamilyFit:
-    """How well a family of errors predicts unseen samples.
+    """The prediction of unseen samples by a family of errors.
 
     Attributes:
         name: of what the errors follow.
@@ -65,7 +65,7 @@ class FamilyFit:
 
 
 def find_input_error(validation: Validation, options: DiscoveryOptions) -> tuple[Finding, ...]:
-    """What the inputs' error follows, beyond chance and by enough to matter; else nothing.
+    """Returns what the inputs' error follows, beyond chance and by enough to matter; else nothing.
 
     Each family of errors is a test of its own.
 
@@ -94,7 +94,7 @@ def find_input_error(validation: Validation, options: DiscoveryOptions) -> tuple
 
 @lru_cache(maxsize=4)  # the model that is tested for structure is often judged again at the end
 def fit_families(validation: Validation, options: DiscoveryOptions) -> tuple[FamilyFit, ...]:
-    """How well each family predicts; none where there is no error of the inputs, or no input.
+    """Returns how well each family predicts; nothing without an error of the inputs, or an input.
 
     Args:
         validation: the prediction of the whole log by a fitted model.
@@ -115,7 +115,7 @@ def fit_families(validation: Validation, options: DiscoveryOptions) -> tuple[Fam
 
 
 def list_families(validation: Validation, knots: int) -> Iterator[ErrorFamily]:
-    """The families of errors that are tried.
+    """Yields the families of errors that are tried.
 
     Outputs and rates are among them where there are as many outputs as inputs: each output is then
     taken for the one that the input of the same index moves.
@@ -138,7 +138,7 @@ def list_families(validation: Validation, knots: int) -> Iterator[ErrorFamily]:
 
 
 def draw_curves(x: np.ndarray, knots: int) -> np.ndarray:
-    """Hat functions of each column of x, shape (N, nu), between its quantiles: (N, nu, knots)."""
+    """Returns hat functions between quantiles of each column of x (N, nu), shape (N, nu, knots)."""
     out = np.empty((*x.shape, knots))
     for i, own in enumerate(x.T):
         places = np.quantile(own, np.linspace(0, 1, knots))
@@ -150,7 +150,7 @@ def draw_curves(x: np.ndarray, knots: int) -> np.ndarray:
 
 
 def separate_inputs(x: np.ndarray) -> np.ndarray:
-    """Regressors with coefficients of its own for each input: (N, nu, k) as (N, nu, nu k).
+    """Returns regressors with separate coefficients for each input: (N, nu, k) as (N, nu, nu k).
 
     They are centred and scaled to rms 1.
     """
@@ -162,7 +162,7 @@ def separate_inputs(x: np.ndarray) -> np.ndarray:
 
 
 def simulate_response(filter_: Whitener, r: np.ndarray) -> np.ndarray:
-    """The response of the outputs of a free run to errors of the inputs.
+    """Returns the response of the outputs of a free run to errors of the inputs.
 
     Args:
         filter_: has the transitions of the state of plant and input error.

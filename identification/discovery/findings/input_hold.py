@@ -20,7 +20,7 @@ HOLDS = ("foh", "zoh")  # straight lines, steps
 
 
 def find_input_hold(fit: Refit, options: DiscoveryOptions) -> tuple[Finding, ...]:
-    """The other hold of the inputs, where their error would be far smaller with it; else nothing.
+    """Returns the other hold of the inputs if it makes their error far smaller; else nothing.
 
     Args:
         fit: the nominal model, fitted.

@@ -1,4 +1,4 @@
-"""Where nominal model and log disagree: on which output, when, at which frequency, by which force.
+"""The places where nominal model and log disagree: output, time, frequency and force.
 
 What a missing force follows is told by the share of its power that one regressor explains.
 """
@@ -29,7 +29,7 @@ SLOW = 0.3  # width of "near zero", in std of the rate
 def locate_error(
     fit: Refit, forces: Sequence[MissingForce], options: DiscoveryOptions
 ) -> tuple[Finding, ...]:
-    """Where the nominal model fails on the fitted samples.
+    """Returns findings on where the nominal model fails on the fitted samples.
 
     Args:
         fit: the nominal model, fitted.
@@ -97,7 +97,7 @@ def _summarise(fit: Refit, force: MissingForce, options: DiscoveryOptions) -> Fo
 
 
 def list_regressors(fit: Refit) -> dict[str, np.ndarray]:
-    """What a missing force may follow, by name: shape (N, ny) each, or (N, 1).
+    """Returns regressors that a missing force may follow, by name: shape (N, ny) or (N, 1) each.
 
     Rates and positions are among them where there are as many outputs as inputs: each output is
     then taken for the position on which the input of the same index acts.
@@ -121,7 +121,7 @@ def list_regressors(fit: Refit) -> dict[str, np.ndarray]:
 
 
 def explain_force(fit: Refit, force: np.ndarray) -> Mapping[str, float]:
-    """Share of a force's power (N, k) that follows each regressor, 0 to 1 each."""
+    """Returns the share of a force's power (N, k) that follows each regressor, 0 to 1 each."""
     w = force - force.mean(axis=0)
     power = np.sum(w**2) + 1e-300
     out = {}

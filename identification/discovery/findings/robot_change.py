@@ -24,7 +24,7 @@ from identification.kalman.point import evaluate_sensitivities
 
 
 def find_robot_change(validation: Validation, options: DiscoveryOptions) -> tuple[Finding, ...]:
-    """The change of the robot, where unseen innovations are larger beyond chance; else nothing.
+    """Returns a change of the robot if unseen innovations are larger beyond chance; else nothing.
 
     Args:
         validation: the prediction of the whole log by a fitted model.
@@ -48,7 +48,7 @@ def find_robot_change(validation: Validation, options: DiscoveryOptions) -> tupl
 
 
 def find_onset(fitted: np.ndarray, unseen: np.ndarray, blocks: int) -> int:
-    """Index of the unseen sample from which on the power differs most from all before.
+    """Returns the index of the unseen sample from which on the power differs most from before.
 
     Args:
         fitted: power of each fitted sample, shape (n,).
@@ -75,7 +75,7 @@ def _power(E: np.ndarray) -> np.ndarray:
 
 
 def _is_larger(fitted: np.ndarray, unseen: np.ndarray, options: DiscoveryOptions) -> bool:
-    """Whether unseen innovations are larger, beyond chance and by enough to matter."""
+    """Returns whether unseen innovations are larger, beyond chance and by enough to matter."""
     a, b = (_means(_power(E), options.proof_blocks) for E in (fitted, unseen))
     # The logarithm keeps a few blocks with large errors from looking like scatter only.
     p = mean_above_other(np.log(b), np.log(a))
@@ -84,7 +84,7 @@ def _is_larger(fitted: np.ndarray, unseen: np.ndarray, options: DiscoveryOptions
 
 
 def _explain(validation: Validation) -> np.ndarray:
-    """What a small change of the parameters explains of all innovations, shape (N, ny)."""
+    """Returns the part of innovations that a small parameter change explains, shape (N, ny)."""
     fit = validation.refit
     with one_blas_thread():
         J = evaluate_sensitivities(fit.point, validation.log)

@@ -1,4 +1,4 @@
-"""What a fitted model leaves unexplained on the fitted samples, beyond chance.
+"""Structure that a fitted model leaves unexplained on the fitted samples, beyond chance.
 
 The innovations of the fitted samples are tested; those of the unseen samples contain the error of
 the parameters as well, which is not random.
@@ -20,7 +20,7 @@ from identification.kalman.innovations import innovation_tests
 
 
 def find_structure(model: FittedModel, options: DiscoveryOptions) -> tuple[Finding, ...]:
-    """What a model does not explain on the fitted samples; empty when it explains all.
+    """Returns what a model does not explain on the fitted samples; empty when it explains all.
 
     Args:
         model: the fitted model.

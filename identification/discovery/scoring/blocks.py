@@ -15,7 +15,7 @@ from identification.discovery.scoring.projection import Products
 
 
 def compute_block_p_values(products: Products, size: np.ndarray, signs: np.ndarray) -> np.ndarray:
-    """p-values of the Wald test by blocks, shape (J,).
+    """Returns p-values of the Wald test by blocks, shape (J,).
 
     Args:
         products: of J candidates.
@@ -34,10 +34,10 @@ def compute_block_p_values(products: Products, size: np.ndarray, signs: np.ndarr
 
 
 def is_one_sided(signs: np.ndarray) -> np.ndarray:
-    """Which candidates have one size, of which physics admits one sign only, shape (J,)."""
+    """Returns which candidates have one size of which physics admits one sign only, shape (J,)."""
     return np.asarray((signs.shape[1] == 1) & (signs[:, 0] != 0))
 
 
 def is_refused(size: np.ndarray, signs: np.ndarray) -> np.ndarray:
-    """Which candidates have one size, of a sign that physics does not admit, shape (J,)."""
+    """Returns which candidates have one size of a sign that physics does not admit, shape (J,)."""
     return np.asarray((signs.shape[1] == 1) & (signs[:, 0] * size[:, 0] < 0))

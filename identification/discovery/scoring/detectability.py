@@ -15,7 +15,7 @@ from identification.discovery.scoring.scores import Score
 
 
 def list_detectable(scores: Sequence[Score], options: DiscoveryOptions) -> tuple[Detectable, ...]:
-    """The smallest size of each effect that would have been found, ordered by effect name.
+    """Returns the smallest size of each effect that would have been found, ordered by name.
 
     An effect that acts on all places at once is judged there, with the shape of its best score.
     Another one is judged at the place and shape where it is hardest to find.
@@ -41,7 +41,7 @@ def list_detectable(scores: Sequence[Score], options: DiscoveryOptions) -> tuple
 
 
 def _harder(s: Score, before: Score) -> Score:
-    """Of two scores of an effect the one on all places, else the one that is harder to find."""
+    """Returns the one of two scores that is on all places, else the one that is harder to find."""
     if _is_everywhere(s) != _is_everywhere(before):
         return s if _is_everywhere(s) else before
     return before if _is_everywhere(s) or s.std.max() <= before.std.max() else s

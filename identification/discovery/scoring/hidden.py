@@ -1,4 +1,4 @@
-"""What the fitted noise may still hide: how large each effect may be that was not named.
+"""Effects that the fitted noise may still hide, and how large each of them may be.
 
     most  = |η̂| + 1.96 std(η̂)            η̂ as it would be fitted, with the noise most likely then
     taken = 1 - (ρ_j σ_j)²/(ρ σ)²         share of the power of the inputs' error
@@ -27,7 +27,7 @@ QUANTILE = normal_level(0.025)  # of a two-sided interval of 95 %
 def list_hidden(
     scores: Sequence[Score], level: NoiseLevel, options: DiscoveryOptions
 ) -> tuple[Hidden, ...]:
-    """The effects that the noise may hide, those first that would explain most.
+    """Returns the effects that the noise may hide, those that would explain most first.
 
     Of each effect the place and the shape count with which it would explain most. An effect that
     would explain nothing, or of which the log can say no size that is believed, is left out.
@@ -45,7 +45,7 @@ def list_hidden(
 
 
 def _most(s: Score) -> np.ndarray:
-    """The largest size of each kind that the log does not contradict, shape (m,)."""
+    """Returns the largest size of each kind that the log does not contradict, shape (m,)."""
     most: np.ndarray = np.abs(s.size) + QUANTILE * s.std
     return most
 

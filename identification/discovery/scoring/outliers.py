@@ -22,7 +22,7 @@ from identification.logs.log import Log
 def find_outlier_times(
     innovations: np.ndarray, log: Log, apart: float, options: DiscoveryOptions
 ) -> tuple[float, ...]:
-    """Times of the record at which innovations are beyond chance, the largest first [s].
+    """Returns times [s] of the record at which innovations are beyond chance, the largest first.
 
     Args:
         innovations: in units of σ, shape (N, ny).
@@ -45,7 +45,7 @@ def find_outlier_times(
 def list_at_outliers(
     candidates: Sequence[Candidate], innovations: np.ndarray, log: Log, options: DiscoveryOptions
 ) -> tuple[Candidate, ...]:
-    """Jumps of sensors at the times at which the outputs jump, at each place.
+    """Returns jumps of sensors at the times at which the outputs jump, at each place.
 
     Args:
         candidates: of all effects; of those with a reading and a stepped shape one at each place

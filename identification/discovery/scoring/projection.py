@@ -73,13 +73,13 @@ class Projection:
         self.dual = self._filter.transposed(self._e.reshape(point.e.shape))
 
     def log_likelihood(self, squares: np.ndarray) -> np.ndarray:
-        """Log likelihood of sums of squares, up to a constant of the log."""
+        """Returns the log likelihood of sums of squares, up to a constant of the log."""
         n = self.samples
         log_determinant = self._filter.log_determinant
         return np.asarray(-0.5 * (n * np.log(squares / n) + log_determinant))
 
     def products(self, S: np.ndarray, starts: np.ndarray) -> Products:
-        """The products of some candidates.
+        """Returns the products of some candidates.
 
         Args:
             S: sensitivities, shape (N, ny, J, m).
@@ -99,12 +99,12 @@ class Projection:
         return Products(raw, G.sum(axis=0) + _gram(below), b, G, a)
 
     def _coefficients(self, FtX: np.ndarray) -> np.ndarray:
-        """(ΦᵀΦ + P)⁻¹ ΦᵀX; the shortest where outputs do not feel every direction."""
+        """Returns (ΦᵀΦ + P)⁻¹ ΦᵀX; the shortest where outputs do not feel every direction."""
         return np.asarray((self._V / self._w) @ (self._V.T @ FtX))
 
 
 def _gram(X: np.ndarray) -> np.ndarray:
-    """XᵀX of each candidate, shape (J, m, m), of rows (n, J, m)."""
+    """Returns XᵀX of each candidate, shape (J, m, m), of rows (n, J, m)."""
     if X.shape[2] == 1:
         return np.einsum("njm,njm->jm", X, X)[..., None]
     return np.einsum("njp,njq->jpq", X, X)

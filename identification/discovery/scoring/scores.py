@@ -52,7 +52,7 @@ SMALLER = (1.0, 0.3, 0.1, 0.03, 0.01, 0.0)  # ρ that are tried, in units of the
 
 @dataclass(frozen=True, kw_only=True)
 class Score:
-    """What a candidate would explain.
+    """A candidate with what it would explain.
 
     Attributes:
         candidate: the effect, its place and its shapes.
@@ -102,12 +102,12 @@ def _scorer(fit: Refit, blocks: int) -> _Scorer:
 
 
 def _numbers(sensitivities: Sequence[Sensitivity]) -> list[int]:
-    """How many sizes candidates have."""
+    """Returns the numbers of sizes that candidates have, in ascending order."""
     return sorted({s.S.shape[2] for s in sensitivities})
 
 
 def _groups(sensitivities: Sequence[Sensitivity], m: int) -> list[list[int]]:
-    """Places of candidates with m sizes, as many at a time as are projected at once."""
+    """Returns groups of indices of candidates with m sizes, as many as are projected at once."""
     places = [j for j, s in enumerate(sensitivities) if s.S.shape[2] == m]
     most = min(TOGETHER // m, MEMORY // max(1, sensitivities[0].S[..., 0].nbytes * m))
     return [places[some] for some in split(len(places), max(1, most))]
@@ -115,7 +115,7 @@ def _groups(sensitivities: Sequence[Sensitivity], m: int) -> list[list[int]]:
 
 @dataclass
 class _Best:
-    """What is known of J candidates under the likeliest noise that was tried for each.
+    """Results on J candidates under the likeliest noise that was tried for each.
 
     Attributes:
         level: index of that noise, shape (J,).
@@ -162,7 +162,7 @@ class _Scorer:
             self.known |= {id(s): (s, one) for s, one in zip(some, scores, strict=True)}
 
     def _scores(self, some: Sequence[Sensitivity]) -> list[Score]:
-        """Scores of candidates that have the same number of sizes, in their order."""
+        """Returns the scores of candidates that have the same number of sizes, in their order."""
         S = np.stack([s.S for s in some], axis=2)
         signs = np.array([[size.sign for size in s.candidate.effect.sizes] for s in some])
         null = self._try(self.null, S, signs)
@@ -178,7 +178,7 @@ class _Scorer:
         return self._made(some, best, signs, p_value, identifiable)
 
     def _try(self, k: int, S: np.ndarray, signs: np.ndarray) -> _Best:
-        """What candidates explain under a noise."""
+        """Returns what candidates explain under a noise."""
         level = self.levels[k]
         products = level.products(S, self.starts)
         inverse = np.linalg.pinv(products.H, rcond=1e-12, hermitian=True)
@@ -189,7 +189,7 @@ class _Scorer:
         return _Best(np.full(len(size), k), level.log_likelihood(squares), squares, size, products)
 
     def _bound(self, S: np.ndarray, largest: Products) -> np.ndarray:
-        """Bounds of the log likelihood with each candidate under each noise, shape (levels, J).
+        """Returns bounds of each candidate's log likelihood under each noise, shape (levels, J).
 
         Args:
             S: the sensitivities.
@@ -208,7 +208,7 @@ class _Scorer:
         return np.stack([p.log_likelihood(s) for p, s in zip(self.levels, squares, strict=True)])
 
     def _under_null(self, null: _Best, signs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """p-values, and which share of the sensitivities re-tuning cannot imitate."""
+        """Returns p-values, and the share of the sensitivities that re-tuning cannot imitate."""
         level, m = self.levels[self.null], signs.shape[1]
         statistic = (level.rest - null.squares) / (level.rest / level.samples)
         p = chi2_above(statistic, m) * np.where(is_one_sided(signs), 0.5, 1.0)

@@ -45,7 +45,7 @@ class Sensitivity:
 
 
 def list_common(effects: Sequence[Effect]) -> tuple[Candidate, ...]:
-    """Every effect with all its shapes, where it acts on all places at once.
+    """Returns candidates of every effect with all its shapes, on all places at once.
 
     An effect that has no such place is listed at each of its single places.
     """
@@ -62,7 +62,7 @@ def list_common(effects: Sequence[Effect]) -> tuple[Candidate, ...]:
 
 
 def list_single(common: Sequence[Candidate]) -> tuple[Candidate, ...]:
-    """Candidates that act on all places at once, at each of their single places, shapes kept."""
+    """Returns candidates that act on all places at once, at each single place, shapes kept."""
     return tuple(
         Candidate(c.effect, where, c.shape, c.probe)
         for c in common
@@ -73,7 +73,7 @@ def list_single(common: Sequence[Candidate]) -> tuple[Candidate, ...]:
 
 
 def list_between(candidate: Candidate) -> tuple[Candidate, ...]:
-    """A candidate with the values of its stepped shapes between the neighbours in their grids."""
+    """Returns a candidate with values of its stepped shapes between the neighbours in the grids."""
     out: tuple[Candidate, ...] = ()
     for shape in candidate.effect.shapes:
         if not shape.step:
@@ -87,13 +87,13 @@ def list_between(candidate: Candidate) -> tuple[Candidate, ...]:
 
 
 def iterate_shapes(effect: Effect) -> Iterator[dict[str, float]]:
-    """All combinations of the grids of an effect's shapes."""
+    """Yields all combinations of the grids of an effect's shapes."""
     for values in product(*(shape.grid for shape in effect.shapes)):
         yield dict(zip((shape.name for shape in effect.shapes), values, strict=True))
 
 
 def compute_sensitivities(point: Point, candidates: Sequence[Candidate]) -> tuple[Sensitivity, ...]:
-    """Sensitivities of candidates at a point; one whose simulation diverges is left out.
+    """Computes sensitivities of candidates at a point; one whose simulation diverges is left out.
 
     They come from the sensitivity equations, where these hold at the point, and else from a
     simulation with each.
@@ -118,7 +118,7 @@ def compute_sensitivities(point: Point, candidates: Sequence[Candidate]) -> tupl
 
 
 def compute_beside(point: Point, candidates: Sequence[Candidate]) -> tuple[Sensitivity, ...]:
-    """Sensitivities to an effect of other shapes, along the trajectory that it has with its own.
+    """Computes sensitivities to an effect of other shapes, along the trajectory with its own one.
 
     A plant has an effect in one shape only. So the response to another shape with a probe as its
     size is compared with the response to no effect, both by the sensitivity equations.
@@ -156,7 +156,7 @@ def compute_beside(point: Point, candidates: Sequence[Candidate]) -> tuple[Sensi
 
 @lru_cache(maxsize=1)
 def _fine_records(point: Point) -> tuple[Linearisation, ...]:
-    """The linearisation at a point, at as many points as candidates need; none where it fails."""
+    """Returns the linearisation at a point, as fine as candidates need; none where it fails."""
     records = linearise_records(point.predictor, point.space.decode(point.q), points=FINE)
     holds = do_equations_hold(point.predictor, point.space, point.q, records, point.J)
     return records if holds else ()
@@ -166,7 +166,7 @@ def _alone(
     compute: Callable[[list[Candidate]], Sequence[Sensitivity | None]],
     group: list[tuple[int, Candidate]],
 ) -> dict[int, Sensitivity]:
-    """What is computed of a group, or of each candidate alone where one of them diverges."""
+    """Returns what is computed of a group, or of each candidate alone if one of them diverges."""
     found = attempt(None, partial(compute, [c for _, c in group]))
     if found is not None:
         return {i: s for (i, _), s in zip(group, found, strict=True) if s is not None}
@@ -191,7 +191,7 @@ def _groups(candidates: Sequence[tuple[int, Candidate]]) -> Iterator[list[tuple[
 def _solve(
     point: Point, records: tuple[Linearisation, ...], group: list[Candidate]
 ) -> list[Sensitivity | None]:
-    """Sensitivities by the equations; None of a candidate that they do not describe."""
+    """Returns sensitivities by the equations; None for a candidate that they do not describe."""
     families: dict[tuple[Any, ...], list[int]] = {}
     for i, candidate in enumerate(group):
         alone = candidate.effect.onset is None
@@ -213,20 +213,20 @@ def _solve(
 
 
 def _family(c: Candidate) -> tuple[Any, ...]:
-    """What candidates of an effect with an onset have in common if they differ in its time only."""
+    """Returns a key that candidates share if they differ only in the time of their onset."""
     begins = c.effect.onset.shape if c.effect.onset else ""
     return (*c.key, c.probe, *((n, v) for n, v in c.shape.items() if n != begins))
 
 
 def _long_begun(c: Candidate) -> Candidate:
-    """The candidate as one that began long before the record."""
+    """Returns the candidate as one that began long before the record."""
     if c.effect.onset is None:
         return c
     return replace(c, shape={**c.shape, c.effect.onset.shape: -LONG_AGO})
 
 
 def _courses(family: list[Candidate]) -> Courses:
-    """The courses in time of candidates that differ only in when they begin."""
+    """Returns the courses in time of candidates that differ only in when they begin."""
     onset = family[0].effect.onset
     if onset is None:
         return ALWAYS
@@ -234,7 +234,7 @@ def _courses(family: list[Candidate]) -> Courses:
 
 
 def _simulate(point: Point, predicted: np.ndarray, group: list[Candidate]) -> list[Sensitivity]:
-    """Sensitivities by simulations with each candidate."""
+    """Returns sensitivities by simulations with each candidate."""
     predictor, _, rows, probes = _probe(point, group, 1.0)
     S = (predictor.predict(rows) - predicted) / probes[:, None, None]
     refuse_infinite(S)
@@ -244,7 +244,7 @@ def _simulate(point: Point, predicted: np.ndarray, group: list[Candidate]) -> li
 def _probe(
     point: Point, group: list[Candidate], shorter: float
 ) -> tuple[Predictor, np.ndarray, np.ndarray, np.ndarray]:
-    """A predictor, its values, and the values with each size of each candidate as a probe.
+    """Returns a predictor, its values, and the values with each size of each candidate as a probe.
 
     Args:
         point: the plant.
@@ -271,7 +271,7 @@ def _probe(
 
 
 def _each(group: list[Candidate], S: np.ndarray) -> list[Sensitivity]:
-    """The sensitivities of each candidate, from those of all sizes, shape (m, N, ny)."""
+    """Returns the sensitivities of each candidate, from those of all sizes, shape (m, N, ny)."""
     ends = np.cumsum([len(c.sizes) for c in group])
     return [
         Sensitivity(c, np.moveaxis(S[end - len(c.sizes) : end], 0, -1))

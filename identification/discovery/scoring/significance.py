@@ -1,4 +1,4 @@
-"""Which scores are worth a refit: those beyond chance, with a size that physics admits.
+"""Selection of the scores worth a refit: beyond chance, with a size that physics admits.
 
 max(p_j, p_j by blocks) n < significance        n candidates (Bonferroni)
 """
@@ -15,14 +15,14 @@ from identification.effects.effect import Candidate
 
 
 def select_significant(scores: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
-    """Scores beyond chance with plausible sizes: the best shape of each effect at each place."""
+    """Returns plausible scores beyond chance: the best shape of each effect at each place."""
     count = len(scores)
     likely = [s for s in scores if correct_p_value(s, count) < options.significance]
     return select_plausible(likely, options)
 
 
 def select_plausible(scores: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
-    """Scores with plausible sizes: the best shape of each effect at each place."""
+    """Returns scores with plausible sizes: the best shape of each effect at each place."""
     each: dict[tuple[str, str], Score] = {}
     for s in sorted(scores, key=gain_of_whole, reverse=True):
         if is_plausible(s.candidate, s.size, options) and s.gain > 0:
@@ -31,7 +31,7 @@ def select_plausible(scores: Sequence[Score], options: DiscoveryOptions) -> list
 
 
 def gain_of_whole(s: Score) -> float:
-    """The gain of a score; less where an effect that can have but one size has another one.
+    """Returns the gain of a score; less where an effect with only one possible size has another.
 
     The score of such an effect (a limit) estimates its size; the farther the estimate is from the
     one size, the worse is its shape.
@@ -43,17 +43,17 @@ def gain_of_whole(s: Score) -> float:
 
 
 def is_plausible(candidate: Candidate, size: np.ndarray, options: DiscoveryOptions) -> bool:
-    """Whether sizes have a sign that physics admits and a magnitude that is believed."""
+    """Returns whether sizes have a sign that physics admits and a magnitude that is believed."""
     return is_possible(candidate, size) and not is_oversized(candidate, size, options)
 
 
 def is_possible(candidate: Candidate, size: np.ndarray) -> bool:
-    """Whether all sizes have a sign that physics admits."""
+    """Returns whether all sizes have a sign that physics admits."""
     return all(s.sign * v >= 0 for v, s in zip(size, candidate.effect.sizes, strict=True))
 
 
 def is_oversized(candidate: Candidate, size: np.ndarray, options: DiscoveryOptions) -> bool:
-    """Whether a size is beyond what is believed."""
+    """Returns whether a size is beyond what is believed."""
     sizes = zip(size, candidate.effect.sizes, strict=True)
     return any(abs(v) > options.size_factor * s.largest for v, s in sizes)
 
@@ -61,7 +61,7 @@ def is_oversized(candidate: Candidate, size: np.ndarray, options: DiscoveryOptio
 def find_oversized(
     scores: Sequence[Score], named: Sequence[str], options: DiscoveryOptions
 ) -> Score | None:
-    """The candidate that explains more than all named effects, but at a size beyond belief.
+    """Returns the candidate that explains more than all named effects, at a size beyond belief.
 
     It is beyond chance as well. An effect that explains as much with another shape, at a size that
     is believed, was refitted and does not count.
@@ -86,5 +86,5 @@ def find_oversized(
 
 
 def correct_p_value(s: Score, count: int) -> float:
-    """Chance that one of `count` candidates has as large a score by luck (Bonferroni)."""
+    """Returns the chance that one of `count` candidates scores as high by luck (Bonferroni)."""
     return min(1.0, max(s.p_value, s.block_p_value) * count)

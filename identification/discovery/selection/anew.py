@@ -20,7 +20,7 @@ from identification.effects.effect import Candidate
 def begin_anew(
     task: DiscoveryTask, refitted: Sequence[FittedModel], scores: Sequence[Score]
 ) -> list[FittedModel]:
-    """Refits of a first effect, or better ones that began at the nominal values.
+    """Returns refits of a first effect, or better ones that began at the nominal values.
 
     Nothing changes where the likeliest refit has no parameter at a limit.
 
@@ -39,7 +39,7 @@ def begin_anew(
 
 
 def _likeliest(task: DiscoveryTask, model: FittedModel, scores: Sequence[Score]) -> FittedModel:
-    """The likeliest of a refit and of those that begin at the nominal values, in each kind."""
+    """Returns the likeliest of a refit and of those begun at the nominal values, in each kind."""
     best, mine = model, model.candidates[-1]
     for s in _best_of_each_kind(mine, scores):
         sizes = dict(zip(s.candidate.sizes, s.size, strict=True))
@@ -50,7 +50,7 @@ def _likeliest(task: DiscoveryTask, model: FittedModel, scores: Sequence[Score])
 
 
 def _best_of_each_kind(mine: Candidate, scores: Sequence[Score]) -> list[Score]:
-    """The best score of an effect at its place in each of its kinds, which are no free shapes."""
+    """Returns the best score of an effect at its place in each kind, which is no free shape."""
     kinds = [shape.name for shape in mine.effect.shapes if not shape.free]
     best: dict[tuple[float, ...], Score] = {}
     for s in sorted(scores, key=gain_of_whole, reverse=True):

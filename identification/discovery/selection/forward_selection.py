@@ -111,7 +111,7 @@ def select_effect(
 def _refit_candidates(
     task: DiscoveryTask, model: FittedModel, scores: Sequence[Score], progress: Progress
 ) -> list[FittedModel]:
-    """The model with each of the best candidates in turn, the most likely one first."""
+    """Returns the model with each of the best candidates in turn, the most likely one first."""
     scores = (*scores, *_sharpen(model, scores, task.options))
     chosen = _select_contenders(select_significant(scores, task.options), task.options)
     is_hidden = not chosen and bool(model.refit.level.noise.ratio)
@@ -137,7 +137,7 @@ def _refit_candidates(
 def _sharpen(
     model: FittedModel, scores: Sequence[Score], options: DiscoveryOptions
 ) -> tuple[Score, ...]:
-    """Scores at more values of their shapes, as finely as a refit asks, of the likely candidates.
+    """Returns scores of the likely candidates at more values of their shapes, as a refit asks.
 
     What jumps acts in a few blocks, and at a wrong time it leaves as much in one of them as it
     explains: the score is then far beyond chance by the noise model and not by the blocks. It must
@@ -156,7 +156,7 @@ def _sharpen(
 
 
 def _select_likeliest(scores: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
-    """The best scores of a few effects, which may be luck.
+    """Returns the best scores of a few effects, which may be luck.
 
     Without the effect the fit may have moved the parameters so far that the score, which is linear,
     says little, and the noise model may have taken the rest for an error of the inputs.
@@ -169,7 +169,7 @@ def _select_likeliest(scores: Sequence[Score], options: DiscoveryOptions) -> lis
 
 
 def _ask(candidate: Candidate, model: FittedModel, count: int, options: DiscoveryOptions) -> float:
-    """What a refit must gain, in twice the log posterior, to matter.
+    """Returns what a refit must gain, in twice the log posterior, to matter.
 
     It is what the best of `count` candidates gains by luck, or where this is zero what BIC asks.
     """
@@ -181,7 +181,7 @@ def _ask(candidate: Candidate, model: FittedModel, count: int, options: Discover
 
 
 def _select_contenders(significant: Sequence[Score], options: DiscoveryOptions) -> list[Score]:
-    """The few best of the significant scores.
+    """Returns the few best of the significant scores.
 
     One effect is refitted at two places only where both have nearly the same gain.
     """

@@ -44,7 +44,7 @@ def improve_kinds(
     model: FittedModel,
     sensitivities: Sequence[Sensitivity],
 ) -> tuple[tuple[AcceptedEffect, ...], FittedModel]:
-    """The accepted effects, each of the kind that is the likeliest beside the others.
+    """Returns the accepted effects, each of the kind that is the likeliest beside the others.
 
     Args:
         task: the nominal model, the log and the options.
@@ -78,7 +78,7 @@ def improve_kinds(
 def improve_rivals(
     task: DiscoveryTask, best: FittedModel, others: Sequence[FittedModel]
 ) -> list[FittedModel]:
-    """Refits of a round, each rival of the kind that is the likeliest, the best refit first.
+    """Returns refits of a round, each rival of its likeliest kind, the best refit first.
 
     A delay of all encoders is one of all inputs, and no lag. The first order says little about the
     trajectory of a wrong effect, so that each kind is refitted that explains enough. A rival comes
@@ -108,7 +108,7 @@ def improve_rivals(
 def _fit_kind(
     task: DiscoveryTask, other: Candidate, start: Mapping[str, float], model: FittedModel
 ) -> FittedModel | None:
-    """A model with an effect of another kind; a short search where it leaves no structure."""
+    """Returns a model with an effect of another kind, by a short search if no structure is left."""
     candidates = tuple(other if c.key == other.key else c for c in model.candidates)
     begin, least = {**model.refit.point.values, **start}, model.refit.log_posterior
     if is_structured(model, task.options):
@@ -117,14 +117,14 @@ def _fit_kind(
 
 
 def _share(task: DiscoveryTask, model: FittedModel) -> float:
-    """Share of an effect's gain that another kind may lose to first order, and is refitted."""
+    """Returns the share of an effect's gain that another kind may lose and is still refitted."""
     return task.options.retry_share if is_structured(model, task.options) else 0.0
 
 
 def _list_kinds(
     task: DiscoveryTask, old: Candidate, model: FittedModel, share: float
 ) -> list[tuple[Candidate, dict[str, float]]]:
-    """An effect of each other kind that explains more, or enough to be refitted, to first order.
+    """Returns an effect of each other kind that explains enough to be refitted, to first order.
 
     Args:
         task: the nominal model, the log and the options.
@@ -155,7 +155,7 @@ def _list_kinds(
 def _list_limits(
     task: DiscoveryTask, old: Candidate, model: FittedModel, sensitivities: Sequence[Sensitivity]
 ) -> list[tuple[Candidate, Mapping[str, float]]]:
-    """The best of each other kind of an effect, by its score on the model without the effect.
+    """Returns the best of each other kind of an effect, by its score on the model without it.
 
     Args:
         task: the nominal model, the log and the options.
@@ -184,7 +184,7 @@ def _list_limits(
 
 
 def _beside(point: Point, candidates: Sequence[Candidate]) -> list[Sensitivity]:
-    """Sensitivities to an effect of other kinds; one of them that diverges is told and left out."""
+    """Returns sensitivities to an effect of other kinds; one that diverges is told and left out."""
     every = attempt(None, partial(compute_beside, point, candidates))
     if every is not None:
         return [*every]
@@ -193,7 +193,7 @@ def _beside(point: Point, candidates: Sequence[Candidate]) -> list[Sensitivity]:
 
 
 def _other_kinds(old: Candidate, model: FittedModel) -> list[Candidate]:
-    """An effect with every other combination of its fixed shapes.
+    """Returns an effect with every other combination of its fixed shapes.
 
     Its free shapes have their fitted values, or those of their grids.
     """

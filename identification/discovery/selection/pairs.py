@@ -34,7 +34,7 @@ def find_pair(
     sensitivities: Sequence[Sensitivity],
     progress: Progress,
 ) -> tuple[AcceptedEffect, ...]:
-    """The effect that is not proven alone and the one beside which it is, or the second alone.
+    """Returns two effects of which the first is proven only beside the second, or the second alone.
 
     Args:
         task: the nominal model, the log and the options.

@@ -38,7 +38,7 @@ def prune(
     model: FittedModel,
     sensitivities: Sequence[Sensitivity],
 ) -> tuple[tuple[AcceptedEffect, ...], FittedModel]:
-    """The effects that are kept or take the place of others, and the model with them.
+    """Returns the effects that are kept or take the place of others, and the model with them.
 
     Args:
         task: the nominal model, the log and the options.
@@ -68,7 +68,7 @@ def eliminate(
 
 
 def _is_needed(task: DiscoveryTask, model: FittedModel, candidate: Candidate) -> bool:
-    """Whether the model would be far less likely without an effect, however all else is re-tuned.
+    """Returns whether the model would be far less likely without an effect, with all re-tuned.
 
     To first order: `FAR` times what BIC asks leaves room for what is not linear. Of a limit, whose
     size is not estimated, this says nothing.
@@ -119,7 +119,7 @@ def _fit_rival(
     margin: float,
     least: float,
 ) -> FittedModel | None:
-    """A model with a rival; None where few steps show that it does not become likely enough.
+    """Returns a model with a rival; None where few steps show that it is not likely enough.
 
     Its BIC is then behind by more than a margin, or its fit has ended below the log posterior
     `least`.
@@ -134,7 +134,7 @@ def _fit_rival(
 
 
 def _count(model: FittedModel, without: Candidate, with_it: Candidate | None = None) -> int:
-    """How many free parameters a model has without an effect, and with another one in its place."""
+    """Returns the count of free parameters without an effect, or with another one in its place."""
     names = {*model.refit.point.space.names} - {*without.estimated}
     return len(names | {*(() if with_it is None else with_it.estimated)})
 
@@ -146,7 +146,7 @@ def _list_rivals(
     model: FittedModel,
     sensitivities: Sequence[Sensitivity],
 ) -> list[tuple[Candidate, Mapping[str, float]]]:
-    """Candidates that may stand in an effect's place, each with values to begin at.
+    """Returns candidates that may stand in an effect's place, each with values to begin at.
 
     They need not be beyond chance, only as good as the effect itself: a refit and its proof decide.
     """

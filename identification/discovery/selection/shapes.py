@@ -22,7 +22,7 @@ from identification.kalman.innovations import innovation_tests
 def improve_shape(
     task: DiscoveryTask, model: FittedModel, best: FittedModel, scores: Sequence[Score]
 ) -> FittedModel:
-    """The best refit of an effect, or a better refit of the same effect with another shape.
+    """Returns the best refit of an effect, or a better one of the same effect with another shape.
 
     Args:
         task: the nominal model, the log and the options.
@@ -39,13 +39,13 @@ def improve_shape(
 
 
 def is_structured(model: FittedModel, options: DiscoveryOptions) -> bool:
-    """Whether the innovations are not white, or the inputs' error is not random."""
+    """Returns whether the innovations are not white, or the inputs' error is not random."""
     white = innovation_tests(model.innovations, model.refit.point.log.sampling_time)
     return white.is_correlated(options) or bool(find_input_error(model.validation, options))
 
 
 def _try_from_nominal(task: DiscoveryTask, model: FittedModel, best: FittedModel) -> FittedModel:
-    """The better of a fit and of the same fit begun at the nominal values.
+    """Returns the better of a fit and of the same fit begun at the nominal values.
 
     The wrong model may have moved the parameters too far away to come back.
     """
@@ -59,7 +59,7 @@ def _try_from_nominal(task: DiscoveryTask, model: FittedModel, best: FittedModel
 def _try_other_shape(
     task: DiscoveryTask, model: FittedModel, best: FittedModel, scores: Sequence[Score]
 ) -> FittedModel:
-    """The better of a fit and of one with the next likely fixed shapes (a power, a kind)."""
+    """Returns the better of a fit and one with the next likely fixed shapes (a power, a kind)."""
     mine = best.candidates[-1]
     fixed = [shape.name for shape in mine.effect.shapes if not shape.free]
     for s in _select_same(mine, scores):
@@ -72,7 +72,7 @@ def _try_other_shape(
 def _prefer_usual(
     task: DiscoveryTask, model: FittedModel, best: FittedModel, scores: Sequence[Score]
 ) -> FittedModel:
-    """The fit with the usual fixed shapes, where the data do not tell it from the best."""
+    """Returns the fit with the usual fixed shapes, where the data do not tell it from the best."""
     mine = best.candidates[-1]
     usual = {s.name: s.usual for s in mine.effect.shapes if not s.free and s.usual is not None}
     if all(mine.shape[name] == value for name, value in usual.items()):
@@ -88,7 +88,7 @@ def _prefer_usual(
 
 
 def _select_same(mine: Candidate, scores: Sequence[Score]) -> Iterator[Score]:
-    """Scores of the same effect at the same place, with any shape, the best first."""
+    """Yields the scores of the same effect at the same place, with any shape, the best first."""
     for s in sorted(scores, key=gain_of_whole, reverse=True):
         if s.candidate.effect.name == mine.effect.name and s.candidate.where == mine.where:
             yield s
@@ -97,7 +97,7 @@ def _select_same(mine: Candidate, scores: Sequence[Score]) -> Iterator[Score]:
 def _fit_shape(
     task: DiscoveryTask, model: FittedModel, s: Score, least: float
 ) -> FittedModel | None:
-    """The model with a candidate of another shape; None where it cannot be simulated.
+    """Returns the model with a candidate of another shape; None where it cannot be simulated.
 
     One that does not come to the log posterior `least` does not matter, and its fit ends early.
     """
